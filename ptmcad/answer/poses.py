@@ -6,7 +6,7 @@ Guarantee: all real equilibria are there; every number is exact or an `Enclosure
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -116,6 +116,7 @@ class Poses:
     digits : significant digits that each enclosure settles; one more where it cannot be told from halfway between two
         texts of so many.
     bits : the precision that was needed.
+    units : of ``length`` and ``force``, where the record declares them; nothing but text depends on them.
     """
 
     model: Model
@@ -125,6 +126,7 @@ class Poses:
     digits: int
     bits: int
     remark: str = ""
+    units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def mechanism(self) -> str:

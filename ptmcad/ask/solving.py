@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from ptmcad.ask.manyangles import poses_by_search, work_for
 from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
 from ptmcad.mechanism import Mechanism, Model, ptm
 from ptmcad.process.memory import check_room, loading
-from ptmcad.question.config import point_from, point_from_mapping
+from ptmcad.question.config import point_from, point_from_mapping, units_of
 from ptmcad.question.slice import Slice, have_free_lengths
 from ptmcad.text.expressions import constant
 
@@ -52,7 +53,7 @@ def solve(
     if question is not None:
         if model is not None:
             raise ConfigError("a slice or record has a model of its own: leave one out", key="model")
-        return poses_at(*point_from(question, parameters), digits)
+        return replace(poses_at(*point_from(question, parameters), digits), units=units_of(question))
     if model is None:
         model = ptm()
     expect(model, Model, "model", A_MODEL)

@@ -181,7 +181,7 @@ def style_options(command: F) -> F:
     command = gathered(style=_style)(command)
     for option in (
         click.option("--dpi", type=click.IntRange(50, 1200), default=150, show_default=True,
-                     help="Resolution of a PNG; regions that it hides are shown zoomed, in every format."),
+                     help="Resolution of a PNG; regions of a map that it hides are shown zoomed, in every format."),
         click.option("--thin-lines", type=click.Choice(LINES),
                      help="Curves of the variety where the count does not change.  [default: solid]"),
         click.option("--line-width", metavar="PT", help="Width of curves where the count changes, in points."),
@@ -190,7 +190,8 @@ def style_options(command: F) -> F:
         click.option("--title", metavar="TEXT",
                      help="Title, '' for none.  [default: the slice's heading; none in journals' styles]"),
         click.option("--palette", metavar="NAME|COLOUR,..", shell_complete=palettes,
-                     help=f"{', '.join(PALETTES)}, or colours for the counts in increasing order.  [default: default]"),
+                     help=f"{', '.join(PALETTES)}, or colours for the counts, or values, in increasing order.  "
+                          "[default: default]"),
         click.option("--font-family", metavar="NAME,..", help="Fonts that are installed; the first that has a letter."),
         click.option("--font-size", metavar="PT", help="Of the legend, at the printed size; none below 6 points."),
         click.option("--size", metavar="WxH", help="Of the whole picture, as 3.5x2.6in or 90x70mm."),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -58,7 +59,7 @@ def poses_at(result: RegionMap, at: Place) -> Poses:
     aliased = {parameter.alias_of for parameter in slice.model.parameters.values()}
     alone = [name for name in slice.parameters if name not in aliased]
     values = {name: slice.parameters[name].evaluate(*at) for name in alone}
-    return solved(slice.model, point_from_mapping(values, slice.model), DIGITS)
+    return replace(solved(slice.model, point_from_mapping(values, slice.model), DIGITS), units=slice.units)
 
 
 def measured(result: RegionMap, path: Path) -> tuple[tuple[Measured, ...], int]:

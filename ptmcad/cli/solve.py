@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -21,7 +22,7 @@ from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
-from ptmcad.question.config import file_name, point_from_options
+from ptmcad.question.config import file_name, point_from_options, units_of
 from ptmcad.question.examples import POINT
 from ptmcad.show.drawable import no_drawing, no_landscape
 
@@ -156,7 +157,7 @@ def command(
         with clock_stopped(limits.timeout), ProgressBar() as progress:
             if needs_intervals(model, parameters):
                 load_certified(progress)
-        poses = poses_at(model, parameters, digits)
+        poses = replace(poses_at(model, parameters, digits), units={} if config is None else units_of(config))
         if names:
             save(poses, out, start, names)
     if "table" in formats:

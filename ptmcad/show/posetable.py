@@ -11,8 +11,9 @@ from itertools import pairwise
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.answer.words import counted, noun, of_what, untold
-from ptmcad.mechanism import Mechanism, Model, built_in
+from ptmcad.mechanism import Mechanism, built_in
 from ptmcad.question.slice import merged
+from ptmcad.show.units import energy_unit
 from ptmcad.text.enclosure import Enclosure, exact_text
 
 WIDTH = 100
@@ -48,7 +49,7 @@ def table(poses: Poses, digits: int | None = None) -> str:
     if poses.equilibria:
         lines += [
             "",
-            *(_wrapped("units", units) if (units := _units(poses.model)) else []),
+            *(_wrapped("units", units) if (units := _units(poses)) else []),
             *(_wrapped("energy", [note]) if (note := _energy_note(poses)) else []),
             *(_wrapped("torsion", [_TORSION]) if poses.equilibria[0].torsion else []),
             *(_wrapped("tense", [_TENSE]) if poses.equilibria[0].admissible is not None else []),
@@ -56,27 +57,32 @@ def table(poses: Poses, digits: int | None = None) -> str:
     return "\n".join(lines)
 
 
-def _units(mechanism: Model) -> list[str]:
+def _units(poses: Poses) -> list[str]:
     """In what numbers are measured; nothing of a system, whose numbers have no units."""
+    mechanism, units = poses.model, poses.units
     if not isinstance(mechanism, Mechanism):
         return []
-    length, force = mechanism.units
+    length, force = (
+        units.get(what) or (f"that of {name}" if name else "")
+        for what, name in zip(("length", "force"), mechanism.units, strict=True)
+    )
+    product = energy_unit(units) if "length" in units and "force" in units else "their product"
     pivots = " and ".join(f"{angle} at {at}" for angle, at in mechanism.pivots.items())
     return [
-        *([f"lengths and coordinates in that of {length}"] if length else []),
-        *([f"forces in that of {force}"] if force else []),
-        *_in_products(mechanism),
+        *([f"lengths and coordinates in {length}"] if length else []),
+        *([f"forces in {force}"] if force else []),
+        *_in_products(mechanism, product),
         # only of what is built in it is known where an angle is measured from
         *([f"angles between rod and base, {pivots}"] if pivots and mechanism.name in built_in() else []),
     ]
 
 
-def _in_products(mechanism: Mechanism) -> list[str]:
+def _in_products(mechanism: Mechanism, product: str) -> list[str]:
     """What is measured in force times length."""
     moments = "moments" if mechanism.torsion else ""
     if not mechanism.has_potential:
-        return [f"{moments} in their product"] if moments else []
-    return [f"energies{moments and f', {moments}'} and the Hessian's eigenvalues in their product"]
+        return [f"{moments} in {product}"] if moments else []
+    return [f"energies{moments and f', {moments}'} and the Hessian's eigenvalues in {product}"]
 
 
 def _energy_note(poses: Poses) -> str:

@@ -17,6 +17,7 @@ from ptmcad.text.parsing import names_in, parse
 from ptmcad.text.tree import Tree, names_of
 
 _LENGTH, _FORCE, _STIFFNESS, _MOMENT = ("length",), ("force",), ("force", "/", "length"), ("force", "·", "length")
+_ENERGY = ("force", "length")
 _QUANTITIES = {Kind.LENGTH: _LENGTH, Kind.BASE: _LENGTH, Kind.STIFFNESS: _STIFFNESS, Kind.FORCE: _FORCE}
 """The quantities, and what joins two."""
 _SIGNS = frozenset("/·")
@@ -76,6 +77,20 @@ def unit_of_free(slice: Slice, free: str, text: Mapping[str, str]) -> str:
     """
     own = {name: parse(written, {free: axis(0)}) for name, written in text.items() if names_in(written) == (free,)}
     return _joined(slice, _quantities_in(slice, {free: axis(0), **own}, (1, 0)))
+
+
+def energy_unit(units: Mapping[str, str]) -> str:
+    """The unit of energies of a mechanism, such as ``kN·m``; in words as far as units are not declared."""
+    return (
+        "·".join(units[q] for q in _ENERGY)
+        if all(q in units for q in _ENERGY)
+        else " · ".join(units.get(q, q) for q in _ENERGY)
+    )
+
+
+def declared_units(units: Mapping[str, str]) -> dict[str, str]:
+    """Of lengths, forces and energies, as far as a record declares them."""
+    return {**units, **({"energy": energy_unit(units)} if all(q in units for q in _ENERGY) else {})}
 
 
 def unit_of_unknown(slice: Slice, name: str) -> str:

@@ -92,7 +92,7 @@ def test_an_energy_over_an_angle_and_a_length() -> None:
         value = float(energy(*(np.array(float(x)) for x in (*pose.angles, *pose.reals))))
         assert value == pytest.approx(energy.scaled(pose.energy.center), abs=1e-9)
     axes = draw_landscape(found).axes[0]
-    assert axes.get_xlabel() == "θ (degrees)" and axes.get_ylabel() == "s"
+    assert axes.get_xlabel() == "θ (degrees)" and axes.get_ylabel() == "s (length)"
     low, high = axes.get_ylim()
     assert all(low < float(pose.reals[0]) < high for pose in found.equilibria)
 

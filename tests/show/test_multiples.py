@@ -16,6 +16,7 @@ from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.family import FamilyMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.multiples import draw_multiples
+from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sheets import LONGEST, camera_of, halved
 from ptmcad.show.render.solid import MAX_FLOORS, draw_solid
 from ptmcad.show.style import styled
@@ -186,6 +187,8 @@ def test_legends_have_the_curve_and_members_their_values_in_three_dimensions(fam
     drawn = family.plot(solid=True)
     told = [text.get_text() for text in drawn.texts]
     assert {"the count changes", "paler: seen through a map above it"} <= set(told)
+    thin = any(not separates for r in family.members for _, separates, _ in shapes(r).walls())
+    assert ("other curves left out" in told) == thin
     named = {text.get_gid(): text.get_text().strip() for text in drawn.axes[0].texts}
     assert named == {
         f"member-{number}": f"c = {value}" for number, value in enumerate(("0", "0.5", "1", "1.5", "2", "2.5", "3"))

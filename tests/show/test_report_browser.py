@@ -225,9 +225,13 @@ def test_light_dark_and_the_button(view: Callable[..., Browser]) -> None:
     assert light == "rgb(255, 255, 255)" != dark
     b.until(f"{shade} !== {light_shade}")
     b.picture("fig3-index-dark.png")
-    assert b.run("document.querySelector('#theme').getAttribute('aria-pressed')") == "true"
+    switch = "document.querySelector('#theme')"
+    shown, face = f"[{switch}.ariaPressed, {switch}.textContent]", f"getComputedStyle({switch}).backgroundColor"
+    assert b.run(shown) == ["true", "Dark: on"]
+    pressed = b.run(face)
     b.run("document.querySelector('#theme').click()")
     assert b.run(background) == light
+    assert b.run(shown) == ["false", "Dark: off"] and b.run(face) != pressed
     b.media(prefers_color_scheme="light")
     b.run("document.querySelector('#theme').click()")
     assert b.run(background) == dark
@@ -420,9 +424,47 @@ def test_reduced_motion_and_print(view: Callable[..., Browser], tmp_path: Path) 
     assert b.run("getComputedStyle(document.querySelector('#close')).display") == "none"
     for part in (".pose", ".grid-of-poses", "#live", "#readout"):  # are not split over two pages
         assert b.run(f"getComputedStyle(document.querySelector('{part}')).breakInside") == "avoid"
+    # nothing is folded on paper, and afterwards all is as it was
+    opened = "document.querySelectorAll('details[open]').length"
+    b.run("window.atPrint = 0; window.addEventListener('beforeprint', () => { window.atPrint = " + opened + "; })")
+    before = b.run(opened)
     b.printed(tmp_path / "fig4-print.pdf")
+    assert b.run("window.atPrint") == b.run("document.querySelectorAll('details').length") > before == b.run(opened)
     assert (tmp_path / "fig4-print.pdf").read_bytes().startswith(b"%PDF")
     quiet(b, "fig4")
+
+
+CRANE: dict[str, Any] = {
+    "mechanism": {
+        "parameters": {"a": {"kind": "length"}, "k": {"kind": "stiffness", "default": 10}, "W": {"kind": "force"}},
+        "unknowns": {"th": "angle", "s": "length"},
+        "points": {"O": [0, 0], "B": [0, 1], "S": ["s*cos(th)", "s*sin(th)"], "T": ["a*cos(th)", "a*sin(th)"]},
+        "bars": [["O", "T"]],
+        "springs": [{"between": ["B", "S"], "k": "k"}, {"between": ["S", "T"], "k": "k"}],
+        "loads": {"T": {"weight": "W"}},
+    },
+    "axes": {"a": ["1/2", 3], "W": [0, 20]},
+}
+
+
+def test_all_poses_of_a_cell_are_at_one_scale_however_tall_one_of_them_is(one: Browser, tmp_path: Path) -> None:
+    """A card does not exceed a height: where a tall pose is shrunk to it, the others are shrunk alike."""
+    path = tmp_path / "crane.html"
+    path.write_text(page(ptmcad.classify(CRANE, areas=False)), encoding="utf-8")
+    one.media(prefers_color_scheme="light")
+    for width in (1200, 620, 380):
+        one.size(width, 900)
+        one.open(path)
+        one.run("choose(0, false)")
+        scales = one.run("[...document.querySelectorAll('#poses .pose svg')].map((one) => one.getScreenCTM().a)")
+        # the frame of a stable pose is a pixel wider
+        assert len(scales) > 2 and max(scales) < 1.03 * min(scales)
+        heads = one.run(
+            "[...document.querySelectorAll('#poses .load-head')].map((head) => head.getBoundingClientRect())"
+            ".map((box) => Math.hypot(box.width, box.height))"
+        )
+        assert len(heads) == len(scales) and max(heads) < 1.5 * min(heads) and max(heads) < 40
+    assert one.complaints() == []
 
 
 def test_partial_results_open_too(one: Browser, tmp_path: Path) -> None:

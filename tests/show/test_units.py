@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
+import yaml
 from jsonschema import Draft202012Validator
 
 import ptmcad
@@ -16,7 +18,8 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import slice_from
 from ptmcad.show.render.axes import axis_name
-from ptmcad.show.units import area_unit, unit
+from ptmcad.show.report import page
+from ptmcad.show.units import area_unit, energy_unit, unit
 
 ROOT = Path(__file__).resolve().parents[2]
 RECORD = {
@@ -146,3 +149,71 @@ def test_quantities_have_the_declared_units(
 def test_bad_units_are_refused(units: object, words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         slice_from({**RECORD, "units": units})
+
+
+LIFT = """
+name: lift
+mechanism:
+  parameters: {b: {kind: base, default: 2}, r: {kind: length}, k: {kind: stiffness, default: 5}, P: {kind: force}}
+  unknowns: {alpha: angle, x: length}
+  points: {O: [0, 0], S: [x, 0], E: [r*cos(alpha), r*sin(alpha)], W: [b, 0]}
+  bars: [[O, E]]
+  springs: [{between: [E, S], k: k}, {between: [S, W], k: k}]
+  supports: {O: pin, S: slider x, W: pin}
+  loads: {E: {weight: P}}
+units: {length: m, force: kN}
+axes: {P: [0, 6], b: [1, 3]}
+parameters: {r: 1}
+count: stable
+"""
+SVG_TEXT = "{http://www.w3.org/2000/svg}text"
+
+
+def solved(record: Path, formats: str) -> None:
+    asked = ["solve", str(record), "--at", "P=2,b=2", "--format", formats, "--landscape", "--out", str(record.parent)]
+    assert run(asked) == 0
+
+
+def words_of(picture: Path) -> set[str]:
+    """The texts of an SVG file."""
+    return {node.text or "" for node in ElementTree.parse(picture).iter(SVG_TEXT)}
+
+
+def data_of(result: ptmcad.RegionMap) -> dict[str, Any]:
+    """What the page's script reads."""
+    (text,) = re.findall(r'<script[^>]*id="data"[^>]*>(.*?)</script>', page(result), re.DOTALL)
+    found: dict[str, Any] = json.loads(text)
+    return found
+
+
+def test_poses_their_pictures_and_the_landscape_have_the_declared_units(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    record = tmp_path / "lift.yaml"
+    record.write_text(LIFT)
+    solved(record, "table,json,svg")
+    said = " ".join(capsys.readouterr().out.split())
+    assert "units lengths and coordinates in m, forces in kN, energies and the Hessian's eigenvalues in kN·m" in said
+    text = (tmp_path / "poses.json").read_text(encoding="utf-8")
+    poses = ptmcad.Poses.from_json(text)
+    assert poses.units == {"length": "m", "force": "kN"} and poses.to_json() == text
+    schema = json.loads((ROOT / "docs" / "poses.schema.json").read_text(encoding="utf-8"))
+    Draft202012Validator(schema).validate(json.loads(text))
+    assert {"U: energy, in kN·m", "length 1 m"} <= words_of(tmp_path / "poses.svg")
+    assert {"x (m)", "U (kN·m)"} <= words_of(tmp_path / "poses-landscape.svg")
+
+
+def test_without_declared_units_words_stand_for_them(tmp_path: Path) -> None:
+    record = tmp_path / "lift.yaml"
+    record.write_text(LIFT.replace("units: {length: m, force: kN}", ""))
+    solved(record, "json,svg")
+    assert "units" not in json.loads((tmp_path / "poses.json").read_text(encoding="utf-8"))
+    assert {"x (length)", "U (force · length)"} <= words_of(tmp_path / "poses-landscape.svg")
+    assert energy_unit({"force": "kN"}) == "kN · length"
+
+
+def test_the_page_has_the_declared_units_of_its_tables() -> None:
+    found = data_of(ptmcad.classify(RECORD))["units"]
+    assert found == {"length": "mm", "force": "N", "energy": "N·mm", "unknowns": ["", ""]}
+    lift = ptmcad.classify(yaml.safe_load(LIFT), areas=False)
+    assert data_of(lift)["units"]["unknowns"] == ["", "m"]

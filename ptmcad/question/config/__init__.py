@@ -23,7 +23,7 @@ from ptmcad.question.config.family import Family, checked_family, family_of, fau
 from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, plain
 from ptmcad.question.config.options import Typed, ranges_of, settings_of, with_axes
-from ptmcad.question.config.points import point_from, point_from_mapping, point_from_options
+from ptmcad.question.config.points import point_from, point_from_mapping, point_from_options, units_of
 from ptmcad.question.config.record import (
     RECORD_KEYS,
     Record,
@@ -67,6 +67,7 @@ __all__ = [
     "slice_from",
     "slice_from_mapping",
     "slice_from_options",
+    "units_of",
     "with_place",
 ]
 

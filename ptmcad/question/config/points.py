@@ -90,10 +90,7 @@ def point_from(
     """
     given = {name: number_text(from_python(plain(value), Place(name))) for name, value in values.items()}
     if not isinstance(question, Slice):
-        expect(question, (str, Path, Mapping), "question", f"{A_SLICE}, {A_RECORD}")
-        tree = from_python(plain(question), Place()) if isinstance(question, Mapping) else read_file(question)
-        assert isinstance(tree, Tree)  # of a mapping, or checked where it was read
-        return _at_point(record_of(tree), given, (), None)
+        return _at_point(record_of(_tree_of(question)), given, (), None)
     names = question.axis_names
     if further := [name for name in given if name not in names]:
         raise ConfigError("is no axis of the slice, which has values for all else: give its record", key=further[0])
@@ -102,6 +99,24 @@ def point_from(
     x, y = (number_of(given[name], "the value of this axis") for name in names)
     values_there = {name: expression.evaluate(x, y) for name, expression in question.parameters.items()}
     return question.model, without_shorthands(values_there, question.model)
+
+
+def units_of(question: str | Path | Mapping[str, Any] | Slice) -> Mapping[str, str]:
+    """The units that a record or slice declares, of ``length`` and ``force``.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong in a record, with file, line and key.
+    """
+    return question.units if isinstance(question, Slice) else record_of(_tree_of(question)).units
+
+
+def _tree_of(question: str | Path | Mapping[str, Any]) -> Tree:
+    expect(question, (str, Path, Mapping), "question", f"{A_SLICE}, {A_RECORD}")
+    tree = from_python(plain(question), Place()) if isinstance(question, Mapping) else read_file(question)
+    assert isinstance(tree, Tree)  # of a mapping, or checked where it was read
+    return tree
 
 
 def _at_point(

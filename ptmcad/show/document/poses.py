@@ -29,6 +29,7 @@ MAX_NAME = 40
 MAX_REMARK = 300
 MAX_ANGLE = 600
 """Characters of the name of a sum of angles."""
+MAX_UNIT = 20
 
 T = TypeVar("T")
 
@@ -86,6 +87,7 @@ def _poses(digits: int) -> Codec[Poses]:
         parameters=_by_name(_EXACT),
         digits=NATURAL,
         bits=NATURAL,
+        units=codec.Key(codec.named(line(MAX_UNIT)), default={}),
         equilibria=listed(
             Codec(
                 lambda pose: (bare if pose.admissible is None else free).write(pose),

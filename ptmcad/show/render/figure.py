@@ -102,7 +102,7 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
                 top -= HEAD + frame.height / 72
                 panel(figure, Scene(mechanism, frame, arrows), pose, number, (left, top))
                 top -= below + 0.06
-            scale_bar(figure, frame, place[0], place[1] - height(entries) - 0.16)
+            scale_bar(figure, frame, (place[0], place[1] - height(entries) - 0.16), result.slice.units)
         draw_legend(figure, entries, *place)
     return figure
 

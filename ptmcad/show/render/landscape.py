@@ -14,7 +14,7 @@ Not guaranteed: anything that only the picture shows. It is drawn in floating po
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise, product
@@ -31,6 +31,7 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import noun
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism.description import UnknownKind
 from ptmcad.mechanism.moments import moments_at
 from ptmcad.show.drawable import no_landscape
 from ptmcad.show.render.axes import Scale, scale_of, symbol
@@ -39,6 +40,7 @@ from ptmcad.show.render.energy import Energy, Floats, drawn, energy_of, is_cut
 from ptmcad.show.render.legend import INK, SWATCH, Entry, Mark, draw_legend
 from ptmcad.show.render.poses import TITLE_LINE, describe, empty, heading, in_order, kind, titled, value_text
 from ptmcad.show.render.printing import settings
+from ptmcad.show.units import energy_unit, with_unit
 
 SIDE, LEFT, BOTTOM, BAR, KEY, MARGIN = 4.6, 0.85, 0.65, 1.25, 2.2, 0.15
 """In inches: the square's side, the space at its left and below, the colour bar, the legend, the rim."""
@@ -71,6 +73,7 @@ class Side:
     low: float
     high: float
     is_angle: bool
+    unit: str = ""
 
     def sampled(self, number: int) -> tuple[Floats, Floats]:
         """So many values as they are shown, and as the energy takes them."""
@@ -79,7 +82,7 @@ class Side:
 
     @property
     def label(self) -> str:
-        return f"{symbol(self.name)} (degrees)" if self.is_angle else symbol(self.name)
+        return with_unit(symbol(self.name), "degrees" if self.is_angle else self.unit)
 
     def share(self, value: float) -> float:
         """Where a value lies, from 0 to 1."""
@@ -89,14 +92,19 @@ class Side:
         return copies(value) if self.is_angle else (value,)
 
 
-def sides_of(model: Model, shown: Sequence[Pose]) -> tuple[Side, ...]:
+def sides_of(model: Model, shown: Sequence[Pose], units: Mapping[str, str]) -> tuple[Side, ...]:
     """The axes: angles all round, and for each unknown on the line a range that holds all equilibria."""
     found = [Side(name, -180.0, 180.0, True) for name in model.angles]
     for k, name in enumerate(model.reals):
         low, high = (end(float(pose.reals[k]) for pose in shown) for end in (min, max))
         room = max((high - low) / 2, max(abs(low), abs(high)) / 4) or 1.0
-        found.append(Side(name, low - room, high + room, False))
+        found.append(Side(name, low - room, high + room, False, _unit(model, name, units)))
     return tuple(found)
+
+
+def _unit(model: Model, name: str, units: Mapping[str, str]) -> str:
+    """Of an unknown on the line: a length's, or none."""
+    return units.get("length", "length") if model.unknowns[name] is UnknownKind.LENGTH else ""
 
 
 def place_of(pose: Pose) -> tuple[float, ...]:
@@ -123,7 +131,7 @@ def draw_landscape(poses: Poses) -> Figure:
 def _draw_curve(poses: Poses, shown: Sequence[Pose]) -> Figure:
     """The energy over one unknown."""
     energy = energy_of(poses.model, poses.parameters)
-    (side,) = sides_of(poses.model, shown)
+    (side,) = sides_of(poses.model, shown, poses.units)
     values, inputs = side.sampled(_FINE)
     heights = energy(inputs)
     title = _title(poses)
@@ -140,7 +148,7 @@ def _draw_curve(poses: Poses, shown: Sequence[Pose]) -> Figure:
         if side.is_angle:
             axes.set_xticks(range(-180, 181, 60))
         scale = _energy_scale(energy, (low, high))
-        _energy_ticks(axes, scale, energy, poses.model)
+        _energy_ticks(axes, scale, energy, _energy_unit(poses))
         for number, pose in enumerate(shown, 1):
             marker, size_of, face = _MARKERS[_kind(pose)]
             (value,) = place_of(pose)
@@ -165,7 +173,7 @@ def _draw_curve(poses: Poses, shown: Sequence[Pose]) -> Figure:
 
 def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
     """The energy over two unknowns."""
-    energy, sides = energy_of(poses.model, poses.parameters), sides_of(poses.model, shown)
+    energy, sides = energy_of(poses.model, poses.parameters), sides_of(poses.model, shown, poses.units)
     (across, up), heights = _sampled(energy, sides, _GRID)
     critical = sorted({level for pose in shown for level in _levels(energy, sides, pose)})
     levels = contour_levels(critical, float(heights.min()), float(heights.max()))
@@ -189,7 +197,7 @@ def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
         scale = _energy_scale(energy, levels)
         bar = figure.add_axes(((LEFT + SIDE + 0.2) / size[0], BOTTOM / size[1], 0.16 / size[0], SIDE / size[1]))
         figure.colorbar(filled, cax=bar, spacing="proportional", drawedges=False, ticks=[])
-        _energy_ticks(bar, scale, energy, poses.model)
+        _energy_ticks(bar, scale, energy, _energy_unit(poses))
         for value in through:
             bar.axhline(value, color=INK, linewidth=1.2)
         left = LEFT + SIDE + BAR + 0.1
@@ -326,7 +334,12 @@ def _energy_scale(energy: Energy, levels: Sequence[float]) -> Scale:
     return scale_of(low, high)
 
 
-def _energy_ticks(axes: Any, scale: Scale, energy: Energy, model: Model) -> None:
+def _energy_unit(poses: Poses) -> str:
+    """A mechanism's; none of a system's potential."""
+    return energy_unit(poses.units) if isinstance(poses.model, Mechanism) else ""
+
+
+def _energy_ticks(axes: Any, scale: Scale, energy: Energy, unit: str) -> None:
     """Energies along a vertical axis."""
     power = Fraction(10) ** scale.exponent
 
@@ -342,8 +355,7 @@ def _energy_ticks(axes: Any, scale: Scale, energy: Energy, model: Model) -> None
     axes.yaxis.set_ticks([position(t) for t in ticks], [f"{t:.6g}".replace("-", "−") for t in ticks])
     axes.minorticks_off()
     axes.tick_params(labelsize=9, direction="out", length=3.5)
-    unit = " (force · length)" if isinstance(model, Mechanism) else ""
-    axes.set_ylabel(f"{scale.name('V' if energy.slopes else 'U')}{unit}", fontsize=10)
+    axes.set_ylabel(with_unit(scale.name("V" if energy.slopes else "U"), unit), fontsize=10)
 
 
 def _legend(poses: Poses, shown: Sequence[Pose]) -> Iterator[Entry]:

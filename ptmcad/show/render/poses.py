@@ -28,6 +28,7 @@ from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_mark, symbol_mark, torsion_mark
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.sketch import LONGEST_ARROW, SHORTEST_ARROW, Frame, Scene, arrow_lengths, frame_of, load_values
+from ptmcad.show.units import energy_unit
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import magnitude, shortest_text
 from ptmcad.text.tree import to_text
@@ -81,7 +82,7 @@ def draw_poses(poses: Poses) -> Figure:
             panel(figure, scene, pose, number + 1, corner)
         left = MARGIN + columns * (wide + GAP) + 0.1
         draw_legend(figure, entries, left, top)
-        scale_bar(figure, frame, left, top - height(entries) - 0.12)
+        scale_bar(figure, frame, (left, top - height(entries) - 0.12), poses.units)
     return figure
 
 
@@ -255,7 +256,7 @@ def legend(poses: Poses, arrows: Mapping[str, float]) -> Iterator[Entry]:
         yield Entry(tuple(textwrap.wrap(untold(poses.model), _KEY_COLUMNS)))
     if poses.model.has_potential:
         left_out = of_what(poses.model, poses.parameters)
-        yield Entry(("U: energy, in force · length", *textwrap.wrap(left_out, _KEY_COLUMNS)))
+        yield Entry((f"U: energy, in {energy_unit(poses.units)}", *textwrap.wrap(left_out, _KEY_COLUMNS)))
     yield Entry(())
     yield Entry(("Parts",), strong=True)
     yield from parts_legend(poses.model)
@@ -332,8 +333,9 @@ _KEY_COLUMNS = 33
 _SCALE_ROOM = 0.3
 
 
-def scale_bar(figure: Figure, frame: Frame, left: float, middle: float) -> None:
-    """A bar of known length, at most 60 points long."""
+def scale_bar(figure: Figure, frame: Frame, place: tuple[float, float], units: Mapping[str, str]) -> None:
+    """A bar of known length, at most 60 points long, from a place in inches to the right."""
+    left, middle = place
     step = _round_below(Fraction(60) / frame.scale)
     length = float(step * frame.scale) / 72
     inches = figure.dpi_scale_trans
@@ -344,6 +346,7 @@ def scale_bar(figure: Figure, frame: Frame, left: float, middle: float) -> None:
     )  # fmt: skip
     figure.add_artist(line)
     text = f"length {printed_number(Enclosure(step, step).text(2))}"
+    text += f" {units['length']}" if "length" in units else ""
     figure.text(left + length + 0.1, middle, text, transform=inches, fontsize=8, va="center_baseline", color="#444444")
 
 

@@ -130,7 +130,7 @@ def _of_floors(family: FamilyMap) -> list[Entry]:
     if len(family.values) > 1:
         told.append(Entry(("paler: seen through a map above it",), heads=0))
     if any(not separates for result in family.members for _, separates, _ in shapes(result).walls()):
-        told.append(Entry(("without curves at which the count does not change",), heads=0))
+        told.append(Entry(("other curves left out",), heads=0))
     return told
 
 

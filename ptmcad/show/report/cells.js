@@ -138,7 +138,7 @@ function fillPanel(number, cell) {
     const figure = html("figure", `pose ${pose.kind}`);
     const caption = html("figcaption");
     caption.append(html("b", "", pose.kind), html("br"), ...pose.unknowns.flatMap((text, n) => [`${MECHANISM.unknowns[n]} = ${text}`, html("br")]),
-      pose.energy ? `U = ${pose.energy}` : "");
+      pose.energy ? `U = ${pose.energy} ${unitOf("energy")}`.trim() : "");
     figure.append(drawPose(cell, pose, frame), caption);
     const k = figures.length;
     figure.addEventListener("pointerenter", () => pointed(k, true));

@@ -21,13 +21,19 @@ function spiral([x, y], [u, v], inner, outer) {
     return [x + radius * Math.cos(angle), y + radius * Math.sin(angle)];
   });
 }
+// A name with the unit of what it is of, where the record declares it.
+const unitOf = (what) => (DATA.units && DATA.units[what]) || "";
+const inBrackets = (name, unit) => (unit ? `${name} (${unit})` : name);
+const withUnit = (name, what) => inBrackets(name, unitOf(what));
 
 function loadVectors(cell, size) {
   const most = Math.max(...cell.loads.map((f) => Math.hypot(f[0], f[1])));
   return cell.loads.map((f) => (most > 0 ? [f[0] / most * 0.22 * size, f[1] / most * 0.22 * size] : [0, 0]));
 }
 
-// One scale and one horizontal range for all poses of a cell, so that they can be compared: [left, width, size].
+// One scale and one horizontal range for all poses of a cell, so that they can be compared: [left, width, size, tall].
+// Where one of them is tall, all are as tall as that: a card has a height that it does not exceed, and what is shrunk
+// to it is shrunk alike. The range is no narrower than nearly as tall, so that lines are as thick as in other pictures.
 function frameOf(cell) {
   let [left, right, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
   for (const pose of cell.equilibria) {
@@ -45,7 +51,9 @@ function frameOf(cell) {
   }
   const pad = 0.08 * size;
   const wound = size * Math.max(0, ...SPIRALS.map((radii) => radii[1] - 0.075));
-  return [left - pad - wound, right - left + 2 * (pad + wound), size];
+  const tall = Math.max(0, ...cell.equilibria.map((pose) => verticalRange(cell, pose, size)[1]));
+  const width = Math.max(right - left + 2 * (pad + wound), 0.9 * tall);
+  return [(left + right - width) / 2, width, size, tall > 0.65 * width ? tall : 0];
 }
 
 // The vertical range of one pose, with its supports and loads: [bottom, height].
@@ -74,8 +82,10 @@ function zigzag([x, y], [u, v], amplitude) {
 }
 
 function drawPose(cell, pose, frame) {
-  const [left, width, size] = frame;
-  const [bottom, height] = verticalRange(cell, pose, size);
+  const [left, width, size, tall] = frame;
+  const [low, own] = verticalRange(cell, pose, size);
+  const height = Math.max(own, tall);
+  const bottom = low - (height - own) / 2;
   const unit = 240 / width;
   const at = ([x, y]) => [(x - left) * unit, (bottom + height - y) * unit];
   const path = (points) => "M" + points.map((p) => at(p).map((c) => c.toFixed(2)).join(" ")).join("L");
@@ -145,10 +155,12 @@ function springTable(cell) {
   box.setAttribute("aria-label", DATA.drawable ? "Poses in numbers" : "Solutions in numbers");
   const table = html("table", "stacked");
   const head = table.createTHead().insertRow();
-  const energy = cell.equilibria.some((pose) => pose.energy) ? ["energy"] : [];
-  const columns = [DATA.drawable ? "pose" : "solution", ...MECHANISM.unknowns, ...energy, ...MECHANISM.moving.map((point) => MECHANISM.points[point])];
-  for (const name of MECHANISM.springs.map(nameOf)) columns.push(`length ${name}`, `force ${name}`);
-  for (const { name } of TORSION) columns.push(`deflection ${name}`, `moment ${name}`);
+  const energy = cell.equilibria.some((pose) => pose.energy) ? [withUnit("energy", "energy")] : [];
+  const columns = [DATA.drawable ? "pose" : "solution",
+    ...MECHANISM.unknowns.map((name, n) => inBrackets(name, unitOf("unknowns")[n])), ...energy,
+    ...MECHANISM.moving.map((point) => withUnit(MECHANISM.points[point], "length"))];
+  for (const name of MECHANISM.springs.map(nameOf)) columns.push(withUnit(`length ${name}`, "length"), withUnit(`force ${name}`, "force"));
+  for (const { name } of TORSION) columns.push(`deflection ${name}`, withUnit(`moment ${name}`, "energy"));
   for (const text of columns) {
     const th = html("th", "", text);
     th.scope = "col";

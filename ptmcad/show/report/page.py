@@ -19,8 +19,10 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import index_words, moments_work, untold
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model, Support
+from ptmcad.mechanism.description import UnknownKind
 from ptmcad.mechanism.joints import joints_of
 from ptmcad.mechanism.work import split_moments
+from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import symbol, with_symbols
 from ptmcad.show.render.colours import fill_of
 from ptmcad.show.render.shapes import shapes
@@ -35,6 +37,7 @@ from ptmcad.show.report.packing import packed
 from ptmcad.show.report.pathdata import GRID
 from ptmcad.show.report.tape import tape
 from ptmcad.show.table import NOT_COMPUTED, areas_are_known
+from ptmcad.show.units import declared_units
 from ptmcad.text.bounds import certified_digits
 from ptmcad.version import __version__
 
@@ -179,6 +182,20 @@ def _work(model: Model) -> str:
     return moments_work(model, acted) if acted else ""
 
 
+def _declared(slice: Slice) -> dict[str, Any]:
+    """The units that the record declares of lengths, forces and energies, and of each unknown."""
+    if not isinstance(slice.model, Mechanism):
+        return {}
+    of_length = slice.units.get("length", "")
+    lengths = [kind is UnknownKind.LENGTH for kind in (slice.model.unknowns[n] for n in _unknowns(slice.model))]
+    return {**declared_units(slice.units), "unknowns": [of_length if is_length else "" for is_length in lengths]}
+
+
+def _unknowns(model: Model) -> tuple[str, ...]:
+    """In the order of all tables."""
+    return (*model.angles, *model.reals)
+
+
 def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
     """What the script shows and draws."""
     names, model = result.slice.axis_names, result.slice.model
@@ -190,6 +207,7 @@ def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
         "base": result.base,
         "axes": [symbol(name) for name in names],
         "drawable": isinstance(model, Mechanism),
+        "units": _declared(result.slice),
         "told": model.tells_stability,
         "untold": "" if model.tells_stability or not isinstance(model, Mechanism) else untold(model),
         "work": _work(model),

@@ -42,6 +42,7 @@ const theme = {
   },
   show() {
     theme.button.setAttribute("aria-pressed", String(theme.dark()));
+    theme.button.textContent = theme.dark() ? "Dark: on" : "Dark: off";
     for (const redraw of theme.changed) redraw();
   },
 };
@@ -52,6 +53,16 @@ theme.button.addEventListener("click", () => {
 theme.system.addEventListener("change", theme.show);
 window.matchMedia("print").addEventListener("change", theme.show); // paper has colours of its own
 theme.show();
+
+// On paper nothing can be unfolded.
+const folded = { details: [] };
+window.addEventListener("beforeprint", () => {
+  folded.details = [...document.querySelectorAll("details:not([open])")];
+  for (const details of folded.details) details.open = true;
+});
+window.addEventListener("afterprint", () => {
+  for (const details of folded.details) details.open = false;
+});
 
 async function copy(text) {
   if (navigator.clipboard && window.isSecureContext) {
