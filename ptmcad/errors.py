@@ -64,7 +64,7 @@ def excerpt(text: str, position: int, most: int = 60) -> str:
     """The part of a text around a position in quotation marks, with dots where something is left out.
 
     >>> print(excerpt("a + b + c + d + e", 8, most=9))
-    '...+ b + c +...'
+    '...b + c + d...'
     """
     start = min(max(position - most // 2, 0), max(len(text) - most, 0))
     part = shown(text[start : start + most], 5 * most)

@@ -50,6 +50,8 @@ def solve(
     """
     if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MAX_DIGITS:
         raise ConfigError(f"{shown(repr(digits), 60)} is not a number of digits from 1 to {MAX_DIGITS}", key="digits")
+    if isinstance(question, int):
+        raise ConfigError(f"give the number of digits by name: digits={shown(repr(question), 60)}", key="digits")
     if question is not None:
         if model is not None:
             raise ConfigError("a slice or record has a model of its own: leave one out", key="model")

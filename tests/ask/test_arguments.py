@@ -36,7 +36,7 @@ CALLS: dict[str, tuple[Callable[..., Any], str]] = {
     "solve a file": (lambda s, r: ptmcad.solve("none.yaml", rho=1), "^none.yaml: there is no such file"),
     "solve a map": (lambda s, r: ptmcad.solve(r, rho=1), "^question: expected a slice.* RegionMap$"),
     "solve two models": (lambda s, r: ptmcad.solve(s, model=SYSTEM, rho=1), "^model: a slice or record has a model"),
-    "solve a number": (lambda s, r: ptmcad.solve(30, rho=1), "^question: expected a slice.* not 30"),
+    "solve a number": (lambda s, r: ptmcad.solve(30, rho=1), "^digits: give the number of digits by name: digits=30"),
     "solve for a slice": (lambda s, r: ptmcad.solve(model=s, L1=1), "^model: expected a mechanism or a system.*Slice$"),
     "solve for nothing": (lambda s, r: ptmcad.solve(model={}, L1=1), "^model: expected a mechanism"),
     "digits": (lambda s, r: ptmcad.solve(digits="many"), "^digits: 'many' is not a number of digits"),

@@ -51,7 +51,7 @@ def test_a_chain_of_four_bars_is_counted() -> None:
     """70 complex solutions, whose basis over Q took minutes and more; Euler's sum is 2 - 7 + 9 - 5 + 1 = 0."""
     found = ptmcad.counts_at(chain(), a="1/3", F="1/2")
     assert (found.total, found.stable, found.index) == (24, 2, (2, 7, 9, 5, 1))
-    poses = ptmcad.solve(6, model=chain(), a="1/3", F="1/2")
+    poses = ptmcad.solve(digits=6, model=chain(), a="1/3", F="1/2")
     assert [pose.index for pose in poses.equilibria].count(1) == 7
     assert poses.stable == 2
 

@@ -175,8 +175,8 @@ def try_points(data: bytes) -> str:
         file.write(data)
         file.flush()
         result = first_result()
-        for point in islice(rows_of(Path(file.name), result), 50):
-            result.locate(**point)
+        for row in islice(rows_of(Path(file.name), result), 50):
+            result.locate(**row.values)
     return "located"
 
 
