@@ -142,7 +142,8 @@ class Poses:
         return self.table()
 
     def __repr__(self) -> str:
-        return f"<Poses of {self.mechanism}: {len(self.equilibria)}, {self.stable} stable, {self.status.value}>"
+        told = f", {self.stable} stable" if self.model.tells_stability else ""
+        return f"<Poses of {self.mechanism}: {len(self.equilibria)}{told}, {self.status.value}>"
 
     if TYPE_CHECKING:  # `ptmcad.methods` has them
 

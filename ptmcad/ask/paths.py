@@ -220,18 +220,21 @@ class _Walker:
         found = (merger if merges else landing)(line, change.at, *places)
         if found is None:
             return met
+        reached = found.target
+        if not merges:  # a path's angles may have turned on; those of a pose that is jumped to are told as any pose's
+            reached = replace(reached, angles=tuple(map(_principal, reached.angles)))
         return replace(
             met,
             fate=Fate.MERGE if merges else Fate.SNAP,
             energy=found.energy,
-            target=found.target,
+            target=reached,
             target_energy=found.target_energy,
         )
 
     def _point(self, reached: _Reached) -> PathPoint:
         model, pose = self.slice.model, reached.pose
         angles = [_on_turn(angle, float(v)) for angle, v in zip(pose.angles, reached.at, strict=False)]
-        sides = _sides(pose, model.moving) if isinstance(model, Mechanism) else ()
+        sides = _sides(pose, model.rising) if isinstance(model, Mechanism) else ()
         return PathPoint(reached.value, tuple(angles), pose.reals, sides)
 
 
@@ -242,7 +245,11 @@ def _on_turn(angle: Enclosure, near: float) -> Enclosure:
     return Enclosure(angle.low + low, angle.high + high)
 
 
-def _sides(pose: Pose, moving: Sequence[str]) -> tuple[int, ...]:
-    """Of each moving point 1 when it is proved above the x axis, -1 when below, else 0."""
-    heights = [pose.nodes[name][1] for name in moving]
+def _principal(angle: Enclosure) -> Enclosure:
+    return _on_turn(angle, 0.0)
+
+
+def _sides(pose: Pose, rising: Sequence[str]) -> tuple[int, ...]:
+    """Of each rising point 1 when it is proved above the x axis, -1 when below, else 0."""
+    heights = [pose.nodes[name][1] for name in rising]
     return tuple(1 if y.low > 0 else -1 if y.high < 0 else 0 for y in heights)

@@ -57,7 +57,7 @@ class Line:
     ----------
     equations : of equilibrium.
     folds : the same and the Hessian's determinant, with the axis as a further unknown, the first one.
-    numbers : a tape of the energy, its slope along the line, and the heights of the moving points.
+    numbers : a tape of the energy, its slope along the line, and the heights of the rising points.
     """
 
     equations: Branches
@@ -71,7 +71,7 @@ def line_of(slice: Slice, mechanism: Mechanism, varying: int, fixed: Fraction) -
     unknowns = {name: graph.variable(number) for number, name in enumerate(mechanism.unknowns, _FIRST)}
     at = potential(mechanism, parameter_formulas(graph, slice), unknowns)
     slopes = [graph.derivative(at.energy, v.variable) for v in unknowns.values()]
-    heights = [at.points[name][1] for name in mechanism.moving]
+    heights = [at.points[name][1] for name in mechanism.rising]
     numbers = record([[at.energy, graph.derivative(at.energy, varying), *heights]])
     variables = [v.variable for v in unknowns.values()]
     hessian = tuple(tuple(graph.derivative(f, k) for k in variables) for f in slopes)

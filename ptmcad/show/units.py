@@ -110,6 +110,8 @@ def area_unit(slice: Slice) -> str:
     if not all(quantities and all(q in slice.units for q in quantities if q not in _SIGNS) for quantities in both):
         return ""
     first, second = (unit(slice, axis) for axis in (0, 1))
+    if both == [_LENGTH, _FORCE]:
+        first, second = second, first  # as energies are written
     if first != second:
         return f"{first}·{second}"
     return f"({first})²" if _SIGNS & set(first) else f"{first}²"

@@ -178,3 +178,28 @@ def test_the_command_draws_and_tells_them(tmp_path: Path, capsys: pytest.Capture
     assert data["path"]["paths"][0]["high"]["at"]["decimal"].startswith("1.23166242")
     picture = (tmp_path / "x-path.svg").read_text(encoding="utf-8")
     assert "saddle, not followed" in picture
+
+
+def test_a_slider_on_a_level_is_none_of_the_points_that_rise() -> None:
+    """y of P lies between 0.2 and 0.8 on both paths; the slider's height is always 0."""
+    slider = ptmcad.slice_from_mapping({
+        "mechanism": {
+            "parameters": {"c": {"kind": "stiffness"}, "F": {"kind": "force"}},
+            "unknowns": {"th": "angle", "x": "length"},
+            "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"], "S": ["x", 0]},
+            "supports": {"O": "pin", "S": "slider x"},
+            "springs": [{"between": ["P", "S"], "k": 1, "free": "1/10"}, {"between": ["O", "S"], "k": 1}],
+            "torsion": [{"angle": "th", "k": "c", "rest": "pi/2"}],
+            "loads": {"S": ["F", 0]},
+        },
+        "axes": {"F": ["-1/8", "1/8"], "c": ["1/10", 1]},
+    })  # fmt: skip
+    found = ptmcad.pose_paths(slider, "F", {"c": "1/5"}, 0)
+    assert [(len(point.sides), path.upright) for path in found.paths for point in path.points[:1]] == [(1, True)] * 2
+
+
+def test_a_pose_that_is_jumped_to_has_angles_within_half_a_turn() -> None:
+    """The way down leads th1 on to 272 degrees, which is -88."""
+    end = ptmcad.pose_paths(slice_of(window="9/20:1"), "rho", {"L2": "3/2"}, "3/4").paths[1].low
+    assert end.fate is Fate.SNAP and end.target is not None
+    assert [round(degrees(float(angle)), 4) for angle in end.target.angles] == [-87.9555, -48.4477]

@@ -13,6 +13,7 @@ from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
+from support.maps import CONFIGS
 from support.newton import DIGITS, Found, equilibria, improved
 from support.oracle import count
 
@@ -465,3 +466,7 @@ def test_a_record_a_mapping_and_its_slice_give_the_point_s_other_parameters() ->
     assert heavier == solve(rho="7/10", L2="3/2", F3=-20, F4=-10)
     family = {**record, "parameters": {"F3": "F", "F4": "F"}, "free": {"F": [-40, 0]}}
     assert solve(family, rho="7/10", L2="3/2", F=-10) == wanted
+
+
+def test_what_nothing_says_stability_of_has_no_stable_poses_to_its_name() -> None:
+    assert repr(solve(CONFIGS / "systems" / "duffing.yaml", W=2, G="1/2")).startswith("<Poses of duffing: 1, exact")

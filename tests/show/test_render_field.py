@@ -114,3 +114,14 @@ def test_a_quantitys_map_has_all_text_on_the_page_and_none_too_small(preset: str
     width, height = made.bbox.width, made.bbox.height
     assert all(b.x0 >= 0 and b.y0 >= 0 and b.x1 <= width and b.y1 <= height for b in boxes)
     assert not [1 for a, b in combinations(boxes, 2) if a.shrunk(0.9, 0.9).overlaps(b.shrunk(0.9, 0.9))]
+
+
+def test_a_contour_goes_on_over_a_curve_at_which_its_branch_does_not_change() -> None:
+    """The bistable slider's 140 degrees, by symmetry at both sides of F = 0, cross the astroid to where c is 0.33."""
+    result = ptmcad.classify(CONFIGS / "mechanisms" / "bistable-slider.yaml", areas=False)
+    field = result.field("angle:th", columns=100, rows=100)
+    axes: Any = Figure().add_axes((0, 0, 1, 1))
+    found = contour_lines(axes, field, (-1.5, 1.5, 0.0, 1.0), 8)
+    inside = [line for line in found[140.0] if abs(line[:, 0]).max() < 0.09]
+    assert len(inside) == 1
+    assert inside[0][np.argmax(inside[0][:, 0])] == pytest.approx([-0.01, 0.33], abs=0.02)

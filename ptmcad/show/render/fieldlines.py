@@ -17,7 +17,9 @@ from ptmcad.answer.field import Field
 from ptmcad.show.render.view import Floats
 
 MIN_LINE = 16.0
-"""Pixels of the field: shorter contour lines are left out."""
+"""Pixels of the field: shorter rings, and lines from side to side of the picture, are left out."""
+MIN_PIECE = 2.0
+"""The same of lines that end at the border of a region: they go on beyond it where the branch does."""
 HALF_TURN = 180.0
 """Degrees by which neighbours of one branch differ where their angle is written with another turn."""
 
@@ -54,9 +56,13 @@ def contour_lines(axes: Any, field: Field, extent: Sequence[float], number: int)
         if (~np.isnan(own)).sum() > 3 and np.nanmin(own) < levels[-1] and np.nanmax(own) > levels[0]:
             # in units of pixels, from the first one's centre
             traced = axes.contour(np.arange(columns), np.arange(rows), own, levels=levels)
-            for level, lines in zip(traced.levels, traced.allsegs, strict=True):
+            for level, path in zip(traced.levels, traced.get_paths(), strict=True):
                 # along a ridge just above a level there are chains of rings, which pixels alone make
-                kept = (part for line in lines for part in _cut(line, broken) if _length(part) >= MIN_LINE)
+                lines = [np.asarray(line) for line in path.to_polygons(closed_only=False)]
+                lines = [
+                    line for line in lines if _length(line) >= (MIN_PIECE if _goes_on(line, own.shape) else MIN_LINE)
+                ]
+                kept = (part for line in lines for part in _cut(line, broken) if _length(part) >= MIN_PIECE)
                 found[float(level)].extend(part * pixel + origin for part in kept)
             traced.remove()
     return dict(sorted(found.items()))
@@ -86,6 +92,14 @@ def _cut(line: Floats, broken: Flags) -> list[Floats]:
     away = broken[row, column]
     ends = [0, *(np.nonzero(np.diff(away.astype(int)))[0] + 1), len(away)]
     return [line[a : b + 1] for a, b in pairwise(ends) if b > a and not away[a]]
+
+
+def _goes_on(line: Floats, shape: tuple[int, ...]) -> bool:
+    """Whether a line, in units of pixels, ends within the picture: no ring, and none from side to side."""
+    last = np.array([shape[1] - 1, shape[0] - 1])
+    ends = line[[0, -1]]
+    within = ((ends > 0) & (ends < last)).all(axis=1)
+    return bool(within.any() and (ends[0] != ends[1]).any())
 
 
 def _length(points: Floats) -> float:
