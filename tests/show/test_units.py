@@ -18,7 +18,7 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import slice_from
 from ptmcad.show.render.axes import axis_name
-from ptmcad.show.report import page
+from ptmcad.show.report.page import page
 from ptmcad.show.units import area_unit, energy_unit, unit
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -217,3 +217,13 @@ def test_the_page_has_the_declared_units_of_its_tables() -> None:
     assert found == {"length": "mm", "force": "N", "energy": "N·mm", "unknowns": ["", ""]}
     lift = ptmcad.classify(yaml.safe_load(LIFT), areas=False)
     assert data_of(lift)["units"]["unknowns"] == ["", "m"]
+
+
+def test_the_page_names_the_units_of_areas_and_axes() -> None:
+    found = ptmcad.classify(ptmcad.slice_from_mapping({
+        "axes": {"rho": [0, 2], "F3": [-20, 0]}, "parameters": {"L2": "3/2", "F4": -10},
+        "units": {"length": "mm", "force": "N"},
+    }))  # fmt: skip
+    text = page(found)
+    assert "area (N·mm)" in text
+    assert "rho from 0 to 2 mm; F3 from -20 to 0 N" in text

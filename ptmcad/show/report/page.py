@@ -37,7 +37,7 @@ from ptmcad.show.report.packing import packed
 from ptmcad.show.report.pathdata import GRID
 from ptmcad.show.report.tape import tape
 from ptmcad.show.table import NOT_COMPUTED, areas_are_known
-from ptmcad.show.units import declared_units
+from ptmcad.show.units import area_unit, declared_units
 from ptmcad.text.bounds import certified_digits
 from ptmcad.version import __version__
 
@@ -199,7 +199,7 @@ def _unknowns(model: Model) -> tuple[str, ...]:
 def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
     """What the script shows and draws."""
     names, model = result.slice.axis_names, result.slice.model
-    known = areas_are_known(result)
+    known, of_area = areas_are_known(result), area_unit(result.slice)
     return {
         "side": SIDE,
         "grid": GRID,
@@ -216,7 +216,10 @@ def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
         "mechanism": drawing_of(model),
         "follow": tape(result),
         "regions": [
-            {"area": certified_digits(r.area) if known else NOT_COMPUTED, "counts": counts_text(r, model)}
+            {
+                "area": f"{certified_digits(r.area)} {of_area}".rstrip() if known else NOT_COMPUTED,
+                "counts": counts_text(r, model),
+            }
             for r in result.regions
         ],
         "stacks": [list(s.cells) for s in result.stacks],

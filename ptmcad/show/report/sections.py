@@ -20,6 +20,7 @@ from ptmcad.show.report.chart import Chart, counts_text, hatch_id
 from ptmcad.show.report.equilibria import both, distinct_parameters
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.show.table import NOT_COMPUTED, areas_are_known, stability_in_words
+from ptmcad.show.units import area_unit, unit, with_unit
 from ptmcad.text.bounds import certified_digits, percent
 from ptmcad.text.numerals import decimal, text_of
 
@@ -90,7 +91,10 @@ def banner(result: RegionMap) -> str:
 def question(result: RegionMap) -> str:
     """What was asked: mechanism, axes, parameters, count."""
     slice = result.slice
-    axes = "; ".join(f"{a.name} from {both(a.low)} to {both(a.high)}" for a in slice.axes)
+    axes = "; ".join(
+        f"{a.name} from {both(a.low)} to {both(a.high)}{f' {unit(slice, k)}' if slice.units else ''}"
+        for k, a in enumerate(slice.axes)
+    )
     names = slice.axis_names
     values = [
         (n, e.to_text(names)) for n, e in distinct_parameters(slice.parameters, slice.model).items() if n not in names
@@ -180,7 +184,15 @@ def regions(result: RegionMap) -> str:
         return "<p>No regions are known yet.</p>"
     words = index_words(len(result.slice.model.unknowns) + 1)
     note = "" if all(r.index is None for r in result.regions) else f"<p>In brackets: {words}.</p>"
-    return table(("region", "count", "area", "sample", "cells"), rows, "Regions", stacked=True) + note
+    return (
+        table(
+            ("region", "count", escape(with_unit("area", area_unit(result.slice))), "sample", "cells"),
+            rows,
+            "Regions",
+            stacked=True,
+        )
+        + note
+    )
 
 
 def left_out(result: RegionMap) -> str:
