@@ -227,3 +227,16 @@ def test_the_law_of_torsion_springs_is_told(tmp_path: Path, capsys: pytest.Captu
     assert "torsion     energy k (1 - cos(angle - rest)), moment k sin(angle - rest): for small angles" in out
     assert run(["check", str(CONFIGS / "fig4.yaml")]) == 0
     assert "torsion" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("value", "unused"), [("0", True), ("Q - Q", False), ("Q*(", False)], ids=["not named", "named", "not readable"]
+)
+def test_an_axis_that_nothing_names_is_told_beside_other_faults(
+    value: str, unused: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "q.yaml").write_text(f"axes: {{rho: [2, 1], Q: [0, 1]}}\nparameters: {{L1: {value}}}\n")
+    assert run(["check", str(tmp_path / "q.yaml")]) == 2
+    told = capsys.readouterr().err
+    assert "axes.rho" in told
+    assert ("the axis Q is not used" in told) is unused

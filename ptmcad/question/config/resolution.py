@@ -100,9 +100,26 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
     with faults:
         described = (fault for fault in faults.found if (fault.key or "").startswith(("mechanism", "system")))
         if not any(described) and all(fault.file == record.place.file for fault in faults.found):
+            if faults.found:
+                _note_unnamed_axes(record, faults)
             _check_count(record, resolved)
     faults.check()
     return _slice(record, axes, resolved)
+
+
+def _note_unnamed_axes(record: Record, faults: Faults) -> None:
+    """Note axes of which no text has the name, beside faults because of which it is not known what depends on what."""
+    told, unreadable, named = {fault.key for fault in faults.found}, Faults(), set[str]()
+    for scalar in record.values.values():
+        with unreadable:  # such a text is told with the others, and may name any axis
+            named.update(names_in_scalar(scalar))
+    if unreadable.found or named - record.model.parameters.keys() - record.axes.keys() - record.unread:
+        return  # an unknown name may be a slip of the axis's
+    for name in tuple(record.axes)[:2] if not isinstance(record.model, System) else ():
+        place = record.axes[name].place
+        if name not in named and name not in record.model.parameters and place.key not in told:
+            with faults:
+                raise place.error(f"the axis {name} is not used: no parameter depends on it")
 
 
 def refuse_free(name: str, window: Window) -> None:
