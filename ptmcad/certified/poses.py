@@ -19,7 +19,8 @@ from ptmcad.answer.regionmap import Solution, Status
 from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.formula import Graph, Operation
-from ptmcad.certified.plain.poses import NOT_TOLD, ZERO, assembled, point_slice, told
+from ptmcad.certified.plain.poses import NOT_TOLD, assembled, point_slice, told
+from ptmcad.certified.plain.unsettled import not_settled
 from ptmcad.certified.points import point_counter
 from ptmcad.certified.potential import potential
 from ptmcad.certified.ptm.statics import TH1, TH2
@@ -65,8 +66,8 @@ def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
     for solution in counts.solutions:
         pose, bits = _pose(parameters, written, equations, solution, digits)
         most = max(most, bits)
-        if pose is None:
-            return Poses(MECHANISM, parameters, (), Status.UNDECIDED, digits, most, ZERO)
+        if isinstance(pose, str):
+            return Poses(MECHANISM, parameters, (), Status.UNDECIDED, digits, most, pose)
         poses.append(pose)
     peaks = _PEAKS.get(counts.cones or 0, "")
     return Poses(MECHANISM, parameters, tuple(_ordered(poses)), Status.CERTIFIED, digits, most, peaks)
@@ -106,8 +107,8 @@ def _pose(
     equations: System,
     solution: Solution,
     digits: int,
-) -> tuple[Pose | None, int]:
-    """The pose with all numbers settled, and the bits that this took; None when some number is not."""
+) -> tuple[Pose | str, int]:
+    """The pose with all numbers settled, and the bits that this took; a sentence that says which number is not."""
     tape, names = written
     flat = _flat(tape, solution)
     bits, attempt = 64 + 4 * digits, 0
@@ -122,7 +123,7 @@ def _pose(
         if found.keys() == numbers.keys():
             return assembled(MECHANISM, parameters, found, solution.signs.count("-"), flat is not None), bits
         bits, attempt = 2 * bits, attempt + 1
-    return None, bits // 2
+    return not_settled(MECHANISM, found, numbers.keys() - found.keys()), bits // 2
 
 
 def _box(solution: Solution, bits: int) -> Box:

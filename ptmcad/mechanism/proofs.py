@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
+from types import MappingProxyType
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism.description import Mechanism, UnknownKind
@@ -248,26 +249,32 @@ class MirrorImage(_Image):
     Parameters
     ----------
     reflected : unknowns u that become -u.
-    odd : those angles of them that become a half turn more, pi - u.
+    turned : those angles of them that become d - u instead, with cosine and sine of d, a direction on the unit circle.
     """
 
     def __init__(
-        self, parameters: Mapping[str, Fraction], reflected: Iterable[str] = (), odd: frozenset[str] = frozenset()
+        self,
+        parameters: Mapping[str, Fraction],
+        reflected: Iterable[str] = (),
+        turned: Mapping[str, tuple[Fraction, Fraction]] = MappingProxyType({}),
     ):
         super().__init__(Ring(MAX_WORK), {name: Negative(Name(name)) for name in reflected})
-        self.parameters, self.odd = parameters, odd
+        self.parameters, self.turned = parameters, turned
 
     def parameter(self, name: str) -> Polynomial:
         return self.constant(self.parameters[name]) if name in self.parameters else super().parameter(name)
 
     def cos(self, angle: str) -> Polynomial:
-        return self._turned(angle, super().cos(angle))
+        if angle not in self.turned:
+            return super().cos(angle)
+        c, s = map(self.constant, self.turned[angle])
+        return c * super().cos(angle) - s * super().sin(angle)
 
     def sin(self, angle: str) -> Polynomial:
-        return self._turned(angle, super().sin(angle))
-
-    def _turned(self, angle: str, value: Polynomial) -> Polynomial:
-        return self.constant(Fraction(-1)) * value if angle in self.odd else value
+        if angle not in self.turned:
+            return super().sin(angle)
+        c, s = map(self.constant, self.turned[angle])
+        return s * super().cos(angle) + c * super().sin(angle)
 
     def value(self, tree: Tree) -> Polynomial:
         """The value of a tree."""
@@ -275,7 +282,10 @@ class MirrorImage(_Image):
 
 
 def energy_is_kept(
-    mechanism: Mechanism, parameters: Mapping[str, Fraction], reflected: Iterable[str], odd: frozenset[str]
+    mechanism: Mechanism,
+    parameters: Mapping[str, Fraction],
+    reflected: Iterable[str],
+    turned: Mapping[str, tuple[Fraction, Fraction]],
 ) -> bool:
     """Whether a reflection takes equilibria at values of the parameters to equilibria; see `MirrorImage`.
 
@@ -284,7 +294,7 @@ def energy_is_kept(
     ExpressionError
         When that is too much to be multiplied out.
     """
-    return _are_the_same(mechanism, MirrorImage(parameters), MirrorImage(parameters, reflected, odd))
+    return _are_the_same(mechanism, MirrorImage(parameters), MirrorImage(parameters, reflected, turned))
 
 
 def squared_length(mechanism: Mechanism, image: MirrorImage, start: str, end: str) -> Polynomial:

@@ -214,3 +214,66 @@ def test_springs_of_which_one_is_relaxed() -> None:
     assert (relaxed.count((True, True)), relaxed.count((False, True))) == (2, 4)
     for pose, (first, second) in zip(poses, relaxed, strict=True):
         assert (pose.energy.exact == 0) == (first and second)
+
+
+LEANING: dict[str, Any] = {
+    "parameters": {"l0": {"kind": "free length"}, "F": {"kind": "force"}},
+    "unknowns": {"th": "angle"},
+    "points": {"O": [0, 0], "A": [2, 1], "P": ["cos(th)", "sin(th)"], "Z": ["cos(th) - 2*sin(th)", "3*cos(th)^2"]},
+    "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
+    "loads": {"P": [0, "F"]},
+}
+FOLDED: dict[str, Any] = {
+    "parameters": {"F": {"kind": "force"}},
+    "unknowns": {"th": "angle", "bend": "angle"},
+    "points": {
+        "O": [0, 0],
+        "A": ["7/5", "1/2"],
+        "B": ["cos(th)", "sin(th)"],
+        "C": ["cos(th) + cos(th + bend)", "sin(th) + sin(th + bend)"],
+    },
+    "springs": [{"between": ["A", "B"], "k": 1, "free": "1/10"}, {"between": ["A", "C"], "k": 1, "free": "1/10"}],
+    "loads": {"C": [0, "F"]},
+}
+
+
+def test_what_is_zero_by_a_mirror_along_no_axis_is_told_exactly() -> None:
+    """P is on the line OA, of slope 1/2: cos th = 2 sin th and cos^2 th = 4/5."""
+    poses = ptmcad.solve(model=ptmcad.Mechanism(LEANING), l0="1/2", F=0)
+    assert [pose.nodes["Z"][0].exact for pose in poses.equilibria] == [0, 0]
+    assert [pose.nodes["Z"][1].exact for pose in poses.equilibria] == [Fraction(12, 5)] * 2
+    assert [pose.cosines_sines[0].text(8) for pose in poses.equilibria] == ["0.89442719", "-0.89442719"]
+
+
+@pytest.mark.parametrize("load", ["1e-12", "1e-60", "1e-75"])
+def test_what_is_nearly_zero_beside_a_slanted_mirror_is_not_told_as_zero(load: str) -> None:
+    """The last one is within the ball at which the mirror is tried, so that the proof alone refuses it."""
+    poses = ptmcad.solve(model=ptmcad.Mechanism(LEANING), l0="1/2", F=load)
+    assert all(pose.nodes["Z"][0].exact is None and abs(float(pose.nodes["Z"][0])) < 1e-11 for pose in poses.equilibria)
+
+
+def test_points_that_are_too_much_to_be_multiplied_out_leave_the_others_exact() -> None:
+    """Fourteen of them took more work than all numbers of a pose together were allowed."""
+    powers = " + ".join(f"cos(th)^{n}*sin(th)^{n}" for n in range(1, 11))
+    large = {f"L{k}": [f"({powers} + {k}*cos(th))^3", 1] for k in range(14)}
+    points = {**LEANING["points"], **large}
+    poses = ptmcad.solve(model=ptmcad.Mechanism({**LEANING, "points": points}), l0="1/2", F=0)
+    assert [pose.nodes["Z"][0].exact for pose in poses.equilibria] == [0, 0]
+
+
+def test_a_number_that_no_proof_tells_from_zero_is_named() -> None:
+    """The bent poses of the test of an accident, where cos th = 11/16."""
+    points = {**PENDULUM["points"], "A": [0, 2], "Z": ["cos(th) - 11/16", 1]}
+    poses = ptmcad.solve(model=ptmcad.Mechanism({**PENDULUM, "points": points}), l0=1, W="2/3")
+    assert (poses.status.value, poses.equilibria) == ("undecided", ())
+    assert poses.remark.startswith("x of Z could not be distinguished from zero in the equilibrium at th = ")
+    assert poses.remark.split(" = ")[1].removeprefix("-").startswith("46.567 deg: it may be exactly zero")
+
+
+def test_a_chain_folded_along_a_line_ends_in_its_pivot() -> None:
+    """Two bars of length 1 from O, the second by its angle to the first; by hand, C = O at the folded ones."""
+    poses = ptmcad.solve(model=ptmcad.Mechanism(FOLDED), F=0)
+    assert [pose.index for pose in poses.equilibria] == [0, 0, 1, 1, 1, 2]
+    ends = [tuple(coordinate.exact for coordinate in pose.nodes["C"]) for pose in poses.equilibria]
+    assert ends == [(None, None)] * 3 + [(0, 0)] * 2 + [(None, None)]
+    assert [spring.length.text(6) for spring in poses.equilibria[0].springs] == ["0.500000"] * 2

@@ -20,7 +20,9 @@ from ptmcad.certified.plain.points import PlainCounter, plain_counter
 from ptmcad.certified.plain.problem import MAX_UNKNOWNS_AT_POINTS
 from ptmcad.certified.plain.relaxed import Relaxed, relaxed_numbers
 from ptmcad.certified.plain.resting import rational_point
+from ptmcad.certified.plain.slanted import with_slanted
 from ptmcad.certified.plain.symmetric import Point, fixed_by_symmetry, quarter_turns, rational_numbers
+from ptmcad.certified.plain.unsettled import not_settled
 from ptmcad.certified.potential import potential
 from ptmcad.certified.tape import Tape, record
 from ptmcad.mechanism import Mechanism, Model
@@ -36,9 +38,6 @@ MAX_DOUBLINGS = 4
 NOT_TOLD = (
     "the equilibria could not be distinguished: there are infinitely many, one is nearly degenerate, or a spring has "
     "nearly no length there"
-)
-ZERO = (
-    "a number of an equilibrium could not be distinguished from zero: change a value a little, such as 3/2 to 1.5000001"
 )
 
 
@@ -65,8 +64,8 @@ def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits
     for solution in counts.solutions:
         pose, bits = _pose(mechanism, parameters, written, counter, solution, digits)
         most = max(most, bits)
-        if pose is None:
-            return Poses(mechanism, parameters, (), Status.UNDECIDED, digits, most, ZERO)
+        if isinstance(pose, str):
+            return Poses(mechanism, parameters, (), Status.UNDECIDED, digits, most, pose)
         poses.append(pose)
     ordered = sorted(poses, key=_order)
     return Poses(mechanism, parameters, tuple(ordered), Status.CERTIFIED, digits, most)
@@ -118,8 +117,8 @@ def _pose(
     counter: PlainCounter,
     solution: Solution,
     digits: int,
-) -> tuple[Pose | None, int]:
-    """The pose with all numbers settled, and the bits that this took; None when some number is not."""
+) -> tuple[Pose | str, int]:
+    """The pose with all numbers settled, and the bits that this took; a sentence that says which number is not."""
     tape, names = written
     last = f"eigenvalue {len(mechanism.unknowns) - 1}"
     bits, found = 64 + 4 * digits, dict[str, Enclosure]()
@@ -134,8 +133,10 @@ def _pose(
             with ctx.workprec(bits):
                 held, boxes = (dict(zip(mechanism.unknowns, some[2:], strict=True)) for some in (box, whole))
                 at = rational_point(mechanism, parameters, held, boxes)
-            turns = quarter_turns(mechanism, at)
-            found |= rational_numbers(mechanism, parameters, at) if at else {}
+                rational, surds = with_slanted(mechanism, parameters, at, held, boxes)
+            turns = quarter_turns(mechanism, rational)
+            if rational or surds.multiples:
+                found |= rational_numbers(mechanism, parameters, rational, surds)
         with ctx.workprec(bits):
             values = run_arb(tape, box, bits)
             numbers = {name: values[int(place)] for name, place in zip(names, tape.outputs[0], strict=True)}
@@ -167,7 +168,7 @@ def _pose(
             index = solution.signs.count("-") if mechanism.has_potential else None
             return assembled(mechanism, parameters, found, index), bits
         bits *= 2
-    return None, bits // 2
+    return not_settled(mechanism, found, numbers.keys() - found.keys()), bits // 2
 
 
 def _deflection(found: Mapping[str, Enclosure], number: int, cosine: arb, sine: arb) -> dict[str, arb]:

@@ -9,10 +9,10 @@ Balls alone would never tell such a number from its neighbours.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from math import pi, prod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from flint import arb
 
@@ -24,11 +24,25 @@ from ptmcad.text.enclosure import Enclosure
 
 if TYPE_CHECKING:
     from ptmcad.mechanism import Mechanism
+    from ptmcad.text.tree import Tree
 
 Point = dict[str, Fraction]
 """Rational values by name: reals, and cosines and sines as ``cos NAME`` and ``sin NAME``."""
 QUARTERS = ((1, 0), (0, 1), (-1, 0), (0, -1))
 """Cosine and sine of the multiples of a quarter turn."""
+HALF_TURN = (Fraction(-1), Fraction(0))
+
+
+class Surds(NamedTuple):
+    """Cosines and sines, by name as in `Point`, that are rational multiples of one square root, and its square."""
+
+    multiples: Mapping[str, Fraction]
+    square: Fraction
+
+
+NO_SURDS = Surds({}, Fraction(1))
+_ROOT = "square root"
+"""As a variable of monomials; no name has a space but those of cosines and sines."""
 
 
 def fixed_turns(
@@ -50,19 +64,29 @@ def fixed_turns(
     if not turns:
         return {}
     turns = {name: (n + 1) % 4 - 1 for name, n in turns.items()}
-    odd = frozenset(name for name, n in turns.items() if n % 2)
+    odd = {name: HALF_TURN for name, n in turns.items() if n % 2}
+    kept = is_symmetry(mechanism, parameters, turns, odd)
+    return turns if kept or is_equilibrium(mechanism, parameters, point_of(mechanism, turns)) else {}
+
+
+def is_symmetry(
+    mechanism: Mechanism,
+    parameters: Mapping[str, Fraction],
+    reflected: Iterable[str],
+    turned: Mapping[str, tuple[Fraction, Fraction]],
+) -> bool:
+    """Whether a reflection is proved to take equilibria to equilibria; see `ptmcad.mechanism.proofs.MirrorImage`."""
     try:
-        kept = energy_is_kept(mechanism, parameters, turns, odd)
+        return energy_is_kept(mechanism, parameters, reflected, turned)
     except ExpressionError:  # too large to be multiplied out
-        kept = False
-    return turns if kept or _is_equilibrium(mechanism, parameters, turns) else {}
-
-
-def _is_equilibrium(mechanism: Mechanism, parameters: Mapping[str, Fraction], turns: Mapping[str, int]) -> bool:
-    """Whether these values of all unknowns are proved to be those of an equilibrium, which the boxes hold."""
-    if turns.keys() != mechanism.unknowns.keys() or mechanism.moments:
         return False
-    jet = rational_energy(mechanism, parameters, point_of(mechanism, turns))
+
+
+def is_equilibrium(mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Point) -> bool:
+    """Whether these are values of all unknowns that are proved to be those of an equilibrium."""
+    if len(at) != len(mechanism.angles) + len(mechanism.unknowns) or mechanism.moments:
+        return False
+    jet = rational_energy(mechanism, parameters, at)
     return jet is not None and not any(jet.gradient)
 
 
@@ -105,26 +129,28 @@ def _quarters(cosine: Fraction, sine: Fraction) -> int | None:
     return (QUARTERS.index((cosine.numerator, sine.numerator)) + 1) % 4 - 1
 
 
-def rational_numbers(mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Point) -> dict[str, Enclosure]:
+def rational_numbers(
+    mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Point, surds: Surds = NO_SURDS
+) -> dict[str, Enclosure]:
     """Those numbers of an equilibrium that are rational by these fixed unknowns, by name, as exact enclosures."""
     found = {name: value for name, value in at.items() if " " in name}
     found |= {f"real {name}": at[name] for name in mechanism.reals if name in at}
     for name, n in quarter_turns(mechanism, at).items():
         found |= {f"degrees {name}": Fraction(90 * n)} | ({name: Fraction(0)} if n == 0 else {})
-    image = MirrorImage(parameters)
+    known = _Known(parameters, at, surds)
     for name, pair in mechanism.points.items():
         for n, tree in enumerate(pair):
-            value = _value(image.value(tree), at)
+            value = known.value(tree)
             if value is not None:
                 found[f"{name} {n}"] = value
     for n, spring in enumerate(mechanism.springs):
-        squared = _value(squared_length(mechanism, image, spring.start, spring.end), at)
+        squared = known.squared_length(mechanism, spring.start, spring.end)
         length = None if squared is None else rational_root(squared)
         if length is not None:
             stretch = length - value_at(spring.free, parameters)
             found |= {f"length {n}": length, f"force {n}": value_at(spring.stiffness, parameters) * stretch}
     for n, torsion in enumerate(mechanism.torsion):
-        cosine, sine = (_value(image.value(tree), at) for tree in torsion.deflection)
+        cosine, sine = map(known.value, torsion.deflection)
         if cosine is not None and sine is not None:
             found |= _of_torsion(n, cosine, sine, value_at(torsion.stiffness, parameters))
     if len(at) == len(mechanism.angles) + len(mechanism.unknowns):
@@ -161,18 +187,43 @@ def _of_energy(mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Poi
     return found | {f"eigenvalue {n}": value for n, value in enumerate(values or ())}
 
 
-def _value(p: Polynomial, at: Point) -> Fraction | None:
-    """The value of a polynomial; None where it depends on what has no value."""
-    total = partly_valued(p, at)
-    return total.get((), Fraction(0)) if not any(total.keys() - {()}) else None
+class _Known(NamedTuple):
+    """Values of parameters and unknowns, by which others are; None of what depends on more, or is not rational.
+
+    Nor is a value known that is too much to be multiplied out; each is on its own, so that none is at another's cost.
+    """
+
+    parameters: Mapping[str, Fraction]
+    at: Point
+    surds: Surds
+
+    def value(self, tree: Tree) -> Fraction | None:
+        try:
+            return self._of(MirrorImage(self.parameters).value(tree))
+        except ExpressionError:
+            return None
+
+    def squared_length(self, mechanism: Mechanism, start: str, end: str) -> Fraction | None:
+        try:
+            return self._of(squared_length(mechanism, MirrorImage(self.parameters), start, end))
+        except ExpressionError:
+            return None
+
+    def _of(self, p: Polynomial) -> Fraction | None:
+        total = partly_valued(p, self.at, self.surds)
+        return total.get((), Fraction(0)) if not any(total.keys() - {()}) else None
 
 
-def partly_valued(p: Polynomial, at: Mapping[str, Fraction]) -> dict[Monomial, Fraction]:
-    """The terms of a polynomial in which some variables have values."""
+def partly_valued(p: Polynomial, at: Mapping[str, Fraction], surds: Surds = NO_SURDS) -> dict[Monomial, Fraction]:
+    """The terms of a polynomial in which some variables have values; the surds' root stays as a variable."""
     total: dict[Monomial, Fraction] = {}
+    values = {**at, **surds.multiples}
     for monomial, c in p.terms.items():
-        rest = tuple((name, e) for name, e in monomial if name not in at)
-        total[rest] = total.get(rest, Fraction(0)) + c * prod(at[name] ** e for name, e in monomial if name in at)
+        rest = tuple((name, e) for name, e in monomial if name not in values)
+        roots = sum(e for name, e in monomial if name in surds.multiples)
+        rest += ((_ROOT, 1),) * (roots % 2)
+        known = prod(values[name] ** e for name, e in monomial if name in values) * surds.square ** (roots // 2)
+        total[rest] = total.get(rest, Fraction(0)) + c * known
     return {rest: c for rest, c in total.items() if c}
 
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
-from ptmcad.errors import Faults
+from ptmcad.errors import ExpressionError, Faults
 from ptmcad.mechanism import Kind, Mechanism, Model, System
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.moments import foreign
@@ -25,7 +25,7 @@ from ptmcad.question.positivity import READING_WORK
 from ptmcad.question.slice import NOTHING_ADMISSIBLE, Axis, Count, Slice, have_free_lengths
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.parsing import names_in
-from ptmcad.text.syntax import did_you_mean
+from ptmcad.text.syntax import did_you_mean, parse
 from ptmcad.text.tree import names_of
 from ptmcad.text.yamltree import Place, Tree
 
@@ -109,11 +109,13 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
 
 def _note_unnamed_axes(record: Record, faults: Faults) -> None:
     """Note axes of which no text has the name, beside faults because of which it is not known what depends on what."""
-    told, unreadable, named = {fault.key for fault in faults.found}, Faults(), set[str]()
+    told, named = {fault.key for fault in faults.found}, set[str]()
     for scalar in record.values.values():
-        with unreadable:  # such a text is told with the others, and may name any axis
-            named.update(names_in_scalar(scalar))
-    if unreadable.found or named - record.model.parameters.keys() - record.axes.keys() - record.unread:
+        try:
+            named.update(names_of(parse(scalar.text)))
+        except ExpressionError:
+            return  # this is told with the others, and such a text may be meant to name any axis
+    if named - record.model.parameters.keys() - record.axes.keys() - record.unread:
         return  # an unknown name may be a slip of the axis's
     for name in tuple(record.axes)[:2] if not isinstance(record.model, System) else ():
         place = record.axes[name].place
