@@ -301,7 +301,7 @@ def test_text_and_document() -> None:
 
 
 def test_a_path_towards_infinitely_many_equilibria_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Unloaded equal rods: near rho = 0 the steps shrink like rho^2, so they are counted, and the rest is undecided."""
+    """Unloaded equal rods: near rho = 0 the steps shrink with rho, so they are counted, and the rest is undecided."""
     monkeypatch.setattr("ptmcad.exact.ranges.tracking._MAX_STEPS", 40)
     slice = ptmcad.load(CONFIGS / "fig3.yaml")
     paths = pose_paths(slice, "rho", {"F": Fraction(0)}, Fraction(1, 2), 1)

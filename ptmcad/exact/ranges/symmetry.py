@@ -21,22 +21,22 @@ from fractions import Fraction
 from itertools import permutations, product
 from typing import NamedTuple
 
-from flint import arb, fmpz_mpoly
+from flint import arb
 
-from ptmcad.algebra.polynomials import UnknownPolynomial, constant_like, from_fraction
+from ptmcad.algebra.polynomials import Coefficient, UnknownPolynomial, constant_like, from_fraction
 
 _MAX_SIGNS = 8
 """Coordinates of which all changes of signs, and of order, are tried as symmetries."""
 
-Gaussian = tuple[fmpz_mpoly, fmpz_mpoly]
+Gaussian = tuple[Coefficient, Coefficient]
 """Real and imaginary part, polynomials in the axes."""
 
 
 class Mirror(NamedTuple):
     """The direction of a mirror line, two polynomials of which the first axis alone occurs."""
 
-    x: fmpz_mpoly
-    y: fmpz_mpoly
+    x: Coefficient
+    y: Coefficient
 
     def angle(self, low: Fraction, high: Fraction) -> arb | None:
         """The line's angle, up to half a turn, for all values of the axis from low to high.
@@ -110,7 +110,7 @@ def _is_kept(waves: dict[tuple[int, ...], Gaussian], w: Gaussian) -> bool:
     return all(b.is_zero() for _, b in turned) or all(a.is_zero() for a, _ in turned)
 
 
-def _at(p: fmpz_mpoly, value: arb) -> arb:
+def _at(p: Coefficient, value: arb) -> arb:
     total = arb(0)
     for (i, *_), c in p.to_dict().items():
         total += arb(c) * value**i
