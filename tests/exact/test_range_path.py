@@ -18,12 +18,18 @@ import ptmcad
 from ptmcad.ask.ranges import Fate, PosePath, pose_paths
 from ptmcad.errors import ConfigError
 from ptmcad.exact.models import system_from, system_of
-from ptmcad.exact.ranges.tracking import BITS, Family, Reached, at_value, bridge, enclose, follow
+from ptmcad.exact.models.system import on_slice
+from ptmcad.exact.ranges.equations import Family
+from ptmcad.exact.ranges.line import system_on
+from ptmcad.exact.ranges.matrices import plus, times
+from ptmcad.exact.ranges.symmetry import Mirror, mirror_of
+from ptmcad.exact.ranges.tracking import BITS, Reached, at_value, bridge, enclose, follow
 from ptmcad.mechanism import ptm
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.document import document, path_data
 from ptmcad.show.ranges.table import path_table
+from ptmcad.text.parsing import parse
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -157,6 +163,72 @@ def test_the_pose_of_a_merger_at_an_irrational_value_is_told_by_its_symmetry() -
     assert end.energy == end.target_energy and end.energy.text(5) == "-0.75000"
 
 
+def test_a_merger_is_told_by_a_mirror_line_that_turns_with_the_axis() -> None:
+    """At F = 0 the mirror line is OA. With |OA| = r both poses have B and C at 1/2 from A and merge at r = 3/2, where
+    the chain is straight; at a = 0, r = 1/2, they cross, so that steps are in proportion to a, not to its square."""
+    found = pose_paths(ptmcad.load(CONFIGS / "mechanisms" / "two-bar-chain.yaml"), "a", {"F": 0}, Fraction(1, 2))
+    assert len(found.paths) == 2
+    for path in found.paths:
+        assert path.low.fate is Fate.WINDOW and path.low.last.value < Fraction(1, 10**5)
+        end = path.high
+        assert end.fate is Fate.MERGE and end.at.polynomial == (-2, 0, 1)  # type: ignore[union-attr]
+        assert end.meeting == (0, 0, 1) and end.leaving == (0,)
+        assert end.target is not None and end.energy is not None
+        for angle in end.target.angles:
+            assert angle.radius < Fraction(1, 10**9) and abs(sin(float(angle)) - 1 / 3) < 1e-9
+        assert end.energy.text(5) == "0.25000"
+        assert len(path.points) < 400
+
+
+def test_the_mirror_line_of_equations() -> None:
+    """That of the chain is along (a, 1/2) without a load, and there is none with one that is not along it."""
+    slice = ptmcad.load(CONFIGS / "mechanisms" / "two-bar-chain.yaml")
+
+    def mirror(load: str) -> Mirror | None:
+        return mirror_of(on_slice(*system_on(line_of(slice, "a", {"F": load}))).equations, 2)
+
+    assert mirror("1/3") is None
+    found = mirror("0")
+    assert found is not None
+    for a in (Fraction(-2), Fraction(0), Fraction(1, 3)):
+        angle = found.angle(a, a)
+        assert angle is not None and abs(sin(float(angle)) * float(a) - cos(float(angle)) / 2) < 1e-12
+        wide, inner = found.angle(a, a + Fraction(1, 100)), found.angle(a + Fraction(1, 200), a + Fraction(1, 200))
+        assert wide is not None and inner is not None and (wide - inner).sin().contains(0)
+
+
+def test_derivatives_of_second_order() -> None:
+    """Against differences of those of first order, of a line on which parameters are rational functions."""
+    slice = ptmcad.load(CONFIGS / "mechanisms" / "two-bar-chain.yaml")
+    line = line_of(slice, "a", {"F": "1/3"})
+    stiffness = parse("(1 + 2*a^2)/(3 - a)", {"a": line.parameters["a"]})
+    chain = Family(
+        slice.model, system_from(slice.model), dict.fromkeys(line.parameters, stiffness) | {"a": line.parameters["a"]}
+    )
+    point, velocity, at, h = (arb("0.3"), arb("1.1")), (arb("0.7"), arb("-0.4")), Fraction(1, 2), Fraction(1, 10**9)
+    with ctx.workprec(BITS):
+
+        def moved(side: int, by: tuple[arb, ...]) -> tuple[arb, ...]:
+            return tuple(x + v * side * h.numerator / h.denominator for x, v in zip(point, by, strict=True))
+
+        def rise(low: Any, high: Any) -> float:
+            return float((high - low).mid()) / float(2 * h)
+
+        here, before, after = chain.at(at, at), chain.at(at - h, at - h), chain.at(at + h, at + h)
+        by = here.jacobian_slopes(point)
+        beside = ((before, moved(-1, velocity)), (after, moved(1, velocity)))
+        along = [plus(i.slope(p), times(i.jacobian(p), velocity)) for i, p in beside]
+        for k in range(2):
+            assert rise(along[0][k], along[1][k]) == pytest.approx(float(here.bend(point, velocity)[k].mid()), abs=1e-6)
+            for j in range(2):
+                low, high = before.jacobian(point)[k][j], after.jacobian(point)[k][j]
+                assert rise(low, high) == pytest.approx(float(by[0][k][j].mid()), abs=1e-6)
+                for n in range(2):
+                    unit = tuple(arb(int(i == n)) for i in range(2))
+                    low, high = here.jacobian(moved(-1, unit))[k][j], here.jacobian(moved(1, unit))[k][j]
+                    assert rise(low, high) == pytest.approx(float(by[n + 1][k][j].mid()), abs=1e-6)
+
+
 def test_a_pair_that_meets_elsewhere_does_not_stop_a_path() -> None:
     """Fig. 3 at F = -10: a saddle and a maximum meet at rho = 0.0025, the stable pose goes on."""
     found = pose_paths(record("fig3"), "rho", {"F": "-10"}, Fraction(1, 10))
@@ -229,7 +301,7 @@ def test_text_and_document() -> None:
 
 
 def test_a_path_towards_infinitely_many_equilibria_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Unloaded equal rods: near rho = 0 the steps shrink like rho^2, so they are counted, and the rest is undecided."""
+    """Unloaded equal rods: near rho = 0 the steps shrink with rho, so they are counted, and the rest is undecided."""
     monkeypatch.setattr("ptmcad.exact.ranges.tracking._MAX_STEPS", 40)
     slice = ptmcad.load(CONFIGS / "fig3.yaml")
     paths = pose_paths(slice, "rho", {"F": Fraction(0)}, Fraction(1, 2), 1)

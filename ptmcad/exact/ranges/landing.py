@@ -20,8 +20,9 @@ from flint import arb, ctx
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.exact.poses import exact_poses
+from ptmcad.exact.ranges.equations import Family
 from ptmcad.exact.ranges.meeting import Meeting, parameters_at, value_at, what_meets
-from ptmcad.exact.ranges.tracking import BITS, Family, Reached, bridge, enclose, follow
+from ptmcad.exact.ranges.tracking import BITS, Reached, bridge, enclose, follow
 from ptmcad.question.line import Line
 from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
@@ -109,6 +110,8 @@ def _merged(
     with ctx.workprec(BITS):
         region = tuple(map(enclosure_of, found.box))
         region = tuple(_exactly(x, k, family.angles, found.zero) for k, x in enumerate(region))
+        if found.mirror is not None and (angle := found.mirror.angle(number.low, number.high)) is not None:
+            region = tuple(_half_turned(x, angle) for x in region)
     if number.exact is None:
         return region
     poses = exact_poses(family.model, parameters_at(family, line, number.exact), DIGITS).equilibria
@@ -123,8 +126,15 @@ def _exactly(x: Enclosure, k: int, angles: int, zero: Set[int]) -> Enclosure:
         return Enclosure(Fraction(0), Fraction(0)) if k + angles in zero else x
     if not {2 * k, 2 * k + 1} & zero:
         return x
-    quarters = 2 * round(float(x) / pi) if 2 * k + 1 in zero else 2 * round(float(x) / pi - 0.5) + 1
-    return enclosure_of(arb.pi() * quarters / 2)
+    return _half_turned(x, arb(0) if 2 * k + 1 in zero else arb.pi() / 2)
+
+
+def _half_turned(x: Enclosure, angle: arb) -> Enclosure:
+    """An unknown that is an angle up to half turns; as it is where several of these are in its enclosure."""
+    nearest = round((float(x) - float(angle)) / pi)
+    turned = [enclosure_of(angle + n * arb.pi()) for n in range(nearest - 2, nearest + 3)]  # it is less than 6 wide
+    within = [t for t in turned if _overlap((t,), (x,))]
+    return within[0] if len(within) == 1 else x
 
 
 def _turned(pose: Sequence[Enclosure], region: Sequence[Enclosure], angles: int) -> tuple[Enclosure, ...]:

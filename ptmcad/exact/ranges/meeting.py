@@ -13,23 +13,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from itertools import permutations, product
 from typing import NamedTuple
 
 from flint import arb, arb_mat, ctx
 
-from ptmcad.algebra.polynomials import UnknownPolynomial, from_fraction
+from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.exact.counting import equilibria
 from ptmcad.exact.models.system import on_slice, polynomial_at
+from ptmcad.exact.ranges.equations import Family, coordinates_of
 from ptmcad.exact.ranges.line import system_on
-from ptmcad.exact.ranges.tracking import BITS, Family, Reached, Vector, at_value, bridge, coordinates_of
+from ptmcad.exact.ranges.matrices import Vector
+from ptmcad.exact.ranges.symmetry import Mirror, changed, changes, mirror_of, proportional
+from ptmcad.exact.ranges.tracking import BITS, Reached, at_value, bridge
 from ptmcad.question.line import Line
 
 _MAX_GROUP = 8
 """Solutions of which all groupings are looked through: of eight there are 4140."""
-_MAX_SIGNS = 8
-"""Coordinates of which all changes of signs, and of order, are tried as symmetries."""
 _MAX_PIECES = 4000
 _MAX_DEPTH = 60
 """Into how many pieces, and how often, a region's boundary is cut."""
@@ -57,6 +57,8 @@ class Meeting(NamedTuple):
         the branch has them; else None.
     zero : of the coordinates, cosine and sine of each angle and then the unknowns on the line, those that are zero
         where the solutions meet: a symmetry that changes their signs takes the solutions that meet to one another.
+    mirror : where a reflection of all angles takes the solutions that meet to one another, its line: there each angle
+        is the line's, or opposite.
     """
 
     meeting: tuple[int, ...]
@@ -65,13 +67,21 @@ class Meeting(NamedTuple):
     beyond: tuple[Solution, ...]
     box: Vector | None = None
     zero: frozenset[int] = frozenset()
+    mirror: Mirror | None = None
 
 
 class _Symmetry(NamedTuple):
-    """How a change of coordinates that leaves the equations alone permutes a group, and which it only gives signs."""
+    """How a change of coordinates that leaves the equations alone permutes a group.
+
+    Attributes
+    ----------
+    odd : which coordinates only change their signs.
+    mirror : its line where it is a reflection of all angles at once.
+    """
 
     images: tuple[int, ...]
-    odd: frozenset[int]
+    odd: frozenset[int] = frozenset()
+    mirror: Mirror | None = None
 
 
 class _Member(NamedTuple):
@@ -119,7 +129,7 @@ def what_meets(family: Family, line: Line, current: Reached, after: Fraction) ->
     if region is None:
         return _without_region(family, unmatched, tuple(beyond))
     group, box = region
-    symmetries = _symmetries(family, line, group)
+    symmetries = _symmetries(family, line, group, after)
     classes = _own_classes(group, [s.images for s in symmetries])
     if not classes:
         return None
@@ -127,11 +137,11 @@ def what_meets(family: Family, line: Line, current: Reached, after: Fraction) ->
         return None
     chosen = [group[k] for k in sorted(frozenset().union(*classes))]
     met, left = (tuple(sorted(m.solution.negative for m in chosen if m.ahead is side)) for side in (False, True))
-    zero: frozenset[int] = frozenset()
-    if len(classes) == 1:
-        own = next(iter(classes))
-        zero = zero.union(*(s.odd for s in symmetries if {s.images[k] for k in own} == own))
-    return Meeting(met, left, len(classes) > 1, tuple(beyond), box, zero)
+    own = next(iter(classes)) if len(classes) == 1 else frozenset()
+    kept = [s for s in symmetries if own and {s.images[k] for k in own} == own]
+    zero: frozenset[int] = frozenset().union(*(s.odd for s in kept))
+    mirror = next((s.mirror for s in kept if s.mirror is not None), None)
+    return Meeting(met, left, len(classes) > 1, tuple(beyond), box, zero, mirror)
 
 
 def _solutions(family: Family, line: Line, value: Fraction) -> list[Solution] | None:
@@ -231,7 +241,7 @@ def _region(
                 continue
             extent = distance(group[-1])
             room = (distance(ordered[k]) - extent) / 2 if k < len(ordered) else max(3 * extent, 0.1)
-            for margin in (m for m in (2 * extent, extent / 2, room) if 0 < m <= room):
+            for margin in (m for m in (2 * extent, extent / 2, room / 4, room) if 0 < m <= room):
                 box = [_hull([m.shifted[i] for m in group], margin) for i in range(len(own.shifted))]
                 if _isolates(family, box, current.value, after, group, ordered[k:]):
                     return group, tuple(low.union(high) for low, high in box)
@@ -295,61 +305,59 @@ def _outside(family: Family, point: Vector, box: Sequence[tuple[arb, arb]]) -> b
     return False
 
 
-def _symmetries(family: Family, line: Line, group: Sequence[_Member]) -> list[_Symmetry]:
-    """How exchanges of unknowns and coordinates' signs that leave the equations alone on the line permute the group."""
+def _symmetries(family: Family, line: Line, group: Sequence[_Member], after: Fraction) -> list[_Symmetry]:
+    """How exchanges of unknowns, coordinates' signs and a reflection of all angles permute the group.
+
+    Those are meant that leave the equations alone everywhere on the line.
+    """
     if len(group) <= 2:
         return []
     equations = on_slice(*system_on(line)).equations
     with ctx.workprec(BITS):
         places = [coordinates_of(m.shifted, family.angles) for m in group]
-        found = []
-        for order, signs in _changes(family.angles, len(group[0].shifted)):
-            if not all(any(_proportional(_changed(e, order, signs), f) for f in equations) for e in equations):
+        mirror = mirror_of(equations, family.angles) if len(group[0].shifted) == family.angles else None
+        found = [] if mirror is None else _reflections(mirror, group, places, after)
+        for order, signs in changes(family.angles, len(group[0].shifted)):
+            if not all(any(proportional(changed(e, order, signs), f) for f in equations) for e in equations):
                 continue
             moved = [[s * place[k] for k, s in zip(order, signs, strict=True)] for place in places]
-            images = [
-                [
-                    k
-                    for k, (other, place) in enumerate(zip(group, places, strict=True))
-                    if other.ahead is m.ahead and all(a.overlaps(b) for a, b in zip(image, place, strict=True))
-                ]
-                for m, image in zip(group, moved, strict=True)
-            ]
-            if all(len(i) == 1 for i in images):
+            images = _images(group, places, moved)
+            if images is not None:
                 odd = frozenset(k for k, (i, sign) in enumerate(zip(order, signs, strict=True)) if i == k and sign < 0)
-                found.append(_Symmetry(tuple(i[0] for i in images), odd))
+                found.append(_Symmetry(images, odd))
     return found
 
 
-def _changes(angles: int, unknowns: int) -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
-    """For each coordinate which one comes to its place, and with which sign: of angles both coordinates together."""
-    width = angles + unknowns
-    if width > _MAX_SIGNS:
-        return
-    for first, last in product(permutations(range(angles)), permutations(range(2 * angles, width))):
-        order = (*(i for k in first for i in (2 * k, 2 * k + 1)), *last)
-        for signs in product((1, -1), repeat=width):
-            yield order, signs
+def _reflections(
+    mirror: Mirror, group: Sequence[_Member], places: Sequence[Sequence[arb]], after: Fraction
+) -> list[_Symmetry]:
+    """How the reflection of all angles at once, whose line may turn with the parameter, permutes the group."""
+    values = [m.solution.place.value for m in group]  # the first is the branch's own, on the near side
+    if mirror.angle(min(values[0], after), max(values[0], after)) is None:
+        return []
+    moved = []
+    for m, value in zip(group, values, strict=True):
+        line = mirror.angle(value, value)
+        if line is None:
+            return []
+        moved.append(coordinates_of(tuple(2 * line - t for t in m.shifted), len(m.shifted)))
+    images = _images(group, places, moved)
+    return [] if images is None else [_Symmetry(images, mirror=mirror)]
 
 
-def _changed(p: UnknownPolynomial, order: Sequence[int], signs: Sequence[int]) -> UnknownPolynomial:
-    """A polynomial at changed coordinates."""
-    result = {}
-    for monomial, coefficient in p.items():
-        odd = sum(e for e, s in zip(monomial, signs, strict=True) if s < 0) % 2
-        powers = [0] * len(order)
-        for k, e in zip(order, monomial, strict=True):
-            powers[k] = e
-        result[tuple(powers)] = -coefficient if odd else coefficient
-    return result
-
-
-def _proportional(first: UnknownPolynomial, second: UnknownPolynomial) -> bool:
-    """Whether two polynomials are the same up to a factor."""
-    if first.keys() != second.keys():
-        return False
-    some = next(iter(first))
-    return all(first[m] * second[some] == second[m] * first[some] for m in first)
+def _images(
+    group: Sequence[_Member], places: Sequence[Sequence[arb]], moved: Sequence[Sequence[arb]]
+) -> tuple[int, ...] | None:
+    """Which of the group is where each one is moved to; None where some are moved out of it, or it is not clear."""
+    images = [
+        [
+            k
+            for k, (other, place) in enumerate(zip(group, places, strict=True))
+            if other.ahead is m.ahead and all(a.overlaps(b) for a, b in zip(image, place, strict=True))
+        ]
+        for m, image in zip(group, moved, strict=True)
+    ]
+    return tuple(i[0] for i in images) if all(len(i) == 1 for i in images) else None
 
 
 def _own_classes(group: Sequence[_Member], symmetries: Sequence[Sequence[int]]) -> set[frozenset[int]]:

@@ -26,18 +26,17 @@ from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
 from ptmcad.exact.models import system_from
 from ptmcad.exact.poses import exact_poses
+from ptmcad.exact.ranges.equations import Family, value_of
 from ptmcad.exact.ranges.landing import DIGITS, beside, landing
 from ptmcad.exact.ranges.line import critical_values
+from ptmcad.exact.ranges.matrices import Vector
 from ptmcad.exact.ranges.meeting import parameters_at, value_at, what_meets
 from ptmcad.exact.ranges.tracking import (
     BITS,
-    Family,
     Reached,
-    Vector,
     at_value,
     bridge,
     follow,
-    value_of,
 )
 from ptmcad.mechanism import Mechanism
 from ptmcad.mechanism.evaluate import evaluate

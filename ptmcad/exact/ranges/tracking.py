@@ -9,152 +9,33 @@ Reference: Krawczyk, Computing 4 (1969); Neumaier, Interval Methods for Systems 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import NamedTuple
 
-from flint import arb, arb_mat, ctx, fmpq
+from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
-from ptmcad.algebra.trigonometric import TrigonometricPolynomial
-from ptmcad.exact.models.system import ParametricSystem, Terms, terms_of
-from ptmcad.mechanism import Model
-from ptmcad.text.expressions import Expression, Term
+from ptmcad.exact.ranges.equations import Family, Instance
+from ptmcad.exact.ranges.matrices import (
+    Matrix,
+    Vector,
+    added,
+    from_identity,
+    inverse_of,
+    plus,
+    product,
+    scaled,
+    scaled_rows,
+    times,
+)
 
-Vector = tuple[arb, ...]
-"""One ball for each unknown: the angles, then those on the line."""
-Matrix = tuple[Vector, ...]
 BITS = 160
 _MIN_STEP = Fraction(1, 2**60)
 """Steps shorter than this, against the distance to be gone, are not tried."""
 _MAX_STEPS = 3000
 """Where a branch comes ever nearer to others, steps shrink with the distance and their number has no bound."""
-
-
-@dataclass(frozen=True, slots=True)
-class Family:
-    """A model on a line: its system, and its parameters as expressions in one unknown, the first axis."""
-
-    model: Model
-    system: ParametricSystem
-    parameters: Mapping[str, Expression]
-
-    @property
-    def angles(self) -> int:
-        """How many of the unknowns are on the circle: the first ones."""
-        return len(self.system.ring.angles)
-
-    def at(self, low: Fraction, high: Fraction) -> Instance:
-        """The equations for all parameters from low to high, with their derivatives by the parameter."""
-        value = arb(from_fraction(low)).union(arb(from_fraction(high)))
-        numbers = [_dual(self.parameters[name], value) for name in self.system.ring.parameters]
-        equations = [_specialised(g, numbers) for g in self.system.equation_terms]
-        return Instance(
-            self.angles,
-            tuple(terms for terms, _ in equations),
-            tuple(terms for _, terms in equations),
-            tuple(tuple(_specialised(h, numbers)[0] for h in row) for row in self.system.jacobian_terms),
-        )
-
-    def conditions(self, low: Fraction, high: Fraction, point: Vector) -> Vector:
-        """The left sides of the inequalities for all parameters from low to high, at balls of the unknowns."""
-        value = arb(from_fraction(low)).union(arb(from_fraction(high)))
-        numbers = [_dual(self.parameters[name], value) for name in self.system.ring.parameters]
-        coordinates = coordinates_of(point, self.angles)
-        terms = (terms_of(self.system.ring, p) for p in self.system.inequalities)
-        return tuple(_evaluated(_specialised(t, numbers)[0], coordinates) for t in terms)
-
-    def slope(self, p: TrigonometricPolynomial, low: Fraction, high: Fraction) -> arb:
-        """The derivative of an element of the system's ring by the parameter, from low to high and at all angles.
-
-        The ring has no unknowns on the line.
-        """
-        value = arb(from_fraction(low)).union(arb(from_fraction(high)))
-        numbers = [_dual(self.parameters[name], value) for name in self.system.ring.parameters]
-        return _evaluated(_specialised(terms_of(self.system.ring, p), numbers)[1], [arb(0, 1)] * (2 * self.angles))
-
-
-Dual = tuple[arb, arb]
-"""A value and its derivative by the parameter."""
-Specialised = tuple[tuple[tuple[int, ...], arb], ...]
-
-
-def _dual(expression: Expression, x: arb) -> Dual:
-    def of(terms: tuple[Term, ...]) -> Dual:
-        value, slope = arb(0), arb(0)
-        for i, _, c in terms:
-            power, derivative = arb(1), arb(0)
-            for k in range(i):
-                derivative, power = power * (k + 1), power * x
-            factor = arb(from_fraction(c))
-            value, slope = value + factor * power, slope + factor * derivative
-        return value, slope
-
-    (a, da), (b, db) = of(expression.numerator), of(expression.denominator)
-    return a / b, (da * b - a * db) / (b * b)
-
-
-def value_of(expression: Expression, x: arb) -> arb:
-    """An expression in the first axis at a ball."""
-    return _dual(expression, x)[0]
-
-
-def _specialised(terms: Terms, numbers: list[Dual]) -> tuple[Specialised, Specialised]:
-    """The polynomial in the unknowns, and its derivative by the parameter."""
-    values, slopes = [], []
-    for monomial, part in terms:
-        total, rise = arb(0), arb(0)
-        for powers, coefficient in part:
-            term, slope = arb(coefficient), arb(0)
-            for k, e in powers:
-                value, derivative = numbers[k]
-                for _ in range(e):
-                    term, slope = term * value, slope * value + term * derivative
-            total, rise = total + term, rise + slope
-        values.append((monomial, total))
-        if rise != 0:
-            slopes.append((monomial, rise))
-    return tuple(values), tuple(slopes)
-
-
-@dataclass(frozen=True, slots=True)
-class Instance:
-    """Equations and Jacobian with balls for the parameters, to be evaluated at balls of the unknowns."""
-
-    angles: int
-    equation_terms: tuple[Specialised, ...]
-    slope_terms: tuple[Specialised, ...]
-    jacobian_terms: tuple[tuple[Specialised, ...], ...]
-
-    def equations(self, point: Vector) -> Vector:
-        coordinates = coordinates_of(point, self.angles)
-        return tuple(_evaluated(g, coordinates) for g in self.equation_terms)
-
-    def slope(self, point: Vector) -> Vector:
-        """The derivative of the equations by the parameter."""
-        coordinates = coordinates_of(point, self.angles)
-        return tuple(_evaluated(g, coordinates) for g in self.slope_terms)
-
-    def jacobian(self, point: Vector) -> Matrix:
-        coordinates = coordinates_of(point, self.angles)
-        return tuple(tuple(_evaluated(h, coordinates) for h in row) for row in self.jacobian_terms)
-
-
-def coordinates_of(point: Vector, angles: int) -> list[arb]:
-    """Cosine and sine of each angle, then the unknowns on the line."""
-    return [*(f(a) for a in point[:angles] for f in (arb.cos, arb.sin)), *point[angles:]]
-
-
-def _evaluated(terms: Specialised, unknowns: list[arb]) -> arb:
-    total = arb(0)
-    for monomial, coefficient in terms:
-        term = coefficient
-        for value, e in zip(unknowns, monomial, strict=True):
-            for _ in range(e):
-                term = term * value
-        total += term
-    return total
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,32 +83,74 @@ def enclose(family: Family, low: Fraction, high: Fraction, guess: Vector) -> Tub
     -----
     With the tube's center c(x) and w the distance from it, Krawczyk's operator is applied to g(x, w) = f(c(x) + w, x)
     for all x at once; g(x, 0) comes from the mean value theorem in x, multiplied by the approximate inverse first.
+    Where that fails the Jacobian comes from the mean value theorem too. Near a place where branches merge, at a
+    distance d, it is nearly singular: as balls of a step h make it, it would be off by h, and steps could be no longer
+    than its determinant, which is d^(3/2) times a constant at a pitchfork, d^2 where branches cross. Its derivative
+    along the branch is known far better, so that steps are in proportion to d.
     """
     with ctx.workprec(BITS):
-        middle = family.at((low + high) / 2, (low + high) / 2)
-        center = polish(middle, guess)
-        inverse = _inverse(middle.jacobian(center))
+        at = _Range(family.at((low + high) / 2, (low + high) / 2), family.at(low, high), (high - low) / 2)
+        center = polish(at.middle, guess)
+        inverse = inverse_of(at.middle.jacobian(center))
         if inverse is None:
             return None
-        velocity = tuple((-fall).mid() for fall in _times(inverse, middle.slope(center)))
-        unit, radius = arb(0, 1), arb(from_fraction((high - low) / 2))
-        along = family.at(low, high)
-        swept = tuple(c + v * radius * unit for c, v in zip(center, velocity, strict=True))
-        start = _times(inverse, middle.equations(center))
-        drift = _sum(_times(inverse, along.slope(swept)), _times(_product(inverse, along.jacobian(swept)), velocity))
-        move = tuple(s + d * radius * unit for s, d in zip(start, drift, strict=True))
-        least = _least(center, family.angles)
-        reach = [2 * abs(m).upper() + e for m, e in zip(move, least, strict=True)]
-        for _ in range(8):
-            spread = tuple(r * unit for r in reach)
-            slopes = _product(inverse, along.jacobian(_sum(swept, spread)))
-            image = _sum(tuple(-m for m in move), _times(_from_identity(slopes), spread))
-            if all(abs(k) < r for k, r in zip(image, reach, strict=True)):
-                return Tube(low, high, center, velocity, spread, image)
-            reach = [(abs(k).upper() * 3 / 2 + e).upper() for k, e in zip(image, least, strict=True)]
-            if not all(r < 2 for r in reach[: family.angles]) or not all(r.is_finite() for r in reach):
-                return None
+        velocity = tuple((-fall).mid() for fall in times(inverse, at.middle.slope(center)))
+        for centered in (False, True) if low < high else (False,):
+            found = _krawczyk(family.angles, at, center, inverse, velocity, centered)
+            if found is not None:
+                return Tube(low, high, center, velocity, *found)
         return None
+
+
+class _Range(NamedTuple):
+    """The equations at the middle of a range of the parameter and in the whole of it, and half its length."""
+
+    middle: Instance
+    along: Instance
+    half: Fraction
+
+
+def _krawczyk(
+    angles: int, at: _Range, center: Vector, inverse: Matrix, velocity: Vector, centered: bool
+) -> tuple[Vector, Vector] | None:
+    """Boxes around a moving center: one that holds a single solution at each value, and one in which it lies."""
+    unit = arb(0, 1)
+    ahead = arb(from_fraction(at.half)) * unit
+    swept = plus(center, scaled(velocity, ahead))
+    start = times(inverse, at.middle.equations(center))
+    if centered:
+        here = plus(at.middle.slope(center), times(at.middle.jacobian(center), velocity))
+        drift = plus(times(inverse, here), scaled(times(inverse, at.along.bend(swept, velocity)), ahead))
+        known = product(inverse, at.middle.jacobian(center))
+    else:
+        drift = plus(times(inverse, at.along.slope(swept)), times(product(inverse, at.along.jacobian(swept)), velocity))
+    move = plus(start, scaled(drift, ahead))
+    least = _least(center, angles)
+    reach = [2 * abs(m).upper() + e for m, e in zip(move, least, strict=True)]
+    for _ in range(8):
+        spread = tuple(r * unit for r in reach)
+        whole = plus(swept, spread)
+        if centered:
+            slopes = _changed(known, inverse, at.along.jacobian_slopes(whole), velocity, ahead, spread)
+        else:
+            slopes = product(inverse, at.along.jacobian(whole))
+        image = plus(tuple(-m for m in move), times(from_identity(slopes), spread))
+        if all(abs(k) < r for k, r in zip(image, reach, strict=True)):
+            return spread, image
+        reach = [(abs(k).upper() * 3 / 2 + e).upper() for k, e in zip(image, least, strict=True)]
+        if not all(r < 2 for r in reach[:angles]) or not all(r.is_finite() for r in reach):
+            return None
+    return None
+
+
+def _changed(
+    known: Matrix, inverse: Matrix, slopes: tuple[Matrix, ...], velocity: Vector, ahead: arb, spread: Vector
+) -> Matrix:
+    """The Jacobian times the inverse, from that at the center and the Jacobian's derivatives in the whole box."""
+    first, *by = (product(inverse, d) for d in slopes)
+    along = [first, *(scaled_rows(d, v) for d, v in zip(by, velocity, strict=True))]
+    parts = [scaled_rows(added(along), ahead), *(scaled_rows(d, w) for d, w in zip(by, spread, strict=True))]
+    return added([known, *parts])
 
 
 def _least(center: Vector, angles: int) -> list[arb]:
@@ -236,43 +159,14 @@ def _least(center: Vector, angles: int) -> list[arb]:
     return [least if k < angles else (least * (1 + abs(c))).upper() for k, c in enumerate(center)]
 
 
-def _inverse(matrix: Matrix) -> Matrix | None:
-    """An approximate inverse with exact entries."""
-    size = len(matrix)
-    try:
-        found = arb_mat(size, size, [x.mid() for row in matrix for x in row]).inv()
-    except ZeroDivisionError:
-        return None
-    inverse = tuple(tuple(found[i, j].mid() for j in range(size)) for i in range(size))
-    return inverse if all(x.is_finite() for row in inverse for x in row) else None
-
-
-def _times(matrix: Matrix, vector: Vector) -> Vector:
-    return tuple(sum((a * b for a, b in zip(row, vector, strict=True)), arb(0)) for row in matrix)
-
-
-def _product(first: Matrix, second: Matrix) -> Matrix:
-    columns = [_times(first, column) for column in zip(*second, strict=True)]
-    return tuple(zip(*columns, strict=True))
-
-
-def _from_identity(matrix: Matrix) -> Matrix:
-    """The identity minus a matrix."""
-    return tuple(tuple(int(i == j) - x for j, x in enumerate(row)) for i, row in enumerate(matrix))
-
-
-def _sum(first: Vector, second: Vector) -> Vector:
-    return tuple(a + b for a, b in zip(first, second, strict=True))
-
-
 def polish(at: Instance, guess: Vector) -> Vector:
     """A few steps of Newton's method, without guarantee."""
     point = tuple(x.mid() for x in guess)
     for _ in range(5):
-        inverse = _inverse(at.jacobian(point))
+        inverse = inverse_of(at.jacobian(point))
         if inverse is None:
             break
-        move = _times(inverse, at.equations(point))
+        move = times(inverse, at.equations(point))
         if not all(abs(m) < 1 for m in move[: at.angles]):
             break
         point = tuple((x - m).mid() for x, m in zip(point, move, strict=True))

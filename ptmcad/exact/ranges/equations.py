@@ -1,0 +1,176 @@
+"""A system on a line of parameters, in balls: its equations with their derivatives of first and second order."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from flint import arb
+
+from ptmcad.algebra.polynomials import from_fraction
+from ptmcad.algebra.trigonometric import TrigonometricPolynomial
+from ptmcad.exact.models.system import ParametricSystem, Terms, terms_of
+from ptmcad.exact.ranges.matrices import Matrix, Vector, plus, scaled, times
+from ptmcad.mechanism import Model
+from ptmcad.text.expressions import Expression, Term
+
+
+@dataclass(frozen=True, slots=True)
+class Family:
+    """A model on a line: its system, and its parameters as expressions in one unknown, the first axis."""
+
+    model: Model
+    system: ParametricSystem
+    parameters: Mapping[str, Expression]
+
+    @property
+    def angles(self) -> int:
+        """How many of the unknowns are on the circle: the first ones."""
+        return len(self.system.ring.angles)
+
+    def at(self, low: Fraction, high: Fraction) -> Instance:
+        """The equations for all parameters from low to high, with their derivatives by the parameter."""
+        value = arb(from_fraction(low)).union(arb(from_fraction(high)))
+        numbers = [_jet(self.parameters[name], value) for name in self.system.ring.parameters]
+        equations = [_specialised(g, numbers) for g in self.system.equation_terms]
+        jacobian = [[_specialised(h, numbers) for h in row] for row in self.system.jacobian_terms]
+        return Instance(
+            self.angles,
+            tuple(terms for terms, _, _ in equations),
+            tuple(terms for _, terms, _ in equations),
+            tuple(terms for _, _, terms in equations),
+            tuple(tuple(terms for terms, _, _ in row) for row in jacobian),
+            tuple(tuple(terms for _, terms, _ in row) for row in jacobian),
+        )
+
+    def conditions(self, low: Fraction, high: Fraction, point: Vector) -> Vector:
+        """The left sides of the inequalities for all parameters from low to high, at balls of the unknowns."""
+        value = arb(from_fraction(low)).union(arb(from_fraction(high)))
+        numbers = [_jet(self.parameters[name], value) for name in self.system.ring.parameters]
+        coordinates = coordinates_of(point, self.angles)
+        terms = (terms_of(self.system.ring, p) for p in self.system.inequalities)
+        return tuple(_evaluated(_specialised(t, numbers)[0], coordinates) for t in terms)
+
+    def slope(self, p: TrigonometricPolynomial, low: Fraction, high: Fraction) -> arb:
+        """The derivative of an element of the system's ring by the parameter, from low to high and at all angles.
+
+        The ring has no unknowns on the line.
+        """
+        value = arb(from_fraction(low)).union(arb(from_fraction(high)))
+        numbers = [_jet(self.parameters[name], value) for name in self.system.ring.parameters]
+        return _evaluated(_specialised(terms_of(self.system.ring, p), numbers)[1], [arb(0, 1)] * (2 * self.angles))
+
+
+Jet = tuple[arb, arb, arb]
+"""A value and its first and second derivative by the parameter."""
+Specialised = tuple[tuple[tuple[int, ...], arb], ...]
+
+
+def _jet(expression: Expression, x: arb) -> Jet:
+    def of(terms: tuple[Term, ...]) -> Jet:
+        total = (arb(0), arb(0), arb(0))
+        for i, _, c in terms:
+            power = (arb(from_fraction(c)), arb(0), arb(0))
+            for _ in range(i):
+                power = _times_jet(power, (x, arb(1), arb(0)))
+            total = (total[0] + power[0], total[1] + power[1], total[2] + power[2])
+        return total
+
+    top, (b, db, ddb) = of(expression.numerator), of(expression.denominator)
+    value = top[0] / b
+    slope = (top[1] - value * db) / b
+    return value, slope, (top[2] - 2 * slope * db - value * ddb) / b
+
+
+def _times_jet(first: Jet, second: Jet) -> Jet:
+    (a, da, dda), (b, db, ddb) = first, second
+    return a * b, da * b + a * db, dda * b + 2 * da * db + a * ddb
+
+
+def value_of(expression: Expression, x: arb) -> arb:
+    """An expression in the first axis at a ball."""
+    return _jet(expression, x)[0]
+
+
+def _specialised(terms: Terms, numbers: list[Jet]) -> tuple[Specialised, Specialised, Specialised]:
+    """The polynomial in the unknowns, and its first and second derivative by the parameter."""
+    found: tuple[list[tuple[tuple[int, ...], arb]], ...] = ([], [], [])
+    for monomial, part in terms:
+        total = (arb(0), arb(0), arb(0))
+        for powers, coefficient in part:
+            term = (arb(coefficient), arb(0), arb(0))
+            for k, e in powers:
+                for _ in range(e):
+                    term = _times_jet(term, numbers[k])
+            total = (total[0] + term[0], total[1] + term[1], total[2] + term[2])
+        for order, (values, x) in enumerate(zip(found, total, strict=True)):
+            if order == 0 or x != 0:
+                values.append((monomial, x))
+    return tuple(found[0]), tuple(found[1]), tuple(found[2])
+
+
+@dataclass(frozen=True, slots=True)
+class Instance:
+    """Equations and Jacobian with balls for the parameters, to be evaluated at balls of the unknowns."""
+
+    angles: int
+    equation_terms: tuple[Specialised, ...]
+    slope_terms: tuple[Specialised, ...]
+    curvature_terms: tuple[Specialised, ...]
+    jacobian_terms: tuple[tuple[Specialised, ...], ...]
+    jacobian_slope_terms: tuple[tuple[Specialised, ...], ...]
+
+    def equations(self, point: Vector) -> Vector:
+        coordinates = coordinates_of(point, self.angles)
+        return tuple(_evaluated(g, coordinates) for g in self.equation_terms)
+
+    def slope(self, point: Vector) -> Vector:
+        """The derivative of the equations by the parameter."""
+        coordinates = coordinates_of(point, self.angles)
+        return tuple(_evaluated(g, coordinates) for g in self.slope_terms)
+
+    def jacobian(self, point: Vector) -> Matrix:
+        coordinates = coordinates_of(point, self.angles)
+        return tuple(tuple(_evaluated(h, coordinates) for h in row) for row in self.jacobian_terms)
+
+    def jacobian_slopes(self, point: Vector) -> tuple[Matrix, ...]:
+        """The Jacobian's derivative by the parameter, then that by each unknown."""
+        coordinates = coordinates_of(point, self.angles)
+        first = tuple(tuple(_evaluated(h, coordinates) for h in row) for row in self.jacobian_slope_terms)
+        entries = [[_gradient(h, coordinates, self.angles) for h in row] for row in self.jacobian_terms]
+        return first, *(tuple(tuple(e[k] for e in row) for row in entries) for k in range(len(point)))
+
+    def bend(self, point: Vector, velocity: Vector) -> Vector:
+        """The second derivative of the equations by the parameter along a straight line of unknowns."""
+        coordinates = coordinates_of(point, self.angles)
+        own = tuple(_evaluated(g, coordinates) for g in self.curvature_terms)
+        mixed, *by = self.jacobian_slopes(point)
+        turned = (scaled(times(d, velocity), v) for d, v in zip(by, velocity, strict=True))
+        return plus(plus(own, scaled(times(mixed, velocity), arb(2))), *turned)
+
+
+def coordinates_of(point: Vector, angles: int) -> list[arb]:
+    """Cosine and sine of each angle, then the unknowns on the line."""
+    return [*(f(a) for a in point[:angles] for f in (arb.cos, arb.sin)), *point[angles:]]
+
+
+def _evaluated(terms: Specialised, unknowns: list[arb]) -> arb:
+    total = arb(0)
+    for monomial, coefficient in terms:
+        term = coefficient
+        for value, e in zip(unknowns, monomial, strict=True):
+            for _ in range(e):
+                term = term * value
+        total += term
+    return total
+
+
+def _gradient(terms: Specialised, coordinates: list[arb], angles: int) -> Vector:
+    """The derivative of a polynomial by each unknown."""
+    by = []
+    for k in range(len(coordinates)):
+        lowered = ((m, c * m[k]) for m, c in terms if m[k])
+        by.append(_evaluated(tuple(((*m[:k], m[k] - 1, *m[k + 1 :]), c) for m, c in lowered), coordinates))
+    turned = (coordinates[k] * by[k + 1] - coordinates[k + 1] * by[k] for k in range(0, 2 * angles, 2))
+    return (*turned, *by[2 * angles :])
