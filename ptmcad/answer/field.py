@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    Flags = NDArray[np.bool_]  # a name of its own: a page's markup takes the underscore at its end for a link
+
 
 @with_methods
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,7 +54,7 @@ class Field:
     checked: int
     difference: float
     beyond: int = 0
-    jumps: tuple[NDArray[np.bool_], NDArray[np.bool_]] | None = None
+    jumps: tuple[Flags, Flags] | None = None
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
