@@ -7,8 +7,8 @@ record's folder, or in folders below, are read.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
 from ptmcad.mechanism import (
@@ -32,8 +32,7 @@ _EXPRESSIONS = ("equations", "potential", "positive", "stable")
 """The keys of a system that hold them."""
 
 
-@dataclass(frozen=True, slots=True)
-class Described:
+class Described(NamedTuple):
     """A model and where each part of its description stands.
 
     Attributes
