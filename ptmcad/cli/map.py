@@ -121,6 +121,11 @@ def command(
             written = write_files(out, _writers(result, field, names, Figure(contours, style, dpi)))
     for path in written:
         click.echo(shown_path(path))
+    _tell(field)
+
+
+def _tell(field: Field) -> None:
+    """Say what was found, and what is not to be trusted."""
     click.echo(_summary(field))
     if field.beyond:
         many = f"{field.beyond} pixels are" if field.beyond > 1 else "1 pixel is"
@@ -148,9 +153,12 @@ def _writers(result: Any, field: Field, names: tuple[str, ...], figure: Figure) 
         from ptmcad.show.render.backend import load_matplotlib
 
         load_matplotlib()
-        from ptmcad.show.render.field import draw_field
+        from ptmcad.show.render.field import field_figure
+        from ptmcad.show.render.printing import save, settings
 
-        draw_field(result, field, boundaries(), path, contours=figure.contours, dpi=figure.dpi, style=figure.style)
+        with settings(figure.style):
+            drawn = field_figure(result, field, boundaries(), figure.contours, figure.dpi, figure.style)
+        save(drawn, path, dpi=figure.dpi, style=figure.style)
 
     def tabulate(path: Path) -> None:
         from ptmcad.show.data import field_csv, field_npz

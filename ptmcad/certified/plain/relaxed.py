@@ -8,8 +8,8 @@ of R plus multiples of the |d_s| - l0_s and of the sines. If these equations, wi
 those of springs that follow from others', are as many as the unknowns, interval Newton can prove that they have a zero
 in a box; if the box holds one equilibrium only, that is the zero. An equation |d_s|^2 = l0_s^2 follows from others
 where the polynomial, reduced by cos^2 + sin^2 = 1, is a linear combination of theirs, such as that of the other half of
-a symmetric truss. Unknowns that a mirror symmetry of the energy fixes have their values, and their slopes
-vanish: then there are fewer equations in fewer unknowns.
+a symmetric truss. Unknowns that a mirror symmetry of the energy fixes have their values, and their slopes vanish
+whatever the others are: then there are fewer equations in fewer unknowns.
 
 Balls alone would never tell such a force from its neighbours. The lemma is that of interval Newton as in
 `ptmcad.certified.arb_isolation`.
@@ -17,7 +17,7 @@ Balls alone would never tell such a force from its neighbours. The lemma is that
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple
@@ -26,7 +26,7 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.certified.arb_evaluation import run_arb
 from ptmcad.certified.arb_isolation import Box, newton
-from ptmcad.certified.formula import Graph
+from ptmcad.certified.formula import Formula, Graph
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.plain.symmetric import fixed_place, partly_valued, point_of
 from ptmcad.certified.potential import potential
@@ -94,33 +94,52 @@ def relaxed_numbers(
     equations += [deflections[n][1] for n in relaxed.torsion]
     if not loose or len(equations) != len(loose):
         return {}
+    around = _around(mechanism, turns, boxes, precision)
+    if around is None:
+        return {}
+    step = newton(system(equations, loose), around, precision)
+    cosines = _cosines(relaxed, deflections, boxes[1], precision)
+    if step is None or not step[1] or cosines is None:
+        return {}
+    found = {f"length {n}": value for n, value in free.items()} | {f"force {n}": Fraction(0) for n in free}
+    for n, cosine in cosines.items():
+        found |= {f"torsion cos {n}": cosine, f"torsion sin {n}": Fraction(0), f"torsion moment {n}": Fraction(0)}
+    if rest.energy.value is not None:
+        wound = (value_at(mechanism.torsion[n].stiffness, parameters) * (1 - c) for n, c in cosines.items())
+        found["energy"] = rest.energy.value + sum(wound)
+    return {name: Enclosure(value, value) for name, value in found.items()}
+
+
+def _cosines(
+    relaxed: Relaxed, deflections: Sequence[tuple[Formula, Formula]], place: Box, precision: int
+) -> dict[int, Fraction] | None:
+    """Of the torsion springs' deflections whose sines are zero, by numbers: 1 at rest, -1 half a turn from it.
+
+    None where a ball does not tell.
+    """
+    if not relaxed.torsion:
+        return {}
+    tape = record([[deflections[n][0] for n in relaxed.torsion]])
+    balls = run_arb(tape, place, precision)
+    found = [balls[int(output)] for output in tape.outputs[0]]
+    if any(ball.contains(0) for ball in found):
+        return None
+    return {n: Fraction(1 if ball > 0 else -1) for n, ball in zip(relaxed.torsion, found, strict=True)}
+
+
+def _around(mechanism: Mechanism, turns: Mapping[str, int], boxes: tuple[Box, Box], precision: int) -> Box | None:
+    """The box for Newton's method, with fixed unknowns at their values; None where it leaves the wider one."""
     whole, narrow = boxes
     with ctx.workprec(precision):
         around = list(narrow)
-        for name, v in unknowns.items():
-            k = v.variable
-            if name not in turns:
-                around[k] = arb(narrow[k].mid(), arb(fmpq(1, 2 ** (precision // 2))))
-            else:
+        for k, name in enumerate(mechanism.unknowns, FIRST):
+            if name in turns:
                 around[k] = fixed_place(mechanism, name, narrow[k])
+            else:
+                around[k] = arb(narrow[k].mid(), arb(fmpq(1, 2 ** (precision // 2))))
             if not whole[k].contains(around[k]):
-                return {}
-    step = newton(system(equations, loose), tuple(around), precision)
-    if step is None or not step[1]:
-        return {}
-    found = {f"length {n}": value for n, value in free.items()} | {f"force {n}": Fraction(0) for n in free}
-    energy = rest.energy.value
-    if relaxed.torsion:
-        tape = record([[deflections[n][0] for n in relaxed.torsion]])
-        cosines = run_arb(tape, narrow, precision)
-        for n, place in zip(relaxed.torsion, tape.outputs[0], strict=True):
-            cosine = Fraction(1 if cosines[int(place)] > 0 else -1)
-            found |= {f"torsion cos {n}": cosine, f"torsion sin {n}": Fraction(0), f"torsion moment {n}": Fraction(0)}
-            if energy is not None:
-                energy += value_at(mechanism.torsion[n].stiffness, parameters) * (1 - cosine)
-    if energy is not None:
-        found["energy"] = energy
-    return {name: Enclosure(value, value) for name, value in found.items()}
+                return None
+    return tuple(around)
 
 
 def _independent(

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -30,7 +29,6 @@ from ptmcad.show.render.colours import Fill
 from ptmcad.show.render.fieldlines import branch_edges, contour_lines
 from ptmcad.show.render.fitting import LEAST
 from ptmcad.show.render.legend import INK, STRONG, SWATCH, THIN, Entry, Type, draw_legend, in_rows
-from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.textwidth import ALLOWANCE, text_width, wrapped
 from ptmcad.show.render.view import Floats, View
 from ptmcad.show.style import DEFAULT, MIN_FONT, Place, Style
@@ -43,28 +41,6 @@ COLOURS, GREYS = "viridis", ("#000000", "#d4d4d4")
 _LINES: dict[str, Any] = {"colors": "white", "linewidths": 0.6, "alpha": 0.85}
 _EMPTY = "#ffffff"
 _WORDS = ("energy", "stiffness", "barrier")
-
-
-def draw_field(
-    result: RegionMap, field: Field, boundaries: Sequence[Boundary], path: Path, *, contours: int = 8, dpi: int = 150,
-    style: Style = DEFAULT,
-) -> None:  # fmt: skip
-    """Write the picture of a field over its map, as `ptmcad.show.render.printing.save` does.
-
-    Parameters
-    ----------
-    boundaries : of the map.
-    contours : about so many contour lines; none for 0.
-    style : what it looks like; a legend stands below.
-
-    Raises
-    ------
-    ConfigError
-        When it does not fit into the style's size.
-    """
-    with settings(style):
-        figure = field_figure(result, field, boundaries, contours, dpi, style)
-    save(figure, path, dpi=dpi, style=style)
 
 
 def title_of(result: RegionMap, field: Field) -> str:
