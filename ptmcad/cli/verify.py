@@ -20,7 +20,7 @@ from ptmcad.options import Options
 from ptmcad.question.config import member_like
 
 if TYPE_CHECKING:
-    from ptmcad.verification.report import VerifyReport
+    from ptmcad.verification.report import Check, VerifyReport
 
 
 @click.command("verify")
@@ -54,29 +54,34 @@ def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits
         if is_family(result):
             family = read_family_file(result, whole=False)
             status = int(max(each_member(family, lambda member: _verified(member, seed, boxes))))
-            return max(status, _verified_changes(family, seed))
+            return max(status, _verified_family(family, seed))
         return _verified(read_result(result, whole=False), seed, boxes)
 
 
-def _verified_changes(family: FamilyMap, seed: int | None) -> int:
-    """The exit status for where a family changes; 0 where nothing is said of that."""
-    if family.changes is None:
-        return 0
+def _verified_family(family: FamilyMap, seed: int | None) -> int:
+    """The exit status for what a family's members have in common, and where their arrangement changes."""
     from ptmcad.ask.classification import region_map
-    from ptmcad.verification.changes import Maps, verify_changes
-    from ptmcad.verification.report import VerifyReport
+    from ptmcad.verification import VerifyReport, verify_changes, verify_surfaces
 
     over_the_first = Options(engine="exact", areas=False, without=frozenset(("axis-order",)))
 
-    def maps_at(value: Fraction) -> Maps:
-        slices = (member_like(family.members[0].slice, family.text, family.free.name, value, turned)
-                  for turned in (False, True))  # fmt: skip
-        first, second = (region_map(slice, over_the_first) for slice in slices)
-        return first, second
+    def map_at(value: Fraction, turned: bool = False) -> RegionMap:
+        slice = member_like(family.members[0].slice, family.text, family.free.name, value, turned)
+        return region_map(slice, over_the_first)
 
-    report = VerifyReport(verify_changes(family.changes, maps_at, seed))
-    click.echo(f"where {family.free.name} changes the arrangement")
-    return _told(report)
+    def maps_at(value: Fraction) -> tuple[RegionMap, RegionMap]:
+        return map_at(value), map_at(value, True)
+
+    checks: list[Check] = []
+    if (surfaces := verify_surfaces(family, map_at, seed)) is not None:
+        checks.append(surfaces)
+    if family.changes is not None and all(c.passed is not False for c in checks):
+        with ProgressBar() as progress:
+            checks += verify_changes(family.changes, maps_at, seed, progress)
+    if not checks:
+        return 0
+    click.echo(f"what the members have in common over {family.free.name}")
+    return _told(VerifyReport(tuple(checks)))
 
 
 def _verified(stored: RegionMap, seed: int | None, boxes: int | None) -> int:

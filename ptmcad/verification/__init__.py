@@ -6,8 +6,10 @@ that. Common to both are FLINT, and the result's own data classes.
 
 from __future__ import annotations
 
+from ptmcad.verification.changes import verify_changes
 from ptmcad.verification.checks import verify
 from ptmcad.verification.designs import verify_design
 from ptmcad.verification.report import Check, VerifyReport
+from ptmcad.verification.surfaces import verify_surfaces
 
-__all__ = ["Check", "VerifyReport", "verify", "verify_design"]
+__all__ = ["Check", "VerifyReport", "verify", "verify_changes", "verify_design", "verify_surfaces"]

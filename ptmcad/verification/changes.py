@@ -24,17 +24,18 @@ from ptmcad.answer.changes import Changes
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Merge, RegionMap
 from ptmcad.errors import HypothesisError, shown
+from ptmcad.options import Progress
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.report import Check, Unchecked, Violation
-from ptmcad.verification.sturm import roots_between
+from ptmcad.verification.sturm import roots_within
 
 NEAR = Fraction(1, 10**6)
-"""Of the range: how far from a change, on both sides, members are classified."""
+"""Of the range: how far from a change at most, on both sides, members are classified."""
 RANDOM = 2
 """Members at random values between two changes."""
-_DIGITS = 10**6
-"""Random values are such shares of an interval."""
+_DIGITS = 10**3
+"""Random values lie about such shares of an interval."""
 
 Maps = tuple[RegionMap, RegionMap]
 MapsAt = Callable[[Fraction], Maps]
@@ -42,18 +43,21 @@ MapsAt = Callable[[Fraction], Maps]
 has none."""
 
 
-def verify_changes(found: Changes, maps_at: MapsAt, seed: int | None = None) -> tuple[Check, ...]:
+def verify_changes(
+    found: Changes, maps_at: MapsAt, seed: int | None = None, progress: Progress | None = None
+) -> tuple[Check, ...]:
     """Check where a family changes.
 
     Parameters
     ----------
     maps_at : classifies a member, without what the members have in common.
     seed : of the random values; drawn from a hash of the claims when None.
+    progress : called as ``progress("changes", done, total)`` before each member; may raise to stop.
     """
     method = "members alone, over either axis"
     source = random.Random(_fingerprint(found) if seed is None else str(seed))
     try:
-        detail: str = _checked(found, _Members(found, maps_at), source)
+        detail: str = _checked(found, _Members(found, maps_at, progress), source)
         passed = None if isinstance(detail, Unchecked) else True
     except Violation as violation:
         return (Check("changes", method, False, shown(str(violation))),)
@@ -64,11 +68,15 @@ def verify_changes(found: Changes, maps_at: MapsAt, seed: int | None = None) -> 
 class _Members:
     """Members compared with what is listed."""
 
-    def __init__(self, found: Changes, maps_at: MapsAt) -> None:
-        self.found, self.maps_at = found, maps_at
+    def __init__(self, found: Changes, maps_at: MapsAt, progress: Progress | None) -> None:
+        self.found, self.maps_at, self.progress = found, maps_at, progress
+        self.done, self.total = 0, 2 * len(found.changes) + (1 + RANDOM) * len(found.between)
 
     def fits(self, value: Fraction, part: int) -> bool:
         """Whether the member at a value has the arrangement of a part between changes."""
+        if self.progress is not None:
+            self.progress("changes", self.done, self.total)
+        self.done += 1
         listed = self.found.arrangements[part]
         return all(_is_seen(listed, result, side) for side, result in enumerate(self.maps_at(value)))
 
@@ -100,7 +108,7 @@ def _checked(found: Changes, members: _Members, source: random.Random) -> str:
     skipped = 0
     for part, ends in enumerate(_parts(found)):
         for _ in range(RANDOM):
-            drawn = ends[0] + (ends[1] - ends[0]) * Fraction(source.randrange(1, _DIGITS), _DIGITS)
+            drawn = _short(*(ends[0] + (ends[1] - ends[0]) * n for n in _place(source)))
             try:
                 members.expect(drawn, part, "between changes")
             except HypothesisError:  # none of the kinds of members of which anything is said
@@ -118,7 +126,7 @@ def _check_numbers(numbers: Sequence[AlgebraicNumber | Enclosure]) -> None:
         if isinstance(number, AlgebraicNumber):
             p = fmpz_poly(list(number.polynomial))
             low, high = (fmpq(end.numerator, end.denominator) for end in (number.low, number.high))
-            roots = int(p(low) == 0) if low == high else roots_between(p, low, high) + (p(low) == 0) + (p(high) == 0)
+            roots = roots_within(p, low, high)
             if roots != 1:
                 raise Violation(f"{roots} roots of a value's polynomial lie between its bounds {text_of(number.low)} "
                                 f"and {text_of(number.high)}, not one")  # fmt: skip
@@ -139,9 +147,23 @@ def _gaps(found: Changes) -> list[Fraction]:
 def _beside(value: AlgebraicNumber | Enclosure, gap: Fraction) -> tuple[Fraction, Fraction]:
     """Values below and above a change; the ends of an enclosure, which are members."""
     if isinstance(value, AlgebraicNumber):
-        near = value.refined(gap / 2)
-        return near.low - gap / 2, near.high + gap / 2
+        near = value.refined(gap / 4)
+        return _short(near.low - gap * 3 / 4, near.low - gap / 2), _short(near.high + gap / 2, near.high + gap * 3 / 4)
     return value.low, value.high
+
+
+def _place(source: random.Random) -> tuple[Fraction, Fraction]:
+    """Two shares of an interval, near together and at random."""
+    first = source.randrange(1, _DIGITS)
+    return Fraction(first, _DIGITS), Fraction(first, _DIGITS) + Fraction(1, 2 * _DIGITS)
+
+
+def _short(low: Fraction, high: Fraction) -> Fraction:
+    """A number of few digits between two others, or one of them: a member's curves get long with its digits."""
+    middle, most = (low + high) / 2, 1
+    while not low <= (found := middle.limit_denominator(most)) <= high:
+        most *= 2
+    return found
 
 
 def _check_instant(members: _Members, value: AlgebraicNumber | Enclosure, part: int, name: str) -> None:

@@ -1,5 +1,6 @@
 """Real roots of integer polynomials, counted by Sturm sequences; of long polynomials, whose sequences are longer, by
-FLINT's isolation of all complex roots, in disjoint balls of which the real ones are known to be real.
+FLINT's isolation of all complex roots, in disjoint balls of which the real ones are known to be real, or in a short
+interval by bisection.
 
 Guarantee: exact, multiple roots counted once. (The decomposition itself isolates by Descartes' rule; see
 `ptmcad.algebra.real_roots`, which is not used here.)
@@ -59,6 +60,43 @@ def roots_between(p: fmpz_poly, low: fmpq, high: fmpq) -> int:
     return _variations(chain, low) - _variations(chain, high) - (1 if p(high) == 0 else 0)
 
 
+_MAX_PIECES = 64
+"""Into how many pieces an interval is cut: near a multiple root there is no end."""
+
+
+def _by_bisection(p: fmpz_poly, low: fmpq, high: fmpq) -> int | None:
+    """The number of roots in (low, high); None where an end is one, or where it is not found in so many pieces.
+
+    With p(m + r h) = sum q_i h^i over |h| <= 1 there is no root where |q_0| outweighs the other coefficients, and at
+    most one, at which the sign changes, where q_1 outweighs the rest of the derivative.
+    """
+    signs: dict[fmpq, bool] = {}
+
+    def is_positive(at: fmpq) -> bool:
+        if at not in signs:
+            signs[at] = p(at) > 0
+        return signs[at]
+
+    if p(low) == 0 or p(high) == 0:
+        return None
+    number, waiting, rational = 0, [(low, high)], fmpq_poly(p)
+    for _ in range(_MAX_PIECES):
+        if not waiting:
+            return number
+        a, b = waiting.pop()
+        middle = (a + b) / 2
+        sizes = [abs(c) for c in rational(fmpq_poly([middle, (b - a) / 2])).coeffs()]
+        if 2 * sizes[0] > sum(sizes, fmpq(0)):
+            continue
+        if 2 * sizes[1] > sum((i * c for i, c in enumerate(sizes)), fmpq(0)):
+            number += is_positive(a) != is_positive(b)
+            continue
+        while p(middle) == 0:
+            middle = (a + middle) / 2
+        waiting += [(a, middle), (middle, b)]
+    return None
+
+
 def _balls_between(coefficients: tuple[int, ...], low: fmpq, high: fmpq, ends: Sequence[fmpq]) -> int:
     """The number of roots in (low, high), of whose ends some are roots."""
     bits = 64
@@ -94,9 +132,11 @@ def ends_of(ball: arb) -> tuple[fmpq, fmpq]:
 
 
 def roots_within(p: fmpz_poly, low: fmpq, high: fmpq) -> int:
-    """The number of different roots in the closed interval [low, high]."""
+    """The number of different roots in the closed interval [low, high], which of a long polynomial is best short."""
     if low == high:
         return int(p(low) == 0)
+    if p.degree() >= LONG_DEGREE and (number := _by_bisection(p, low, high)) is not None:
+        return number
     return roots_between(p, low, high) + (p(low) == 0) + (p(high) == 0)
 
 
