@@ -34,11 +34,12 @@ from ptmcad.exact.cad.curves import Curve, curves_of, lines_of
 from ptmcad.exact.cad.projection import Projection, predicted_cost, project
 from ptmcad.exact.cad.stacks import Avoided, StackData, lift
 from ptmcad.exact.counting import Equilibria, equilibria
+from ptmcad.exact.folds import with_folds
 from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.exact.regions import Link, members, merge
 from ptmcad.exact.variety import Known, check_hypotheses, discriminant_variety
-from ptmcad.exact.witness import with_witness
+from ptmcad.exact.witness import points, with_witness
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import decimal, fraction_of, short_text
 
@@ -174,7 +175,7 @@ def variety_of(problem: SliceProblem, keep: frozenset[str] = frozenset(), base: 
     try:
         found = discriminant_variety(system, parameters, window, domain_limits(system, parameters), keep, problem.known)
     except (DegenerateSliceError, InfiniteSolutionsError) as error:
-        raise with_witness(error, system, parameters, window, problem.place) from error
+        raise _explained(problem, error) from error
     views = [curves_of(found.components, base) for base in (0, 1)]
     costs = (predicted_cost(views[0]), predicted_cost(views[1]))
     if base is None:
@@ -195,7 +196,16 @@ def prove_regular(problem: SliceProblem) -> None:
     try:
         check_hypotheses(system, parameters)
     except (DegenerateSliceError, InfiniteSolutionsError) as error:
-        raise with_witness(error, system, parameters, problem.window, problem.place) from error
+        raise _explained(problem, error) from error
+
+
+def _explained(
+    problem: SliceProblem, error: DegenerateSliceError | InfiniteSolutionsError
+) -> DegenerateSliceError | InfiniteSolutionsError:
+    """The error with its cause, where it is a loop that folds flat, and a point that shows it."""
+    system, parameters, window = problem.system, problem.parameters, problem.window
+    told = with_folds(error, problem.slice.model, system, parameters, points(window))
+    return with_witness(error, system, parameters, window, problem.place) if told is error else told
 
 
 def domain_limits(system: ParametricSystem, parameters: dict[str, Ratio]) -> list[Coefficient]:

@@ -8,12 +8,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism.description import Kind, Mechanism, Model, Parameter, Support, System
+from ptmcad.mechanism.description import ClosedMechanism, Kind, Mechanism, Model, Parameter, Support, System
+from ptmcad.mechanism.loops import without_loops
 from ptmcad.mechanism.ptm import ptm
 from ptmcad.mechanism.record import described, read_mechanism
 from ptmcad.mechanism.systems import described_system, read_system
 
 __all__ = [
+    "ClosedMechanism",
     "Kind",
     "Mechanism",
     "Model",
@@ -29,6 +31,7 @@ __all__ = [
     "read_mechanism",
     "read_system",
     "recognised",
+    "without_loops",
 ]
 
 

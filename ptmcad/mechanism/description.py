@@ -112,6 +112,14 @@ class Moment(NamedTuple):
     value: Tree
 
 
+class Closing(NamedTuple):
+    """A bar that closes a loop: its ends keep their distance."""
+
+    start: str
+    end: str
+    length: Tree
+
+
 class TorsionSpring(NamedTuple):
     """A spring between directions: its energy is stiffness * (1 - cos(angle - rest)).
 
@@ -167,6 +175,11 @@ class Model:
     parameters: Mapping[str, Parameter]
     unknowns: Mapping[str, UnknownKind]
     source: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False, kw_only=True)
+
+    @property
+    def record_key(self) -> str:
+        """The key of a record under which its source stands."""
+        return "mechanism"
 
     @property
     def has_potential(self) -> bool:
@@ -276,6 +289,7 @@ class Mechanism(Model):
     bodies : to the points fixed to them, for drawings.
     moments : generalised forces that need not come from a potential.
     torsion : springs between directions, in the record's order.
+    closing : bars that close loops; with any, `ptmcad.mechanism.loops` makes a `ClosedMechanism` of it.
     """
 
     points: Mapping[str, tuple[Tree, Tree]]
@@ -287,6 +301,7 @@ class Mechanism(Model):
     bodies: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     moments: tuple[Moment, ...] = ()
     torsion: tuple[TorsionSpring, ...] = ()
+    closing: tuple[Closing, ...] = ()
 
     __hash__ = Model.__hash__
     __repr__ = Model.__repr__
@@ -340,6 +355,8 @@ class Mechanism(Model):
             yield moment.value
         for torsion in self.torsion:
             yield from (torsion.angle, torsion.stiffness)
+        for closing in self.closing:
+            yield closing.length
 
 
 @dataclass(frozen=True)
@@ -362,6 +379,10 @@ class System(Model):
     __repr__ = Model.__repr__
 
     @property
+    def record_key(self) -> str:
+        return "system"
+
+    @property
     def has_potential(self) -> bool:
         return self.potential is not None
 
@@ -376,3 +397,24 @@ class System(Model):
             yield self.potential
         yield from self.inequalities
         yield from self.stability
+
+
+@dataclass(frozen=True)
+class ClosedMechanism(System):
+    """A mechanism with closed loops and one degree of freedom, as the equations of its equilibria.
+
+    Attributes
+    ----------
+    mechanism : as it was described.
+    tangent : a direction in which the loops let the unknowns move; zero where a loop folds flat.
+    """
+
+    mechanism: Mechanism = field(kw_only=True, compare=False)
+    tangent: tuple[Tree, ...] = field(kw_only=True, compare=False)
+
+    __hash__ = Model.__hash__
+    __repr__ = Model.__repr__
+
+    @property
+    def record_key(self) -> str:
+        return "mechanism"

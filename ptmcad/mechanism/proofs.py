@@ -190,6 +190,9 @@ def _held(mechanism: Mechanism) -> set[str]:
     points = _Points(mechanism)
     ring = points.ring
     held = {moment.unknown for moment in mechanism.moments if points.value(moment.value).terms}
+    for closing in mechanism.closing:
+        squared = points.squared(closing.start, closing.end)
+        held.update(u for u in mechanism.unknowns if squared.derivative(u).terms)
     energy = ring.constant(Fraction(0))
     for spring in mechanism.springs:
         squared = points.squared(spring.start, spring.end)

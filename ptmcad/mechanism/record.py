@@ -13,8 +13,9 @@ from typing import Any
 from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
 from ptmcad.mechanism.angles import angle_name
 from ptmcad.mechanism.bodies import add_bodies
-from ptmcad.mechanism.description import Load, Mechanism, Moment, Spring, Support, TorsionSpring
+from ptmcad.mechanism.description import Closing, Load, Mechanism, Moment, Spring, Support, TorsionSpring
 from ptmcad.mechanism.evaluate import value_at
+from ptmcad.mechanism.loops import CLOSING_KEYS, check_loops
 from ptmcad.mechanism.parts import check_numbers
 from ptmcad.mechanism.proofs import check_bars, check_springs, check_symmetries, check_unknowns
 from ptmcad.mechanism.reading import (
@@ -41,7 +42,7 @@ from ptmcad.text.tree import Name, Negative, Number, Tree
 
 KEYS = (
     "name", "parameters", "unknowns", "points", "bodies", "bars", "supports", "springs", "torsion", "loads", "moments",
-    "symmetries",
+    "symmetries", "closing",
 )  # fmt: skip
 SPRING_KEYS = ("between", "k", "free")
 TORSION_KEYS = ("angle", "k", "rest", "at")
@@ -51,13 +52,12 @@ NAMED_RESTS = {
 }  # fmt: skip
 """Cosine and sine of the angles that have both rational and are written with pi."""
 _LATER = {
-    "closing": "closed loops cannot be computed yet: choose the unknowns of an open chain, or write the equations of "
-    "the loop as a 'system:'",
     "x-joint": "crossed joints cannot be computed yet: write the equations as a 'system:'",
 }
 _LIKE = {
     "points": "{A: [0, 0]}", "bars": "[[O, P]]", "supports": "{O: pin}", "springs": "[{between: [A, P], k: 1}]",
     "torsion": "[{angle: th, k: 1}]", "loads": "{P: [0, -W]}", "moments": "{th: M}", "symmetries": "[{th: -th}]",
+    "closing": "[{between: [B, D], length: L}]",
 }  # fmt: skip
 """Examples for messages."""
 _ZERO: Tree = Number(Fraction(0))
@@ -123,6 +123,7 @@ def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = Fal
         bodies,
         moments,
         torsion,
+        parts.closing(points),
         source=record,
     )
     if not proved:
@@ -147,6 +148,7 @@ def _prove(found: Mechanism, faults: Faults) -> None:
         check_unknowns(found, faults)
         check_symmetries(found, faults)
         check_moments(found, faults)
+        check_loops(found, faults)
 
 
 def check_moments(mechanism: Mechanism, faults: Faults) -> None:
@@ -264,6 +266,22 @@ class _Parts:
         for _ in range(turns):  # what is added to the angle is taken from the rest
             rest = (rest[1], -rest[0])
         return TorsionSpring(angle, stiffness, rest, at=at)
+
+    def closing(self, points: Mapping[str, object]) -> tuple[Closing, ...]:
+        found = []
+        for n, entry in enumerate(self._list("closing"), 1):
+            key = f"closing.{n}"
+            with self.faults:
+                fields = mapping(entry, key, like="{between: [B, D], length: L}")
+                check_keys(fields, CLOSING_KEYS, key, self.faults)
+                for needed in CLOSING_KEYS:
+                    with self.faults:
+                        if needed not in fields:
+                            raise ConfigError("is missing", key=f"{key}.{needed}")
+                if all(needed in fields for needed in CLOSING_KEYS):
+                    between = ends(fields["between"], f"{key}.between", points)
+                    found.append(Closing(*between, self.reader.tree(fields["length"], f"{key}.length")))
+        return tuple(found)
 
     def loads(self, points: Mapping[str, object]) -> tuple[Load, ...]:
         found = []

@@ -17,8 +17,9 @@ from typing import Any, NamedTuple
 
 from flint import fmpq
 
-from ptmcad.mechanism import Kind, Mechanism, Model, System, ptm
+from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, Model, System, ptm
 from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Tree, names_of
+from ptmcad.verification import loops
 
 MECHANISM = ptm()
 ANGLES = MECHANISM.angles
@@ -146,6 +147,8 @@ def formulas(configuration: Configuration, model: Model) -> Formulas:
     if isinstance(model, Mechanism):
         return Formulas(potential(configuration, model), moments=_moments(configuration, model))
     assert isinstance(model, System)
+    if isinstance(model, ClosedMechanism):
+        return _with_loops(configuration, model)
     value = configuration.value
     return Formulas(
         None if model.potential is None else value(model.potential),
@@ -153,6 +156,24 @@ def formulas(configuration: Configuration, model: Model) -> Formulas:
         tuple(map(value, model.inequalities)),
         tuple(map(value, model.stability)),
     )
+
+
+def _with_loops(configuration: Configuration, model: ClosedMechanism) -> Formulas:
+    """Of a mechanism with closed loops, from the mechanism itself."""
+    size = len(model.unknowns)
+    values = {name: loops.constant(value, size) for name, value in configuration.parameters.items()}
+    for k, name in enumerate(model.reals, len(model.angles)):
+        values[name] = loops.line(k, configuration.parameters[name], size)
+    circles = {a: loops.circle(k, *configuration.circles[a], size) for k, a in enumerate(model.angles)}
+    moving = Configuration(values, circles)
+    found = loops.conditions(
+        model.mechanism,
+        potential(moving, model.mechanism) + loops.constant(fmpq(0), size),
+        moving.points(model.mechanism),
+        moving.value,
+        [m + loops.constant(fmpq(0), size) for m in _moments(moving, model.mechanism)],
+    )
+    return Formulas(None, found.equations, (), (found.stability,))
 
 
 def _moments(configuration: Configuration, mechanism: Mechanism) -> tuple[Any, ...]:

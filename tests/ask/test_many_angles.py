@@ -10,14 +10,14 @@ import ptmcad
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask import manyangles
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism import Model
 
 pytest.importorskip("numba")
 
 LENGTHS = ("1", "1/2", "1", "1/3")
 
 
-def chain() -> Mechanism:
+def chain() -> Model:
     """Four bars in a row, each joint on a spring without free length to A, and a force at the end."""
     points: dict[str, Any] = {"O": [0, 0], "A": ["a", "1/2"]}
     x, y = "0", "0"
@@ -35,7 +35,7 @@ def chain() -> Mechanism:
     )
 
 
-def pendulums() -> Mechanism:
+def pendulums() -> Model:
     """Four that do not feel each other, with two equilibria each."""
     return ptmcad.Mechanism(
         {

@@ -9,7 +9,7 @@ import pytest
 
 import ptmcad
 from ptmcad.certified.plain.jets import rational_energy
-from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism import Model
 
 PENDULUM: dict[str, Any] = {
     "parameters": {"l0": {"kind": "free length"}, "W": {"kind": "force"}},
@@ -29,7 +29,7 @@ JAW: dict[str, Any] = {
 }
 
 
-def with_anchor(x: object) -> Mechanism:
+def with_anchor(x: object) -> Model:
     return ptmcad.Mechanism({**PENDULUM, "points": {**PENDULUM["points"], "A": [x, 3]}})
 
 

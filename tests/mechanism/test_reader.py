@@ -174,7 +174,7 @@ WRONG = [
     ("a load in words", change(PLATFORM, "loads", "R", {"wait": 1}), "loads.R.wait", "did you mean 'weight'?"),
     ("a load nowhere", change(PLATFORM, "loads", "Z", [0, 0]), "loads.Z", "there is no point 'Z'"),
     ("a support nowhere", change(PLATFORM, "supports", {"Z": "pin"}), "supports.Z", "there is no point 'Z'"),
-    ("closed loops", change(PLATFORM, "closing", []), "closing", "choose the unknowns of an open chain"),
+    ("closed loops", change(PLATFORM, "closing", {}), "closing", "expected a list"),
     ("a fixed angle", change(PLATFORM, "points", "A", ["cos(M)", 0]), "points.A.1", "t the tangent of its half"),
     ("no unknown", change(PLATFORM, "unknowns", {}), "unknowns", "there is none"),
     ("pi", change(PLATFORM, "points", "pi", [0, 0]), "points.pi", "a meaning of its own"),

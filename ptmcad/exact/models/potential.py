@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 from flint import fmpq
@@ -113,12 +113,18 @@ def system_from(model: Model) -> ParametricSystem:
     return with_turns(_equilibria_of(model))
 
 
+def elements_of(model: System, trees: Iterable[Tree]) -> tuple[TrigonometricPolynomial, ...]:
+    """Trees in a system's parameters and unknowns as elements of its ring, reduced."""
+    return _elements(TrigonometricRing(model.variables, model.angles, model.reals), trees)
+
+
+def _elements(ring: TrigonometricRing, trees: Iterable[Tree]) -> tuple[TrigonometricPolynomial, ...]:
+    return tuple(ring.reduce(evaluate(tree, _Evaluation(ring))) for tree in trees)
+
+
 def _equations_of(model: System) -> ParametricSystem:
     ring = TrigonometricRing(model.variables, model.angles, model.reals)
-    within = _Evaluation(ring)
-
-    def elements(trees: Iterable[Tree]) -> tuple[TrigonometricPolynomial, ...]:
-        return tuple(ring.reduce(evaluate(tree, within)) for tree in trees)
+    elements = partial(_elements, ring)
 
     asked: dict[str, Any] = {
         "inequalities": elements(model.inequalities),

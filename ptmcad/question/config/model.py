@@ -21,6 +21,7 @@ from ptmcad.mechanism import (
     read_mechanism,
     read_system,
     recognised,
+    without_loops,
 )
 from ptmcad.mechanism.parts import check_numbers
 from ptmcad.question.config.starters import NAMES, starter_mechanism
@@ -190,6 +191,9 @@ def _read(node: Tree, faults: Faults, used: Iterable[str] = (), is_system: bool 
                 model = recognised(model)  # written down again, the built-in one is the same one
         _check_use(model, {*used}, found)
         check_numbers(model, found)
+        if isinstance(model, Mechanism) and not found.found:
+            with found:
+                model = without_loops(model)
     except ConfigError:  # so many faults that no more are looked for: they still have to be put where they stand
         model = None
     # what is said of an empty value, or of a list because of one in it, says no more

@@ -10,12 +10,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Mechanism, Model, System, built_in
+from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, System, built_in
 from ptmcad.question.config.model import model_of
 from ptmcad.text.yamltree import MAX_DEPTH, Place, Tree, from_python
 
 
-def make_mechanism(description: Mapping[Any, Any] | None = None, /, **entries: Any) -> Mechanism:
+def make_mechanism(description: Mapping[Any, Any] | None = None, /, **entries: Any) -> Mechanism | ClosedMechanism:
     """A planar mechanism from the entries of its description, as a record has them under ``mechanism:``.
 
     >>> pendulum = make_mechanism(
@@ -39,7 +39,7 @@ def make_mechanism(description: Mapping[Any, Any] | None = None, /, **entries: A
         With the key of what is wrong; its ``faults`` are all there are.
     """
     found = _model("mechanism", description, entries)
-    assert isinstance(found, Mechanism)
+    assert isinstance(found, Mechanism | ClosedMechanism)
     return found
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from ptmcad.answer.design import BestDesign, BoundedBox, Evaluation
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Model, System, built_in, described, described_system, known_of, recognised
+from ptmcad.mechanism import Model, built_in, described, described_system, known_of, recognised, without_loops
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import fraction_of, text_of
@@ -145,14 +145,14 @@ def _model(model: Model) -> Any:
     """The name where that says all, else the description."""
     if not model.source or model.name in built_in():
         return model.name
-    return {"system" if isinstance(model, System) else "mechanism": {"name": model.name, **model.source}}
+    return {model.record_key: {"name": model.name, **model.source}}
 
 
 def _model_from(data: Any) -> Model:
     if isinstance(data, str):
         return known_of(data)
     ((kind, description),) = data.items()
-    return described_system(description) if kind == "system" else recognised(described(description))
+    return described_system(description) if kind == "system" else without_loops(recognised(described(description)))
 
 
 def _axis(axis: Axis) -> dict[str, str]:

@@ -10,7 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Mechanism, Model, System, built_in, described, described_system, known_of, recognised
+from ptmcad.mechanism import Model, built_in, described, described_system, known_of, recognised, without_loops
 from ptmcad.question.slice import Slice
 from ptmcad.show.document.codec import Codec, Key
 from ptmcad.show.document.node import Node
@@ -45,7 +45,7 @@ def _mechanism(node: Node) -> Model:
     """The built-in mechanism of a name, one of which nothing is known, or a description."""
     if isinstance(node.value, str):
         return known_of(node.line(MAX_NAME))
-    return _described(node, lambda data: recognised(described(data)))
+    return _described(node, lambda data: without_loops(recognised(described(data))))
 
 
 def _described(node: Node, read: Callable[[Mapping[str, Any]], Model]) -> Model:
@@ -55,16 +55,16 @@ def _described(node: Node, read: Callable[[Mapping[str, Any]], Model]) -> Model:
         raise node.fault(f"is wrong: {error}") from error
 
 
-def _stored(holder: Slice | Poses, kind: type[Model]) -> Any:
+def _stored(holder: Slice | Poses, key: str) -> Any:
     """The model's name where that says all, else its description; None for a model of the other kind."""
     model = holder.model
-    if not isinstance(model, kind):
+    if model.record_key != key:
         return None
     return {"name": model.name, **model.source} if model.source and model.name not in built_in() else model.name
 
 
 MODEL = {
-    "mechanism": Key(Codec(_as_it_is, _mechanism), partial(_stored, kind=Mechanism), None),
-    "system": Key(Codec(_as_it_is, partial(_described, read=described_system)), partial(_stored, kind=System), None),
+    "mechanism": Key(Codec(_as_it_is, _mechanism), partial(_stored, key="mechanism"), None),
+    "system": Key(Codec(_as_it_is, partial(_described, read=described_system)), partial(_stored, key="system"), None),
 }
 """The keys of a record that holds a model: one of them is there."""

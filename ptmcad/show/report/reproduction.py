@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Kind, System, built_in, mechanism_of
+from ptmcad.mechanism import Kind, built_in, mechanism_of
 from ptmcad.question.config import slice_from_mapping, slice_from_options
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import text_of
@@ -80,7 +80,7 @@ def _mapping(slice: Slice, values: Mapping[str, str]) -> dict[str, object]:
 
 def _model(slice: Slice) -> dict[str, object]:
     """The key of the model: a built-in mechanism by its name, others as they were described."""
-    key = "system" if isinstance(slice.model, System) else "mechanism"
+    key = slice.model.record_key
     if slice.mechanism in built_in() and mechanism_of(slice.mechanism) == slice.model:
         return {key: slice.mechanism}
     return {key: dict(slice.model.source) or slice.mechanism}

@@ -1,0 +1,114 @@
+"""Closed loops with one degree of freedom left, as equations: each loop is cut at a bar, which keeps its length.
+
+Guarantee: off the places where a loop folds flat the solutions are the equilibria, and the stable ones are the strict
+minima of the energy under the loops' conditions.
+
+Let g_1 .. g_m be squared distances less squared lengths, in m + 1 unknowns, and T the vector of the maximal minors of
+their derivatives, with signs: it is tangent to g = 0 and vanishes only where these derivatives are dependent, where a
+loop folds flat. Along the curve g = 0, run through with velocity T, the energy has the derivative E = T . grad U, and
+where that is zero the second derivative T . grad E: which is the determinant of the derivatives of g_1 .. g_m and E. So
+an equilibrium is a zero of g and E, simple where the determinant is not zero, and stable where it is positive. Where T
+vanishes E does, and the determinant: such places are on the curves at which solutions meet.
+
+Source: elementary (Lagrange's condition in one dimension); no multiplier is among the unknowns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+from ptmcad.errors import ConfigError, ExpressionError, Faults
+from ptmcad.mechanism.derivative import cofactors, derivative, determinant, negative, product, total
+from ptmcad.mechanism.description import ClosedMechanism, Closing, Mechanism, Model
+from ptmcad.mechanism.sizes import check_sizes
+from ptmcad.mechanism.work import split_moments
+from ptmcad.text.tree import Number, Power, Tree
+
+CLOSING_KEYS = ("between", "length")
+_TWO: Tree = Number(Fraction(2))
+_HALF: Tree = Number(Fraction(1, 2))
+
+
+def check_loops(mechanism: Mechanism, faults: Faults) -> None:
+    """Note what is not computed with closed loops, by its key."""
+    if not mechanism.closing:
+        return
+    free = len(mechanism.unknowns) - len(mechanism.closing)
+    with faults:
+        if free < 1:
+            raise ConfigError("no degree of freedom is left: there have to be more unknowns than closing bars",
+                              key="closing")  # fmt: skip
+        if free > 1:
+            raise ConfigError(
+                f"{free} degrees of freedom are left: closed loops are computed where one is; write the equations, "
+                "with multipliers, as a 'system:'",
+                key="closing",
+            )
+    for n, spring in enumerate(mechanism.springs, 1):
+        with faults:
+            if not (isinstance(spring.free, Number) and spring.free.value == 0):
+                raise ConfigError("free lengths are not computed in closed loops yet", key=f"springs.{n}.free")
+    with faults:
+        if mechanism.symmetries:
+            raise ConfigError("symmetries are not used in closed loops: leave them out", key="symmetries")
+
+
+def without_loops(model: Mechanism, faults: Faults | None = None) -> Model:
+    """The mechanism itself, or with closed loops the equations of its equilibria.
+
+    Raises
+    ------
+    ConfigError
+        When these may have too many terms.
+    """
+    if not model.closing:
+        return model
+    conditions = [_condition(model, closing) for closing in model.closing]
+    names = tuple(model.unknowns)
+    rows = [[derivative(g, name) for name in names] for g in conditions]
+    tangent = cofactors(rows)
+    slope = total(*(product(t, f) for t, f in zip(tangent, _forces(model, names), strict=True)))
+    second = determinant([*rows, [derivative(slope, name) for name in names]])
+    found = ClosedMechanism(
+        model.name, model.parameters, model.unknowns, (*conditions, slope), stability=(second,), mechanism=model,
+        tangent=tangent, source=model.source,
+    )  # fmt: skip
+    sizes = Faults()
+    try:
+        check_sizes(found, sizes)
+        sizes.check()
+    except (ConfigError, ExpressionError) as error:
+        raise ConfigError(f"with their loops closed {error.message}", key="closing") from error
+    return found
+
+
+def _condition(mechanism: Mechanism, closing: Closing) -> Tree:
+    """Zero where the bar has its length."""
+    return total(_squared(mechanism, closing.start, closing.end), negative(Power(closing.length, _TWO)))
+
+
+def _squared(mechanism: Mechanism, start: str, end: str) -> Tree:
+    return total(
+        *(
+            Power(total(b, negative(a)), _TWO)
+            for a, b in zip(mechanism.points[start], mechanism.points[end], strict=True)
+        )
+    )
+
+
+def _forces(mechanism: Mechanism, names: Sequence[str]) -> list[Tree]:
+    """The energy's derivatives by the unknowns, less the moments that are in no energy."""
+    parts = [
+        *(product(_HALF, s.stiffness, _squared(mechanism, s.start, s.end)) for s in mechanism.springs),
+        *(t.energy for t in mechanism.torsion),
+        *(
+            negative(product(force, place))
+            for load in mechanism.loads
+            for force, place in zip((load.x, load.y), mechanism.points[load.point], strict=True)
+        ),
+        *split_moments(mechanism).energies,
+    ]
+    energy = total(*parts)
+    steady: Mapping[str, Tree] = {m.unknown: m.value for m in split_moments(mechanism).steady}
+    return [total(derivative(energy, name), *([negative(steady[name])] if name in steady else ())) for name in names]

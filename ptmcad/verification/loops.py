@@ -1,0 +1,136 @@
+"""What equilibria of a mechanism with closed loops satisfy, derived from its description by automatic differentiation.
+
+Guarantee: nothing is taken from `ptmcad.mechanism.loops`, which writes the same formulas as trees. With g the squared
+distances that closing bars keep, less the squares of these, and U the energy, both with their derivatives up to the
+second order, an equilibrium is a zero of g and of E, the determinant of the gradients of g and U; it is stable where
+the determinant of the gradients of g and E is positive.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from itertools import permutations
+from typing import Any, NamedTuple
+
+from flint import fmpq
+
+from ptmcad.mechanism import Mechanism
+
+
+class Second:
+    """A function of the unknowns at a place: value, gradient and Hessian, in any numbers."""
+
+    __slots__ = ("bends", "slopes", "value")
+
+    def __init__(self, value: Any, slopes: Sequence[Any], bends: Mapping[tuple[int, int], Any]):
+        self.value, self.slopes, self.bends = value, tuple(slopes), dict(bends)
+
+    def _lifted(self, other: Any) -> Second:
+        return other if isinstance(other, Second) else constant(other, len(self.slopes))
+
+    def __add__(self, other: Any) -> Second:
+        b = self._lifted(other)
+        return Second(
+            self.value + b.value,
+            [x + y for x, y in zip(self.slopes, b.slopes, strict=True)],
+            {ij: x + b.bends[ij] for ij, x in self.bends.items()},
+        )
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Second:
+        return self * fmpq(-1)
+
+    def __sub__(self, other: Any) -> Second:
+        return self + -self._lifted(other)
+
+    def __rsub__(self, other: Any) -> Second:
+        return self._lifted(other) + -self
+
+    def __mul__(self, other: Any) -> Second:
+        b = self._lifted(other)
+        return Second(
+            self.value * b.value,
+            [x * b.value + self.value * y for x, y in zip(self.slopes, b.slopes, strict=True)],
+            {
+                (i, j): x * b.value
+                + self.slopes[i] * b.slopes[j]
+                + self.slopes[j] * b.slopes[i]
+                + self.value * b.bends[i, j]
+                for (i, j), x in self.bends.items()
+            },
+        )
+
+    __rmul__ = __mul__
+
+
+def constant(value: Any, unknowns: int) -> Second:
+    """What no unknown is in."""
+    places = range(unknowns)
+    return Second(value, [fmpq(0)] * unknowns, {(i, j): fmpq(0) for i in places for j in places})
+
+
+def circle(number: int, cosine: Any, sine: Any, unknowns: int) -> tuple[Second, Second]:
+    """Cosine and sine of the angle of this number."""
+    c, s = constant(cosine, unknowns), constant(sine, unknowns)
+    by = [[fmpq(0)] * unknowns for _ in range(2)]
+    by[0][number], by[1][number] = -sine, cosine
+    there = (number, number)
+    return Second(cosine, by[0], c.bends | {there: -cosine}), Second(sine, by[1], s.bends | {there: -sine})
+
+
+def line(number: int, value: Any, unknowns: int) -> Second:
+    """The unknown on the line of this number."""
+    flat = constant(value, unknowns)
+    return Second(value, [fmpq(int(k == number)) for k in range(unknowns)], flat.bends)
+
+
+class Conditions(NamedTuple):
+    """Equations, each zero at an equilibrium, and what is positive at a stable one."""
+
+    equations: tuple[Any, ...]
+    stability: Any
+
+
+def conditions(
+    mechanism: Mechanism,
+    energy: Second,
+    points: Mapping[str, tuple[Second, Second]],
+    length: Callable[[Any], Any],
+    moments: Sequence[Second],
+) -> Conditions:
+    """The conditions at a place.
+
+    Parameters
+    ----------
+    length : the value of a tree.
+    moments : generalised forces on the unknowns; none where the description has none.
+    """
+    kept = []
+    for closing in mechanism.closing:
+        across, up = (points[closing.end][i] - points[closing.start][i] for i in (0, 1))
+        far = length(closing.length)
+        kept.append(across * across + up * up - far * far)
+    count = range(len(energy.slopes))
+    rows = [[g.slopes[k] for k in count] for g in kept]
+    last = [energy.slopes[k] - (moments[k].value if moments else fmpq(0)) for k in count]
+    slopes = []
+    for j in count:
+        bent = [energy.bends[k, j] - (moments[k].slopes[j] if moments else fmpq(0)) for k in count]
+        total = _determinant([*rows, bent])
+        for n, g in enumerate(kept):
+            total = total + _determinant([*rows[:n], [g.bends[k, j] for k in count], *rows[n + 1 :], last])
+        slopes.append(total)
+    return Conditions((*(g.value for g in kept), _determinant([*rows, last])), _determinant([*rows, slopes]))
+
+
+def _determinant(rows: Sequence[Sequence[Any]]) -> Any:
+    """By all permutations: there are few unknowns."""
+    total: Any = fmpq(0)
+    for order in permutations(range(len(rows))):
+        inversions = sum(order[a] > order[b] for b in range(len(order)) for a in range(b))
+        term: Any = fmpq(-1 if inversions % 2 else 1)
+        for row, k in zip(rows, order, strict=True):
+            term = row[k] * term
+        total = term + total
+    return total
