@@ -33,7 +33,7 @@ def derivative(tree: Tree, name: str) -> Tree:
             n = int(value_at(exponent, {}))
             if n == 0:
                 return ZERO
-            lower = ONE if n == 1 else Power(base, Number(Fraction(n - 1)))
+            lower = (ONE, base)[n - 1] if n < 3 else Power(base, Number(Fraction(n - 1)))
             return product(Number(Fraction(n)), lower, derivative(base, name))
         case Chain(first, steps):
             return _of_sum(tree, name) if tree.is_sum else _of_product(first, steps, name)
@@ -54,7 +54,9 @@ def _of_product(first: Tree, steps: Sequence[Step], name: str) -> Tree:
     for k, factor in enumerate(factors):
         if factor.operator == "*" and (by := derivative(factor.operand, name)) != ZERO:
             others = [*factors[:k], *factors[k + 1 :]]
-            parts.append(Chain(by, tuple(others)) if others else by)
+            whole = product(by, *(step.operand for step in others if step.operator == "*"))
+            divisors = tuple(step for step in others if step.operator == "/")
+            parts.append(Chain(whole, divisors) if divisors else whole)
     return total(*parts)
 
 
@@ -63,21 +65,38 @@ def total(*trees: Tree) -> Tree:
     kept = [tree for tree in trees if tree != ZERO]
     if not kept:
         return ZERO
-    return kept[0] if len(kept) == 1 else Chain(kept[0], tuple(Step("+", tree) for tree in kept[1:]))
+    steps = [Step("-", t.operand) if isinstance(t, Negative) else Step("+", t) for t in kept[1:]]
+    return Chain(kept[0], tuple(steps)) if steps else kept[0]
 
 
 def negative(tree: Tree) -> Tree:
+    """The tree with the other sign."""
+    if isinstance(tree, Negative):
+        return tree.operand
     return ZERO if tree == ZERO else Negative(tree)
 
 
 def product(*trees: Tree) -> Tree:
-    """A product."""
-    if ZERO in trees:
+    """A product, with its number and sign in front."""
+    number = Fraction(1)
+    factors: list[Tree] = []
+    for tree in trees:
+        sign, operand = (-1, tree.operand) if isinstance(tree, Negative) else (1, tree)
+        number *= sign
+        parts = [operand]
+        if isinstance(operand, Chain) and all(step.operator == "*" for step in operand.steps):
+            parts = [operand.first, *(step.operand for step in operand.steps)]
+        for part in parts:
+            if isinstance(part, Number):
+                number *= part.value
+            else:
+                factors.append(part)
+    if number == 0:
         return ZERO
-    kept = [tree for tree in trees if tree != ONE]
-    if not kept:
-        return ONE
-    return kept[0] if len(kept) == 1 else Chain(kept[0], tuple(Step("*", tree) for tree in kept[1:]))
+    if abs(number) != 1 or not factors:
+        factors.insert(0, Number(abs(number)))
+    whole = factors[0] if len(factors) == 1 else Chain(factors[0], tuple(Step("*", tree) for tree in factors[1:]))
+    return Negative(whole) if number < 0 else whole
 
 
 def determinant(rows: Sequence[Sequence[Tree]]) -> Tree:

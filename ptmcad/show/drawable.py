@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from ptmcad.mechanism import Mechanism, Model, System
+from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, System
 from ptmcad.mechanism.moments import foreign
 
 
 def no_drawing(model: Model) -> str:
     """Why there is no picture of the solutions of a system that is no mechanism."""
+    if isinstance(model, ClosedMechanism):
+        return f"poses of {model.name}, a mechanism with closed loops, are not drawn yet"
     return f"solutions of a {_named(model)} cannot be drawn, as it has no points, bars or springs"
 
 
@@ -26,5 +28,5 @@ def no_landscape(model: Model) -> str:
 
 def _named(model: Model) -> str:
     """A system or mechanism, with its name if it has one of its own."""
-    kind = "system" if isinstance(model, System) else "mechanism"
+    kind = model.record_key
     return kind if model.name == kind else f"{kind} {model.name}"

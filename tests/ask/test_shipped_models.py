@@ -37,7 +37,7 @@ RECORDS = list(OTHER)
 LINES_ONLY = {"three-bar-chain"}
 """Too large for an exact map."""
 MAPPED = [path for path in RECORDS if path.stem not in LINES_ONLY]
-MECHANISMS = {"bistable-slider", "inverted-pendulum", "platform", "three-bar-chain", "two-bar-chain"}
+MECHANISMS = {"bistable-slider", "inverted-pendulum", "platform", "slider-crank", "three-bar-chain", "two-bar-chain"}
 SYSTEMS = {
     "cubic", "cubic-and-quadratic", "duffing", "escape", "kuramoto", "orthogonal-3r", "schloegl", "stability-pair",
     "von-mises-truss",

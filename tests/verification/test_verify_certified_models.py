@@ -12,11 +12,12 @@ from itertools import product
 from typing import Any
 
 import pytest
+import yaml
 from flint import arb, ctx
 from forger import certified
 from forger.consistency import drop, put
 from support.few import few
-from support.maps import once_per_run
+from support.maps import CONFIGS, once_per_run
 from support.records import TRUSS
 
 import ptmcad
@@ -85,6 +86,7 @@ CHAIN: dict[str, Any] = {
     "axes": {"a": [1, 2], "F": ["1/2", 1]},
     "count": "index",
 }  # fmt: skip
+CRANK = yaml.safe_load((CONFIGS / "mechanisms" / "slider-crank.yaml").read_text(encoding="utf-8"))
 RECORDS: dict[str, dict[str, Any]] = {
     "truss": TRUSS,
     "pendulum": PENDULUM,
@@ -93,6 +95,11 @@ RECORDS: dict[str, dict[str, Any]] = {
         "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]},
         "axes": {"a": [-2, 2], "b": [-2, 2]},
     },
+    "decimals": {
+        "system": {"unknowns": {"x": "real"}, "equations": ["0.5*x^3 - 5e-1*a*x + 1e-20*b + 0.25*b"]},
+        "axes": {"a": [-2, 2], "b": [-2, 2]},
+    },
+    "slider-crank": {k: v for k, v in CRANK.items() if k != "reference"},
     "well": {
         "system": {
             "unknowns": {"x": "real", "t": "angle"},

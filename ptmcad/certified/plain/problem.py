@@ -32,6 +32,8 @@ FIRST = 2
 """Number of the first unknown among the variables, after the two axes."""
 
 _IRRELEVANT = frozenset({"name", "parameters", "unknowns", "source", "bars", "bodies", "supports", "symmetries"})
+_SAID_IN_EQUATIONS = frozenset({"mechanism", "tangent"})
+"""Of a mechanism with closed loops."""
 _USED = frozenset(
     {"points", "springs", "torsion", "loads", "moments", "equations", "potential", "inequalities", "stability"}
 )
@@ -115,7 +117,7 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
             key="count",
         )
     for key in (found.name for found in fields(model)):
-        if key not in _IRRELEVANT | _USED and getattr(model, key):
+        if key not in _IRRELEVANT | _SAID_IN_EQUATIONS | _USED and getattr(model, key):
             raise ConfigError(f"the certified engine does not take {key}, and {model.name} has some", key=key)
     ring = Harmonics(tuple(model.unknowns), model.reals, slice.parameters)
     if isinstance(model, System):
