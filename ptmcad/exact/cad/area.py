@@ -13,7 +13,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from functools import lru_cache
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
@@ -23,6 +23,7 @@ from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve, by_component, max_height_bits
+from ptmcad.exact.cad.mirrors import Wall, mirrored, wall_of
 from ptmcad.exact.cad.panels import Border, Effort, Panel, halves, panels
 from ptmcad.exact.cad.stacks import StackData
 from ptmcad.text.balls import exact
@@ -195,11 +196,14 @@ def _areas(
     load = Counter(i for row in borders for b in row for i in (b.below, b.above))
     # of a panel's integral: what would do if all were about as bad, with some more panels than borders
     allowed = [from_fraction(tolerance) * rough[i] / (_PANELS * max(load[i], 1)) for i in range(parts.number)]
-    covered: list[Panel] = []
-    for row in borders:
-        for border in row:
-            check()
-            covered += panels(border, border.span, effort, min(allowed[border.below], allowed[border.above]))
+    known: dict[Wall, list[Panel]] = {}
+    for border in chain.from_iterable(borders):
+        check()
+        found = mirrored(border, known, effort)
+        if found is None:
+            found = panels(border, border.span, effort, min(allowed[border.below], allowed[border.above]))
+        known[wall_of(border)] = found
+    covered = [p for found in known.values() for p in found]
     return _refine(covered, _Frame(_edges(spans, parts), lost, allowed), tolerance, effort, check)
 
 
