@@ -179,7 +179,9 @@ def _with_room(bounds: tuple[Fraction, Fraction], tolerance: Fraction, whole: Fr
     """Bounds a little wider, so that a checker who encloses the area less tightly can still confirm them."""
     low, high = bounds
     known = high - low <= low * _NEGLIGIBLE  # walls on which the Taylor polynomials are exact, such as straight lines
-    room = low * (_NEGLIGIBLE / 100 if known else tolerance / 16)
+    # bounds that are narrower than asked for would cost the checker time for nothing
+    spare = max(low * tolerance / 16, (low * tolerance / 2 - (high - low)) / 2)
+    room = low * _NEGLIGIBLE / 100 if known else spare
     return max(low - room, Fraction(0)), min(high + room, whole)
 
 
