@@ -63,6 +63,7 @@ class Tube(NamedTuple):
     error : bounds the root's distance from the series.
     reach : within it there is no other root.
     radius : of convergence, in units of the panel that was asked for; an estimate.
+    crowded : whether other branches are so near that the proof failed where the series seemed to converge.
     """
 
     share: fmpq
@@ -70,17 +71,20 @@ class Tube(NamedTuple):
     error: arb
     reach: arb
     radius: float
+    crowded: bool
 
 
 class Integral(NamedTuple):
     """The integral of a branch over the middle part of a panel, which is ``share`` of it.
 
-    ``radius`` is that of the series' convergence in units of half the panel, as it seems to be.
+    ``radius`` is that of the series' convergence in units of half the panel, as it seems to be, and ``crowded`` whether
+    other branches are near.
     """
 
     value: arb
     share: fmpq
     radius: float
+    crowded: bool
 
 
 def branch_integral(
@@ -121,7 +125,9 @@ def branch_integral(
     for k, c in enumerate(tube.series.coeffs()):
         if k % 2 == 0:
             mean += c / (k + 1)
-    return Integral((mean + tube.error * arb(0, 1)) * arb(2 * panel[1] * tube.share), tube.share, tube.radius)
+    return Integral(
+        (mean + tube.error * arb(0, 1)) * arb(2 * panel[1] * tube.share), tube.share, tube.radius, tube.crowded
+    )
 
 
 def tube_around(local: Sequence[arb_poly], order: int, start: arb, wanted: arb) -> Tube | None:
@@ -145,7 +151,7 @@ def tube_around(local: Sequence[arb_poly], order: int, start: arb, wanted: arb) 
         raise PrecisionTooLow  # rounding blurs the branch nearly as far as the next one
     series = _series(local, order)
     part, radius = _usable(series, order, wanted)
-    share = fmpq(1)
+    share, crowded = fmpq(1), False
     while share * part >= LEAST_SHARE:
         if part < 1:
             shrunk = arb_poly([0, arb(part)])
@@ -153,8 +159,8 @@ def tube_around(local: Sequence[arb_poly], order: int, start: arb, wanted: arb) 
         share = share * part
         proved = _proved(local, series, start, wanted)
         if proved is not None:
-            return Tube(share, series, *proved, radius)
-        part = fmpq(1, 2)
+            return Tube(share, series, *proved, radius, crowded)
+        part, crowded = fmpq(1, 2), True
     return None
 
 

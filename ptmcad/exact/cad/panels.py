@@ -217,12 +217,14 @@ def _smooth(border: Border, over: Interval, effort: Effort, allowed: fmpq) -> In
         series = by_series()
     except PrecisionTooLow:
         obstacle = True
-    if series is not None:
+    if series is not None and not series.crowded:
         return series
-    between = arc_integral(in_v, branch, middle, radius, effort.fibre, wanted)
-    if between is not None:
-        return Integral(between, fmpq(1), 1.0)
-    return _more_precisely(by_series) if obstacle else None
+    # arcs do not mind other branches; they are better, and found sooner, if they start from more digits
+    fine = min(wanted, wanted * wanted / (effort.fibre[1] - effort.fibre[0])) / 2
+    between = arc_integral(in_v, branch, middle, radius, effort.fibre, fine)
+    if between is not None and (series is None or between.rad() < arb(allowed)):
+        return Integral(between, fmpq(1), 1.0, False)
+    return _more_precisely(by_series) if obstacle else series
 
 
 def _more_precisely(enclose: Callable[[], Integral | None]) -> Integral | None:
