@@ -1,6 +1,6 @@
 """Branches of a plane curve: proved enclosures of their integrals.
 
-Guarantee: an enclosure that is returned contains the integral of the branch that was asked for; None means not proved.
+Guarantee: an enclosure that is returned contains the branch that was asked for, or its integral; None means not proved.
 `avoids` answers True only with proof.
 
 On a panel [m - r, m + r] a branch v = y(u) of p(u, v) = 0 is approximated by a polynomial z(h), u = m + r h, from the
@@ -10,12 +10,19 @@ has no zero in the tube and q changes sign across it (mean value theorem), so th
 for each u (s has no zero, as s p_v >= b / 2). If the isolated root at u = m lies in it, this root is the branch. It
 also lies within 2 e / b of z, since q changes sign there already, so t may be wide enough to find the root without
 blurring the integral.
+
+How far from the middle the series is close enough to the branch is read from its coefficients; so the panel may be made
+narrower before anything is proved, instead of after a proof has failed. Products are cut off where a majorant shows
+that the rest is negligible: if M(h) has the moduli of a polynomial's coefficients, those beyond h^k add up to at most
+M(R) / R^(k + 1), R > 1.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import perm
+from itertools import pairwise
+from math import log, perm
+from typing import NamedTuple
 
 from flint import arb, arb_poly, arb_series, ctx, fmpq, fmpz_poly
 
@@ -28,23 +35,75 @@ SEPARATION_BITS = 40
 """Bits by which rounding has to be smaller than the distance to the next branch at the panel's middle."""
 PANEL_SEPARATION_BITS = 10
 """The same along the panel."""
+LEAST_SHARE = fmpq(1, 32)
+"""A series that is good on a smaller part of the panel is not tried: the branch is nearly singular beside it."""
+_CLOSE = 0.8
+"""How near to the estimated radius of convergence a series is tried."""
+_DIGITS = 50
+"""Bits of ratios that are looked at."""
+_GAP = 2.0**-10
+"""Of the growth: coefficients with smaller ratios belong to a series in which only some powers occur."""
+_ALGEBRAIC = 1.5
+"""What an algebraic singularity's coefficients grow less than a pole's, about."""
+_OUTER = (2, 4)
+"""Radii for majorants."""
 
 
 class PrecisionTooLow(ArithmeticError):
     """The context's precision does not suffice for this curve at this place."""
 
 
+class Tube(NamedTuple):
+    """A polynomial with the only root of the curve near it, for each -1 <= h <= 1.
+
+    Attributes
+    ----------
+    share : of the panel that was asked for: what is h here was ``share * h`` there.
+    series : w(h); its coefficients are exact.
+    error : bounds the root's distance from the series.
+    reach : within it there is no other root.
+    radius : of convergence, in units of the panel that was asked for; an estimate.
+    crowded : whether other branches are so near that the proof failed where the series seemed to converge.
+    """
+
+    share: fmpq
+    series: arb_poly
+    error: arb
+    reach: arb
+    radius: float
+    crowded: bool
+
+
+class Integral(NamedTuple):
+    """The integral of a branch over the middle part of a panel, which is ``share`` of it.
+
+    ``radius`` is that of the series' convergence in units of half the panel, as it seems to be, and ``crowded`` whether
+    other branches are near.
+    """
+
+    value: arb
+    share: fmpq
+    radius: float
+    crowded: bool
+
+
 def branch_integral(
-    in_v: Sequence[fmpz_poly], at_middle: RealRoot, middle: fmpq, radius: fmpq, fibre: Interval, order: int
-) -> arb | None:
-    """An enclosure of the integral of a branch over a panel.
+    in_v: Sequence[fmpz_poly],
+    at_middle: RealRoot,
+    panel: tuple[fmpq, fmpq],
+    fibre: Interval,
+    order: int,
+    wanted: fmpq,
+) -> Integral | None:
+    """An enclosure of the integral of a branch over a panel, or over the middle part of it.
 
     Parameters
     ----------
     in_v : coefficients in Z[u] of p as a polynomial in v.
     at_middle : the branch's value at the middle of the panel, isolated among the roots of p(middle, v).
-    middle, radius : of the panel, over whose interior no branches of the curve meet.
+    panel : its middle and half its width; over its interior no branches of the curve meet.
     order : degree of the polynomial approximation.
+    wanted : an error of the branch's height that would do; positive.
 
     Returns
     -------
@@ -55,19 +114,89 @@ def branch_integral(
     PrecisionTooLow
         When cancellation leaves too few bits.
     """
-    root = refine(at_middle, (fibre[1] - fibre[0]) / 2 ** (ctx.prec // 3))
+    root = refine(at_middle, min((fibre[1] - fibre[0]) / 2 ** (ctx.prec // 3), wanted))
     origin = root.low
-    local = local_coefficients(in_v, middle, radius, origin)
+    local = local_coefficients(in_v, *panel, origin)
+    tube = tube_around(local, order, arb(root.high - root.low), arb(wanted))
+    if tube is None:
+        return None
+    # w(h) is integrated over -1 <= h <= 1: odd powers cancel
+    mean = arb(origin)
+    for k, c in enumerate(tube.series.coeffs()):
+        if k % 2 == 0:
+            mean += c / (k + 1)
+    return Integral(
+        (mean + tube.error * arb(0, 1)) * arb(2 * panel[1] * tube.share), tube.share, tube.radius, tube.crowded
+    )
+
+
+def tube_around(local: Sequence[arb_poly], order: int, start: arb, wanted: arb) -> Tube | None:
+    """The tube around the root w(h) of sum_i b_i(h) w^i that starts near zero at h = 0, on as much of |h| <= 1 as seems
+    to be within the error that is wanted; None when it is not proved.
+
+    Parameters
+    ----------
+    order : degree of the series.
+    start : the tube reaches at least so far from w = 0 at h = 0.
+
+    Raises
+    ------
+    PrecisionTooLow
+        When cancellation leaves too few bits.
+    """
     if local[1][0].rel_accuracy_bits() < DERIVATIVE_BITS:
         raise PrecisionTooLow  # the root is simple, so the derivative is not zero
     steepness = abs(local[1][0])
     if len(local) > 2 and not _noise(local[0]) * _norm(local[2]) * 2**SEPARATION_BITS < steepness * steepness:
         raise PrecisionTooLow  # rounding blurs the branch nearly as far as the next one
     series = _series(local, order)
-    last, first = abs(series[order]).upper(), max((abs(c).upper() for c in series.coeffs()[1:]), default=arb(0))
-    if not 8 * last < first and not last < arb((fibre[1] - fibre[0]) / 2**20):
-        return None  # the series does not converge on this panel; trying on would only take time
-    residual, slope = _along(local, series)
+    part, radius = _usable(series, order, wanted)
+    share, crowded = fmpq(1), False
+    while share * part >= LEAST_SHARE:
+        if part < 1:
+            shrunk = arb_poly([0, arb(part)])
+            series, local = _exact(series(shrunk)), [b(shrunk) for b in local]
+        share = share * part
+        proved = _proved(local, series, start, wanted)
+        if proved is not None:
+            return Tube(share, series, *proved, radius, crowded)
+        part, crowded = fmpq(1, 2), True
+    return None
+
+
+def _usable(series: arb_poly, order: int, wanted: arb) -> tuple[fmpq, float]:
+    """The part of |h| <= 1 where the series seems to be near enough to its limit, and its radius of convergence."""
+    sizes = [abs(series[k]) for k in range(1, order + 1)]
+    largest = max((s.upper() for s in sizes), default=arb(0))
+    if not largest > 0:
+        return fmpq(1), 2.0**_DIGITS
+    relative = [float((s / largest).mid()) for s in sizes]
+    third = len(relative) // 3
+    last, before = max(relative[-third:], default=0.0), max(relative[-2 * third : -third], default=0.0)
+    if last == 0.0:
+        return fmpq(1), 2.0**_DIGITS
+    growth = (last / before) ** (1 / third) if before > 0 else 1.0
+    growth = max(growth, last ** (1 / len(relative)), 2.0**-_DIGITS)
+    allowed = max(float((wanted / largest).mid()), 2.0**-200)
+    part = min((allowed / (4 * last * growth)) ** (1 / (len(relative) + 1)), _CLOSE / growth)
+    # of few bits, as all arithmetic starts from it
+    return (fmpq(1) if part >= 1 else fmpq(int(part * 64), 64)), _radius(relative, growth)
+
+
+def _radius(sizes: Sequence[float], growth: float) -> float:
+    """Of convergence, by how the ratios of the last coefficients go on (Domb and Sykes); an estimate."""
+    ratios = [(k + 2) * b / a if a > 0 else 0.0 for k, (a, b) in enumerate(pairwise(sizes))][-4:]
+    if min(ratios, default=0.0) < _GAP * growth:
+        return 1 / (_ALGEBRAIC * growth)
+    return 1 / max([2.0**-_DIGITS, *(b - a for a, b in pairwise(ratios))])
+
+
+def _proved(local: Sequence[arb_poly], series: arb_poly, start: arb, wanted: arb) -> tuple[arb, arb] | None:
+    """The tube's error and reach where |h| <= 1."""
+    order = max(series.degree(), 0)
+    steepness = abs(local[1][0])
+    length, beyond = _length(local, series, steepness, wanted)
+    residual, slope = _along(local, series, length)
     # the series solves the equation to its order, so but for rounding the residual starts there
     if (
         len(local) > 2
@@ -75,25 +204,37 @@ def branch_integral(
     ):
         raise PrecisionTooLow
     scale = _inverse(slope, order)
-    error = _norm(scale * residual).upper()
-    least = (1 - _norm(scale * slope - 1)).lower()
+    size = _norm(scale)
+    error = _norm(scale * residual) + size * beyond[0]
+    least = (1 - _norm(scale * slope - 1) - size * beyond[1]).lower()
     if not least > 0:
         return None
-    start = abs(series[0]) + arb(root.high - root.low)
+    begin = abs(series[0]) + start
     near = (2 * error / least).upper()
-    tube = near if near > start.upper() else start.upper()
-    size, reach = _norm(scale), _norm(series) + tube
+    tube = 2 * near if 2 * near > begin.upper() else begin.upper()
+    reach = _norm(series) + tube
     if not 2 * size * _derivative_bound(local, 2, reach) * tube < least:
         # a finer bound: the second derivative along z itself, and the third in the tube
         bend = _norm(scale * _second_along(local, series)) + size * _derivative_bound(local, 3, reach) * tube
         if not 2 * bend * tube < least:
             return None
-    # w(h) is integrated over -1 <= h <= 1: odd powers cancel
-    mean = arb(origin)
-    for k, c in enumerate(series.coeffs()):
-        if k % 2 == 0:
-            mean += c / (k + 1)
-    return (mean + near * arb(0, 1)) * arb(2 * radius)
+    return near, tube
+
+
+def _length(local: Sequence[arb_poly], series: arb_poly, steepness: arb, wanted: arb) -> tuple[int, tuple[arb, arb]]:
+    """How many coefficients of p and its derivative by v along a series matter, and bounds for the other ones' sums."""
+    length = 1 + max(b.degree() + i * series.degree() for i, b in enumerate(local))
+    beyond = arb(0), arb(0)
+    for radius in _OUTER:
+        sizes = arb_poly([_norm(b, radius) for b in local])
+        far = _norm(series, radius)
+        value, slope = sizes(far), sizes.derivative()(far)
+        excess = (value / (wanted * steepness / 16)).union(slope / (steepness / 16)).upper()
+        if excess.is_finite():
+            number = 1 + int(max(0.0, float(excess.log().upper()) / log(radius)))
+            if number < length:
+                length, beyond = number, (value / arb(radius) ** number, slope / arb(radius) ** number)
+    return length, beyond
 
 
 def avoids(p: fmpz_poly, low: fmpq, high: fmpq) -> bool:
@@ -107,12 +248,13 @@ def avoids(p: fmpz_poly, low: fmpq, high: fmpq) -> bool:
 def avoids_zero(p: arb_poly, low: fmpq, high: fmpq) -> bool:
     """The same for a polynomial whose coefficients are known in balls."""
     radius = arb((high - low) / 2)
-    value, *rest = p(arb_poly([arb((low + high) / 2), radius])).coeffs() or [arb(0)]
-    return bool(sum((abs(c) for c in rest), arb(0)) < abs(value))
+    local = p(arb_poly([arb((low + high) / 2), radius]))
+    value = local[0]
+    return bool(_norm(local - value) < abs(value))
 
 
 def local_coefficients(
-    in_v: Sequence[fmpz_poly], middle: fmpq, radius: fmpq, origin: fmpq, number: int | None = None
+    in_v: Sequence[fmpz_poly], middle: fmpq | arb, radius: fmpq | arb, origin: fmpq | arb, number: int | None = None
 ) -> list[arb_poly]:
     """Coefficients b_i(h) of p(middle + radius h, origin + w) = sum_i b_i(h) w^i: all, or so many first ones."""
     line = arb_poly([arb(middle), arb(radius)])
@@ -134,12 +276,14 @@ def _series(local: Sequence[arb_poly], order: int) -> arb_poly:
     known = 1
     while True:
         length = min(2 * known, order + 1)
+        # the value begins where the known coefficients end, so the slope needs only as many as are new
+        new = max(1, length - known)
         value, slope = local[-1].truncate(length), arb_poly([0])
         for b in reversed(local[:-1]):
-            slope = (slope * w).truncate(length) + value
+            slope = (slope * w).truncate(new) + value.truncate(new)
             value = (value * w).truncate(length) + b.truncate(length)
-        step = (value * _inverse(slope, length - 1)).truncate(length)
-        w = arb_poly([c.mid() for c in (w - step).coeffs()])
+        step = (value * _inverse(slope, new - 1)).truncate(length)
+        w = _exact(w - step)
         if known == order + 1:
             return w
         known = length
@@ -162,15 +306,15 @@ def _inverse(p: arb_poly, order: int) -> arb_poly:
         inverse = arb_series([1], prec=length) / arb_series(p.coeffs()[:length], prec=length)
     finally:
         ctx.cap = previous
-    return arb_poly([c.mid() for c in inverse.coeffs()])
+    return _exact(arb_poly(inverse.coeffs()))
 
 
-def _along(local: Sequence[arb_poly], w: arb_poly) -> tuple[arb_poly, arb_poly]:
-    """p and its derivative by v along the approximation."""
-    value, slope = local[-1], arb_poly([0])
+def _along(local: Sequence[arb_poly], w: arb_poly, length: int) -> tuple[arb_poly, arb_poly]:
+    """The first coefficients of p and of its derivative by v along the approximation."""
+    value, slope = local[-1].truncate(length), arb_poly([0])
     for b in reversed(local[:-1]):
-        slope = slope * w + value
-        value = value * w + b
+        slope = (slope * w + value).truncate(length)
+        value = (value * w + b).truncate(length)
     return value, slope
 
 
@@ -196,6 +340,14 @@ def _noise(p: arb_poly) -> arb:
     return sum((c.rad() for c in p.coeffs()), arb(0))
 
 
-def _norm(p: arb_poly) -> arb:
-    """The sum of the coefficients' moduli: a bound for |p(h)|, |h| <= 1."""
-    return sum((abs(c) for c in p.coeffs()), arb(0))
+def _norm(p: arb_poly, radius: int = 1) -> arb:
+    """The sum of the coefficients' moduli where h = radius: a bound for |p(h)|, |h| <= radius.
+
+    In Horner's scheme a ball around zero adds up just these.
+    """
+    return abs(p(arb(0, radius))).upper()
+
+
+def _exact(p: arb_poly) -> arb_poly:
+    """With the coefficients' midpoints."""
+    return arb_poly([c.mid() for c in p.coeffs()])

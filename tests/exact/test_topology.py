@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from typing import Any
 
 import pytest
 from flint import fmpq, fmpz_mpoly, fmpz_poly
@@ -20,9 +21,11 @@ from support.examples import examples
 
 from ptmcad.algebra.polynomials import PLANE, coefficients_in
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part
+from ptmcad.exact.cad import area, mirrors
 from ptmcad.exact.cad.adjacency import Separator, cross
 from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.curves import Curve, curve
+from ptmcad.exact.cad.panels import Panel
 from ptmcad.exact.cad.projection import project
 from ptmcad.exact.cad.stacks import StackData, lift
 from ptmcad.exact.regions import Link, merge
@@ -328,6 +331,41 @@ def check_area(name: str, base: int, tolerance: Fraction) -> None:
     whole = (found.base[1] - found.base[0]) * (found.fibre[1] - found.fibre[0])
     window_area = Fraction(int(whole.p), int(whole.q))
     assert sum(a for a, _ in areas) <= window_area <= sum(b for _, b in areas)
+
+
+@pytest.mark.parametrize(
+    ("p", "window", "least"),
+    [
+        (circle(0, 0, 1), ("-2", "3/2", "-1/2", "2"), 1),
+        ((X**2 + Y**2) ** 3 - 4 * X**2 * Y**2, ("-2", "3/2", "-1", "3/4"), 3),
+        (Y**2 - X**2 * (X + 1), SQUARE, 2),
+        (Y - X**2, ("-2", "2", "1/2", "5/2"), 1),
+        (X * Y - 1, ("-2", "2", "-2", "2"), 0),
+    ],
+    ids=["disc", "rose", "node", "parabola", "hyperbola"],
+)
+def test_mirror_images_of_walls_are_walls(
+    p: fmpz_mpoly, window: Window, least: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In windows that are not symmetric, so that some walls have no image, or a part of one."""
+    found = decompose([p], window, 0)
+    parts = RegionStacks(found.stacks, found.pieces, found.curves, found.base, found.fibre)
+    images = []
+
+    def followed(*arguments: Any) -> list[Panel] | None:
+        image = mirrors.mirrored(*arguments)
+        images.append(image is not None)
+        return image
+
+    monkeypatch.setattr(area, "mirrored", followed)
+    bounds, _ = region_areas(parts, Fraction(1, 10**6))
+    assert sum(images) >= least
+    monkeypatch.setattr(area, "mirrored", lambda *_: None)
+    for (low, high), (bottom, top) in zip(bounds, region_areas(parts, Fraction(1, 10**6))[0], strict=True):
+        assert low <= top
+        assert bottom <= high
+    if not least:
+        assert not any(images)
 
 
 def _below(c: Curve, u: fmpq, low: fmpq, v: fmpq) -> Sequence[object]:

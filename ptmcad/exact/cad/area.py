@@ -2,9 +2,9 @@
 
 Guarantee: each area is an interval that contains the true value; its relative width is at most the tolerance asked for.
 
-Walls are integrated on panels (`panels`); panels where that fails, as it must at turning points, are halved, and there
-the branch is shut in between two horizontals that the curve does not meet. The number of panels grows with the
-logarithm of 1/tolerance.
+Walls are integrated on panels (`panels`), as long as their Taylor series are good for, and by a Puiseux series beside a
+turning point or cusp. Panels where that fails are halved, and there the branch is shut in between two horizontals that
+the curve does not meet.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from functools import lru_cache
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
@@ -23,7 +23,8 @@ from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve, by_component, max_height_bits
-from ptmcad.exact.cad.panels import Border, Effort, Panel, halves, panel
+from ptmcad.exact.cad.mirrors import Wall, mirrored, wall_of
+from ptmcad.exact.cad.panels import Border, Effort, Panel, halves, panels
 from ptmcad.exact.cad.stacks import StackData
 from ptmcad.text.balls import exact
 
@@ -33,12 +34,14 @@ Bounds = tuple[tuple[Fraction, Fraction], ...]
 _NEGLIGIBLE = Fraction(1, 10**15)
 _LONG_COEFFICIENT_BITS = 128
 """Bits granted at first to long coefficients."""
+_ROUGH_BITS = 8
+"""Bits by which heights are refined to know areas roughly."""
+_PANELS = 16
+"""Twice the number of panels that a border may take, about."""
 _HOPELESS_RATIO = 2**8
 """So much larger than allowed are strips against rough areas, when it is pointless to find out about the exact ones."""
 _CACHED_FIBRES = 1024
 """Fibres whose roots are remembered."""
-_ROUGH_HEIGHT_BITS = 20
-"""Bits to which the height of a branch is asked for before the regions' areas are known roughly."""
 
 
 class RegionStacks(NamedTuple):
@@ -66,12 +69,13 @@ class RegionStacks(NamedTuple):
         """Of the window."""
         return self.fibre[1] - self.fibre[0]
 
-    def borders(self) -> Iterator[list[Border]]:
+    def borders(self, spans: Sequence[Interval]) -> Iterator[list[Border]]:
         """For each stack the walls between different regions, from below."""
         curve_of = by_component(self.curves)
-        for stack, row in zip(self.stacks, self.regions, strict=True):
+        for stack, row, span in zip(self.stacks, self.regions, spans, strict=True):
+            ends = stack.left, stack.right
             yield [
-                Border(curve_of[wall.component], wall.root, below, above)
+                Border(curve_of[wall.component], wall.root, below, above, span, ends)
                 for wall, (below, above) in zip(stack.walls, pairwise(row), strict=True)
                 if below != above
             ]
@@ -92,10 +96,16 @@ class _Strips(NamedTuple):
 
 
 class _Frame(NamedTuple):
-    """What the areas are without walls: the exact contributions of the window's edges, and the area in the strips."""
+    """What the areas are without walls: the exact contributions of the window's edges, and the area in the strips.
+
+    Attributes
+    ----------
+    allowed : for each region, the error of a panel's integral that would probably do.
+    """
 
     fixed: Sequence[fmpq]
     lost: fmpq
+    allowed: Sequence[fmpq]
 
     def bounds(self, panels: Sequence[Panel]) -> Bounds:
         totals = [arb(f) for f in self.fixed]
@@ -142,7 +152,7 @@ def region_areas(
         return isolate(curve_of[component].fibre(u), *parts.fibre)
 
     while True:
-        effort = Effort(digits + 2, width, parts.fibre, broad, narrowest / 2 ** (bits // 2), roots)
+        effort = Effort(digits + 6, width, parts.fibre, broad, narrowest / 2 ** (bits // 2), roots)
         try:
             with ctx.workprec(bits):
                 bounds = _areas(parts, strips, tolerance * 3 / 4, effort, check)
@@ -169,7 +179,9 @@ def _with_room(bounds: tuple[Fraction, Fraction], tolerance: Fraction, whole: Fr
     """Bounds a little wider, so that a checker who encloses the area less tightly can still confirm them."""
     low, high = bounds
     known = high - low <= low * _NEGLIGIBLE  # walls on which the Taylor polynomials are exact, such as straight lines
-    room = low * (_NEGLIGIBLE / 100 if known else tolerance / 16)
+    # bounds that are narrower than asked for would cost the checker time for nothing
+    spare = max(low * tolerance / 16, (low * tolerance / 2 - (high - low)) / 2)
+    room = low * _NEGLIGIBLE / 100 if known else spare
     return max(low - room, Fraction(0)), min(high + room, whole)
 
 
@@ -179,17 +191,22 @@ def _areas(
     """One attempt, at the context's precision."""
     spans = _spans(parts.stacks, strips)
     lost = sum((b[0] - a[1] for a, b in pairwise(spans)), fmpq(0)) * parts.height
-    if strips.own:
-        rough = _rough(spans, parts, effort)
-        if lost * 4 > from_fraction(tolerance) * min(rough) * _HOPELESS_RATIO:
-            raise _Unreachable(strips=True)
-    wanted = parts.height / 2**_ROUGH_HEIGHT_BITS
-    panels = []
-    for (low, high), borders in zip(spans, parts.borders(), strict=True):
-        for border in borders:
-            check()
-            panels.append(panel(border, low, high, effort, wanted))
-    return _refine(panels, _Frame(_edges(spans, parts), lost), tolerance, effort, check)
+    borders = list(parts.borders(spans))
+    rough = _rough(spans, parts, borders, effort)
+    if strips.own and lost * 4 > from_fraction(tolerance) * min(rough) * _HOPELESS_RATIO:
+        raise _Unreachable(strips=True)
+    load = Counter(i for row in borders for b in row for i in (b.below, b.above))
+    # of a panel's integral: what would do if all were about as bad, with some more panels than borders
+    allowed = [from_fraction(tolerance) * rough[i] / (_PANELS * max(load[i], 1)) for i in range(parts.number)]
+    known: dict[Wall, list[Panel]] = {}
+    for border in chain.from_iterable(borders):
+        check()
+        found = mirrored(border, known, effort)
+        if found is None:
+            found = panels(border, border.span, effort, min(allowed[border.below], allowed[border.above]))
+        known[wall_of(border)] = found
+    covered = [p for found in known.values() for p in found]
+    return _refine(covered, _Frame(_edges(spans, parts), lost, allowed), tolerance, effort, check)
 
 
 def _isolated(stack: StackData) -> fmpq:
@@ -225,17 +242,29 @@ def _span(stack: StackData, left_strip: fmpq, right_strip: fmpq) -> Interval:
     return left, right
 
 
-def _rough(spans: Sequence[Interval], parts: RegionStacks, effort: Effort) -> list[fmpq]:
+def _rough(
+    spans: Sequence[Interval], parts: RegionStacks, borders: Sequence[Sequence[Border]], effort: Effort
+) -> list[fmpq]:
     """Each region's area as if its cells were as high everywhere as in the middle; it proves nothing."""
     total = [fmpq(0)] * parts.number
-    for (low, high), borders, row in zip(spans, parts.borders(), parts.regions, strict=True):
+    for (low, high), over, row in zip(spans, borders, parts.regions, strict=True):
+        walls = _told_apart([b.over((low + high) / 2, effort) for b in over], parts.height)
         bottom = parts.fibre[0]
-        for border in borders:
-            at_middle = border.over((low + high) / 2, effort)
-            total[border.below] += (at_middle.high - bottom) * (high - low)
-            bottom = at_middle.low
+        for border, wall in zip(over, walls, strict=True):
+            total[border.below] += (wall.high - bottom) * (high - low)
+            bottom = wall.low
         total[row[-1]] += (parts.fibre[1] - bottom) * (high - low)
     return total
+
+
+def _told_apart(roots: Sequence[RealRoot], height: fmpq) -> list[RealRoot]:
+    """Roots of a fibre known well enough to tell about how far they are from each other."""
+    width = height / 2**_ROUGH_BITS
+    near = [refine(r, width) for r in roots]
+    while any(b.high - a.low > 2 * (b.low - a.high) for a, b in pairwise(near)):
+        width = width / 2**_ROUGH_BITS
+        near = [refine(r, width) for r in near]
+    return near
 
 
 def _edges(spans: Sequence[Interval], parts: RegionStacks) -> list[fmpq]:
@@ -267,15 +296,8 @@ def _refine(
                 check()
                 if p.high - p.low < effort.narrowest:
                     raise _Unreachable(strips=False)
-                refined += halves(p, effort, _wanted(from_fraction(allowed) / (p.high - p.low), effort.fibre))
+                least = min(frame.allowed[p.border.below], frame.allowed[p.border.above])
+                refined += halves(p, effort, min(least, from_fraction(allowed) / 4))
             else:
                 refined.append(p)
         panels = refined
-
-
-def _wanted(allowed: fmpq, fibre: Interval) -> fmpq:
-    """The error of a branch's height to ask for where this much is allowed now: with twice as many right digits.
-
-    What is allowed falls as the areas get known better, and panels that miss it then would have to be halved.
-    """
-    return min(allowed, allowed * allowed / (fibre[1] - fibre[0])) / 2

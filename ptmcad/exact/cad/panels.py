@@ -1,7 +1,8 @@
 """Panels: parts of the walls that separate two regions, each with an enclosure of the branch's integral.
 
 Guarantee: the integral lies in the enclosure, whichever way it was found: by the branch's Taylor series
-(`algebra.branches`), between arcs (`algebra.arcs`), between horizontals, or between the window's edges.
+(`algebra.branches`), by its Puiseux series beside a singular point (`algebra.puiseux`), between arcs (`algebra.arcs`),
+between horizontals, or between the window's edges.
 """
 
 from __future__ import annotations
@@ -13,13 +14,21 @@ from typing import NamedTuple
 from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.arcs import arc_integral
-from ptmcad.algebra.branches import PrecisionTooLow, branch_integral
-from ptmcad.algebra.real_roots import RealRoot, simplest_between
+from ptmcad.algebra.branches import Integral, PrecisionTooLow, branch_integral
+from ptmcad.algebra.puiseux import Beside, puiseux_integral
+from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve
 from ptmcad.exact.cad.horizontals import horizontals
+from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.text.balls import exact
 
+_REGULAR = 1.5
+"""A branch seems to be regular at the ends of an interval if its series converges so much farther."""
+_MOST = 64
+"""Panels that an interval is cut into before it is known whether its rest matters."""
+_LEAST_BITS = 6
+"""At least so many bits of a branch's height are wanted."""
 _HALVING_CUTS = 5
 """Cuts by half towards a turning point before they come faster."""
 _MAX_CUTS = 10
@@ -47,12 +56,20 @@ class Effort(NamedTuple):
 
 
 class Border(NamedTuple):
-    """A wall, the ``root``-th real root of a curve, that separates region ``below`` from region ``above``."""
+    """A wall, the ``root``-th real root of a curve over a stack, that separates region ``below`` from region ``above``.
+
+    Attributes
+    ----------
+    span : the stack's base interval without strips at its ends.
+    ends : the stack's true ends.
+    """
 
     curve: Curve
     root: int
     below: int
     above: int
+    span: Interval
+    ends: tuple[BaseEnd, BaseEnd]
 
     def over(self, u: fmpq, effort: Effort) -> RealRoot:
         """Its height over an abscissa of its stack, isolated."""
@@ -62,7 +79,7 @@ class Border(NamedTuple):
 class Panel(NamedTuple):
     """The part of a border over [low, high], with the enclosure of its integral.
 
-    ``smooth`` shows whether the branch was enclosed by its Taylor series or by arcs; ``singular`` is not zero when that
+    ``smooth`` shows whether the branch was enclosed by a series or by arcs; ``singular`` is not zero when that
     is not even tried because the branch seems to turn at the left (negative) or right (positive) end, and counts how
     often it seemed so. Neither affects the guarantee.
     """
@@ -80,27 +97,80 @@ class Panel(NamedTuple):
         return 2 * exact(self.integral.rad())
 
 
-def panel(border: Border, low: fmpq, high: fmpq, effort: Effort, wanted: fmpq, singular: int = 0) -> Panel:
-    """A panel with the first enclosure that works: Taylor series, arcs, horizontals, the window's edges.
+def panels(border: Border, over: Interval, effort: Effort, allowed: fmpq, singular: int = 0) -> list[Panel]:
+    """Panels over an interval, from the left, each with the first enclosure that works: Taylor series, arcs,
+    horizontals, the window's edges.
+
+    Where the series is near enough to the branch in the middle of the interval only, what remains is covered likewise,
+    or by a series about the singular point at the stack's end.
 
     Parameters
     ----------
-    wanted : an error of the branch's height that would do.
+    allowed : an error of each panel's integral that would do.
     """
-    at_middle = border.over((low + high) / 2, effort)
-    integral = _smooth(border, at_middle, (low, high), effort, wanted) if singular == 0 else None
-    smooth = integral is not None
-    if integral is None:
+    if singular:
+        return [_rough_panel(border, over, effort, singular)]
+    done: list[Panel] = []
+    left = [over]
+    while left:
+        low, high = left.pop()
+        hopeless = len(done) > _MOST or high - low < effort.narrowest
+        middle, radius = (low + high) / 2, (high - low) / 2
+        found = None if hopeless else _smooth(border, (low, high), effort, allowed)
+        if found is None:
+            done.append(_rough_panel(border, (low, high), effort, 0))
+            continue
+        start, stop = middle - radius * found.share, middle + radius * found.share
+        done.append(Panel(border, start, stop, found.value, True, 0))
+        if start < stop < high and found.radius < _REGULAR:
+            if low == border.span[0]:
+                done.append(_at_end(border, (low, start), 0, effort, allowed))
+                low = done[-1].high
+            if high == border.span[1]:
+                done.append(_at_end(border, (stop, high), 1, effort, allowed))
+                high = done[-1].low
+        left += [rest for rest in ((low, start), (stop, high)) if rest[0] < rest[1]]
+    return sorted(done, key=lambda p: p.low)
+
+
+def _rough_panel(border: Border, over: Interval, effort: Effort, singular: int) -> Panel:
+    """A panel between horizontals, or the window's edges."""
+    width = over[1] - over[0]
+    bottom, top = effort.fibre
+    if width < effort.broad:
+        at_middle = border.over((over[0] + over[1]) / 2, effort)
+        bottom, top = horizontals(border.curve, at_middle, over, width / effort.width, effort.fibre)
+    return Panel(border, *over, arb(bottom).union(arb(top)) * arb(width), False, singular)
+
+
+def _at_end(border: Border, over: Interval, side: int, effort: Effort, allowed: fmpq) -> Panel:
+    """A panel from an end of the stack as far as a series about that end reaches; a rough one when that fails."""
+    end, near, far = border.ends[side], over[side], over[1 - side]
+    width = far - near
+    strip = arb(0)
+    if end.value == near:
+        # what is not exactly zero cannot be divided by a power of zero
         bottom, top = effort.fibre
-        if high - low < effort.broad:
-            share = (high - low) / effort.width
-            bottom, top = horizontals(border.curve, at_middle, (low, high), share, effort.fibre)
-        integral = arb(bottom).union(arb(top)) * arb(high - low)
-    return Panel(border, low, high, integral, smooth, singular)
+        left_out = min(abs(width) / 2**_LEAST_BITS, allowed / (top - bottom) / 2) * (1 if width > 0 else -1)
+        near = simplest_between(*sorted((near + left_out / 2, near + left_out)))
+        strip = arb(bottom).union(arb(top)) * arb(abs(near - end.value))
+    bits = ctx.prec + 3 * int(abs(width / (near - end.value)).ceil()).bit_length()
+    with ctx.workprec(bits):
+        abscissa = arb(end.value)
+        if end.root is not None:
+            root = refine(end.root, abs(width) / fmpq(2) ** bits)
+            abscissa = arb(root.low).union(arb(root.high))
+        beside = Beside(abscissa, near, far)
+        found = puiseux_integral(border.curve.in_v, beside, lambda u: border.over(u, effort), 2 * effort.order, allowed)
+    if found is None:
+        return _rough_panel(border, over, effort, 2 * side - 1)
+    value, cut = found
+    ends = (over[0], cut) if side == 0 else (cut, over[1])
+    return Panel(border, *ends, value + strip, True, 0)
 
 
-def halves(p: Panel, effort: Effort, wanted: fmpq) -> tuple[Panel, Panel]:
-    """The two parts of a panel; if only one of them is smooth, the other one's far end is taken to be singular.
+def halves(p: Panel, effort: Effort, allowed: fmpq) -> list[Panel]:
+    """The parts of a panel; if only one half is smooth, the other one's far end is taken to be singular.
 
     A branch that turns at an end is cut nearer and nearer to that end. When this has gone well for some times, the cuts
     come so fast that a turn which is many orders of magnitude smaller than the panel is reached in a few steps.
@@ -111,18 +181,19 @@ def halves(p: Panel, effort: Effort, wanted: fmpq) -> tuple[Panel, Panel]:
     margin = (p.high - p.low) * min(share, 1 - share) / 8
     cut = p.low + (p.high - p.low) * share
     middle = simplest_between(cut - margin, cut + margin)
-    left = panel(p.border, p.low, middle, effort, wanted, min(p.singular, 0))
-    right = panel(p.border, middle, p.high, effort, wanted, max(p.singular, 0))
-    if left.smooth and not right.smooth:
-        right = right._replace(singular=min(max(p.singular, 0) + 1, _MAX_CUTS))
-    elif right.smooth and not left.smooth:
-        left = left._replace(singular=max(min(p.singular, 0) - 1, -_MAX_CUTS))
+    left = panels(p.border, (p.low, middle), effort, allowed, min(p.singular, 0))
+    right = panels(p.border, (middle, p.high), effort, allowed, max(p.singular, 0))
+    first, last = left[0], right[-1]
+    if left[-1].smooth and first.smooth and not last.smooth:
+        right[-1] = last._replace(singular=min(max(p.singular, 0) + 1, _MAX_CUTS))
+    elif right[0].smooth and last.smooth and not first.smooth:
+        left[0] = first._replace(singular=max(min(p.singular, 0) - 1, -_MAX_CUTS))
     elif abs(p.singular) > _HALVING_CUTS:
-        left, right = (q._replace(singular=(q.singular > 0) - (q.singular < 0)) for q in (left, right))
-    return left, right
+        left[0], right[-1] = (q._replace(singular=(q.singular > 0) - (q.singular < 0)) for q in (first, last))
+    return left + right
 
 
-def _smooth(border: Border, at_middle: RealRoot, over: Interval, effort: Effort, wanted: fmpq) -> arb | None:
+def _smooth(border: Border, over: Interval, effort: Effort, allowed: fmpq) -> Integral | None:
     """The integral of a branch that does not turn, by its Taylor series or between arcs; None if neither is proved.
 
     Raises
@@ -132,9 +203,11 @@ def _smooth(border: Border, at_middle: RealRoot, over: Interval, effort: Effort,
     """
     in_v = border.curve.in_v
     middle, radius = (over[0] + over[1]) / 2, (over[1] - over[0]) / 2
+    at_middle = border.over(middle, effort)
+    wanted = min(allowed / (2 * radius), (effort.fibre[1] - effort.fibre[0]) / 2**_LEAST_BITS)
 
-    def by_series() -> arb | None:
-        return branch_integral(in_v, at_middle, middle, radius, effort.fibre, effort.order)
+    def by_series() -> Integral | None:
+        return branch_integral(in_v, at_middle, (middle, radius), effort.fibre, effort.order, wanted)
 
     def branch(u: fmpq) -> RealRoot:
         return at_middle if u == middle else border.over(u, effort)
@@ -144,13 +217,17 @@ def _smooth(border: Border, at_middle: RealRoot, over: Interval, effort: Effort,
         series = by_series()
     except PrecisionTooLow:
         obstacle = True
-    if series is not None:
+    if series is not None and not series.crowded:
         return series
-    between = arc_integral(in_v, branch, middle, radius, effort.fibre, wanted)
-    return _more_precisely(by_series) if between is None and obstacle else between
+    # arcs do not mind other branches; they are better, and found sooner, if they start from more digits
+    fine = min(wanted, wanted * wanted / (effort.fibre[1] - effort.fibre[0])) / 2
+    between = arc_integral(in_v, branch, middle, radius, effort.fibre, fine)
+    if between is not None and (series is None or between.rad() < arb(allowed)):
+        return Integral(between, fmpq(1), 1.0, False)
+    return _more_precisely(by_series) if obstacle else series
 
 
-def _more_precisely(enclose: Callable[[], arb | None]) -> arb | None:
+def _more_precisely(enclose: Callable[[], Integral | None]) -> Integral | None:
     """An enclosure at twice to eight times the precision."""
     bits, most = 2 * ctx.prec, 8 * ctx.prec
     while True:
