@@ -6,12 +6,10 @@ has v in it. (Lemma 21 of docs/soundness.md.)
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from ptmcad.certified.formula import Formula, Operation
-
-AXES = (0, 1)
 
 
 class Quotient(NamedTuple):
@@ -22,29 +20,32 @@ class Quotient(NamedTuple):
     slope: Formula
 
 
-def quotients(vanishing: Iterable[Formula], unknowns: Sequence[int]) -> tuple[Quotient, ...]:
-    """For each axis among the unknowns the formulas, of those that vanish at solutions, that are linear in it.
+def quotients(vanishing: Iterable[Formula], axes: Iterable[int]) -> tuple[Quotient, ...]:
+    """For each axis the formulas, of those that vanish at solutions, that are linear in it.
 
     Parameters
     ----------
     vanishing : formulas without a `meet` that may be empty.
+    axes : unknowns that the configuration tells, as it tells loads, stiffnesses and free lengths. To solve for an axis
+        that springs' directions depend on is sound, and no use: the direction of a short one may be anything.
     """
     formulas = list(dict.fromkeys(vanishing))
-    return tuple(q for axis in AXES if axis in unknowns for formula in formulas for q in _quotient(formula, axis))
+    return tuple(q for axis in axes for formula in formulas for q in _quotient(formula, axis))
+
+
+def occurs(variable: int, formula: Formula) -> bool:
+    """Whether the formula has the variable in it."""
+    return any(n.operation is Operation.VARIABLE and n.variable == variable for n in _nodes(formula))
 
 
 def _quotient(formula: Formula, axis: int) -> Iterator[Quotient]:
     graph = formula.graph
     slope = graph.derivative(formula, axis)
     # a slope that is zero nowhere for the graph's rules may be so: it is left to the search
-    if slope.value != 0 and not _occurs(axis, slope):
+    if slope.value != 0 and not occurs(axis, slope):
         rest = _without(axis, formula)
         if rest is not None:
             yield Quotient(axis, rest, slope)
-
-
-def _occurs(variable: int, formula: Formula) -> bool:
-    return any(n.operation is Operation.VARIABLE and n.variable == variable for n in _nodes(formula))
 
 
 def _without(variable: int, formula: Formula) -> Formula | None:

@@ -14,7 +14,7 @@ import numpy as np
 
 from ptmcad.certified.evaluation import Indices, Program, program
 from ptmcad.certified.formula import Formula
-from ptmcad.certified.solved import quotients
+from ptmcad.certified.solved import Quotient
 from ptmcad.certified.tape import Tape, record
 
 
@@ -72,6 +72,7 @@ def system(
     vanishing: tuple[Sequence[Formula], Sequence[Formula]] = ((), ()),
     nonnegative: Sequence[Formula] = (),
     jacobian: Sequence[Sequence[Formula]] | None = None,
+    solved: Sequence[Quotient] = (),
 ) -> System:
     """Write a system out.
 
@@ -82,15 +83,15 @@ def system(
     vanishing : formulas that vanish at every solution, beside the equations: cheap ones without a `meet`, then others.
     nonnegative : formulas that are at least zero at every solution looked for.
     jacobian : the equations' derivatives by the unknowns, where there are better formulas than those of the graph.
+    solved : of formulas that vanish at solutions; their variables are among the unknowns.
     """
     graph = equations[0].graph
     if jacobian is None:
         jacobian = [[graph.derivative(f, x) for x in unknowns] for f in equations]
     cheap, costly = vanishing
     first, rest = list(equations[:2]), list(equations[2:])
-    known = quotients([*first, *cheap, *rest], unknowns)
     tape = record([
-        [formula for quotient in known for formula in (quotient.rest, quotient.slope)],
+        [formula for quotient in solved for formula in (quotient.rest, quotient.slope)],
         [*first, *cheap],
         rest,
         [*costly, *nonnegative],
@@ -105,6 +106,6 @@ def system(
         tape.outputs[3].reshape(len(equations), len(unknowns)),
         (tape.outputs[0], tape.outputs[1], tape.outputs[2][: len(costly)]),
         tape.outputs[2][len(costly) :],
-        np.column_stack([np.array([quotient.variable for quotient in known], np.int64), places]),
+        np.column_stack([np.array([quotient.variable for quotient in solved], np.int64), places]),
         solved_end,
     )

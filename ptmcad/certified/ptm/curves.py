@@ -28,6 +28,7 @@ from ptmcad.certified.ptm.statics import (
     statics,
 )
 from ptmcad.certified.scales import axis_weights
+from ptmcad.certified.solved import quotients
 from ptmcad.certified.system import system
 from ptmcad.errors import DegenerateSliceError
 from ptmcad.question.slice import Count, Slice
@@ -102,6 +103,7 @@ def _folds(slice: Slice, without: frozenset[str], *, stable: bool) -> Iterator[C
                 [there.determinant, m.turned, *([] if stable else [there.levelled])],
             ),
             [*([m.lengths[2] - short] if split else []), *(_semidefinite(m) if stable else [])],
+            solved=quotients([e1, e2, balance, *m.dependent], _statical(slice)),
         ),
         (TURN, TURN),
     )
@@ -123,6 +125,7 @@ def _folds(slice: Slice, without: frozenset[str], *, stable: bool) -> Iterator[C
                 [there.determinant_times_l3, *([m.turned] if stable else [there.levelled])],
             ),
             [m.lengths[2], short - length(*m.vectors[2]), *(_semidefinite(m) if stable else [])],
+            solved=quotients([*m.equilibrium, *m.dependent], _statical(slice)),
         ),
         (TURN, TURN, PHI),
     )
@@ -149,6 +152,7 @@ def _on_the_mirror(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
                 (0, 1, 2),
                 _dependent(without, [], [across_there, m.turn] if pitchfork else [along_there]),
                 [along_there, there.p11] if pitchfork else [across, m.turn, there.p11],
+                solved=quotients([balance, across] if pitchfork else [balance], _statical(slice)),
             ),
             (TURN,),
         )
@@ -180,9 +184,15 @@ def _off_the_mirror(slice: Slice, without: frozenset[str]) -> Curve:
                 [there.determinant, m.turned, determinant(there)],
             ),
             [*_semidefinite(m), curvature],
+            solved=quotients([e1, e2, e1 + e2, slope, *m.dependent], _statical(slice)),
         ),
         (TURN, QUARTER),
     )
+
+
+def _statical(slice: Slice) -> list[int]:
+    """The axes that the mechanism's geometry does not depend on: loads, stiffnesses and free lengths."""
+    return [k for k in (0, 1) if not any(slice.parameters[name].uses(k) for name in ("rho", "L1", "L2"))]
 
 
 def _semidefinite(m: Statics) -> list[Formula]:
@@ -203,7 +213,12 @@ def _cone(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
         yield Curve(
             "cone",
             "an equilibrium is swallowed by the cone l3 = 0",
-            system([*m.vectors[2], *m.equilibrium], (0, 1, 2, 3, 4), _dependent(without, [*m.dependent, m.unit], [])),
+            system(
+                [*m.vectors[2], *m.equilibrium],
+                (0, 1, 2, 3, 4),
+                _dependent(without, [*m.dependent, m.unit], []),
+                solved=quotients([*m.equilibrium, *m.dependent], _statical(slice)),
+            ),
             (TURN, TURN, PHI),
         )
 
@@ -237,6 +252,7 @@ def _admissible(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
                 (0, 1, 2, 3),
                 _dependent(without, [*m.dependent, *dependent], []),
                 [*_semidefinite(m), m.at_equilibrium.determinant, m.turned],
+                solved=quotients([*m.equilibrium, *m.dependent], _statical(slice)),
             ),
             (TURN, TURN),
         )
