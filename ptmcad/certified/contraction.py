@@ -139,6 +139,29 @@ def contract(system: Arguments, box_low: Floats, box_high: Floats, work: Workspa
     return True
 
 
+@inlined
+def determined(quotient: Indices, low: Floats, high: Floats) -> bool:
+    """Whether a row of ``System.solved`` tells its variable from the others over the whole box."""
+    slope = quotient[2]
+    positive: bool = low[slope] > 0
+    negative: bool = high[slope] < 0
+    return positive or negative
+
+
+@compiled
+def narrowed(quotient: Indices, low: Floats, high: Floats, box_low: Floats, box_high: Floats) -> bool:
+    """Intersect the variable of a row of ``System.solved`` with its value at solutions; False when nothing is left."""
+    if determined(quotient, low, high):
+        x, rest, slope = quotient[0], quotient[1], quotient[2]
+        u, v = reciprocal(low[slope], high[slope])
+        u, v = multiply(-high[rest], -low[rest], u, v)
+        box_low[x] = max(box_low[x], u)
+        box_high[x] = min(box_high[x], v)
+        if box_low[x] > box_high[x]:
+            return False
+    return True
+
+
 @compiled
 def linearise(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace) -> int:
     """Test a box and enclose its equations' derivatives: -1 no solution, 0 a derivative may be unbounded, 1 done.
@@ -146,10 +169,17 @@ def linearise(system: Arguments, box_low: Floats, box_high: Floats, work: Worksp
     Afterwards ``work`` has the middle and the radii of the box, the equations there, their derivatives over the box,
     and the middles of these.
     """
-    program, stages, unknowns, equations, jacobian, cheap, rest, costly, nonnegative = system
+    program, stages, unknowns, equations, jacobian, cheap, rest, costly, nonnegative, solved, solved_end = system
     low, high, low_at, high_at, middle_low, middle_high, radius, j_low, j_high, matrix, _ = work
     m, n = jacobian.shape
     begin = ZERO
+    if len(solved) > 0:
+        if not run(program, box_low, box_high, low, high, ZERO, solved_end):
+            return -1
+        begin = solved_end
+        for k in range(len(solved)):
+            if not narrowed(solved[k], low, high, box_low, box_high):
+                return -1
     for stage in range(4):
         if not run(program, box_low, box_high, low, high, begin, stages[stage]):
             return -1

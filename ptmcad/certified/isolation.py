@@ -58,7 +58,7 @@ def holds_one(system: Arguments, box_low: Floats, box_high: Floats, work: Worksp
     |A_ii| r_i for each i. So (Y f)_i has opposite signs on opposite faces, which proves existence (Miranda), and no
     matrix in A is singular, which proves uniqueness.
     """
-    program, stages, unknowns, equations, jacobian, _, _, _, _ = system
+    program, stages, unknowns, equations, jacobian, _, _, _, _, _, _ = system
     low, high, low_at, high_at, middle_low, middle_high, radius, _, _, matrix, inverse = work
     m, n = jacobian.shape
     if not run(program, box_low, box_high, low, high, ZERO, stages[3]):

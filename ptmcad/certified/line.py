@@ -87,7 +87,7 @@ def line_counts(slice: Slice, varying: int, value: Fraction, bits: int) -> LineC
 
 def _gaps(slice: Slice, curve: Curve, varying: int, value: Fraction, bits: int) -> Iterator[Gap]:
     """Where the line meets a curve; parts of it that are too hard as a whole are halved while the budget lasts."""
-    system = _on_line(curve.system, varying)
+    system = on_line(curve.system, varying)
     equations = replace(system, vanishing=(_NONE, _NONE, _NONE), nonnegative=_NONE)
     axis = slice.axes[varying]
     step = (axis.high - axis.low) / START_PARTS
@@ -127,10 +127,13 @@ def _balls(row: Boxes, varying: int, value: Fraction) -> Box:
     return tuple(box)
 
 
-def _on_line(system: System, varying: int) -> System:
+def on_line(system: System, varying: int) -> System:
     """The square system that is left when the other axis has a value."""
     kept = np.array([k for k, unknown in enumerate(system.unknowns) if unknown != 1 - varying], np.int64)
-    return replace(system, unknowns=system.unknowns[kept], jacobian=np.ascontiguousarray(system.jacobian[:, kept]))
+    # the value is fixed: what the equations say of it must not narrow the floats around it
+    solved = system.solved[system.solved[:, 0] == varying]
+    jacobian = np.ascontiguousarray(system.jacobian[:, kept])
+    return replace(system, unknowns=system.unknowns[kept], jacobian=jacobian, solved=solved)
 
 
 def _joined(gaps: list[Gap]) -> list[Gap]:

@@ -10,12 +10,13 @@ proves.
 
 from __future__ import annotations
 
+from math import inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
-from ptmcad.certified.compiled import ZERO, compiled
-from ptmcad.certified.contraction import contract, workspace
+from ptmcad.certified.compiled import ZERO, compiled, inlined
+from ptmcad.certified.contraction import Workspace, contract, determined, workspace
 from ptmcad.certified.evaluation import Floats
 from ptmcad.certified.isolation import inflated
 from ptmcad.certified.system import Arguments
@@ -23,6 +24,11 @@ from ptmcad.certified.system import Arguments
 Boxes = Floats
 """Shape (k, 2v): low ends of the v variables, then high ends."""
 CUT = 0.5
+SOLVED_WEIGHT = 0.1
+"""Of the width of an axis that the equations are solved for: it follows from the other variables."""
+MAX_SLIVER_RATIO = 8
+"""With an axis that is solved for a box is left alone only if it is at most this many times as long in any variable as
+its projection would be as a square: a box whose edge alone has the value of the axis has no area, and says nothing."""
 MAX_PROOF_WIDTH = 1e-2
 """Boxes at most this wide are tried for a proof of existence."""
 NEVER = -1.0
@@ -107,6 +113,9 @@ def branch_and_prune(system: Arguments, equations: Arguments, start: Boxes, limi
     unique, narrow = np.empty((4, 2 * variables)), np.empty((4, 2 * variables))
     top = start.shape[0]
     proved = finished = used = ZERO
+    longest = inf
+    if len(system.solved) > 0 and limits.area > 0:
+        longest = MAX_SLIVER_RATIO * sqrt(limits.area * weights[0] * weights[1])
     box = np.empty(2 * variables)
     low, high = box[:variables], box[variables:]
     while top > 0 and used < limits.budget and finished <= limits.allowed:
@@ -120,6 +129,8 @@ def branch_and_prune(system: Arguments, equations: Arguments, start: Boxes, limi
         for x in system.unknowns:
             middle = low[x] + CUT * (high[x] - low[x])
             size = (high[x] - low[x]) * weights[x]
+            if is_known(x, system, work):
+                size *= SOLVED_WEIGHT
             if size > width and low[x] < middle < high[x]:
                 widest, width = x, size
         if width <= limits.proof_width:
@@ -133,7 +144,7 @@ def branch_and_prune(system: Arguments, equations: Arguments, start: Boxes, limi
                 proved += 1
                 continue
         area = (high[0] - low[0]) * (high[1] - low[1])
-        if widest < 0 or width <= limits.width or area <= limits.area:
+        if widest < 0 or width <= limits.width or (area <= limits.area and width <= longest):
             small = _with(small, finished, box)
             finished += 1
             continue
@@ -143,6 +154,15 @@ def branch_and_prune(system: Arguments, equations: Arguments, start: Boxes, limi
         stack[top + 1, widest] = middle
         top += 2
     return Found(unique[:proved].copy(), narrow[:proved].copy(), small[:finished].copy(), stack[:top].copy(), used)
+
+
+@inlined
+def is_known(variable: int, system: Arguments, work: Workspace) -> bool:
+    """Whether the equations, solved for the variable, bound it over the box that was contracted last."""
+    for k in range(len(system.solved)):
+        if system.solved[k, 0] == variable and determined(system.solved[k], work.low, work.high):
+            return True
+    return False
 
 
 @compiled

@@ -7,13 +7,14 @@ are at least zero. Everything else in it holds at each solution and serves to di
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from ptmcad.certified.evaluation import Indices, Program, program
 from ptmcad.certified.formula import Formula
+from ptmcad.certified.solved import Quotient
 from ptmcad.certified.tape import Tape, record
 
 
@@ -28,6 +29,8 @@ class System:
     unknowns : int64 (n,): the numbers of the variables that are searched; others are fixed (narrow) intervals.
     equations : int64 (m,): places on the tape.
     jacobian : int64 (m, n): places of df_i/dx_j.
+    solved : int64 (k, 3): a variable and the places of two formulas, rest and slope, with rest + slope v = 0 for the
+        variable's value v at each solution. They stand before ``solved_end``, at the beginning of the tape.
     """
 
     tape: Tape
@@ -36,12 +39,14 @@ class System:
     jacobian: Indices
     vanishing: tuple[Indices, Indices, Indices]
     nonnegative: Indices
+    solved: Indices
+    solved_end: int
 
     def arguments(self) -> Arguments:
         """The system as the compiled code takes it."""
         return Arguments(
             program(self.tape), self.tape.stages, self.unknowns, self.equations, self.jacobian,
-            *self.vanishing, self.nonnegative,
+            *self.vanishing, self.nonnegative, self.solved, self.solved_end,
         )  # fmt: skip
 
 
@@ -57,6 +62,8 @@ class Arguments(NamedTuple):
     rest: Indices
     costly: Indices
     nonnegative: Indices
+    solved: Indices
+    solved_end: int
 
 
 def system(
@@ -65,6 +72,7 @@ def system(
     vanishing: tuple[Sequence[Formula], Sequence[Formula]] = ((), ()),
     nonnegative: Sequence[Formula] = (),
     jacobian: Sequence[Sequence[Formula]] | None = None,
+    solved: Sequence[Quotient] = (),
 ) -> System:
     """Write a system out.
 
@@ -75,6 +83,7 @@ def system(
     vanishing : formulas that vanish at every solution, beside the equations: cheap ones without a `meet`, then others.
     nonnegative : formulas that are at least zero at every solution looked for.
     jacobian : the equations' derivatives by the unknowns, where there are better formulas than those of the graph.
+    solved : of formulas that vanish at solutions; their variables are among the unknowns.
     """
     graph = equations[0].graph
     if jacobian is None:
@@ -82,11 +91,14 @@ def system(
     cheap, costly = vanishing
     first, rest = list(equations[:2]), list(equations[2:])
     tape = record([
+        [formula for quotient in solved for formula in (quotient.rest, quotient.slope)],
         [*first, *cheap],
         rest,
         [*costly, *nonnegative],
         [entry for row in jacobian for entry in row],
     ])  # fmt: skip
+    places, solved_end = tape.outputs[0].reshape(-1, 2), int(tape.stages[0])
+    tape = replace(tape, stages=tape.stages[1:], outputs=tape.outputs[1:])
     return System(
         tape,
         np.array(unknowns, np.int64),
@@ -94,4 +106,6 @@ def system(
         tape.outputs[3].reshape(len(equations), len(unknowns)),
         (tape.outputs[0], tape.outputs[1], tape.outputs[2][: len(costly)]),
         tape.outputs[2][len(costly) :],
+        np.column_stack([np.array([quotient.variable for quotient in solved], np.int64), places]),
+        solved_end,
     )

@@ -64,6 +64,8 @@ _WHAT_AND_WHY = {
         ("folds-of-saddles", "folds of saddles and maxima", "the number of stable equilibria does not change"),
         ("cones-and-creases", "cones and creases", "no minimum appears or vanishes there without a fold"),
         ("dependent-equations", "boxes on which dependent equations do not vanish", "they vanish at every equilibrium"),
+        ("mirror-images", "mirror images of folds, and what is singular on the mirror",
+         "the mechanism is its own mirror image on the slice"),
         ("unloaded-factor", f"the factor {_BASE} of the unloaded moment", f"{_BASE} is zero nowhere in the window"),
     ),
     Engine.ANY: (("imports", "imports of numpy, matplotlib, sympy and numba", "nothing needs them before it asks"),),

@@ -14,13 +14,28 @@ import numpy as np
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.formula import Formula, Graph, length
 from ptmcad.certified.parameters import parameter_formulas, values_at
-from ptmcad.certified.ptm.statics import PHI_UNIT, TURN, Statics, present, slice_statics
+from ptmcad.certified.ptm.mirror import is_own_image, opening
+from ptmcad.certified.ptm.statics import (
+    PHI_UNIT,
+    TH1,
+    TH2,
+    TURN,
+    Angles,
+    Hessian,
+    Statics,
+    present,
+    slice_statics,
+    statics,
+)
 from ptmcad.certified.scales import axis_weights
+from ptmcad.certified.solved import quotients
 from ptmcad.certified.system import system
 from ptmcad.errors import DegenerateSliceError
 from ptmcad.question.slice import Count, Slice
 
 PHI = (TURN[0] / PHI_UNIT, TURN[1] / PHI_UNIT)
+QUARTER = (0.0, 1.5708)
+"""A little more than a quarter turn."""
 SHORT_LENGTH = Fraction(1, 8)
 """Below this length of spring 3, as a part of L1, its direction is a variable of its own."""
 
@@ -46,7 +61,12 @@ def distance_from_degeneracy(slice: Slice, x: Fraction, y: Fraction) -> Fraction
 
 
 def _stable(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
-    yield from _folds(slice, without, stable="folds-of-saddles" not in without)
+    stable = "folds-of-saddles" not in without
+    if stable and "mirror-images" not in without and is_own_image(slice):
+        yield from _on_the_mirror(slice, without)
+        yield _off_the_mirror(slice, without)
+    else:
+        yield from _folds(slice, without, stable=stable)
     if "cones-and-creases" in without:
         yield from _cone(slice, without)
         yield from _creases(slice)
@@ -83,6 +103,7 @@ def _folds(slice: Slice, without: frozenset[str], *, stable: bool) -> Iterator[C
                 [there.determinant, m.turned, *([] if stable else [there.levelled])],
             ),
             [*([m.lengths[2] - short] if split else []), *(_semidefinite(m) if stable else [])],
+            solved=quotients([e1, e2, balance, *m.dependent], _statical(slice)),
         ),
         (TURN, TURN),
     )
@@ -104,9 +125,74 @@ def _folds(slice: Slice, without: frozenset[str], *, stable: bool) -> Iterator[C
                 [there.determinant_times_l3, *([m.turned] if stable else [there.levelled])],
             ),
             [m.lengths[2], short - length(*m.vectors[2]), *(_semidefinite(m) if stable else [])],
+            solved=quotients([*m.equilibrium, *m.dependent], _statical(slice)),
         ),
         (TURN, TURN, PHI),
     )
+
+
+def _on_the_mirror(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
+    """Folds of minima with th1 = th2, where the Hessian is diagonal in s = (th1 + th2)/2 and d = (th1 - th2)/2."""
+    for pitchfork in (False, True):
+        graph = Graph()
+        values, s = parameter_formulas(graph, slice), graph.variable(TH1)
+        m = statics(values, Angles(s, s))
+        balance, there, bar = m.equilibrium[0], m.at_equilibrium, values["L1"]
+        # U_ss and U_dd, over 2 L
+        along = m.hessian.p11 + bar * m.hessian.q
+        along_there, across_there = there.p11 + bar * there.q, there.p11 - bar * there.q
+        across = -opening(values, m, s, graph.constant(1)).slope
+        yield Curve(
+            f"{'pitchfork' if pitchfork else 'fold'} of a stable equilibrium, th1 = th2",
+            "a minimum parts with two others, or meets two saddles, that are each other's mirror images"
+            if pitchfork
+            else "a minimum meets a saddle, and both are their own mirror images",
+            system(
+                [balance, across if pitchfork else along],
+                (0, 1, 2),
+                _dependent(without, [], [across_there, m.turn] if pitchfork else [along_there]),
+                [along_there, there.p11] if pitchfork else [across, m.turn, there.p11],
+                solved=quotients([balance, across] if pitchfork else [balance], _statical(slice)),
+            ),
+            (TURN,),
+        )
+
+
+def _off_the_mirror(slice: Slice, without: frozenset[str]) -> Curve:
+    """Folds of minima with th1 - th2 between 0 and pi, each for its mirror image too, by the energy u(s, cos d)."""
+    graph = Graph()
+    values, s, d = parameter_formulas(graph, slice), graph.variable(TH1), graph.variable(TH2)
+    m = statics(values, Angles(s + d, s - d))
+    (e1, e2), there, bar = m.equilibrium, m.at_equilibrium, values["L1"]
+    slope, curvature = opening(values, m, s, d.cos())
+    mixed = graph.derivative(slope, TH1)
+
+    def determinant(h: Hessian) -> Formula:
+        """u_ss u_ww - u_sw^2; without free lengths, where u_ww = 0, the root of that."""
+        along = bar * (h.p11 + h.p22 + 2 * (bar * h.q))
+        return mixed if curvature.value == 0 else along * curvature - mixed.squared()
+
+    return Curve(
+        "fold of a stable equilibrium, th1 != th2",
+        "a minimum meets a saddle: det H = 0 with nonnegative diagonal; so do their mirror images",
+        system(
+            [e1 + e2, slope, determinant(m.hessian)],
+            (0, 1, 2, 3),
+            _dependent(
+                without,
+                [e1, e2, *m.dependent, *present(m.unit)],
+                [there.determinant, m.turned, determinant(there)],
+            ),
+            [*_semidefinite(m), curvature],
+            solved=quotients([e1, e2, e1 + e2, slope, *m.dependent], _statical(slice)),
+        ),
+        (TURN, QUARTER),
+    )
+
+
+def _statical(slice: Slice) -> list[int]:
+    """The axes that the mechanism's geometry does not depend on: loads, stiffnesses and free lengths."""
+    return [k for k in (0, 1) if not any(slice.parameters[name].uses(k) for name in ("rho", "L1", "L2"))]
 
 
 def _semidefinite(m: Statics) -> list[Formula]:
@@ -127,7 +213,12 @@ def _cone(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
         yield Curve(
             "cone",
             "an equilibrium is swallowed by the cone l3 = 0",
-            system([*m.vectors[2], *m.equilibrium], (0, 1, 2, 3, 4), _dependent(without, [*m.dependent, m.unit], [])),
+            system(
+                [*m.vectors[2], *m.equilibrium],
+                (0, 1, 2, 3, 4),
+                _dependent(without, [*m.dependent, m.unit], []),
+                solved=quotients([*m.equilibrium, *m.dependent], _statical(slice)),
+            ),
             (TURN, TURN, PHI),
         )
 
@@ -161,6 +252,7 @@ def _admissible(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
                 (0, 1, 2, 3),
                 _dependent(without, [*m.dependent, *dependent], []),
                 [*_semidefinite(m), m.at_equilibrium.determinant, m.turned],
+                solved=quotients([*m.equilibrium, *m.dependent], _statical(slice)),
             ),
             (TURN, TURN),
         )

@@ -74,7 +74,7 @@ def equilibria(
     energy: Energy,
     minima: bool,
     start: Iterable[Square] = (TORUS,),
-    budget: int = 60_000,
+    budget: int = 300_000,
     smallest: Pair = (MIN_HALF_WIDTH, MIN_HALF_WIDTH),
     near: Iterable[Equilibrium] = (),
 ) -> tuple[list[Equilibrium], int]:

@@ -1,0 +1,166 @@
+"""Axes that are solved for: the quotients are the equations', and no solution is lost, least where a slope vanishes."""
+
+from __future__ import annotations
+
+import random
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+pytest.importorskip("numba")
+
+from ptmcad.certified.contraction import contract, workspace
+from ptmcad.certified.evaluation import program, run
+from ptmcad.certified.formula import Formula, Graph
+from ptmcad.certified.line import on_line
+from ptmcad.certified.ptm.curves import curves
+from ptmcad.certified.ptm.statics import slice_statics
+from ptmcad.certified.search import search_curve
+from ptmcad.certified.solved import quotients
+from ptmcad.certified.system import System, system
+from ptmcad.certified.tape import record
+from ptmcad.question.config import slice_from_mapping
+from ptmcad.question.slice import Count, Slice
+
+Floats = NDArray[np.float64]
+LINEAR = {
+    "F": {"F3": "F", "F4": "2*F/rho"},
+    "Fx": {"F3x": "Fx", "F4": "-10"},
+    "l0": {"F3": "-10", "F4": "-7"},
+    "l0_2": {"F3": "-10", "F4": "-7"},
+    "k3": {"F3": "-10", "F4": "-7"},
+}
+"""Axes that E1 or E2 is linear in, with further parameters."""
+
+
+def slice_of(horizontal: str, vertical: str, **given: str) -> Slice:
+    parameters = {"L1": "1", "L2": "3/2", "k1": "100", "k2": "90", "k3": "80", "l0_1": "1/5", "l0_3": "1/4"} | given
+    if "l0" in (horizontal, vertical):
+        parameters = {n: v for n, v in parameters.items() if not n.startswith("l0_")}
+    window = {horizontal: ["1/20", "2"], vertical: ["0" if vertical.startswith("l0") else "-30", "1"]}
+    if vertical == "k3":
+        parameters.pop("k3")
+        window[vertical] = ["10", "100"]
+    return slice_from_mapping({"name": "s", "parameters": parameters, "axes": window})
+
+
+def values(formulas: list[Formula], point: list[float]) -> Floats:
+    tape = record([formulas])
+    low, high = np.empty((2, len(tape)))
+    assert run(program(tape), np.array(point), np.array(point), low, high, 0, len(tape))
+    return np.asarray((low[tape.outputs[0]] + high[tape.outputs[0]]) / 2)
+
+
+@pytest.mark.parametrize("axis", LINEAR)
+def test_rest_and_slope_are_the_equation(axis: str) -> None:
+    graph = Graph()
+    m = slice_statics(graph, slice_of("rho", axis, **LINEAR[axis]))
+    formulas = [*m.equilibrium, *m.dependent]
+    found = [(f, q) for f in formulas for q in quotients([f], (0, 1))]
+    assert len(found) >= 2
+    assert {q.variable for _, q in found} == {1}
+    rng = random.Random(2)
+    for formula, quotient in found:
+        for _ in range(5):
+            point = [rng.uniform(0.1, 2), rng.uniform(0.1, 1), rng.uniform(-3, 3), rng.uniform(-3, 3)]
+            whole, rest, slope = values([formula, quotient.rest, quotient.slope], point)
+            assert abs(rest + slope * point[1] - whole) < 1e-9 * (1 + abs(whole))
+            point[1] += 7
+            assert values([quotient.rest, quotient.slope], point).tolist() == [rest, slope]
+
+
+def test_what_is_not_linear_is_left_alone() -> None:
+    m = slice_statics(Graph(), slice_of("rho", "F", F3="F^2", F4="F^3"))
+    assert quotients([*m.equilibrium, *m.dependent], (0, 1)) == ()
+    graph = Graph()
+    x, y, t = (graph.variable(k) for k in range(3))
+    assert quotients([x + t, y * y, t.cos() + t, (x * t) / y], (1,)) == ()
+    assert quotients([x * t / y], (0, 1)) != ()
+
+
+def test_a_solution_at_which_the_slope_is_zero_is_kept() -> None:
+    """t (y - 1) = 0 and x + t y = 0 at t = 0 and x = 0, whatever y is: the rests are zero there, too."""
+    graph = Graph()
+    x, y, t = (graph.variable(k) for k in range(3))
+    equations = [t * y - t, x + t * y]
+    arguments = system(equations, (0, 1, 2), solved=quotients(equations, (0, 1))).arguments()
+    assert len(arguments.solved) == 3
+    for width in (0.0, 1e-9, 0.25):
+        low, high = np.array([-width, 0.0, -1.0]), np.array([width, 3.0, 1.0])
+        assert contract(arguments, low, high, workspace(arguments, 3))
+        assert (low <= 0).tolist() == [True, True, True]
+        assert (high >= [0, 3, 0]).all()
+        point = np.array([0.0, 2.5, 0.0])
+        assert contract(arguments, point.copy(), point.copy(), workspace(arguments, 3))
+
+
+def equilibria_over_two_linear_axes(number: int) -> tuple[System, list[Floats]]:
+    """The equations of equilibrium over axes F and l0, and solutions: the angles by chance, the axes by Cramer's rule.
+
+    Some angles are right, where the slope of a load is zero, or zero, where a spring is short.
+    """
+    slice = slice_from_mapping(
+        {
+            "name": "s",
+            "parameters": {"L1": "1", "L2": "3/2", "rho": "2", "k": "100", "F3": "F", "F4": "F/2"},
+            "axes": {"F": ["-300", "300"], "l0": ["0", "3"]},
+        }
+    )
+    m = slice_statics(Graph(), slice)
+    graph = m.equilibrium[0].graph
+    gradient = [graph.derivative(e, axis) for e in m.equilibrium for axis in (0, 1)]
+    rng, found = random.Random(4), list[Floats]()
+    while len(found) < number:
+        angles = [rng.choice([rng.uniform(-3, 3), np.pi / 2, 1e-3, rng.uniform(-0.1, 0.1)]) for _ in range(2)]
+        e1, e2, *j = values([*m.equilibrium, *gradient], [0.0, 0.0, *angles])
+        determinant = j[0] * j[3] - j[1] * j[2]
+        if abs(determinant) > 1e-6:
+            x, y = (e2 * j[1] - e1 * j[3]) / determinant, (e1 * j[2] - e2 * j[0]) / determinant
+            if abs(x) < 300 and 0 < y < 3:
+                found.append(np.array([x, y, *angles]))
+    solved = quotients([*m.equilibrium, *m.dependent], (0, 1))
+    return system(m.equilibrium, (0, 1, 2, 3), (m.dependent, ()), solved=solved), found
+
+
+def test_contraction_keeps_equilibria_and_tells_the_axes() -> None:
+    found, points = equilibria_over_two_linear_axes(40)
+    assert set(found.solved[:, 0].tolist()) == {0, 1}
+    arguments = found.arguments()
+    rng, told = np.random.default_rng(5), 0
+    for point in points:
+        for _ in range(20):
+            size = np.array([600, 3, 1, 1]) * 10 ** rng.uniform(-8, 0, 4)
+            share = rng.uniform(0, 1, 4)
+            low, high = point - size * share - 1e-6, point + size * (1 - share) + 1e-6
+            wide = (high - low)[:2].prod()
+            assert contract(arguments, low, high, workspace(arguments, 4))
+            assert (low <= point + 1e-7 * (1 + np.abs(point))).all()
+            assert (high >= point - 1e-7 * (1 + np.abs(point))).all()
+            told += bool((high - low)[:2].prod() < 0.5 * wide)
+    assert told > 200, "no axis is told, so that nothing is tested"
+
+
+def test_the_search_takes_fewer_boxes() -> None:
+    """On a part of a slice with an axis l0, in which the curve is regular; without what is solved it takes many."""
+    slice = slice_of("rho", "l0", F3="-10", F4="-10")
+    curve = curves(slice, Count.STABLE)[0]
+    with_all = curve.system.arguments()
+    without = with_all._replace(solved=np.empty((0, 3), np.int64), solved_end=0)
+    window = curve.start(np.array([[0.5, 0.3, 1.5, 0.6]]))
+    used = [search_curve(a, window, 1e-4, 10**6, curve.importance()).used for a in (with_all, without)]
+    assert used[0] < 0.8 * used[1]
+
+
+def test_a_value_that_is_given_is_not_narrowed() -> None:
+    """On a line one axis is floats around a number: what the equations say of it would leave the number out."""
+    curve = curves(slice_of("rho", "F", F3="F", F4="F"), Count.STABLE)[0]
+    assert set(curve.system.solved[:, 0].tolist()) == {1}
+    assert set(on_line(curve.system, 1).solved[:, 0].tolist()) == {1}
+    system = on_line(curve.system, 0)
+    assert len(system.solved) == 0
+    value = np.nextafter(-10.0, [-11, -9])
+    low, high = np.array([0.05, value[0], -3.0, -3.0]), np.array([2.0, value[1], 3.3, 3.3])
+    arguments = system.arguments()
+    contract(arguments, low, high, workspace(arguments, 4))
+    assert (low[1], high[1]) == tuple(value)
