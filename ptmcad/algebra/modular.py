@@ -36,8 +36,6 @@ Coefficients = Sequence[fmpz_poly]
 Check = Callable[[], None]
 PRIME_BITS = 63
 """FLINT's arithmetic is fastest where two residues add up without overflow."""
-_LEAST_WORK = 100_000
-"""Points times squared degree; below, values in integers take milliseconds."""
 _CALL = 150.0
 """What one value modulo a prime costs besides Euclid's algorithm, in its steps (products of residues)."""
 
@@ -69,22 +67,19 @@ def resultant(p: Coefficients, q: Coefficients, check: Check) -> fmpz_poly:
     return _lifted(lambda u: _resultant_at(_fibre(p, u), _fibre(q, u), n, m), bounds, check)
 
 
-def pays(degrees: tuple[int, int], degree: int, bits: Callable[[], int]) -> bool:
+def pays(degrees: tuple[int, int], degree: int, bits: int) -> bool:
     """Whether this way is predicted to be the faster one than by values in integers.
 
     Parameters
     ----------
     degrees : in v of the two polynomials whose resultant it is; of a discriminant those of p and p'.
     degree : bound for that in u.
-    bits : a bound for the length of the result's coefficients, asked for where it matters.
+    bits : bound for the length of the result's coefficients.
     """
     steps = degrees[0] * degrees[1]
-    if (degree + 1) * steps < _LEAST_WORK:
-        return False
     # a value at u is longer than the coefficients by that of u^degree, and its primes are also one word
-    ours = bits()
-    theirs = ours + degree * math.log2(degree / 2 + 2)
-    return ours * (steps + _CALL) < theirs * steps
+    in_integers = bits + degree * math.log2(degree / 2 + 2)
+    return bits * (steps + _CALL) < in_integers * steps
 
 
 def discriminant_bits(p: Coefficients) -> int:

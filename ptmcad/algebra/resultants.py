@@ -12,11 +12,12 @@ from itertools import pairwise
 
 from flint import fmpz, fmpz_poly
 
-from ptmcad.algebra import modular
 from ptmcad.algebra.orders import discriminant_degree, resultant_degree
 
 Coefficients = Sequence[fmpz_poly]
 Check = Callable[[], None]
+_LONG = 100_000
+"""Points times the product of the degrees in v; of less, values in integers take milliseconds."""
 
 
 def nothing() -> None:
@@ -32,8 +33,11 @@ def discriminant(p: Coefficients, check: Check = nothing) -> fmpz_poly:
     if n < 2:
         return fmpz_poly([1])
     bound = discriminant_degree(p)
-    if modular.pays((n, n - 1), bound, lambda: modular.discriminant_bits(p)):
-        return modular.discriminant(p, check)
+    if (bound + 1) * n * (n - 1) >= _LONG:
+        from ptmcad.algebra import modular  # not loaded for short ones
+
+        if modular.pays((n, n - 1), bound, modular.discriminant_bits(p)):
+            return modular.discriminant(p, check)
 
     def at(k: int) -> fmpz:
         value = fmpz_poly([c(k) for c in p])
@@ -53,8 +57,11 @@ def resultant(p: Coefficients, q: Coefficients, check: Check = nothing) -> fmpz_
     if n == 0 or m == 0:
         return (p[0] ** m) if n == 0 else (q[0] ** n)
     bound = resultant_degree(p, q)
-    if modular.pays((n, m), bound, lambda: modular.resultant_bits(p, q)):
-        return modular.resultant(p, q, check)
+    if (bound + 1) * n * m >= _LONG:
+        from ptmcad.algebra import modular
+
+        if modular.pays((n, m), bound, modular.resultant_bits(p, q)):
+            return modular.resultant(p, q, check)
 
     def at(k: int) -> fmpz:
         left, right = fmpz_poly([c(k) for c in p]), fmpz_poly([c(k) for c in q])
