@@ -3,7 +3,9 @@ planted fault does."""
 
 from __future__ import annotations
 
+import random
 from collections.abc import Sequence
+from fractions import Fraction
 from itertools import chain
 
 import pytest
@@ -76,6 +78,20 @@ def test_bounds_of_resultants_hold(p: list[fmpz_poly], q: list[fmpz_poly]) -> No
     found = resultants.resultant(p, q)
     assert orders.resultant_degree(p, q) >= found.degree()
     assert modular.resultant_bits(p, q) >= found.height_bits()
+
+
+@given(st.lists(st.lists(st.integers(0, 6), min_size=2, max_size=7), min_size=2, max_size=2))
+@settings(max_examples=examples(60))
+def test_bounds_of_degrees_are_sharp(degrees: list[list[int]]) -> None:
+    """For leading coefficients at random the resultant has the degree, and it is no larger than by a single slope."""
+    source = random.Random(1)
+    p, q = ([fmpz_poly([0] * d + [source.getrandbits(40) + 1]) for d in ds] for ds in degrees)
+    n, m = len(p) - 1, len(q) - 1
+    found = orders.resultant_degree(p, q)
+    assert found == resultants.resultant(p, q).degree()
+    for a in (Fraction(k, 3) for k in range(-18, 19)):
+        offsets = [max(d + a * i for i, d in enumerate(ds)) for ds in degrees]
+        assert found <= m * offsets[0] + n * offsets[1] - a * n * m
 
 
 def test_roots_that_meet_are_known_factors() -> None:
