@@ -1,24 +1,23 @@
 """Discriminants and resultants in Z[u] of polynomials in Z[u][v], by evaluation at integers and interpolation.
 
-Guarantee: exact. The number of evaluation points comes from a proved bound for the degree: nothing is left to chance.
-
-The bound: if deg c_i <= A - a i for the coefficients c_i of v^i and some rational a, then substituting v = u^a w shows
-deg disc_v(p) <= (2n - 2) A - a n (n - 1) for n = deg_v p, and deg res_v(p, q) <= m A + n B - a n m for a second
-polynomial of degree m with the bound B. The a that gives the smallest bound is a slope of the Newton polygon.
+Guarantee: exact. The number of evaluation points comes from a proved bound for the degree, see `orders`: nothing is
+left to chance. Values of high degree are taken modulo primes, see `modular`, the others in Z; predicted cost decides.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from fractions import Fraction
 from itertools import pairwise
-from math import floor
 
 from flint import fmpz, fmpz_poly
 
+from ptmcad.algebra.orders import discriminant_degree, resultant_degree
+
 Coefficients = Sequence[fmpz_poly]
 Check = Callable[[], None]
+_LONG = 100_000
+"""Points times the product of the degrees in v; of less, values in integers take milliseconds."""
 
 
 def nothing() -> None:
@@ -34,6 +33,11 @@ def discriminant(p: Coefficients, check: Check = nothing) -> fmpz_poly:
     if n < 2:
         return fmpz_poly([1])
     bound = discriminant_degree(p)
+    if (bound + 1) * n * (n - 1) >= _LONG:
+        from ptmcad.algebra import modular  # not loaded for short ones
+
+        if modular.pays((n, n - 1), bound, modular.discriminant_bits(p)):
+            return modular.discriminant(p, check)
 
     def at(k: int) -> fmpz:
         value = fmpz_poly([c(k) for c in p])
@@ -53,6 +57,11 @@ def resultant(p: Coefficients, q: Coefficients, check: Check = nothing) -> fmpz_
     if n == 0 or m == 0:
         return (p[0] ** m) if n == 0 else (q[0] ** n)
     bound = resultant_degree(p, q)
+    if (bound + 1) * n * m >= _LONG:
+        from ptmcad.algebra import modular
+
+        if modular.pays((n, m), bound, modular.resultant_bits(p, q)):
+            return modular.resultant(p, q, check)
 
     def at(k: int) -> fmpz:
         left, right = fmpz_poly([c(k) for c in p]), fmpz_poly([c(k) for c in q])
@@ -67,18 +76,6 @@ def resultant(p: Coefficients, q: Coefficients, check: Check = nothing) -> fmpz_
         return value
 
     return interpolate(at, bound, check)
-
-
-def discriminant_degree(p: Coefficients) -> int:
-    """A bound for the degree of the discriminant, from the degrees of the coefficients; negative where that is zero."""
-    n = len(p) - 1
-    return min(floor((2 * n - 2) * _offset(p, a) - a * n * (n - 1)) for a in _slopes(p)) if n > 1 else 0
-
-
-def resultant_degree(p: Coefficients, q: Coefficients) -> int:
-    """A bound for the degree of the resultant, from the degrees of the coefficients alone."""
-    n, m = len(p) - 1, len(q) - 1
-    return min(floor(m * _offset(p, a) + n * _offset(q, a) - a * n * m) for a in _slopes(p) | _slopes(q))
 
 
 def balanced(polynomials: Sequence[Coefficients]) -> tuple[list[tuple[fmpz_poly, ...]], int]:
@@ -109,27 +106,6 @@ def _unit(common: Sequence[int]) -> int:
         while unit > 1 and g % unit**j:
             unit = math.gcd(unit, g // math.gcd(g, unit ** (j - 1)))
     return max(unit, 1)  # made smaller for a later one, it is a divisor of what did for the earlier ones
-
-
-def _offset(p: Coefficients, slope: Fraction) -> Fraction:
-    return max(c.degree() + slope * i for i, c in enumerate(p) if c)
-
-
-def _slopes(p: Coefficients) -> set[Fraction]:
-    """0 and the slopes of the Newton polygon: the bounds are convex in a and bend only there, so one is best."""
-    hull: list[tuple[int, int]] = []
-    for i, c in enumerate(p):
-        if c:
-            d = int(c.degree())
-            while len(hull) > 1 and _fall(hull[-1], (i, d)) <= _fall(hull[-2], hull[-1]):
-                hull.pop()
-            hull.append((i, d))
-    return {Fraction(0), *(_fall(left, right) for left, right in pairwise(hull))}
-
-
-def _fall(left: tuple[int, int], right: tuple[int, int]) -> Fraction:
-    """The a for which deg c_i + a i is the same at both points (i, deg c_i)."""
-    return Fraction(left[1] - right[1], right[0] - left[0])
 
 
 def interpolate(at: Callable[[int], fmpz], degree: int, check: Check = nothing) -> fmpz_poly:

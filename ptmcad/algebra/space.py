@@ -12,7 +12,7 @@ from math import gcd
 
 from flint import fmpq, fmpz, fmpz_poly
 
-from ptmcad.algebra import resultants
+from ptmcad.algebra import orders, resultants
 from ptmcad.algebra.polynomials import PLANE, Coefficient, UnivariatePolynomial, coefficients_in, irreducible_factors
 from ptmcad.algebra.resultants import Check, interpolate, nothing
 from ptmcad.algebra.window import Interval
@@ -129,11 +129,11 @@ def _degrees(rows: Rows, variable: int) -> tuple[UnivariatePolynomial, ...]:
 
 
 def _of_one(ps: Sequence[Sequence[fmpz_poly]]) -> int:
-    return resultants.discriminant_degree(ps[0])
+    return orders.discriminant_degree(ps[0])
 
 
 def _of_two(ps: Sequence[Sequence[fmpz_poly]]) -> int:
-    return resultants.resultant_degree(ps[0], ps[1])
+    return orders.resultant_degree(ps[0], ps[1])
 
 
 def _interpolated(

@@ -71,10 +71,10 @@ def held(limits: Limits) -> Iterator[None]:
     """Set the limits for what is done inside."""
     report_deadline(limits.timeout)
     bound = limits.max_memory or (default_bound() if watched() else None)
+    # NumPy's linear algebra would reserve memory for every processor; the small matrices here are no faster on several
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     if bound is not None:
         send(Topic.MEMORY, str(bound.size), bound.text, "default" if limits.max_memory is None else "asked")
-        # numpy's linear algebra, which nothing here uses, would reserve memory for every processor of the machine
-        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     send(Topic.LOADING, "")  # the program itself is there
     with nullcontext() if bound is None else bounded(bound):
         yield

@@ -19,11 +19,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from flint import arb, arb_poly, arb_series, ctx, fmpq, fmpz_poly
 
 from ptmcad.verification.claims import PlaneCurve
+from ptmcad.verification.sturm import changes_of
 
 
 @dataclass(frozen=True)
@@ -40,49 +40,46 @@ class Branch:
         return cls(curve, root, [arb_poly(c) for c in curve.in_v], [arb_poly(c) for c in curve.in_u])
 
     def height(self, u: fmpq, low: fmpq, high: fmpq) -> arb | None:
-        """The branch over u; None when the balls do not show which root it is."""
-        for bits in sorted({64, ctx.prec}):  # the roots are isolated roughly first, because that is cheaper
-            height = self._height(u, low, high, bits)
-            if height is not None and height.rel_accuracy_bits() > ctx.prec // 2:
-                break
-        return height
-
-    def _height(self, u: fmpq, low: fmpq, high: fmpq, bits: int) -> arb | None:
-        inside = []
+        """The branch over u; None when there are not so many roots between the heights."""
         # positive roots of the deflated polynomial have roots of their own
         squares = self.curve.exponent_gcd(1) % 2 == 0 and low >= 0
         p = self.curve.over(u)
         if squares:
-            p = p.deflate(2)
-        with ctx.workprec(bits):
-            roots: Any = p.complex_roots()  # pairs; FLINT's stub says otherwise
-        for root, _ in roots:
-            if root.imag != 0 or (squares and root.real <= 0):
-                continue
-            real = root.real.sqrt() if squares else root.real
-            if real > low and real < high:
-                inside.append(root.real)
-            elif not (real < low or real > high):
-                return None
-        inside.sort(key=lambda ball: ball.mid())
-        if self.root >= len(inside):
+            p, low, high = p.deflate(2), low * low, high * high
+        changes = changes_of(p)
+        first, last = changes(low), changes(high) + (p(high) == 0)
+        wanted = first - self.root  # changes below the root, one less above it
+        if wanted <= last:
             return None
-        height = _refined(p, inside[self.root])
-        return height.sqrt() if squares else height
+        while True:
+            if first == wanted == last + 1 and (height := _refined(p, arb(low).union(arb(high)))) is not None:
+                return height.sqrt() if squares else height
+            middle = (low + high) / 2
+            beyond = changes(middle)
+            if beyond >= wanted:
+                low, first = middle, beyond
+            elif beyond == wanted - 1 and p(middle) == 0:
+                return arb(middle).sqrt() if squares else arb(middle)
+            else:
+                high, last = middle, beyond + (p(middle) == 0)
 
 
-def _refined(p: fmpz_poly, root: arb) -> arb:
-    """A ball for the only root of p in a given one, narrowed by interval Newton steps as far as precision allows."""
+def _refined(p: fmpz_poly, root: arb) -> arb | None:
+    """A ball for the only root of p in a given one, narrowed by interval Newton steps as far as precision allows.
+
+    None where the given one is so wide that the first step does not narrow it much.
+    """
     value, slope = arb_poly(p), arb_poly(p.derivative())
+    first = True
     while True:
         middle = root.mid()
         steepness = slope(root)
         if steepness.contains(0):
-            return root
+            return None if first and root.rel_accuracy_bits() < ctx.prec // 2 else root
         closer = (middle - value(middle) / steepness).intersection(root)
         if not closer.rad() * 4 < root.rad():
-            return closer
-        root = closer
+            return None if first and root.rel_accuracy_bits() < ctx.prec // 2 else closer
+        root, first = closer, False
 
 
 @dataclass(frozen=True)
@@ -149,9 +146,12 @@ def _by_series(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Ef
 
 def _along(rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effort: Effort) -> arb | None:
     center, length = height.mid(), degree + 1
-    near = _shifted([row.truncate(length) for row in rows], arb_poly([center]))
+    rows = _recentered(rows, center)
     start = arb_series([height - center], prec=length)
-    polynomial = arb_poly([center, *(c.mid() for c in _series(near, start, length)[1:])])
+    # z, less its constant coefficient
+    polynomial = arb_poly(
+        [arb(0), *(c.mid() for c in _series([row.truncate(length) for row in rows], start, length)[1:])]
+    )
     d = _shifted(rows, polynomial)
     steepness = abs(d[1][0])
     # the polynomial follows the branch to its degree, so but for rounding the first coefficients are zero
@@ -159,9 +159,10 @@ def _along(rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effor
     blur = _size(d[0].truncate(length), arb(half)) + rounded
     if len(d) > 2 and not blur * _size(d[2], arb(half)) * 2**20 < steepness * steepness:
         raise PrecisionTooLow  # rounding blurs the branch nearly as far as the next one
+    absolute, slope = [_absolute(row) for row in d], _absolute(polynomial)
     for factor in (4, 2):
         radius = arb(half * factor)
-        reach = _reach([_size(row, radius) for row in d], steepness)
+        reach = _reach([row(radius) for row in absolute], steepness, slope(radius))
         if reach is not None:
             break
     else:
@@ -173,18 +174,33 @@ def _along(rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effor
         if tail < effort.share or order >= ctx.prec:
             break
         order += 4
-    total, power = arb(0), arb(half)
-    series = _series(d, start, order)
+    # beyond its degree z has no coefficients, and those of the branch are t's
+    total, power = 2 * arb(half) * center, arb(half)
+    series = _series(rows, start, max(order, length))
     for k in range(0, max(order, length), 2):
-        total += ((series[k] if k < order else 0) + polynomial[k]) * power * fmpq(2, k + 1)
+        total += (series[k] if k < order else polynomial[k]) * power * fmpq(2, k + 1)
         power = power * half * half
     return total + arb(0).union(2 * tail) - tail
 
 
+def _recentered(rows: Sequence[arb_poly], center: arb) -> list[arb_poly]:
+    """Coefficients in s of the powers of t in p(s, center + t), given those of the powers of v in p(s, v)."""
+    columns = [
+        arb_poly([row[i] for row in rows])(arb_poly([center, 1])) for i in range(max(len(row.coeffs()) for row in rows))
+    ]
+    return [arb_poly([column[j] for column in columns]) for j in range(len(rows))]
+
+
+_SHIFTED = 3
+
+
 def _shifted(rows: Sequence[arb_poly], by: arb_poly) -> list[arb_poly]:
-    """Coefficients of the powers of t in p(s, by(s) + t), given those of the powers of v in p(s, v)."""
+    """Coefficients of the powers of t in p(s, by(s) + t), the first three, given those of the powers of v in p(s, v).
+
+    The others that are returned are those of powers of v in q, where t^3 q(s, by(s) + t) is the rest of the sum.
+    """
     shifted = list(rows)
-    for start in range(len(shifted) - 1):
+    for start in range(min(_SHIFTED, len(shifted) - 1)):
         for j in range(len(shifted) - 2, start - 1, -1):
             shifted[j] = shifted[j] + shifted[j + 1] * by
     return shifted
@@ -192,19 +208,27 @@ def _shifted(rows: Sequence[arb_poly], by: arb_poly) -> list[arb_poly]:
 
 def _size(row: arb_poly, radius: arb) -> arb:
     """A bound for the polynomial on the disk of a radius."""
-    return arb_poly([abs(c) for c in row.coeffs()])(radius)
+    return _absolute(row)(radius)
 
 
-def _reach(sizes: list[arb], steepness: arb) -> arb | None:
-    """An r for which Rouche's condition holds, given the sums over i of |d_ij| R^i for each j; None when none is found.
+def _absolute(row: arb_poly) -> arb_poly:
+    return arb_poly([abs(c) for c in row.coeffs()])
 
-    ``sizes[1]`` contains |d_01| itself, which belongs on the other side.
+
+def _reach(sizes: list[arb], steepness: arb, slack: arb) -> arb | None:
+    """An r for which Rouche's condition holds; None when none is found.
+
+    Parameters
+    ----------
+    sizes : bounds on the disk |s| <= R for the rows that `_shifted` returns. The second one
+        contains |d_01| itself, which belongs on the other side.
+    slack : a bound there for the polynomial by which they were shifted, so that |v| <= slack + r in the others.
     """
-    others = [sizes[0], sizes[1] - steepness, *sizes[2:]]
+    low, high = arb_poly([sizes[0], sizes[1] - steepness, *sizes[2:_SHIFTED]]), arb_poly(sizes[_SHIFTED:])
     first = (sizes[0] / steepness).upper()
     for multiple in (fmpq(5, 4), fmpq(2), fmpq(4)):
         reach = (first * multiple).upper() if first > 0 else arb(1) / 2**64
-        if arb_poly(others)(reach) < steepness * reach:
+        if low(reach) + high(slack + reach) * reach**_SHIFTED < steepness * reach:
             return reach
     return None
 

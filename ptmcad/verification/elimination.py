@@ -3,7 +3,7 @@
 Guarantee: exact. With a weight w >= 0 for v, a Sylvester determinant of polynomials of weighted degrees a, b and of
 degrees n, m in v has degree at most a m + b n - w n m in u: v = u^w z scales row by row and column by column. The
 smallest of these bounds over the slopes between two exponents is taken, and one value more than it is computed. Each
-value is FLINT's for polynomials in one variable.
+value is FLINT's for polynomials in one variable. Long ones are put together from `residues` instead.
 """
 
 from __future__ import annotations
@@ -16,8 +16,12 @@ from math import floor
 
 from flint import fmpz, fmpz_poly
 
+from ptmcad.verification import residues
+
 Terms = tuple[tuple[int, int, int], ...]
 """(i, j, c) for c u^i v^j."""
+LONG = 100_000
+"""Of the product of both degrees in v and of that in u, from which on values in integers take longer."""
 
 
 # every critical value asks for them, and so does every further map with the same curves
@@ -27,6 +31,9 @@ def discriminant(p: Terms) -> fmpz_poly:
     n = _degree(p)
     if n < 2:
         return fmpz_poly([1])
+    rows = [fmpz_poly(_row(p, j)) for j in range(n + 1)]
+    if residues.discriminant_degree(rows) * n * n >= LONG:
+        return residues.discriminant(rows)
     derivative = tuple((i, j - 1, j * c) for i, j, c in p if j)
     # res(p, p') is the leading coefficient times the discriminant
     return resultant(p, derivative) // fmpz_poly(_row(p, n))
@@ -49,7 +56,11 @@ def resultant(p: Terms, q: Terms) -> fmpz_poly:
         factor = fmpz(right[m]) ** short_left * fmpz(left[n]) ** short_right
         return fmpz(left.resultant(right)) * (-factor if (m * short_left) % 2 else factor)
 
-    bound = min(floor(_weight(p, w) * m + _weight(q, w) * n - w * n * m) for w in _slopes(p) | _slopes(q))
+    left, right = _highest(p), _highest(q)
+    slopes = _slopes(left) | _slopes(right)
+    bound = min(floor(_weight(left, w) * m + _weight(right, w) * n - w * n * m) for w in slopes)
+    if bound * n * m >= LONG:
+        return residues.resultant(rows_p, rows_q, bound)
     return _from_values(value, bound)
 
 
@@ -62,14 +73,19 @@ def _row(p: Terms, power: int) -> list[int]:
     return [row.get(i, 0) for i in range(max(row, default=-1) + 1)]
 
 
-def _weight(p: Terms, w: Fraction) -> Fraction:
-    return max(i + w * j for i, j, _ in p)
-
-
-def _slopes(p: Terms) -> set[Fraction]:
+def _highest(p: Terms) -> dict[int, int]:
+    """The degree in u of the coefficient of each power of v."""
     highest: dict[int, int] = {}
     for i, j, _ in p:
         highest[j] = max(highest.get(j, 0), i)
+    return highest
+
+
+def _weight(highest: dict[int, int], w: Fraction) -> Fraction:
+    return max(i + w * j for j, i in highest.items())
+
+
+def _slopes(highest: dict[int, int]) -> set[Fraction]:
     found = {Fraction(0)}
     for j, i in highest.items():
         found |= {Fraction(i - k, m - j) for m, k in highest.items() if m > j and i > k}

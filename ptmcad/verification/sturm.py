@@ -1,6 +1,10 @@
-"""Real roots of integer polynomials, counted by Sturm sequences; of long polynomials, whose sequences are longer, by
-FLINT's isolation of all complex roots, in disjoint balls of which the real ones are known to be real, or in a short
-interval by bisection.
+"""Real roots of integer polynomials, counted by Sturm sequences: of short polynomials exact ones, of others in balls.
+
+In balls a sequence takes the time of as many short divisions, where exact ones have coefficients as long as the
+polynomial's discriminant. It is one of the polynomial wherever each leading coefficient is proved not to be zero, so
+that each degree is one less than that before. Where that fails at every precision tried (the sequence has a gap, or
+ends before a constant), long polynomials are left to FLINT's isolation of all complex roots, in disjoint balls of
+which the real ones are known to be real.
 
 Guarantee: exact, multiple roots counted once. (The decomposition itself isolates by Descartes' rule; see
 `ptmcad.algebra.real_roots`, which is not used here.)
@@ -13,7 +17,7 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
-from flint import arb, ctx, fmpq, fmpq_poly, fmpz_poly
+from flint import arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly
 
 
 def squarefree(p: fmpz_poly) -> fmpz_poly:
@@ -41,8 +45,10 @@ def _variations(chain: tuple[fmpz_poly, ...], at: fmpq) -> int:
     return sum(a != b for a, b in pairwise(signs))
 
 
+BALL_DEGREE = 6
+"""From which on Sturm sequences in balls take less time than exact ones."""
 LONG_DEGREE = 64
-"""From which on Sturm sequences take longer than complex roots do."""
+"""From which on exact Sturm sequences take longer than complex roots do."""
 
 
 def roots_between(p: fmpz_poly, low: fmpq, high: fmpq) -> int:
@@ -54,47 +60,82 @@ def roots_between(p: fmpz_poly, low: fmpq, high: fmpq) -> int:
         if power > 1:
             return roots_between(deflated, low**power, high**power)
     coefficients = tuple(int(c) for c in p.coeffs())
+    if p.degree() >= BALL_DEGREE:
+        found = _by_ball_chain(coefficients, low, high)
+        if found is not None:
+            return found
     if p.degree() >= LONG_DEGREE:
         return _balls_between(coefficients, low, high, [end for end in (low, high) if p(end) == 0])
     chain = _chain(coefficients)
     return _variations(chain, low) - _variations(chain, high) - (1 if p(high) == 0 else 0)
 
 
-_MAX_PIECES = 64
-"""Into how many pieces an interval is cut: near a multiple root there is no end."""
-
-
-def _by_bisection(p: fmpz_poly, low: fmpq, high: fmpq) -> int | None:
-    """The number of roots in (low, high); None where an end is one, or where it is not found in so many pieces.
-
-    With p(m + r h) = sum q_i h^i over |h| <= 1 there is no root where |q_0| outweighs the other coefficients, and at
-    most one, at which the sign changes, where q_1 outweighs the rest of the derivative.
-    """
-    signs: dict[fmpq, bool] = {}
-
-    def is_positive(at: fmpq) -> bool:
-        if at not in signs:
-            signs[at] = p(at) > 0
-        return signs[at]
-
-    if p(low) == 0 or p(high) == 0:
+def _by_ball_chain(coefficients: tuple[int, ...], low: fmpq, high: fmpq) -> int | None:
+    """The number of different roots in (low, high), from a Sturm sequence in balls; None where none is found."""
+    p = fmpz_poly(list(coefficients))
+    counts = [_changes(p, coefficients, end) for end in (low, high)]
+    if counts[0] is None or counts[1] is None:
         return None
-    number, waiting, rational = 0, [(low, high)], fmpq_poly(p)
-    for _ in range(_MAX_PIECES):
-        if not waiting:
-            return number
-        a, b = waiting.pop()
-        middle = (a + b) / 2
-        sizes = [abs(c) for c in rational(fmpq_poly([middle, (b - a) / 2])).coeffs()]
-        if 2 * sizes[0] > sum(sizes, fmpq(0)):
-            continue
-        if 2 * sizes[1] > sum((i * c for i, c in enumerate(sizes)), fmpq(0)):
-            number += is_positive(a) != is_positive(b)
-            continue
-        while p(middle) == 0:
-            middle = (a + middle) / 2
-        waiting += [(a, middle), (middle, b)]
+    return counts[0] - counts[1] - (1 if p(high) == 0 else 0)
+
+
+def changes_of(p: fmpz_poly) -> Callable[[fmpq], int]:
+    """A function f for which f(a) - f(b) is the number of different roots in (a, b], of a polynomial not constant."""
+    coefficients = tuple(int(c) for c in p.coeffs())
+
+    def changes(at: fmpq) -> int:
+        found = _changes(p, coefficients, at)
+        # both are signs of the same sequence, up to positive factors
+        return _variations(_chain(coefficients), at) if found is None else found
+
+    return changes
+
+
+def _changes(p: fmpz_poly, coefficients: tuple[int, ...], at: fmpq) -> int | None:
+    """Changes of sign in the Sturm sequence, at the least precision that tells them; None where none does."""
+    bits, most = 256, 8 * p.height_bits() + 64 * len(coefficients)
+    while bits < 2 * most:
+        chain = _ball_chain(coefficients, bits)
+        if chain is None:
+            return None
+        if chain:
+            with ctx.workprec(bits):
+                found = _ball_variations(p, chain, at)
+            if found is not None:
+                return found
+        bits *= 2
     return None
+
+
+@lru_cache(maxsize=1024)
+def _ball_chain(coefficients: tuple[int, ...], bits: int) -> tuple[arb_poly, ...] | None:
+    """The sequence after the polynomial itself; empty where the precision is too low, None for multiple roots."""
+    p = fmpz_poly(list(coefficients))
+    if p.gcd(p.derivative()).degree() > 0:
+        return None
+    with ctx.workprec(bits):
+        first, second = arb_poly(p), arb_poly(p.derivative())
+        chain = [second]
+        for d in range(int(p.degree()) - 1, 0, -1):
+            # the quotient is linear, the remainder has one coefficient less than the divisor
+            leading = first[d + 1] / second[d]
+            quotient = arb_poly([(first[d] - leading * second[d - 1]) / second[d], leading])
+            first, second = second, (quotient * second - first).truncate(d)
+            if second[d - 1].contains(0):
+                return ()
+            chain.append(second)
+    return tuple(chain)
+
+
+def _ball_variations(p: fmpz_poly, chain: Sequence[arb_poly], at: fmpq) -> int | None:
+    """Changes of sign at a point, of the polynomial and its sequence; None where a sign is not known."""
+    values = [q(arb(at)) for q in chain]
+    if any(value.contains(0) and not value.is_zero() for value in values):
+        return None
+    signs = [1 if value > 0 else -1 for value in values if not value.is_zero()]
+    if (first := p(at)) != 0:
+        signs.insert(0, 1 if first > 0 else -1)
+    return sum(a != b for a, b in pairwise(signs))
 
 
 def _balls_between(coefficients: tuple[int, ...], low: fmpq, high: fmpq, ends: Sequence[fmpq]) -> int:
@@ -132,11 +173,9 @@ def ends_of(ball: arb) -> tuple[fmpq, fmpq]:
 
 
 def roots_within(p: fmpz_poly, low: fmpq, high: fmpq) -> int:
-    """The number of different roots in the closed interval [low, high], which of a long polynomial is best short."""
+    """The number of different roots in the closed interval [low, high]."""
     if low == high:
         return int(p(low) == 0)
-    if p.degree() >= LONG_DEGREE and (number := _by_bisection(p, low, high)) is not None:
-        return number
     return roots_between(p, low, high) + (p(low) == 0) + (p(high) == 0)
 
 

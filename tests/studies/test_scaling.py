@@ -7,20 +7,17 @@ import math
 import random
 import re
 import time
-from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import pytest
-from flint import fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.structure import check_structure
 
 import ptmcad
-from ptmcad.algebra import resultants
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.printing import save
@@ -296,21 +293,6 @@ def test_without_two_positive_points_there_is_no_fit(points: list[tuple[float, f
 
 def test_one_slow_run_is_outvoted() -> None:
     assert medians([(2, 1.0), (2, 9.0), (2, 1.2), (1, 0.5)]) == ((1, 0.5), (2, 1.2))
-
-
-@given(st.lists(st.lists(st.integers(0, 6), min_size=2, max_size=8), min_size=2, max_size=2))
-def test_the_hull_gives_the_best_bound(degrees: list[list[int]]) -> None:
-    """The bound of a resultant's degree with the slopes of the hull, against all slopes between two coefficients."""
-    p, q = ([fmpz_poly([1]) if i == 0 else fmpz_poly([0] * d + [1]) for i, d in enumerate(ds)] for ds in degrees)
-    n, m = len(p) - 1, len(q) - 1
-
-    def pairs(c: list[fmpz_poly]) -> Iterator[Fraction]:
-        yield from (Fraction(c[i].degree() - c[j].degree(), j - i) for j in range(len(c)) for i in range(j))
-
-    def bound(slopes: set[Fraction]) -> Fraction:
-        return min(m * resultants._offset(p, a) + n * resultants._offset(q, a) - a * n * m for a in slopes)
-
-    assert bound(resultants._slopes(p) | resultants._slopes(q)) == bound({Fraction(0), *pairs(p), *pairs(q)})
 
 
 # --------------------------------------------------------------------------------------------------------- measurement

@@ -8,14 +8,13 @@ from functools import cache
 from typing import Any
 
 import pytest
-from flint import fmpq, fmpz_poly
 
 import ptmcad
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import DegenerateSliceError
 from ptmcad.question.config import member_like
-from ptmcad.verification import sturm, verify_surfaces
+from ptmcad.verification import verify_surfaces
 
 LOADS = {
     "mechanism": "ptm", "parameters": {"F3": "F", "F4": "F"}, "axes": {"rho": [0, 2], "L2": [0, 2]},
@@ -71,25 +70,3 @@ def test_where_no_member_has_a_map_nothing_is_said() -> None:
     assert check is not None
     assert check.passed is None
     assert verify_surfaces(replace(family("bowl"), surfaces=()), refused) is None
-
-
-def test_simple_roots_of_long_polynomials_in_short_intervals_take_no_complex_roots(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Of these there are far more, and all would be isolated."""
-
-    def unwanted(*_: object) -> None:
-        raise AssertionError
-
-    monkeypatch.setattr(sturm, "_balls_between", unwanted)
-    x = fmpz_poly([0, 1])
-    p = (x**300 - 7) * (10**6 * x - 3 * 10**6 - 1) * (x - 3)
-    # the middle of the first interval is a root
-    for low, high, number in (
-        (fmpq(29999, 10000), fmpq(30001, 10000), 2),
-        (-1, fmpq(101, 100), 1),
-        (fmpq(31, 10), fmpq(32, 10), 0),
-    ):
-        assert sturm.roots_within(p, fmpq(low), fmpq(high)) == number
-    with pytest.raises(AssertionError):  # an end that is a root
-        sturm.roots_within(p, fmpq(3), fmpq(4))

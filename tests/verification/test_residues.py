@@ -1,0 +1,143 @@
+"""The verification's discriminants and resultants from residues, and its Sturm sequences in balls."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+import pytest
+from flint import arb, ctx, fmpq, fmpz_poly, nmod_poly
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from support.examples import examples
+
+from ptmcad.text.plane import PlanePolynomial
+from ptmcad.verification import elimination, residues, sturm
+from ptmcad.verification.branches import Branch
+from ptmcad.verification.claims import PlaneCurve
+
+ROW = st.lists(st.integers(-9, 9) | st.integers(-(10**20), 10**20) | st.just(0), max_size=4)
+
+
+@st.composite
+def rows(draw: st.DrawFn, least: int) -> list[fmpz_poly]:
+    found = [fmpz_poly(draw(ROW)) for _ in range(draw(st.integers(least, 5)) + 1)]
+    assume(found[-1] != 0)
+    return found
+
+
+def terms(p: Sequence[fmpz_poly]) -> elimination.Terms:
+    return tuple((i, j, int(a)) for j, c in enumerate(p) for i, a in enumerate(c.coeffs()) if a)
+
+
+@given(rows(2))
+@settings(max_examples=examples(60))
+def test_discriminants_are_those_of_values_in_integers(p: list[fmpz_poly]) -> None:
+    expected = elimination.discriminant(terms(p))
+    assert residues.discriminant(p) in (expected, -expected)
+    assert residues.discriminant_degree(p) >= expected.degree()
+    assert expected == 0 or all(expected % f**e == 0 for f, e in residues.known_factors(p))
+
+
+@given(rows(1), rows(1))
+@settings(max_examples=examples(60))
+def test_resultants_are_those_of_values_in_integers(p: list[fmpz_poly], q: list[fmpz_poly]) -> None:
+    expected = elimination.resultant(terms(p), terms(q))
+    assert residues.resultant(p, q, max(expected.degree(), 0)) in (expected, -expected)
+
+
+def dense(n: int, d: int) -> list[fmpz_poly]:
+    return [fmpz_poly([(i * j + 3 * i + j * j) % 11 - 5 for j in range(d)]) for i in range(n)]
+
+
+def test_long_ones_are_put_together_from_residues(monkeypatch: pytest.MonkeyPatch) -> None:
+    p = dense(20, 14)
+    found = elimination.discriminant(terms(p))
+    monkeypatch.setattr(elimination, "LONG", 10**9)
+    elimination.discriminant.cache_clear()
+    expected = elimination.discriminant(terms(p))
+    elimination.discriminant.cache_clear()
+    assert found in (expected, -expected)
+
+
+@pytest.mark.parametrize("fault", ["residue", "degree", "bits", "factor"])
+def test_a_planted_fault_is_caught(fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    p = dense(9, 8)
+    plain = residues._lifted
+
+    def faulty(value: residues.Value, polynomials: Sequence[residues.Rows], bounds: residues.Bounds) -> fmpz_poly:
+        wrong = [fault == "residue"]
+
+        def once(f: Sequence[nmod_poly]) -> int:
+            found = value(f)
+            if wrong[0]:
+                wrong[0], found = False, found + 1
+            return found
+
+        if fault == "degree":
+            bounds = bounds._replace(degree=bounds.degree - 1)
+        elif fault == "bits":
+            bounds = bounds._replace(bits=40)
+        elif fault == "factor":
+            bounds = bounds._replace(factors=((fmpz_poly([-3, 1]), 1),))
+        return plain(once, polynomials, bounds)
+
+    monkeypatch.setattr(residues, "_lifted", faulty)
+    with pytest.raises(residues.NotReproduced):
+        residues.discriminant(p)
+
+
+@st.composite
+def with_roots(draw: st.DrawFn) -> tuple[fmpz_poly, list[Fraction]]:
+    roots = draw(st.lists(st.fractions(-3, 3, max_denominator=4), min_size=1, max_size=8))
+    p = fmpz_poly([1])
+    for r in roots:
+        p *= fmpz_poly([-r.numerator, r.denominator])
+    for m in draw(st.lists(st.integers(-2, 2), max_size=3)):
+        p *= fmpz_poly([m * m + 3, 2 * m, 1])
+    return p, roots
+
+
+@given(with_roots(), st.fractions(-4, 4, max_denominator=4), st.fractions(-4, 4, max_denominator=4))
+@settings(max_examples=examples(150))
+def test_sequences_in_balls_count_roots(found: tuple[fmpz_poly, list[Fraction]], low: Fraction, high: Fraction) -> None:
+    p, roots = found
+    assume(low < high)
+    ends = fmpq(low.numerator, low.denominator), fmpq(high.numerator, high.denominator)
+    count = sturm._by_ball_chain(tuple(int(c) for c in p.coeffs()), *ends)
+    if len(set(roots)) < len(roots):
+        assert count is None  # of multiple roots none, so that the exact sequence of the squarefree part is used
+    else:
+        assert count in (None, sum(low < r < high for r in roots))
+    changes = sturm.changes_of(p)
+    assert changes(ends[0]) - changes(ends[1]) == sum(low < r <= high for r in set(roots))
+    assert sturm.roots_between(p, *ends) == sum(low < r < high for r in set(roots))
+
+
+def test_a_sequence_with_a_gap_is_left_to_others() -> None:
+    p = fmpz_poly([-2, *[0] * 10, 1])  # u^11 - 2: the third polynomial is a constant
+    assert sturm._by_ball_chain(tuple(int(c) for c in p.coeffs()), fmpq(0), fmpq(2)) is None
+    assert sturm.roots_between(p + 1, fmpq(-2), fmpq(2)) == 1
+
+
+def test_close_roots_ask_for_more_precision() -> None:
+    p = fmpz_poly([-1, 10**40]) * fmpz_poly([-1, 10**40 + 1]) * fmpz_poly([1, 0, 1]) * fmpz_poly([2, 1, 1])
+    assert sturm.roots_between(p, fmpq(0), fmpq(1)) == 2
+    assert sturm.roots_between(p, fmpq(1, 10**40 + 1), fmpq(1)) == 1
+
+
+@pytest.mark.parametrize("root", range(5))
+def test_a_branch_is_found_by_its_number(root: int) -> None:
+    # v (v - 1) (v - 2) (v - 2 - 1/1000) (v - 3) over every u, and a factor without real roots
+    p = fmpz_poly([1])
+    for factor in ([0, 1], [-1, 1], [-2, 1], [-2001, 1000], [-3, 1], [5, 0, 1]):
+        p *= fmpz_poly(factor)
+    plane = PlanePolynomial.of((i, j, int(c)) for j, c in enumerate(p.coeffs()) for i in (0, 1) if c)
+    branch = Branch.of(PlaneCurve.of(0, plane, 0), root)
+    with ctx.workprec(100):
+        height = branch.height(fmpq(1, 3), fmpq(-2), fmpq(4))  # the first middle is a root
+        assert height is not None
+        expected = [arb(0), arb(1), arb(2), arb(2001) / 1000, arb(3)][root]
+        assert height.overlaps(expected)
+        assert height.rad() < 2**-60
+        assert branch.height(fmpq(1, 3), fmpq(-1), fmpq(1, 2)) is None or root == 0
