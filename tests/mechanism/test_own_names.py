@@ -44,6 +44,7 @@ KERNELS = {
     "certified/ptm/cones.py",
     "certified/ptm/curves.py",
     "certified/ptm/equilibria.py",
+    "certified/ptm/mirror.py",
     "certified/ptm/statics.py",
 }
 """The certified engine's formulas, made by hand for this mechanism."""

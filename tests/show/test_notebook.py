@@ -56,7 +56,7 @@ def test_every_result_is_a_line_at_the_prompt() -> None:
 
 
 ONE_LINE = {
-    "AlgebraicNumber", "Boundary", "Change", "Count", "Counts", "Enclosure", "Location", "Mechanism", "Member", "Pose",
+    "AlgebraicNumber", "Boundary", "Change", "ClosedMechanism", "Count", "Counts", "Enclosure", "Location", "Mechanism", "Member", "Pose",
     "Slice", "System",
 }  # fmt: skip
 """What is answered in a line at the prompt, which is what a notebook shows of it too."""
@@ -95,6 +95,7 @@ def every_kind(tmp_path_factory: pytest.TempPathFactory) -> list[object]:
         shipped("fig4").compare(shipped("fig4")), shipped("fig4").animate("rho=1/10:1/5,L2=1", "stable:1", 2), swept,
         swept[0], poses.equilibria[0].energy, ptmcad.counts_at(slice.model, rho="1", L2="3/2"), slice.count,
         shipped("fig4").locate(rho=1, L2=1), ptmcad.load(CONFIGS / "systems" / "duffing.yaml").model,
+        ptmcad.load(CONFIGS / "mechanisms" / "slider-crank.yaml").model,
         ptmcad.intervals(slice, "rho", {"L2": "3/2"}).changes[0].at, designed,
     ]  # fmt: skip
 

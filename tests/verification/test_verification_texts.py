@@ -235,7 +235,7 @@ FALSE = [
     ("$", " + 1/(rho - rho)", "a part that is no formula"),
     ("$", " + 0*foo", "a part that is no formula: 'foo'"),
     ("$", " + 0*9^9^9^9", "a part that is no formula"),
-    ("$", " + 0.5", "not a formula in the names"),
+    ("$", " + 0.5", "differs from the mechanism"),
     ("$", " + ((L1 + L2 + rho)^9)^9", "a product of more than"),
     ("$", "*(L1 + L2)^9*(L1 + L2)^9", "differs from the mechanism"),
     ("$", " + (k1 + k2 + k3 + F3 + F4)^6*(L1 + L2 + rho + F3x + F4x)^6", "a product of more than"),

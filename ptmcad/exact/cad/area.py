@@ -180,7 +180,7 @@ def _with_room(bounds: tuple[Fraction, Fraction], tolerance: Fraction, whole: Fr
     low, high = bounds
     known = high - low <= low * _NEGLIGIBLE  # walls on which the Taylor polynomials are exact, such as straight lines
     # bounds that are narrower than asked for would cost the checker time for nothing
-    spare = max(low * tolerance / 16, (low * tolerance / 2 - (high - low)) / 2)
+    spare = max(low * tolerance / 16, (low * tolerance / 8 - (high - low)) / 2)
     room = low * _NEGLIGIBLE / 100 if known else spare
     return max(low - room, Fraction(0)), min(high + room, whole)
 

@@ -276,7 +276,7 @@ ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
     (check_potential, springs, with_system(hessian=(("1",),)), "a certified map has no relations"),
     (check_potential, springs, with_system(potential="1 + " * 1250 + "1"), "is not a formula in the names"),
     *((check_potential, springs, plus(text), "is not a formula in the names")
-      for text in ("0*L1**2", "0*\N{GREEK SMALL LETTER ALPHA}", "1.5", "0 # L1", "0\n", "0\0", "0x0", "0*1_0",
+      for text in ("0*L1**2", "0*\N{GREEK SMALL LETTER ALPHA}", "1.5.2", "1.", "0 # L1", "0\n", "0\0", "0x0", "0*1_0",
                    "L1 % L2", "cos(th1, th2)", "0if L1 else 0", "0*L1[0]", "0*L1.real")),
     *((check_potential, springs, plus(text), "the stored potential cannot be read")
       for text in ("1 +", "((1)", "01", "(0 if L1 else 0)", "1" * 4400, "(" * 250 + "0" + ")" * 250)),
