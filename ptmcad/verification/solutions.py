@@ -13,7 +13,7 @@ boxes it is not.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from itertools import combinations, islice
 from typing import NamedTuple
@@ -209,18 +209,12 @@ def _proved(functions: _Functions, solution: Solution) -> _Values | None:
     (c cos a - s sin a, s cos a + c sin a), so that c^2 + s^2 = 1 holds by construction.
     """
     turning = 2 * len(functions.model.angles)
-    point = _normal([arb(rational(x)) for x in solution.center], turning)
-    step = arb(1)
-    for _ in range(_STEPS + ctx.prec.bit_length()):
-        values = functions(point)
-        step_by = _solve(values.jacobian, values.equations)
-        if step_by is None:
-            return None
-        point = [x.mid() for x in _moved(point, [-a.mid() for a in step_by], turning)]
-        point = _normal(point, turning)
-        step = max(abs(a.mid()) for a in step_by)
-        if step < arb(2) ** (8 - ctx.prec):
-            break
+    center = _normal([arb(rational(x)) for x in solution.center], turning)
+    starts = (_normal(_moved(center, by, turning), turning) for by in _steps_aside(functions, solution))
+    reached = next((found for start in starts if (found := _iterated(functions, start)) is not None), None)
+    if reached is None:
+        return None
+    point, step = reached
     # the point now has exact circles up to rounding, which its balls contain
     # wide against rounding, narrow against the distance over which the Jacobian varies
     radius = (step * 8 + arb(2) ** (-2 * ctx.prec // 3)).mid()
@@ -234,6 +228,35 @@ def _proved(functions: _Functions, solution: Solution) -> _Values | None:
         for x, center in zip(around, solution.center, strict=True)
     )
     return values if inside else None
+
+
+def _steps_aside(functions: _Functions, solution: Solution) -> Iterator[list[arb]]:
+    """Where Newton's method may start, from a box's center: there, or half way to a side.
+
+    The Jacobian may be singular at the center itself, as at a cusp whose coordinates the box has.
+    """
+    size = len(functions.model.unknowns)
+    half = arb(rational(solution.radius) / 2)
+    yield [arb(0)] * size
+    for k in range(size):
+        for step in (half, -half):
+            yield [step if i == k else arb(0) for i in range(size)]
+
+
+def _iterated(functions: _Functions, point: list[arb]) -> tuple[list[arb], arb] | None:
+    """The point that Newton's method reaches, and the length of its last step; None at a singular Jacobian."""
+    turning, step = 2 * len(functions.model.angles), arb(1)
+    for _ in range(_STEPS + ctx.prec.bit_length()):
+        values = functions(point)
+        step_by = _solve(values.jacobian, values.equations)
+        if step_by is None:
+            return None
+        point = [x.mid() for x in _moved(point, [-a.mid() for a in step_by], turning)]
+        point = _normal(point, turning)
+        step = max(abs(a.mid()) for a in step_by)
+        if step < arb(2) ** (8 - ctx.prec):
+            break
+    return point, step
 
 
 def _normal(point: list[arb], turning: int) -> list[arb]:
