@@ -37,7 +37,15 @@ RECORDS = list(OTHER)
 LINES_ONLY = {"three-bar-chain"}
 """Too large for an exact map."""
 MAPPED = [path for path in RECORDS if path.stem not in LINES_ONLY]
-MECHANISMS = {"bistable-slider", "inverted-pendulum", "platform", "slider-crank", "three-bar-chain", "two-bar-chain"}
+MECHANISMS = {
+    "bistable-slider",
+    "four-bar",
+    "inverted-pendulum",
+    "platform",
+    "slider-crank",
+    "three-bar-chain",
+    "two-bar-chain",
+}
 SYSTEMS = {
     "cubic", "cubic-and-quadratic", "duffing", "escape", "kuramoto", "orthogonal-3r", "schloegl", "stability-pair",
     "von-mises-truss",
@@ -101,7 +109,7 @@ def test_numbers_of_solutions(path: Path) -> None:
         assert solutions_at(problem.system, values) == (known["complex_solutions"],) * 2
 
 
-HEAVY = {"stability-pair", "kuramoto", "orthogonal-3r"}
+HEAVY = {"four-bar", "stability-pair", "kuramoto", "orthogonal-3r"}
 """The fast tests have the certified engine's areas of the last two, in `test_known_answers_systems`."""
 
 
