@@ -12,7 +12,7 @@ from enum import Enum
 
 from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
 from ptmcad.mechanism.description import UnknownKind
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import Enclosure
@@ -168,6 +168,8 @@ def _of_part(model: Model, kind: Kind, name: str, key: str) -> Quantity:
             what, known, unit = "spring", tuple(mechanism.spring_numbers) if mechanism else (), kind.value
         case _:
             what, known, unit = "point", tuple(mechanism.points) if mechanism else (), "length"
+    if isinstance(model, ClosedMechanism) and kind is not Kind.ANGLE:
+        raise ConfigError(f"of closed loops, as {model.name} has, only the unknowns are told yet", key=key)
     if name not in known:
         there = f": they are {', '.join(known)}" if known else ": there are none"
         raise ConfigError(f"{model.name} has no {what} {name[:60]!r}{did_you_mean(name, known) or there}", key=key)

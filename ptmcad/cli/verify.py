@@ -20,7 +20,7 @@ from ptmcad.options import Options
 from ptmcad.question.config import member_like
 
 if TYPE_CHECKING:
-    from ptmcad.verification.report import Check, VerifyReport
+    from ptmcad.verification.report import VerifyReport
 
 
 @click.command("verify")
@@ -72,14 +72,10 @@ def _verified_family(family: FamilyMap, seed: int | None) -> int:
     def maps_at(value: Fraction) -> tuple[RegionMap, RegionMap]:
         return map_at(value), map_at(value, True)
 
-    checks: list[Check] = []
-    if (surfaces := verify_surfaces(family, map_at, seed)) is not None:
-        checks.append(surfaces)
+    checks = [verify_surfaces(family, map_at, seed)]
     if family.changes is not None and all(c.passed is not False for c in checks):
         with ProgressBar() as progress:
             checks += verify_changes(family.changes, maps_at, seed, progress)
-    if not checks:
-        return 0
     click.echo(f"what the members have in common over {family.free.name}")
     return _told(VerifyReport(tuple(checks)))
 

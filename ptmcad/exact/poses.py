@@ -25,7 +25,7 @@ from ptmcad.exact.models.potential import deflections_of, geometry_of, system_fr
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, polynomial_at
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
 from ptmcad.exact.statics import PointModel, State, is_positive, pose_of, state_at
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
 from ptmcad.mechanism.description import System
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.text.tree import to_text as text_of
@@ -83,6 +83,9 @@ def _vanishing(given: Model, model: PointModel, states: Sequence[State], order: 
     for k, condition in enumerate(given.stability, len(model.inequalities)):
         if numbers := [n for n, s in enumerate(order, 1) if states[s].conditions[k].is_zero]:
             what = f"solution{'s' if len(numbers) > 1 else ''} {', '.join(map(str, numbers))}"
+            if isinstance(given, ClosedMechanism):  # the condition is a determinant, pages long
+                yield f"{what} is degenerate: poses meet there, or the loop is flat, at rest or not"
+                continue
             counted = "count" if len(numbers) > 1 else "counts"
             yield f"{text_of(condition)} is zero at {what}, which {counted} as unstable"
 
@@ -108,6 +111,8 @@ def _solutions(system: ParametricSystem, values: Mapping[str, fmpq], most: Work 
     """
     try:
         point = point_system(system, values, most=most)
+        if not point.algebra.dimension:
+            return point, Points((), (), 0, 0)
         found = points(point.algebra, 1 if point.is_bounded else None)
         if not system.inequalities or found.distinct == found.total:
             return point, found

@@ -1,4 +1,4 @@
-"""What springs of a mechanism ask of the expressions that they are given, besides what each parameter has to be."""
+"""What springs and closing bars ask of the expressions that they are given, besides what each parameter has to be."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, Faults, shown
-from ptmcad.mechanism.description import Kind, Mechanism, Model
+from ptmcad.mechanism.description import ClosedMechanism, Kind, Mechanism, Model
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.text.numerals import text_of as value_text
 from ptmcad.text.tree import Name, Tree, names_of
@@ -18,7 +18,7 @@ MAX_SHOWN = 60
 
 
 class Part(NamedTuple):
-    """A stiffness or a free length that is written where it is used.
+    """A stiffness or a length that is written where it is used.
 
     Attributes
     ----------
@@ -37,7 +37,10 @@ class Part(NamedTuple):
 
 
 def parts(model: Model) -> Iterator[Part]:
-    """The stiffnesses and free lengths of a mechanism's springs that are no parameters of such a kind themselves."""
+    """The stiffnesses and free lengths of a mechanism's springs, and the lengths of bars that close loops, that are no
+    parameters of such a kind themselves."""
+    if isinstance(model, ClosedMechanism):
+        model = model.mechanism
     if not isinstance(model, Mechanism):
         return
     for n, spring in enumerate(model.springs, 1):
@@ -45,6 +48,8 @@ def parts(model: Model) -> Iterator[Part]:
         yield from _unless_known(model, Part(f"springs.{n}.free", Kind.FREE_LENGTH, spring.free))
     for n, torsion in enumerate(model.torsion, 1):
         yield from _unless_known(model, Part(f"torsion.{n}.k", Kind.STIFFNESS, torsion.stiffness))
+    for n, closing in enumerate(model.closing, 1):
+        yield from _unless_known(model, Part(f"closing.{n}.length", Kind.LENGTH, closing.length))
 
 
 def fault_of_number(part: Part, value: Fraction) -> str:

@@ -168,6 +168,23 @@ def check_springs(mechanism: Mechanism, faults: Faults) -> None:
                 raise ConfigError("no unknown changes its angle, so that this spring does nothing", key=f"torsion.{n}")
 
 
+def check_closing(mechanism: Mechanism, faults: Faults) -> None:
+    """Note each closing bar between points whose distance no unknown changes, and one that is listed twice."""
+    points = _Points(mechanism)
+    known: dict[frozenset[str], int] = {}
+    for n, closing in enumerate(mechanism.closing, 1):
+        with faults:
+            first = known.setdefault(frozenset((closing.start, closing.end)), n)
+            if first < n:
+                raise ConfigError(f"number {first} is a bar between the same points", key=f"closing.{n}.between")
+            if not points.moves(closing.start, closing.end):
+                raise ConfigError(
+                    f"the distance of {closing.start} and {closing.end} is constant, so that a bar between them closes "
+                    "no loop",
+                    key=f"closing.{n}.between",
+                )
+
+
 def check_unknowns(mechanism: Mechanism, faults: Faults) -> None:
     """Note each unknown whose equation vanishes identically: nothing holds it."""
     held: set[str] = set()

@@ -17,7 +17,7 @@ from ptmcad.mechanism.description import Closing, Load, Mechanism, Moment, Sprin
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.loops import CLOSING_KEYS, check_loops
 from ptmcad.mechanism.parts import check_numbers
-from ptmcad.mechanism.proofs import check_bars, check_springs, check_symmetries, check_unknowns
+from ptmcad.mechanism.proofs import check_bars, check_closing, check_springs, check_symmetries, check_unknowns
 from ptmcad.mechanism.reading import (
     MAX_BODIES,
     Reader,
@@ -142,6 +142,8 @@ def _prove(found: Mechanism, faults: Faults) -> None:
     faulty = {(fault.key or "").partition(".")[0] for fault in faults.found}
     if not faulty & _SHAPE:
         check_bars(found, faults)
+        if "closing" not in faulty:
+            check_closing(found, faults)
         if "springs" not in faulty and "torsion" not in faulty:
             check_springs(found, faults)
     if not faulty - _FORCELESS:

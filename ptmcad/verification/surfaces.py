@@ -28,8 +28,8 @@ _SHARES = 1009
 """A prime: random values are such shares of the range."""
 
 
-def verify_surfaces(found: FamilyMap, map_at: Callable[[Fraction], RegionMap], seed: int | None = None) -> Check | None:
-    """Check the polynomials of the surfaces on which solutions meet; None where a family has none.
+def verify_surfaces(found: FamilyMap, map_at: Callable[[Fraction], RegionMap], seed: int | None = None) -> Check:
+    """Check the polynomials of the surfaces on which solutions meet.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def verify_surfaces(found: FamilyMap, map_at: Callable[[Fraction], RegionMap], s
     seed : of the random value; drawn from a hash of the claims when None.
     """
     if not found.surfaces:
-        return None
+        return Check("surfaces", "", None, "none are stored: those of the family are not said")
     name, method = "surfaces", "a member alone, factored"
     source = random.Random(_fingerprint(found) if seed is None else str(seed))
     for _ in range(_DRAWN):

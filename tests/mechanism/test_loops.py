@@ -15,7 +15,7 @@ from flint import fmpq
 
 import ptmcad
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial
-from ptmcad.answer.regionmap import Component, Kind
+from ptmcad.answer.regionmap import Component, Kind, Status
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.exact.models.potential import system_from
 from ptmcad.exact.models.system import at_point, polynomial_at
@@ -220,6 +220,10 @@ def test_a_map_is_stored_with_its_mechanism_and_verified(
         ({"closing": [{"between": ["P", "R"], "length": 1}]}, "closing.1.between", "no point"),
         ({"closing": [{"between": ["P", "Q"], "length": "cos(th1)"}]}, "closing.1.length", "th1"),
         ({"closing": "PQ"}, "closing", "list"),
+        ({"closing": [{"between": ["A0", "P"], "length": "L3"}]}, "closing.1.between", "closes no loop"),
+        ({"closing": [*FOUR_BAR["closing"], {"between": ["Q", "P"], "length": 1}]}, "closing.2.between", "number 1"),
+        ({"closing": [{"between": ["P", "Q"], "length": -2}]}, "closing.1.length", "a length is positive"),
+        ({"closing": [{"between": ["P", "Q"], "length": 0}]}, "closing.1.length", "a length is positive"),
     ],
 )
 def test_what_is_not_computed_is_refused_by_its_key(change: dict[str, Any], key: str, said: str) -> None:
@@ -242,6 +246,36 @@ def test_a_loop_that_folds_flat_everywhere_is_told(lengths: tuple[Any, ...]) -> 
     numbers = dict(zip(("L1", "L2", "L3", "b"), lengths, strict=True))
     with pytest.raises(DegenerateSliceError, match="the loop that PQ closes can fold flat"):
         components(slice_of(FOUR_BAR, **LOADS, parameters=numbers))
+
+
+def test_lengths_and_stiffnesses_written_where_they_are_used_are_proved_positive() -> None:
+    for change, part in (
+        ({"closing": [{"between": ["P", "Q"], "length": "L3 + F"}]}, "closing.1.length"),
+        ({"springs": [{"between": ["A0", "Q"], "k": "k1 + F"}]}, "springs.1.k"),
+    ):
+        with pytest.raises(ConfigError, match=rf"{part}: a \w+ must be positive in the whole window"):
+            slice_of({**FOUR_BAR, **change}, **LOADS)
+
+
+FLAT = {"L1": 1, "L2": 1, "L3": 2, "b": 2}
+
+
+def test_a_flat_loop_is_told_on_a_line_and_at_a_point() -> None:
+    slice = slice_of(FOUR_BAR, **LOADS, parameters=FLAT)
+    with pytest.raises(DegenerateSliceError, match="the loop that PQ closes can fold flat"):
+        ptmcad.intervals(slice, "F", {"G": 1})
+    found = ptmcad.solve(slice, F=1, G="1/3")
+    assert found.status is Status.ON_VARIETY
+    assert "degenerate: poses meet there, or the loop is flat" in found.remark
+    assert len(found.remark) < 200
+
+
+def test_without_any_solution_there_are_none() -> None:
+    """Real or complex: the algebra is zero."""
+    system = {"unknowns": {"x": "real"}, "equations": ["a*x - b"]}
+    found = ptmcad.solve({"system": system, "axes": {"a": [-1, 1], "b": [-1, 1]}}, a=0, b="1/2")
+    assert found.equilibria == ()
+    assert found.status is Status.EXACT
 
 
 @pytest.mark.parametrize(

@@ -56,8 +56,8 @@ def test_every_result_is_a_line_at_the_prompt() -> None:
 
 
 ONE_LINE = {
-    "AlgebraicNumber", "Boundary", "Change", "ClosedMechanism", "Count", "Counts", "Enclosure", "Location", "Mechanism", "Member", "Pose",
-    "Slice", "System",
+    "AlgebraicNumber", "Boundary", "Change", "ClosedMechanism", "Count", "Counts", "Enclosure", "Location",
+    "Mechanism", "Member", "Pose", "Slice", "System",
 }  # fmt: skip
 """What is answered in a line at the prompt, which is what a notebook shows of it too."""
 NO_RESULTS = {"Any", "DataFrame", "Explorer", "Iterator", "None", "Point"}

@@ -26,9 +26,11 @@ from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, End
 from ptmcad.answer.regionmap import Kind
 from ptmcad.answer.words import noun
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
+from ptmcad.exact.folds import with_folds
 from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.stages import count_at, domain_limits
 from ptmcad.exact.variety import discriminant_variety
+from ptmcad.exact.witness import points
 from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
@@ -103,6 +105,9 @@ def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Kind], ...]:
             system, parameters, (window, (fmpq(0), fmpq(1))), domain_limits(system, parameters), frozenset({"infinity"})
         )
     except DegenerateSliceError as error:
+        told = with_folds(error, line.model, system, parameters, points((window, (fmpq(0), fmpq(1)))))
+        if told is not error:
+            raise told from error
         raise DegenerateSliceError(
             f"the line {where} lies inside the discriminant variety: at every {line.along.name} some "
             f"{noun(line.model, 1)} has a singular {'Hessian' if system.has_index else 'Jacobian'}; fix another value"

@@ -12,7 +12,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from ptmcad.errors import ExpressionError, Faults
-from ptmcad.mechanism import Kind, Mechanism, Model, System
+from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, Model, System
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.moments import foreign
 from ptmcad.mechanism.parts import fault_of_number, parts
@@ -251,7 +251,8 @@ def _check_count(record: Record, resolved: Mapping[str, Expression]) -> None:
     if count is Count.INDEX and not model.has_potential:
         problem = "solutions of equations have no index, which is that of a potential's Hessian: count total"
     if count is Count.ADMISSIBLE and isinstance(model, System):
-        problem = "a system has no springs, whose lengths would be admissible: count stable or total"
+        what = "a mechanism with closed loops" if isinstance(model, ClosedMechanism) else "a system"
+        problem = f"{what} has no springs whose lengths would be admissible: count stable or total"
     elif count is Count.ADMISSIBLE and not have_free_lengths(model, resolved):
         problem = f"{NOTHING_ADMISSIBLE}: choose stable"
     if problem:
