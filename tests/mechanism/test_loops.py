@@ -251,7 +251,7 @@ def test_a_loop_that_folds_flat_everywhere_is_told(lengths: tuple[Any, ...]) -> 
 def test_lengths_and_stiffnesses_written_where_they_are_used_are_proved_positive() -> None:
     for change, part in (
         ({"closing": [{"between": ["P", "Q"], "length": "L3 + F"}]}, "closing.1.length"),
-        ({"springs": [{"between": ["A0", "Q"], "k": "k1 + F"}]}, "springs.1.k"),
+        ({"springs": [{"between": ["A0", "Q"], "k": "k1 + F"}, FOUR_BAR["springs"][1]]}, "springs.1.k"),
     ):
         with pytest.raises(ConfigError, match=rf"{part}: a \w+ must be positive in the whole window"):
             slice_of({**FOUR_BAR, **change}, **LOADS)
