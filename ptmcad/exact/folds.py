@@ -33,7 +33,10 @@ def with_folds(
     ----------
     at : points of the slice that nobody has chosen.
     """
-    if not isinstance(model, ClosedMechanism) or not all(_folds_at(model, system, parameters, p) for p in at):
+    if not isinstance(model, ClosedMechanism):
+        return error
+    seen = [found for p in at if (found := _folds_at(model, system, parameters, p)) is not None]
+    if not seen or not all(seen):
         return error
     bars = " and ".join(f"{c.start}{c.end}" for c in model.mechanism.closing)
     return DegenerateSliceError(
@@ -44,11 +47,13 @@ def with_folds(
     )
 
 
-def _folds_at(model: ClosedMechanism, system: ParametricSystem, parameters: Mapping[str, Ratio], at: Point) -> bool:
-    """Whether some pose, real or complex, has a tangent that is zero."""
+def _folds_at(
+    model: ClosedMechanism, system: ParametricSystem, parameters: Mapping[str, Ratio], at: Point
+) -> bool | None:
+    """Whether some pose, real or complex, has a tangent that is zero; None where a parameter has no value."""
     below = [evaluate(b, *at) for _, b in parameters.values()]
     if not all(below):
-        return True  # nothing is said of this point
+        return None
     values = {name: evaluate(a, *at) / b for (name, (a, _)), b in zip(parameters.items(), below, strict=True)}
     flat = [polynomial_at(system, p, values) for p in elements_of(model, model.tangent)]
     circles = [{m: fmpq(c) for m, c in circle.items()} for circle in system.ring.circles]

@@ -8,7 +8,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism.description import ClosedMechanism, Kind, Mechanism, Model, Parameter, Support, System
+from ptmcad.mechanism.closed import ClosedMechanism
+from ptmcad.mechanism.description import Kind, Mechanism, Model, Parameter, Support, System
 from ptmcad.mechanism.loops import without_loops
 from ptmcad.mechanism.ptm import ptm
 from ptmcad.mechanism.record import described, read_mechanism

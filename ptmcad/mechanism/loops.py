@@ -19,8 +19,10 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
+from ptmcad.mechanism.closed import ClosedMechanism
 from ptmcad.mechanism.derivative import cofactors, derivative, determinant, negative, product, total
-from ptmcad.mechanism.description import ClosedMechanism, Closing, Mechanism, Model
+from ptmcad.mechanism.description import Closing, Mechanism, Model
+from ptmcad.mechanism.proofs import Points
 from ptmcad.mechanism.sizes import check_sizes
 from ptmcad.mechanism.work import split_moments
 from ptmcad.text.tree import Number, Power, Tree
@@ -52,6 +54,23 @@ def check_loops(mechanism: Mechanism, faults: Faults) -> None:
     with faults:
         if mechanism.symmetries:
             raise ConfigError("symmetries are not used in closed loops: leave them out", key="symmetries")
+
+
+def check_closing(mechanism: Mechanism, faults: Faults) -> None:
+    """Note each closing bar between points whose distance no unknown changes, and one that is listed twice."""
+    points = Points(mechanism)
+    known: dict[frozenset[str], int] = {}
+    for n, closing in enumerate(mechanism.closing, 1):
+        with faults:
+            first = known.setdefault(frozenset((closing.start, closing.end)), n)
+            if first < n:
+                raise ConfigError(f"number {first} is a bar between the same points", key=f"closing.{n}.between")
+            if not points.moves(closing.start, closing.end):
+                raise ConfigError(
+                    f"the distance of {closing.start} and {closing.end} is constant, so that a bar between them closes "
+                    "no loop",
+                    key=f"closing.{n}.between",
+                )
 
 
 def without_loops(model: Mechanism, faults: Faults | None = None) -> Model:

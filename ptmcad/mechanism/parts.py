@@ -7,7 +7,8 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, Faults, shown
-from ptmcad.mechanism.description import ClosedMechanism, Kind, Mechanism, Model
+from ptmcad.mechanism.closed import ClosedMechanism
+from ptmcad.mechanism.description import Kind, Mechanism, Model
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.text.numerals import text_of as value_text
 from ptmcad.text.tree import Name, Tree, names_of

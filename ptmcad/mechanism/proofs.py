@@ -134,7 +134,7 @@ def _product(one: Monomial, two: Monomial) -> Iterator[tuple[Monomial, int]]:
 
 def check_bars(mechanism: Mechanism, faults: Faults) -> None:
     """Note each bar whose length varies, or is too large an expression."""
-    points = _Points(mechanism)
+    points = Points(mechanism)
     for n, (start, end) in enumerate(mechanism.bars, 1):
         key = f"bars.{n}"
         with faults:
@@ -153,7 +153,7 @@ def check_bars(mechanism: Mechanism, faults: Faults) -> None:
 
 def check_springs(mechanism: Mechanism, faults: Faults) -> None:
     """Note each spring whose length no unknown changes, and each torsion spring whose angle none does."""
-    points = _Points(mechanism)
+    points = Points(mechanism)
     for n, spring in enumerate(mechanism.springs, 1):
         with faults:
             if not points.moves(spring.start, spring.end):
@@ -166,23 +166,6 @@ def check_springs(mechanism: Mechanism, faults: Faults) -> None:
         with faults:
             if not any(multiples(torsion.angle).get(angle) for angle in mechanism.angles):
                 raise ConfigError("no unknown changes its angle, so that this spring does nothing", key=f"torsion.{n}")
-
-
-def check_closing(mechanism: Mechanism, faults: Faults) -> None:
-    """Note each closing bar between points whose distance no unknown changes, and one that is listed twice."""
-    points = _Points(mechanism)
-    known: dict[frozenset[str], int] = {}
-    for n, closing in enumerate(mechanism.closing, 1):
-        with faults:
-            first = known.setdefault(frozenset((closing.start, closing.end)), n)
-            if first < n:
-                raise ConfigError(f"number {first} is a bar between the same points", key=f"closing.{n}.between")
-            if not points.moves(closing.start, closing.end):
-                raise ConfigError(
-                    f"the distance of {closing.start} and {closing.end} is constant, so that a bar between them closes "
-                    "no loop",
-                    key=f"closing.{n}.between",
-                )
 
 
 def check_unknowns(mechanism: Mechanism, faults: Faults) -> None:
@@ -204,7 +187,7 @@ def check_unknowns(mechanism: Mechanism, faults: Faults) -> None:
 
 def _held(mechanism: Mechanism) -> set[str]:
     """The unknowns whose equations do not vanish identically."""
-    points = _Points(mechanism)
+    points = Points(mechanism)
     ring = points.ring
     held = {moment.unknown for moment in mechanism.moments if points.value(moment.value).terms}
     for closing in mechanism.closing:
@@ -319,7 +302,7 @@ def energy_is_kept(
 
 def squared_length(mechanism: Mechanism, image: MirrorImage, start: str, end: str) -> Polynomial:
     """The square of the distance of two points."""
-    return _Points(mechanism, image).squared(start, end)
+    return Points(mechanism, image).squared(start, end)
 
 
 def _are_the_same(mechanism: Mechanism, one: _Image, other: _Image) -> bool:
@@ -341,7 +324,7 @@ _Spring = tuple[_Terms, _Terms, _Terms]
 
 def _feels(mechanism: Mechanism, ring: _Image) -> tuple[Polynomial, Counter[_Spring], dict[str, _Terms]]:
     """Twice the energy without springs of free length, these springs, and the moments' work along each unknown."""
-    points = _Points(mechanism, ring)
+    points = Points(mechanism, ring)
     energy = ring.constant(Fraction(0))
     springs: list[_Spring] = []
     for spring in mechanism.springs:
@@ -365,7 +348,7 @@ def _terms(p: Polynomial) -> _Terms:
     return frozenset(p.terms.items())
 
 
-class _Points:
+class Points:
     """The coordinates of a mechanism's points, each computed once."""
 
     def __init__(self, mechanism: Mechanism, ring: Ring | _Image | None = None):

@@ -15,9 +15,9 @@ from ptmcad.mechanism.angles import angle_name
 from ptmcad.mechanism.bodies import add_bodies
 from ptmcad.mechanism.description import Closing, Load, Mechanism, Moment, Spring, Support, TorsionSpring
 from ptmcad.mechanism.evaluate import value_at
-from ptmcad.mechanism.loops import CLOSING_KEYS, check_loops
+from ptmcad.mechanism.loops import CLOSING_KEYS, check_closing, check_loops
 from ptmcad.mechanism.parts import check_numbers
-from ptmcad.mechanism.proofs import check_bars, check_closing, check_springs, check_symmetries, check_unknowns
+from ptmcad.mechanism.proofs import check_bars, check_springs, check_symmetries, check_unknowns
 from ptmcad.mechanism.reading import (
     MAX_BODIES,
     Reader,

@@ -21,6 +21,7 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz
 from ptmcad.answer.regionmap import System
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.text.tree import names_of
+from ptmcad.verification.certified.decimals import in_quotients
 from ptmcad.verification.certified.refutation import differs_somewhere
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import MECHANISM, Configuration, formulas, work
@@ -30,9 +31,6 @@ _MAX_TEXT = 5_000
 """Of the paper's mechanism; that of others, which may be large, is not checked beyond `_LARGE_TEXT`."""
 _LARGE_TEXT = 100_000
 _SIGNS = re.compile(r"[A-Za-z0-9_ ()^*/+-]*", re.ASCII)
-_DECIMAL = re.compile(
-    r"(?<![A-Za-z0-9_.])([0-9]{1,60})(?:\.([0-9]{1,60}))?(?:e([+-]?[0-9]{1,3}))?(?![A-Za-z0-9_.])", re.ASCII
-)
 _WRONG = re.compile(r"\*\*|(?<![A-Za-z0-9_])(?:_|[0-9]+[A-Za-z_])", re.ASCII)
 """Integers, names and signs: no comments, lines, decimals, or other things that are Python. Each takes linear time;
 possessive quantifiers, which would do, are wrong in Python before 3.11.5."""
@@ -361,21 +359,11 @@ def _plain(name: str) -> str:
     return name[1:]
 
 
-def _as_quotient(decimal: re.Match[str]) -> str:
-    """A decimal number as a quotient of integers, which are read without a rounding; an integer as it is."""
-    whole, behind, exponent = decimal.groups()
-    if behind is None and exponent is None:
-        return whole
-    shift = int(exponent or 0) - len(behind or "")
-    number = int(whole + (behind or ""))
-    return f"({number * 10**shift})" if shift >= 0 else f"({number}/{10**-shift})"
-
-
 def _parsed(model: Model, what: str, text: str) -> ast.expr:
     most = _MAX_TEXT if model == MECHANISM else _LARGE_TEXT
     if len(text) > most and model != MECHANISM:
         raise _TooLarge(f"the stored {what} is longer than {most} letters")
-    text = _DECIMAL.sub(_as_quotient, text)
+    text = in_quotients(text)
     if len(text) > most or _SIGNS.fullmatch(text) is None or _WRONG.search(text):
         raise Violation(f"the stored {what} is not a formula in the names of problem records")
     try:
