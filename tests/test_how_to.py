@@ -78,6 +78,7 @@ def test_commands_and_python_say_what_the_page_shows(
     assert examples >= least[1]
 
 
+@pytest.mark.slow
 def test_numbers_are_drawn_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """matplotlib's lines run; the columns that the others name are there."""
     monkeypatch.chdir(tmp_path)

@@ -30,6 +30,7 @@ def wanted() -> Iterator[str]:
             yield from (Path(place, name).relative_to(ROOT).as_posix() for name in names)
 
 
+@pytest.mark.slow
 def test_the_source_distribution_has_every_file(tmp_path: Path) -> None:
     """By the file list that setuptools makes before it packs."""
     command = [sys.executable, "setup.py", "-q", "egg_info", "--egg-base", str(tmp_path)]

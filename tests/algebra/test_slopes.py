@@ -52,6 +52,7 @@ def test_a_line_of_the_direction_is_refused() -> None:
         tangent_resultant(line, (1, 1))
 
 
+@pytest.mark.slow
 def test_the_low_end_of_fig_4_reaches_slope_one_half() -> None:
     """At L2 = 1.5298 (seen by differences of the ends); so the proof's fourth step must stop before, and does."""
     p = from_plane(curves("fig4")[0].polynomial)

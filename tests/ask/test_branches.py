@@ -40,6 +40,7 @@ def fig4() -> Branches:
     return branch_diagram(load(FIG4), "rho", {"L2": "3/2"}, names)
 
 
+@pytest.mark.slow
 def test_the_branches_are_all_equilibria(fig4: Branches) -> None:
     """Four, six and four of them, as the ranges say; two are stable in the middle."""
     folds = (0.4981306959, 1.041432630)
@@ -50,6 +51,7 @@ def test_the_branches_are_all_equilibria(fig4: Branches) -> None:
     assert not fig4.undecided
 
 
+@pytest.mark.slow
 def test_each_point_is_what_solve_says(fig4: Branches) -> None:
     for branch in fig4.branches[::3]:
         point = branch.points[7]
@@ -185,6 +187,7 @@ def test_numbers_of_a_pose() -> None:
     assert (of["energy"], of["stiffness"]) == (pose.energy, pose.eigenvalues[0])
 
 
+@pytest.mark.slow
 def test_other_spellings_are_the_same_numbers() -> None:
     asked = ["th1", "angle:th1", "x:A1", "force:A1A4", "force:k1"]
     slice = ptmcad.slice_from_options(FIG4, ranges=["rho=1:5/4"])

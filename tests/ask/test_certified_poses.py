@@ -115,6 +115,7 @@ def test_a_negative_free_length_is_refused() -> None:
 # --------------------------------------------------------------------------------------------------------------- range
 
 
+@pytest.mark.slow
 def test_critical_free_lengths_enclosed() -> None:
     """Known: folds at rho = 7/10, L2 = 3/2, f = -1/10 are among the 52 of REFERENCE; counts are proved between."""
     slice = slice_from_options(None, "l0,rho", ("L2=3/2", "F3=-10", "F4=-10"), ("l0=0:1", "rho=0:2"))
@@ -182,6 +183,7 @@ def test_the_issue_s_line() -> None:
     assert stable == [1, 2, 2, 2, 2, 1, 1, 2, 2, 1, 1, 2, 2, 2, 1]
 
 
+@pytest.mark.slow
 def test_range_on_the_command_line() -> None:
     options = ["--along", "l0", "--at", "rho=7/10,L2=3/2", "--range", "l0=1/3:1/2", "--set", "F3=-10"]
     done = CliRunner().invoke(command, options)

@@ -155,6 +155,7 @@ def test_random_quadrics(quadric: tuple[int, ...], plane: tuple[int, ...]) -> No
     agree(exact, sampled(question, Fraction(1, 100)))
 
 
+@pytest.mark.slow
 def test_where_elimination_is_out_of_reach_that_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(asking, "critical_values", lambda *_: OutOfReach("that would take too long"))
     found = ptmcad.changes(of("u^2 - c - 1/3 + a^2 + b^2", -1, 3))

@@ -64,6 +64,7 @@ def test_a_map_does_not_differ_from_itself() -> None:
         assert found.changes == () and found.area == (0, 0)
 
 
+@pytest.mark.slow
 def test_the_area_agrees_with_an_exact_grid() -> None:
     first = shipped("fig4")
     second = heavier_fig4()
@@ -97,6 +98,7 @@ def test_the_picture_has_both_maps_and_the_difference() -> None:
         comparison_figure(found, 100, styled("ieee", size="3.5x2.6in"))
 
 
+@pytest.mark.slow
 def test_the_maps_of_a_change_have_letters_where_a_journal_has_no_titles() -> None:
     with settings(styled("ieee")):
         made = comparison_figure(shipped("fig4").compare(heavier_fig4()), 100, styled("ieee"))

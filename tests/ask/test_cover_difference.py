@@ -154,6 +154,7 @@ def test_any_covers_of_two_lattices(
     check(first.compare(second), sampled(before, after, SIDE), Fraction(4, SIDE**2))
 
 
+@pytest.mark.slow
 def test_a_map_differs_from_itself_nowhere_but_where_it_is_undetermined() -> None:
     result = part_of_free02()
     found = result.compare(result)
@@ -226,6 +227,7 @@ def test_the_damaged_exact_file_is_named(tmp_path: Path, capsys: pytest.CaptureF
         assert "damaged.json" in said and "whole.json" not in said
 
 
+@pytest.mark.slow
 def test_the_command_line_compares(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name, result in (("one", circle(6)), ("two", ellipse(6))):
         (tmp_path / f"{name}.json").write_text(result.to_json())

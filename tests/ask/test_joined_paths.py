@@ -36,6 +36,7 @@ def found() -> PosePaths:
     return ptmcad.pose_paths(slice_of(), "rho", {"L2": "3/2"}, "6/5")
 
 
+@pytest.mark.slow
 def test_it_snaps_at_the_fold_to_the_pose_that_is_left(found: PosePaths) -> None:
     assert [(p.number, p.low.fate, p.high.fate) for p in found.paths] == [
         (1, Fate.WINDOW, Fate.WINDOW), (2, Fate.WINDOW, Fate.SNAP)]  # fmt: skip
@@ -198,6 +199,7 @@ def test_a_slider_on_a_level_is_none_of_the_points_that_rise() -> None:
     assert [(len(point.sides), path.upright) for path in found.paths for point in path.points[:1]] == [(1, True)] * 2
 
 
+@pytest.mark.slow
 def test_a_pose_that_is_jumped_to_has_angles_within_half_a_turn() -> None:
     """The way down leads th1 on to 272 degrees, which is -88."""
     end = ptmcad.pose_paths(slice_of(window="9/20:1"), "rho", {"L2": "3/2"}, "3/4").paths[1].low

@@ -143,6 +143,7 @@ def test_other_json_is_refused(text: str) -> None:
         RegionMap.from_json(text)
 
 
+@pytest.mark.slow
 def test_equal_bytes_in_other_processes() -> None:
     """Two processes with different hash seeds write the same text."""
     code = (

@@ -26,6 +26,7 @@ def snap() -> Motion:
     return shipped("fig4").animate("rho=3/4:6/5,L2=3/2", "stable:2", frames=30)
 
 
+@pytest.mark.slow
 def test_it_snaps_where_and_to_what_the_certified_path_does(snap: Motion) -> None:
     paths = ptmcad.pose_paths(shipped("fig4").slice, "rho", {"L2": "3/2"}, "3/4", 2)
     end = paths.paths[0].high
@@ -40,6 +41,7 @@ def test_it_snaps_where_and_to_what_the_certified_path_does(snap: Motion) -> Non
     assert fall.drop == pytest.approx(float(end.energy.center - end.target_energy.center), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_every_step_is_one_of_all_equilibria_of_its_point(snap: Motion) -> None:
     still = [step for step in snap.steps if not step.falling]
     assert (len(still), snap.counted, snap.end) == (30, 30, "")
@@ -73,6 +75,7 @@ def test_a_fall_descends_and_counts_nothing(snap: Motion) -> None:
     assert np.ptp(np.linalg.norm(moved, axis=1)) < 0.02
 
 
+@pytest.mark.slow
 def test_hysteresis_of_a_bistable_slider() -> None:
     """By hand: F^(2/3) + (2 c)^(2/3) = 1 at the folds; there and back it snaps at either side."""
     motion = shipped("mechanisms/bistable-slider").animate({"F": [-1, 1, -1], "c": "1/5"}, frames=40)

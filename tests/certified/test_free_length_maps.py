@@ -126,6 +126,7 @@ def test_jobs_do_not_change_the_map() -> None:
     assert one.to_json(timings=False) == shipped_certified("fig4", "1/50").to_json(timings=False)
 
 
+@pytest.mark.slow
 def test_a_limit_leaves_a_map_from_which_the_search_goes_on() -> None:
     slice = load(CONFIGS / "fig4.yaml")
     coarse = shipped_certified("fig4", "1/50")

@@ -11,6 +11,7 @@ import pytest
 from flint import arb, ctx
 from numpy.typing import NDArray
 from support.dense_search import dense_search
+from support.few import few
 
 pytest.importorskip("numba")
 
@@ -155,7 +156,7 @@ def is_kept(found: tuple[Curve, ...], point: Floats) -> bool:
     return False
 
 
-@pytest.mark.parametrize("kind", ["pitchfork", "on the mirror", "off the mirror"])
+@pytest.mark.parametrize("kind", few(["pitchfork", "on the mirror", "off the mirror"], "pitchfork", "on the mirror"))
 def test_the_search_keeps_known_folds(kind: str) -> None:
     slice = slice_of()
     found = curves(slice, Count.STABLE)
@@ -165,6 +166,7 @@ def test_the_search_keeps_known_folds(kind: str) -> None:
     assert all(is_kept(found, point) for point in folds(slice, 2, kind))
 
 
+@pytest.mark.slow
 def test_on_a_slice_that_is_not_its_own_image_folds_would_be_lost(monkeypatch: pytest.MonkeyPatch) -> None:
     """What the hypothesis is for."""
     slice = slice_of(F4="9*F/10")

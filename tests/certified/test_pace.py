@@ -162,6 +162,7 @@ def test_the_time_limit_is_kept_in_every_phase(monkeypatch: pytest.MonkeyPatch, 
     assert shares == sorted(shares, reverse=True)
 
 
+@pytest.mark.slow
 def test_counts_are_left_out_before_the_limit_is_missed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each count at a point takes ten seconds: what is not counted is undetermined, and the map is there in time."""
     from ptmcad.certified.points import PointCounter

@@ -159,6 +159,7 @@ def test_two_angles_without_free_lengths_agree_with_the_exact_engine() -> None:
         assert (at.index, at.total) == (cell.index, cell.total)
 
 
+@pytest.mark.slow
 def test_three_angles_have_the_index_counts_of_three_dimensions() -> None:
     result = ptmcad.classify(_slice(THREE_ANGLES), engine="certified", tolerance="1/100")
     assert result.undetermined <= Fraction(1, 100)

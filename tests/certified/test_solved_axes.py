@@ -141,6 +141,7 @@ def test_contraction_keeps_equilibria_and_tells_the_axes() -> None:
     assert told > 200, "no axis is told, so that nothing is tested"
 
 
+@pytest.mark.slow
 def test_the_search_takes_fewer_boxes() -> None:
     """On a part of a slice with an axis l0, in which the curve is regular; without what is solved it takes many."""
     slice = slice_of("rho", "l0", F3="-10", F4="-10")

@@ -252,6 +252,7 @@ def test_what_is_nearly_zero_beside_a_slanted_mirror_is_not_told_as_zero(load: s
     assert all(pose.nodes["Z"][0].exact is None and abs(float(pose.nodes["Z"][0])) < 1e-11 for pose in poses.equilibria)
 
 
+@pytest.mark.slow
 def test_points_that_are_too_much_to_be_multiplied_out_leave_the_others_exact() -> None:
     """Fourteen of them took more work than all numbers of a pose together were allowed."""
     powers = " + ".join(f"cos(th)^{n}*sin(th)^{n}" for n in range(1, 11))

@@ -143,6 +143,7 @@ def test_classify_says_at_once_that_it_will_take_long(
     assert "note" not in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "equations",
     [

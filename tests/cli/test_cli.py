@@ -389,6 +389,7 @@ def test_the_engine_is_reached(tmp_path: Path, capfd: pytest.CaptureFixture[str]
     assert capfd.readouterr().out.strip()
 
 
+@pytest.mark.slow
 def test_pictures_of_a_window_narrower_than_any_float(tmp_path: Path) -> None:
     """1e-400 is no floating-point number."""
     options = ["classify", "--slice", "L2,rho", "--range", "rho=1/2:1/2+1e-400", "--out", str(tmp_path)]

@@ -106,6 +106,7 @@ def test_values(
     assert found[: len(values)] == values and (values or not found)
 
 
+@pytest.mark.slow
 def test_files(tmp_path: Path) -> None:
     (tmp_path / "map.json").write_text(shipped("fig4").to_json(), encoding="utf-8")
     (tmp_path / "mine.yaml").touch()

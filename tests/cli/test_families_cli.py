@@ -35,6 +35,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_members_have_files_of_their_own_and_the_family_names_them(folder: Path) -> None:
     stored = read_family((folder / "loads.json").read_text())
     assert stored.files == ("loads-F-40.json", "loads-F-10.json")
@@ -188,6 +189,7 @@ def test_changes_are_told_with_their_kind(
     assert "--changes has no effect here" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_boundary_surface_is_drawn_and_written_as_a_mesh(
     disc: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -47,6 +47,7 @@ def test_lines_of_all_kinds(arguments: list[str], line: str, capsys: pytest.Capt
     assert line in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ["--along", "rho", "--at", "L2=3/2", "--over", "L2", "--rows", "3", "--path", "7/10", "--pose", "1"]
     assert run(["range", FIG4, *arguments, "--format", "json,svg", "--out", str(tmp_path), "--name", "x"]) == 0

@@ -46,6 +46,7 @@ def test_json_is_written_with_the_digits_asked_for(tmp_path: Path, capsys: pytes
     assert (tmp_path / "new" / "other.json").read_text(encoding="utf-8") == written
 
 
+@pytest.mark.slow
 def test_pictures_are_written_beside_the_json(tmp_path: Path) -> None:
     arguments = [
         "solve",

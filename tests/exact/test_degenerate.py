@@ -178,6 +178,7 @@ def test_a_window_of_width_1e_20(base: str) -> None:
     assert len(result.regions) == 1
 
 
+@pytest.mark.slow
 def test_a_tiny_window_across_the_curve() -> None:
     """Around the end 0.498131... at L2 = 3/2, found by bisection with the oracle: two regions in a window of 1e-20."""
     fixed = {n: Fraction(v) for n, v in {"L1": 1, "L2": "3/2", "k1": 100, "k2": 100, "k3": 100, "F3": -10, "F4": -10,
@@ -286,6 +287,7 @@ def test_a_time_limit_of_no_time_stops_at_once() -> None:
         classify(load(CONFIGS / "fig4.yaml"), timeout=1e-9)
 
 
+@pytest.mark.slow
 def test_plain_decimals_with_long_coefficients() -> None:
     """F3 = -0.001 and a 40-digit rod: factors with coefficients longer than a machine word."""
     small = region_map(RHO_L2, F3="-0.001", F4="-10")

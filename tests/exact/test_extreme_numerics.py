@@ -194,6 +194,7 @@ def test_quotients_and_polynomials_give_the_same_points(digits: int) -> None:
         assert CoordinatesInBalls.of(found).at(arb(0, 100)) is None
 
 
+@pytest.mark.slow
 def test_walls_share_their_fibres_and_hopeless_strips_are_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each fibre is isolated once; strips as wide as a window of 1e30 asks for are seen to be too wide beforehand."""
     seen: list[tuple[object, ...]] = []
@@ -295,6 +296,7 @@ def test_areas_next_to_a_limit_take_little_more_work(force: Fraction) -> None:
     assert work_of(nearly) <= 3 * usual_work()
 
 
+@pytest.mark.slow
 def test_a_vast_window_takes_at_most_five_times_the_work() -> None:
     vast = SliceQuestion(LOADED, {"rho": (Fraction(0), ten(12)), "L2": (Fraction(0), ten(12))})
     assert work_of(vast) <= 5 * usual_work()

@@ -206,7 +206,10 @@ SHIPPED = Path(__file__).resolve().parents[2] / "configs" / "systems"
 
 @pytest.mark.parametrize(
     "name",
-    ["cubic", "cubic-and-quadratic", "duffing", "escape", "kuramoto", "orthogonal-3r", "schloegl", "von-mises-truss"],
+    [
+        *["cubic", "cubic-and-quadratic", "duffing", "escape", "kuramoto", "schloegl", "von-mises-truss"],
+        pytest.param("orthogonal-3r", marks=pytest.mark.slow),
+    ],
 )
 def test_published_areas_of_shipped_systems_by_the_certified_engine(name: str) -> None:
     pytest.importorskip("numba")

@@ -128,6 +128,7 @@ def test_description_and_equations_agree_on_what_has_a_potential(moment: str, kn
     assert (model.has_potential, system_from(model).has_index) == (known, known)
 
 
+@pytest.mark.slow
 def test_solutions_without_a_potential_are_not_called_minima() -> None:
     found = pose_paths(arm("M*cos(s)", {"s": "angle"}), "G", {"M": 1}, "1/2")
     text = path_table(found)

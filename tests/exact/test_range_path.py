@@ -79,6 +79,7 @@ CASES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "along", "at", "start"), CASES)
 def test_an_upright_pose_snaps_to_the_reverse_one(name: str, along: str, at: dict[str, str], start: str) -> None:
     """Section 4.2 of the paper; ends agree with the ranges, poses with a descent in floating point."""
@@ -114,6 +115,7 @@ def check_points(numbers: Numbers, path: PosePath) -> None:
         assert max(jumps) < 0.4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("start", ["3/4", "26/25"])
 def test_what_holds_at_a_fold_is_told_there_wherever_the_path_began(start: str) -> None:
     """Against all poses 1e-20 before the fold, by an exact solution: what differs is less than 1e-9."""
@@ -287,6 +289,7 @@ def test_a_critical_start_is_refused() -> None:
         pose_paths(record("fig2"), "rho", {"L2": "3/2"}, Fraction(5, 4))
 
 
+@pytest.mark.slow
 def test_text_and_document() -> None:
     schema: dict[str, Any] = json.loads((ROOT / "docs" / "range.schema.json").read_text(encoding="utf-8"))
     found = pose_paths(record("fig4"), "rho", {"L2": "3/2"}, Fraction(7, 10), 2)
@@ -418,6 +421,7 @@ def test_a_pose_goes_on_between_two_critical_values_near_each_other() -> None:
     assert float(found[1].high.at) > float(found[2].high.at) > 0.6495  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 def test_equal_pendulums_fold_together() -> None:
     """That all four poses of two upright pendulums meet is told by exchanging the two."""
     parameters = {**PENDULUMS["mechanism"]["parameters"], "k2": {"kind": "stiffness", "default": 1}}

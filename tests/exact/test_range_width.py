@@ -85,6 +85,7 @@ def test_no_width_on_a_grid_is_larger(name: str, along: str) -> None:
     assert max(widths) > most * Fraction(9, 10)
 
 
+@pytest.mark.slow
 def test_a_cusp_at_an_irrational_value_is_enclosed() -> None:
     (only,) = maximum("rods", "L1")
     assert only.place is Place.ENCLOSED and only.critical is not None

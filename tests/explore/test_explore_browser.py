@@ -165,6 +165,7 @@ def test_the_figure_is_recorded_and_saved(view: Browser, own: Explorer, tmp_path
     view.until("document.querySelector('#saved').textContent.includes('is there already')")
 
 
+@pytest.mark.slow
 def test_two_tabs_do_not_disturb_each_other(view: Browser, own: Explorer) -> None:
     other = view.tab()
     try:
@@ -224,6 +225,7 @@ def test_a_refused_question_leaves_the_old_map_and_says_why(one: Browser) -> Non
         assert one.run("document.querySelector('#strong').getAttribute('d')") == before
 
 
+@pytest.mark.slow
 def test_a_killed_server_is_told(one: Browser) -> None:
     with explorer(CONFIGS / "fig4.yaml") as own:
         one.visit(own.address, SETTLED)

@@ -13,6 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.examples import examples
+from support.few import few
 
 from fuzz import targets
 from fuzz.damage import damaged_bytes, damaged_tokens, damaged_tree
@@ -32,7 +33,7 @@ def assert_clean(tally: Tally, cases: int) -> None:
     assert tally.cases == cases
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", few(KINDS, *(kind for kind in KINDS if kind != "result")))
 def test_some_cases(kind: str, tmp_path: Path) -> None:
     tally = watched(kind, range(FAST[kind]), tmp_path)
     assert_clean(tally, FAST[kind])
@@ -108,6 +109,7 @@ def _refuse(message: str) -> str:
     raise PtmcadError(message)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BROKEN)
 def test_the_watchdog_sees(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Targets that do what must not happen are reported with their input, and the next case is run all the same."""

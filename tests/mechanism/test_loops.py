@@ -68,6 +68,7 @@ def components(slice: ptmcad.Slice) -> tuple[Component, ...]:
     return variety_of(problem_of(slice)).components
 
 
+@pytest.mark.slow
 def test_the_curve_of_a_four_bar_under_loads() -> None:
     """REFERENCE: 12 complex solutions; degree 18 with 100 terms, with a multiplier as well as with the tangent."""
     found = variety_of(problem_of(slice_of(FOUR_BAR, **LOADS)))
@@ -117,6 +118,7 @@ def minima_along(L1: float, L2: float, L3: float, b: float, F: float, G: float, 
     return sum(int(((u < np.roll(u, 1)) & (u < np.roll(u, -1))).sum()) for u in loops)
 
 
+@pytest.mark.slow
 def test_stable_poses_are_the_minima_along_the_loop() -> None:
     random.seed(7)
     compared, seen = 0, set()

@@ -696,6 +696,7 @@ def test_a_memory_limit(tmp_path: Path, allocate: str) -> None:
     assert running.files() == {"fig2.json": PARTIAL}
 
 
+@pytest.mark.slow
 @linux
 @pytest.mark.parametrize("name", ["verify", "locate"])
 def test_limits_of_the_other_commands(shipped: Callable[..., Any], tmp_path: Path, name: str) -> None:
@@ -868,7 +869,7 @@ def test_a_file_that_may_not_grow(tmp_path: Path) -> None:
         (f"classify {FIG2} --format json --out new", "true", {0}),
         ("verify fig2.json", "true", {0}),
         ("verify wrong.json", "true", {1}),
-        ("locate fig2.json --csv points.csv", "head -1", {0}),
+        pytest.param("locate fig2.json --csv points.csv", "head -1", {0}, marks=pytest.mark.slow),
         ("classify nothing.yaml 2>&1", "true", {2}),
     ],
 )
@@ -895,6 +896,7 @@ def test_a_reader_that_leaves(
         assert ptmcad.RegionMap.from_json((tmp_path / "new" / "fig2.json").read_text()).regions
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/dev/stdin").exists(), reason="needs a name for standard input")
 def test_a_reader_that_leaves_ends_an_endless_table(shipped: Callable[..., Any], tmp_path: Path) -> None:
     (tmp_path / "fig2.json").write_text(shipped("fig2").to_json())

@@ -37,6 +37,7 @@ def words(legend: tuple[Entry, ...]) -> str:
     return "\n".join(line for entry in legend for line in entry.lines)
 
 
+@pytest.mark.slow
 def test_areas_that_were_not_computed_are_nowhere(bare: RegionMap) -> None:
     assert not areas_are_known(bare)
     assert areas_are_known(shipped("fig4"))

@@ -54,6 +54,7 @@ def test_a_grid_as_a_frame() -> None:
     assert (table.L2.to_numpy().reshape(4, 6) == grid.y[:, None]).all()
 
 
+@pytest.mark.slow
 def test_the_same_text_as_csv() -> None:
     result = shipped("fig4")
     rows = list(csv.DictReader(io.StringIO(data.csv_text(data.region_rows(result)))))

@@ -15,6 +15,7 @@ from typing import Any
 import jsonschema
 import pytest
 import sympy
+from support.few import few
 from support.maps import CONFIGS, shipped
 from support.programs import (
     ProgramError,
@@ -129,7 +130,7 @@ def test_latex_has_every_monomial(name: str) -> None:
     assert read == polynomials(of)
 
 
-@pytest.mark.parametrize("name", ["fig3", "fig5-text"])
+@pytest.mark.parametrize("name", few(["fig3", "fig5-text"], "fig3"))
 def test_latex_rows_are_set_and_of_like_width(name: str, tmp_path: Path) -> None:
     """matplotlib's mathtext, which knows no alignment, sets each row; none would leave a page of a single column."""
     from matplotlib.mathtext import MathTextParser
@@ -420,6 +421,7 @@ def test_degenerate_slice_has_no_variety() -> None:
         ptmcad.slice_variety(ptmcad.slice_from_options(slice="L1,L2", sets=["rho=0"]))
 
 
+@pytest.mark.slow
 def test_nothing_large_is_loaded_and_a_time_limit_ends_it(tmp_path: Path) -> None:
     code = "import sys; from ptmcad.cli import run; run(sys.argv[1:]); print(sorted(sys.modules), file=sys.stderr)"
     arguments = ["variety", str(CONFIGS / "fig4.yaml"), "--format", "sympy"]

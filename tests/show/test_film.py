@@ -52,6 +52,7 @@ def said(stage: Stage, number: int) -> list[str]:
     return found
 
 
+@pytest.mark.slow
 def test_pictures_say_what_they_show(stage: Stage, motion: Motion) -> None:
     first = next(k for k, step in enumerate(motion.steps) if step.falling)
     assert said(stage, 0) == ["ρ = 0.75,  L₂ = 1.5", "one of exactly 6 equilibria, 2 stable", "θ₁ = 69.9°,  θ₂ = 36.0°"]
@@ -59,6 +60,7 @@ def test_pictures_say_what_they_show(stage: Stage, motion: Motion) -> None:
     assert said(stage, len(motion.steps) - 1)[1] == "one of exactly 4 equilibria, 1 stable"
 
 
+@pytest.mark.slow
 def test_the_key_says_whether_all_equilibria_are_in_the_energys_frame(stage: Stage, motion: Motion) -> None:
     low, high = stage.curve.get_ylim()
     others = [height for step in motion.steps for height, _ in step.others]
@@ -82,6 +84,7 @@ def test_what_is_fixed_stands_still_and_all_is_at_one_scale(stage: Stage, motion
     assert {len(line) for seen in stage.sketches for line in seen.springs} == {len(stage.sketches[0].springs[0])}
 
 
+@pytest.mark.slow
 def test_pictures_do_not_depend_on_their_order(stage: Stage, motion: Motion) -> None:
     with settings():
         once = [stage.frame(k) for k in range(len(motion.steps))]
@@ -114,6 +117,7 @@ def test_all_words_are_within_the_picture(motion: Motion, size: str) -> None:
     assert (stage.curve is None) == (size == "6.5x3.4in")
 
 
+@pytest.mark.slow
 def test_a_gif_has_all_pictures_and_rests_at_its_ends(motion: Motion, short: Motion, tmp_path: Path) -> None:
     motion.save(tmp_path / "one.gif", fps=10, dpi=60, size="7x4in")
     for name in ("two.gif", "three.gif"):

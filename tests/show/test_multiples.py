@@ -62,6 +62,7 @@ def test_what_does_not_fit_is_refused(family: FamilyMap) -> None:
         family.plot(size="2x1in")
 
 
+@pytest.mark.slow
 def test_the_same_bytes_twice(family: FamilyMap, tmp_path: Path) -> None:
     for draw in (draw_multiples, draw_solid):
         for name in ("a.svg", "b.svg"):
@@ -90,6 +91,7 @@ def with_surface() -> tuple[FamilyMap, BoundarySurface]:
     return found, found.boundary_surface("1/50")
 
 
+@pytest.mark.slow
 def test_a_boundary_surface_is_drawn_with_the_members_curves_and_says_what_it_is(
     solid: tuple[FamilyMap, BoundarySurface], tmp_path: Path
 ) -> None:
@@ -111,6 +113,7 @@ def test_a_boundary_surface_is_drawn_with_the_members_curves_and_says_what_it_is
     assert "exact members" in (tmp_path / "a.svg").read_text()
 
 
+@pytest.mark.slow
 def test_a_surface_of_many_pieces_is_an_image_in_a_vector_picture(
     solid: tuple[FamilyMap, BoundarySurface], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -139,6 +142,7 @@ def test_what_is_in_front_is_painted_last(solid: tuple[FamilyMap, BoundarySurfac
     assert screen[0] == pytest.approx(screen[1], abs=1e-9)
 
 
+@pytest.mark.slow
 def test_the_free_parameter_has_its_unit() -> None:
     loads = {
         "mechanism": "ptm", "parameters": {"F3": "F", "F4": "2*F"}, "axes": {"rho": [0, 2], "L2": [0, 2]},

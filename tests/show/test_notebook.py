@@ -47,6 +47,7 @@ def results() -> list[object]:
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_every_result_is_a_line_at_the_prompt() -> None:
     for result in [*results(), shipped("fig4").components[0].polynomial]:
         text = repr(result)

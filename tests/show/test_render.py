@@ -225,6 +225,7 @@ def test_every_region_can_be_zoomed() -> None:
     assert sorted(s.region for z in found for s in z.slivers) == list(range(len(result.regions)))
 
 
+@pytest.mark.slow
 def test_labels_and_texts_do_not_overlap() -> None:
     heights = [Fraction(k // 2 + 1, 17) + (k % 2) * Fraction(1, 10**5) for k in range(14)]
     with matplotlib.rc_context({"text.parse_math": False, "font.family": ["DejaVu Sans"]}):
@@ -318,6 +319,7 @@ def test_the_same_bytes_twice(suffix: str, tmp_path: Path) -> None:
     assert (tmp_path / f"0.{suffix}").read_bytes() == (tmp_path / f"1.{suffix}").read_bytes()
 
 
+@pytest.mark.slow
 def test_the_same_bytes_in_another_process_without_pyplot(tmp_path: Path) -> None:
     """Nor does a user's matplotlibrc change them."""
     (tmp_path / "map.json").write_text(classified("fig3", "index").to_json(), encoding="utf-8")
@@ -412,6 +414,7 @@ def test_degenerate_maps_are_drawn(result: RegionMap, suffix: str, tmp_path: Pat
         ElementTree.parse(tmp_path / "map.svg")
 
 
+@pytest.mark.slow
 def test_special_characters_are_written_as_pdf(tmp_path: Path) -> None:
     draw(bands([HALF], title="$5 & <b>x_1^{ \\frac \x07 ü ρ 弹 % #"), tmp_path / "map.pdf", samples=True)
     assert (tmp_path / "map.pdf").stat().st_size > 1000

@@ -58,7 +58,8 @@ def test_what_is_undetermined_looks_like_no_count() -> None:
 
 
 @pytest.mark.parametrize(("result", "dpi"), [
-    pytest.param(circle(7), 100, id="100-circle"), pytest.param(circle(7), 300, id="300-circle"),
+    pytest.param(circle(7), 100, id="100-circle"),
+    pytest.param(circle(7), 300, id="300-circle", marks=pytest.mark.slow),
     pytest.param(crossing(7), 100, id="100-crossing"),
     pytest.param(crossing(7), 300, id="300-crossing", marks=pytest.mark.slow),
 ])  # fmt: skip
@@ -121,6 +122,7 @@ def test_the_same_map_gives_the_same_bytes(suffix: str, tmp_path: Path) -> None:
     assert (tmp_path / f"first.{suffix}").read_bytes() == (tmp_path / f"second.{suffix}").read_bytes()
 
 
+@pytest.mark.slow
 def test_the_svg_of_many_rectangles_is_small(tmp_path: Path) -> None:
     result = crossing(10)
     assert result.cover is not None

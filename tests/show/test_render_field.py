@@ -13,6 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.text import Text
+from support.few import few
 from support.maps import CONFIGS, shipped
 
 import ptmcad
@@ -23,6 +24,7 @@ from ptmcad.show.render.printing import settings
 from ptmcad.show.style import MIN_FONT, styled
 
 
+@pytest.mark.slow
 def test_contours_have_their_values_at_the_scale_and_are_no_tiny_rings() -> None:
     result = shipped("fig4")
     field = result.field("energy", columns=60)
@@ -44,6 +46,7 @@ def test_contours_have_their_values_at_the_scale_and_are_no_tiny_rings() -> None
     np.testing.assert_allclose(ticks[1:], values)
 
 
+@pytest.mark.slow
 def test_where_the_branch_changes_is_an_edge_which_no_contour_crosses() -> None:
     result = ptmcad.classify(CONFIGS / "mechanisms" / "platform.yaml", areas=False)
     field = result.field("angle:phi", columns=70)
@@ -97,7 +100,7 @@ def test_edges_are_chains_that_meet_where_three_branches_do() -> None:
     assert len(ends) == 3 and all((1, 3) in pair for pair in ends)
 
 
-@pytest.mark.parametrize("preset", ["ieee", "poster"])
+@pytest.mark.parametrize("preset", few(["ieee", "poster"], "ieee"))
 def test_a_quantitys_map_has_all_text_on_the_page_and_none_too_small(preset: str) -> None:
     result = shipped("fig4")
     field = result.field("energy", "pose:3", 20)
@@ -116,6 +119,7 @@ def test_a_quantitys_map_has_all_text_on_the_page_and_none_too_small(preset: str
     assert not [1 for a, b in combinations(boxes, 2) if a.shrunk(0.9, 0.9).overlaps(b.shrunk(0.9, 0.9))]
 
 
+@pytest.mark.slow
 def test_a_contour_goes_on_over_a_curve_at_which_its_branch_does_not_change() -> None:
     """The bistable slider's 140 degrees, by symmetry at both sides of F = 0, cross the astroid to where c is 0.33."""
     result = ptmcad.classify(CONFIGS / "mechanisms" / "bistable-slider.yaml", areas=False)

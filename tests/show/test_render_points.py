@@ -102,6 +102,7 @@ def test_in_a_journals_style_poses_are_as_wide_as_two_columns(
     assert wide == 716 and 400 < high <= 100 * PAGE_HEIGHT
 
 
+@pytest.mark.slow
 def test_lines_to_points_cross_neither_each_other_nor_text() -> None:
     # for points in a row from above, straight lines from blocks beside them cross; and some lie beside the legend
     texts = ("rho=1,L2=3/2", "rho=3/2,L2=1/2", "rho=1/2,L2=1/2", "rho=1/2,L2=7/4", "rho=7/4,L2=7/4", "rho=4/5,L2=1")

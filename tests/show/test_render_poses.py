@@ -125,6 +125,7 @@ def test_labels_are_clear_of_all_strokes_and_of_each_other(name: str) -> None:
     labels_are_clear(poses(name))
 
 
+@pytest.mark.slow
 @settings(max_examples=12, deadline=None)
 @example(["7/10", "12", "-1/50", "35", "-29/10", "0"])  # three nodes within a few points
 @given(st.tuples(*[st.fractions(0, 30, max_denominator=100)] * 2, *[st.fractions(-60, 60, max_denominator=9)] * 4))
@@ -336,6 +337,7 @@ def test_texts_of_the_figure_do_not_overlap(name: str, count: str) -> None:
     assert not [1 for a, b in combinations(boxes, 2) if a.overlaps(b)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("draw", DRAWN)
 def test_the_same_bytes_twice(draw: Callable[[Poses], Figure], tmp_path: Path) -> None:
     before = dict(matplotlib.rcParams)

@@ -19,6 +19,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.text import Annotation, Text
+from support.few import few
 from support.maps import CONFIGS, shipped
 from test_render import bands
 
@@ -109,6 +110,7 @@ def legend_of(made: Figure) -> str:
     return " ".join(t.get_text() for t in made.texts)
 
 
+@pytest.mark.slow
 def test_insets_go_first_then_the_legend_moves_then_areas_go() -> None:
     result = bands(SLIVERS[:2])
     large, medium, small = (figure(result, styled(size=size, font_size=8)) for size in ((7, 5), (3.5, 2.6), (2.9, 2.9)))
@@ -139,7 +141,7 @@ def crowded(made: Figure) -> list[str]:
 MANY = [Fraction(k // 2 + 1, 14) + (k % 2) * Fraction(1, 10**4) for k in range(26)]
 
 
-@pytest.mark.parametrize("size", [(3.5, 2.6), (3.5, 3.2), (2.6, 2.6)])
+@pytest.mark.parametrize("size", few([(3.5, 2.6), (3.5, 3.2), (2.6, 2.6)], (3.5, 2.6)))
 def test_labels_that_no_inset_explains_are_apart_and_the_rest_is_told(size: tuple[float, float]) -> None:
     """First the count that is seen nowhere else, a label at a thin region; they are counts without letters."""
     counts = [1 + k % 2 for k in range(27)]
@@ -152,6 +154,7 @@ def test_labels_that_no_inset_explains_are_apart_and_the_rest_is_told(size: tupl
     assert hidden is not None and int(hidden[1]) + len(labels) == 13
 
 
+@pytest.mark.slow
 def test_a_title_breaks_at_no_equals_sign() -> None:
     words = "Some words and L1 = 1, L2 = 2, F3 = F4 = -10, k = 100 " * 2
     made = figure(shipped("fig4"), styled(size=(3.5, 3.5), title=words))
@@ -260,6 +263,7 @@ def test_a_users_own_settings_count_less_than_options(mplstyle: Path, tmp_path: 
     assert "<text" in (tmp_path / "map.svg").read_text(), "what files hold is not for a style to say"
 
 
+@pytest.mark.slow
 def test_a_users_matplotlibrc_counts_when_it_is_asked_for_only(mplstyle: Path, tmp_path: Path) -> None:
     environment = {**os.environ, "MATPLOTLIBRC": str(mplstyle)}
     code = (
@@ -368,6 +372,7 @@ def test_a_line_in_the_legend_has_something_to_show_and_what_is_shown_has_a_line
     assert tiny.unnamed == 1 and not tiny.thin_lines and not tiny.views
 
 
+@pytest.mark.slow
 def test_what_has_no_room_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "fig4.json"
     path.write_text(shipped("fig4").to_json())

@@ -29,6 +29,7 @@ RECORD = {
 }
 
 
+@pytest.mark.slow
 def test_axes_and_areas_have_the_declared_units() -> None:
     result = ptmcad.classify(RECORD)
     assert [axis_name(result.slice, k) for k in (0, 1)] == ["ρ (mm)", "L₂ (mm)"]
@@ -100,13 +101,14 @@ def test_units_of_quantities(units: dict[str, str], expected: list[str]) -> None
     assert [unit_of(quantity(slice.model, name), slice) for name in names] == expected
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("coarse")
 @pytest.mark.parametrize(
     ("units", "energy", "force"),
     [
         ({"length": "mm", "force": "N"}, "N·mm", "N"),
-        pytest.param({"length": "mm"}, "force × mm", "force", marks=pytest.mark.slow),
-        pytest.param({}, "force × length", "force", marks=pytest.mark.slow),
+        ({"length": "mm"}, "force × mm", "force"),
+        ({}, "force × length", "force"),
     ],
 )
 def test_quantities_have_the_declared_units(

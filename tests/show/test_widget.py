@@ -39,6 +39,7 @@ def test_the_point_has_its_exact_poses() -> None:
     assert widget.poses.stable == 1
 
 
+@pytest.mark.slow
 @needs_anywidget
 def test_the_manual_says_what_it_shows(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -148,6 +149,7 @@ def test_the_frame_shows_the_map_alone_and_says_where_its_point_is(view: Browser
     assert 300 < float(view.run("document.querySelector('iframe').style.height").removesuffix("px")) <= 720
 
 
+@pytest.mark.slow
 def test_a_drag_tells_python_where_it_rests(view: Browser) -> None:
     before = view.run("saved.length")
     x, y, side = inside(view, "(() => { const b = document.querySelector('#map .frame').getBoundingClientRect();"
@@ -163,6 +165,7 @@ def test_a_drag_tells_python_where_it_rests(view: Browser) -> None:
     assert inside(view, "pointOf(live.share)") == pytest.approx([told["rho"], told["L2"]])
 
 
+@pytest.mark.slow
 def test_python_moves_the_point_and_answers(view: Browser) -> None:
     before = view.run("saved.length")
     view.run("model.set('point', {rho: 1.5, L2: 0.5}); model.set('_answer', 'four <b>of them</b>'); 0")

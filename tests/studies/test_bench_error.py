@@ -135,6 +135,7 @@ def disc() -> Walls:
     return Walls((1, 2), ((1 - inside, 1 - inside), (inside, inside)), tuple(pieces), tops, gaps)
 
 
+@pytest.mark.slow
 def test_disc_of_known_area() -> None:
     """A picture that shows 1 everywhere is wrong on the disc, pi 9/64, and one that shows 2 on the rest."""
     found = disc()

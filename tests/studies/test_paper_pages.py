@@ -145,6 +145,7 @@ def test_unwritable_folder_is_one_message(tmp_path: Path) -> None:
     assert (tmp_path / "file").read_text() == "kept"
 
 
+@pytest.mark.slow
 def test_time_limit_leaves_nothing(tmp_path: Path) -> None:
     done = run("--out", "out", "--timeout", "1", cwd=tmp_path)
     assert done.returncode == 3, done.stderr

@@ -298,6 +298,7 @@ def test_one_slow_run_is_outvoted() -> None:
 # --------------------------------------------------------------------------------------------------------- measurement
 
 
+@pytest.mark.slow
 def test_a_child_brings_its_figures_back() -> None:
     def task() -> list[Run]:
         watch = Stages()
@@ -313,6 +314,7 @@ def test_a_child_brings_its_figures_back() -> None:
     assert found[0].seconds >= sum(stages.values()) > 0
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not measurement._HIGH_WATER.exists(), reason="only Linux shows the peak of a forked child alone")
 def test_memory_is_what_the_task_takes_and_not_what_its_parent_has() -> None:
     ballast = bytes(80 << 20) + bytes(1)  # the sum is written, which makes its pages resident
@@ -331,6 +333,7 @@ def test_memory_is_what_the_task_takes_and_not_what_its_parent_has() -> None:
     assert 38 < found[0].memory["large"] < 120
 
 
+@pytest.mark.slow
 def test_what_fails_in_a_child_has_a_reason() -> None:
     def task() -> list[Run]:
         raise ptmcad.errors.PtmcadError("no such thing")
@@ -376,12 +379,14 @@ def report() -> dict[str, Any]:
     return run.scaling([small()], 2, 5)
 
 
+@pytest.mark.slow
 def test_all_but_time_is_the_same_in_the_next_run(report: dict[str, Any]) -> None:
     first, again = (run.scaling([small(sizes=(1, 2))], 1, 5) for _ in range(2))
     assert without_clock(first) == without_clock(again)
     assert json.loads(json.dumps(report)) == report
 
 
+@pytest.mark.slow
 def test_a_report_says_what_it_was_made_with(report: dict[str, Any]) -> None:
     assert report["format"] == run.FORMAT
     assert (report["seed"], report["rounds"]) == (5, 2)

@@ -36,7 +36,7 @@ def solutions(numbers: Numbers) -> SignedSolutions:
 
 
 @pytest.mark.parametrize(("numbers", "total", "real", "equilibria"), [
-    pytest.param(PAPER, 128, 48, 6, id="section 5.2: 128, 6 equilibria"),
+    pytest.param(PAPER, 128, 48, 6, id="section 5.2: 128, 6 equilibria", marks=pytest.mark.slow),
     pytest.param(UNLOADED, 124, 48, 6, id="unloaded: 124"),
     pytest.param(THIRTY, 124, 72, 30, id="30 equilibria"),
 ])  # fmt: skip
@@ -45,6 +45,7 @@ def test_numbers_of_solutions(numbers: Numbers, total: int, real: int, equilibri
     assert (found.total, found.real, found.equilibria) == (total, real, equilibria)
 
 
+@pytest.mark.slow
 def test_simple_roots_are_accounted_for() -> None:
     """256 = 128 solutions + 128 pairs of equations with opposite signs of l3, at the design of section 5.2."""
     found = solutions(PAPER)

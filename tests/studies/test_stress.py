@@ -254,6 +254,7 @@ def test_the_record_holds_every_figure() -> None:
     assert {k: v for k, v in again.items() if k not in timed} == {k: v for k, v in first.items() if k not in timed}
 
 
+@pytest.mark.slow
 def test_the_plot_has_a_panel_for_each_family_and_marks_what_is_wrong() -> None:
     cases = [case(n) for n in ("fold-many-1e-6", "fold-many-1e-30", "symmetry-inside-1e-20", "stiffness-1e4")]
     figure = draw_stress(campaign(cases, seed=1, repeats=1).outcomes)

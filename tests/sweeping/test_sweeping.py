@@ -55,6 +55,7 @@ def mapped(record: dict[str, Any], folder: Path, **options: Any) -> Sweep:
     return ptmcad.sweep(record, folder, **{"jobs": 1, "wanted": QUICK, **options})
 
 
+@pytest.mark.slow
 def test_a_member_equals_the_record_classified_alone(tmp_path: Path) -> None:
     """In processes that have computed others before; all that the index says is of that document."""
     record = {"name": "few", "parameters": {"L1": 1, "F3": "F", "F4": "F"}, "axes": AXES, "sweep": {"F": [0, -10]}}
@@ -111,6 +112,7 @@ def test_the_answer_can_be_read_in_several_ways(tmp_path: Path) -> None:
             ptmcad.sweep(CUSPS, tmp_path / "w", wanted=wrong)
 
 
+@pytest.mark.slow
 def test_the_index_does_not_depend_on_the_number_of_processes(tmp_path: Path) -> None:
     texts = {mapped(SQUARES, tmp_path / str(jobs), jobs=jobs).to_csv() for jobs in (1, 3)}
     assert len(texts) == 1
@@ -266,6 +268,7 @@ def check_once(sweep: Sweep) -> None:
     assert {member.attempts for member in sweep} == {1}
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="processes are looked up in /proc")
 def test_killed_twice_it_goes_on_and_leaves_the_same_index(tmp_path: Path) -> None:
     many = CUSPS | {"sweep": {"c": {"from": 0, "to": 1, "steps": 12}, "d": {"from": 1, "to": 2, "steps": 5}}}

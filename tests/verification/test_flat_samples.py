@@ -86,6 +86,7 @@ def test_a_true_map_without_loads_is_accepted(flat: RegionMap) -> None:
     assert counted(flat) is True
 
 
+@pytest.mark.slow
 def test_bars_that_point_the_same_way() -> None:
     """rho = L2 - L1 with equal loads, put into a map whose own sample is elsewhere."""
     loads = {"F3": "-1/10", "F4": "-1/10"}

@@ -23,7 +23,7 @@ from ptmcad.verification.areas import check_areas
 from ptmcad.verification.claims import Claims
 
 CONFIGS = [path.stem for path in EXACT]
-LARGE = ("stiffness", "unequal-springs", "fig5-caption")
+LARGE = ("stiffness", "unequal-springs", "fig5-caption", "horizontal")
 """Maps with many cells of the kinds that the others have."""
 
 

@@ -78,6 +78,7 @@ def test_a_partial_map_is_checked_like_a_whole_one(stable: RegionMap) -> None:
     assert ptmcad.verify(replace(stable, status=Status.PARTIAL), boxes=1).ok
 
 
+@pytest.mark.slow
 def test_the_command_checks_a_stored_map(stable: RegionMap, tmp_path: Path) -> None:
     """Exit status 0, and 1 for a false one, whose violated claim is named."""
     good, bad = tmp_path / "good.json", tmp_path / "bad.json"
@@ -263,6 +264,7 @@ def test_random_points_find_that_a_curve_was_left_out(steps: int, stable: Region
     assert report.violation.startswith("random boxes:")
 
 
+@pytest.mark.slow
 def test_random_points_beside_rectangles_find_a_shifted_cover(stable: RegionMap) -> None:
     assert stable.cover is not None
     steps, by = stable.cover.steps, stable.cover.steps // 64
@@ -284,6 +286,7 @@ def certified(count: str, axes: dict[str, list[str]], tolerance: Fraction, **par
     return certified_map(slice_from_mapping(record), Options(tolerance=tolerance, jobs=1))
 
 
+@pytest.mark.slow
 def test_rectangles_that_tell_nothing_do_not_draw_places() -> None:
     """A fifth of the window is false, and behind 1500 squares of no size; with this seed 40 places used to miss it."""
     true = certified(
@@ -376,7 +379,8 @@ def test_no_proof_of_existence_crosses_a_crease() -> None:
     assert energy.one_sided(arb(0), arb(0.5, 0.01)) == []
 
 
-@pytest.mark.parametrize("count", [pytest.param("stable", marks=pytest.mark.slow), "admissible"])
+@pytest.mark.slow
+@pytest.mark.parametrize("count", ["stable", "admissible"])
 def test_bars_of_one_length_on_one_point(count: str) -> None:
     """REFERENCE (mpmath): rho = 0 and L1 = L2, where spring 3 has no length on a circle; det H is 930 and 628."""
     axes = {"F3": ["5", "6"], "F3x": ["5", "6"]}
@@ -437,6 +441,7 @@ def test_halves_cover_the_square(square: Square) -> None:
     assert _halves((0.0, 0.0, 3.0, 2.0**-51), False, (1.0, 0.0)) is None
 
 
+@pytest.mark.slow
 def test_a_window_as_narrow_as_rounding_beside_a_bar() -> None:
     """Boxes of parameters in it are proved: an angle has a unit of its own where a spring is that short."""
     side = [str(1 + k * Fraction(1, 10**13)) for k in (3, 4)]
@@ -633,6 +638,7 @@ def test_nothing_is_proved_over_a_fold(stable: RegionMap) -> None:
         equilibria(energy, True, [TORUS], budget=8000)
 
 
+@pytest.mark.slow
 def test_solutions_of_a_cell_are_where_the_check_finds_them(total: RegionMap) -> None:
     """Center by center: the engine's boxes and the check's."""
     for cell in total.cells:

@@ -73,6 +73,7 @@ def test_no_adjacency_can_be_dropped(name: str, shipped: Callable[..., RegionMap
             assert found[0] == "no adjacency missing"
 
 
+@pytest.mark.slow
 def test_areas_next_to_one_of_their_bounds_are_confirmed(shipped: Callable[..., RegionMap]) -> None:
     for make in rearrangements.lopsided_areas(shipped("fig3")):
         assert violation(make(), "areas") is None
