@@ -3,7 +3,6 @@
 Guarantee: every such command takes the same words for the same slice.
 """
 
-from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps

@@ -7,7 +7,6 @@ turning point or cusp. Panels where that fails are halved, and there the branch 
 the curve does not meet.
 """
 
-from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence

@@ -3,7 +3,6 @@
 Guarantee: whatever is wrong is a `ConfigError` that names the option.
 """
 
-from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
