@@ -17,7 +17,6 @@ that the rest is negligible: if M(h) has the moduli of a polynomial's coefficien
 M(R) / R^(k + 1), R > 1.
 """
 
-
 from collections.abc import Sequence
 from itertools import pairwise
 from math import log, perm

@@ -13,7 +13,6 @@ and counts as error where it is divided by powers of s; that is why the panel en
 of q and e to be proved: a tube that contains the branch at one place contains it everywhere.
 """
 
-
 from collections.abc import Callable, Iterator, Sequence
 from math import gcd
 from typing import NamedTuple

@@ -3,7 +3,6 @@
 Guarantee: every such command takes the same words for the same slice.
 """
 
-
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path

@@ -5,7 +5,6 @@ Guarantee: no stage decides anything by rounding without an error bound, and non
     SliceProblem -> Variety -> Projection -> Stacks -> SampleCounts -> Neighbours -> Areas
 """
 
-
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise

@@ -6,7 +6,6 @@ Guarantee: what `ptmcad.mechanism.record` has read is consistent: every name tha
 point, angles stand inside of cosines and sines only, and every tree has a value in any ring (`evaluate`).
 """
 
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum

@@ -11,7 +11,6 @@ be. What `MAX_SPLITS` and `MAX_WORK` leave open (zeros that only touch, thin dip
 References: Farouki, "The Bernstein polynomial basis: a centennial retrospective", CAGD 29 (2012), section 4.
 """
 
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum

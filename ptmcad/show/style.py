@@ -3,7 +3,6 @@
 Guarantee: a style is plain data; what cannot be drawn at all is refused when it is made, before anything is computed.
 """
 
-
 import re
 from collections.abc import Mapping
 from enum import Enum

@@ -10,14 +10,14 @@ its stored bounds or outside of them; bounds that are too narrow for that are re
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
+from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
 from ptmcad.answer.regionmap import Region
 from ptmcad.text.numerals import approximate_text
-from ptmcad.verification.branches import Branch, Effort, PrecisionTooLow, integral_over
+from ptmcad.verification.branches import Branch, Effort, Part, PrecisionTooLow, integrals_over
 from ptmcad.verification.claims import Claims, bracket, fraction
 from ptmcad.verification.derivation import rational
 from ptmcad.verification.report import Violation
@@ -30,20 +30,17 @@ ATTEMPTS = 7
 """Times that precision is raised, and strips are narrowed, before bounds count as not confirmed."""
 
 
-@dataclass(frozen=True)
-class _Panel:
-    """A part of a wall from region ``below`` to region ``above`` with its integral over the window's lower edge."""
+class _Panel(NamedTuple):
+    """A part of a wall from region ``below`` to region ``above``."""
 
     branch: Branch
-    left: fmpq
-    right: fmpq
     below: int
     above: int
-    integral: arb
+    part: Part
 
 
-def _panel(branch: Branch, left: fmpq, right: fmpq, below: int, above: int, effort: Effort) -> _Panel:
-    return _Panel(branch, left, right, below, above, integral_over(branch, left, right, effort))
+def _panels(branch: Branch, ends: tuple[fmpq, fmpq], below: int, above: int, effort: Effort) -> list[_Panel]:
+    return [_Panel(branch, below, above, part) for part in integrals_over(branch, *ends, effort)]
 
 
 def check_areas(claims: Claims) -> str:
@@ -117,12 +114,12 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int, degrees: tupl
             below, above = (result.cells[stack.cells[level + k]].region for k in (0, 1))
             if below != above:
                 branch = Branch.of(curves[wall.component], wall.root)
-                panels.append(_panel(branch, left, right, below, above, effort))
+                panels += _panels(branch, (left, right), below, above, effort)
     while True:
         areas = list(whole)
         for p in panels:
-            areas[p.below] += p.integral
-            areas[p.above] -= p.integral
+            areas[p.below] += p.part.integral
+            areas[p.above] -= p.part.integral
         open_regions = set()
         for n, (area, (a, b)) in enumerate(zip(areas, bounds, strict=True)):
             enclosure = area + arb(0).union(arb(lost))
@@ -150,21 +147,20 @@ def _between(region: Region) -> str:
 def _halved(
     panels: Sequence[_Panel], regions: set[int], bounds: Sequence[tuple[arb, arb]], effort: Effort
 ) -> list[_Panel] | None:
-    """The panels of the given regions with the worst ones halved; None when they are too narrow already."""
+    """The panels of the given regions, the worst ones halved or tried for the first time; None when too narrow."""
     concerned = [p for p in panels if regions & {p.below, p.above}]
-    worst = max((p.integral.rad() for p in concerned), default=arb(0))
+    worst = max((p.part.integral.rad() for p in concerned), default=arb(0))
     if not worst > effort.share:
         return None
     refined: list[_Panel] = []
     for p in panels:
-        if (p.below in regions or p.above in regions) and p.integral.rad() * 8 > worst:
-            if p.right - p.left < effort.narrowest:
-                return None
-            middle = (p.left + p.right) / 2
-            refined += [
-                _panel(p.branch, p.left, middle, p.below, p.above, effort),
-                _panel(p.branch, middle, p.right, p.below, p.above, effort),
-            ]
-        else:
+        left, right, integral, tried = p.part
+        if not (regions & {p.below, p.above} and integral.rad() * 8 > worst):
             refined.append(p)
+            continue
+        if right - left < effort.narrowest:
+            return None
+        middle = (left + right) / 2
+        for ends in ((left, middle), (middle, right)) if tried else ((left, right),):
+            refined += _panels(p.branch, ends, p.below, p.above, effort)
     return refined

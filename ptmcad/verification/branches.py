@@ -9,8 +9,12 @@ first Taylor coefficients. If for some R > h and r
 then by Rouche's theorem p has for every complex |s| <= R exactly one root |t| < r; so t is analytic there, its
 coefficients are at most r / R^n (Cauchy), and what lies beyond the term of order N contributes at most
 2 h r (h/R)^N / ((N+1) (1 - (h/R)^2)) to the integral. (Without z, two branches that run close together along a slope
-or a bend would need panels as short as they are close.) Where no R does, as at turning points, the panel is halved or
-the branch is shut in between two heights at which the curve does not meet the panel.
+or a bend would need panels as short as they are close.) Where R is too small for the panel, its middle part is proved
+for which it is large enough. Where no R does, as at turning points, the panel is halved or the branch is shut in
+between two heights at which the curve does not meet the panel.
+
+Of a polynomial in v^2 the same is done with w = v^2, of half the degree, where the disk proves that |w| <= M and that w
+is not zero: v is analytic there then and |v| <= sqrt(M), which takes the place of r.
 
 Guarantee: what is returned contains the integral of the branch that was asked for.
 """
@@ -19,67 +23,57 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
 
-from flint import arb, arb_poly, arb_series, ctx, fmpq, fmpz_poly
+from flint import arb, arb_poly, arb_series, ctx, fmpq
 
 from ptmcad.verification.claims import PlaneCurve
+from ptmcad.verification.roots import numbered_root
 from ptmcad.verification.sturm import changes_of
 
 
 @dataclass(frozen=True)
 class Branch:
-    """A wall: the curve, the number of its root, and the curve's coefficients, in Z[u] and in Z[v], for balls."""
+    """A wall: the curve, the number of its root, and the curve's coefficients, in Z[u] and in Z[v], for balls.
+
+    Attributes
+    ----------
+    squares : where the polynomial is one in v^2, its coefficients in Z[u] as such.
+    """
 
     curve: PlaneCurve
     root: int
     value: list[arb_poly]
     columns: list[arb_poly]
+    squares: list[arb_poly] | None
 
     @classmethod
     def of(cls, curve: PlaneCurve, root: int) -> Branch:
-        return cls(curve, root, [arb_poly(c) for c in curve.in_v], [arb_poly(c) for c in curve.in_u])
+        value = [arb_poly(c) for c in curve.in_v]
+        even = curve.exponent_gcd(1) % 2 == 0
+        return cls(curve, root, value, [arb_poly(c) for c in curve.in_u], value[::2] if even else None)
 
     def height(self, u: fmpq, low: fmpq, high: fmpq) -> arb | None:
         """The branch over u; None when there are not so many roots between the heights."""
-        # positive roots of the deflated polynomial have roots of their own
-        squares = self.curve.exponent_gcd(1) % 2 == 0 and low >= 0
         p = self.curve.over(u)
-        if squares:
-            p, low, high = p.deflate(2), low * low, high * high
+        if self.squares is None or high <= 0:
+            return numbered_root(p, low, high, self.root)
+        # as many roots below zero as above it, each the other one's negative
+        p = p.deflate(2)
+        if low >= 0:
+            found = numbered_root(p, low * low, high * high, self.root)
+            return None if found is None else found.sqrt()
         changes = changes_of(p)
-        first, last = changes(low), changes(high) + (p(high) == 0)
-        wanted = first - self.root  # changes below the root, one less above it
-        if wanted <= last:
-            return None
-        while True:
-            if first == wanted == last + 1 and (height := _refined(p, arb(low).union(arb(high)))) is not None:
-                return height.sqrt() if squares else height
-            middle = (low + high) / 2
-            beyond = changes(middle)
-            if beyond >= wanted:
-                low, first = middle, beyond
-            elif beyond == wanted - 1 and p(middle) == 0:
-                return arb(middle).sqrt() if squares else arb(middle)
-            else:
-                high, last = middle, beyond + (p(middle) == 0)
-
-
-def _refined(p: fmpz_poly, root: arb) -> arb | None:
-    """A ball for the only root of p in a given one, narrowed by interval Newton steps as far as precision allows.
-
-    None where the given one is so wide that the first step does not narrow it much.
-    """
-    value, slope = arb_poly(p), arb_poly(p.derivative())
-    first = True
-    while True:
-        middle = root.mid()
-        steepness = slope(root)
-        if steepness.contains(0):
-            return None if first and root.rel_accuracy_bits() < ctx.prec // 2 else root
-        closer = (middle - value(middle) / steepness).intersection(root)
-        if not closer.rad() * 4 < root.rad():
-            return None if first and root.rel_accuracy_bits() < ctx.prec // 2 else closer
-        root, first = closer, False
+        below = changes(fmpq(0)) - changes(low * low) - (p(low * low) == 0)
+        if self.root < below:
+            found = numbered_root(p, fmpq(0), low * low, below - 1 - self.root)
+            return None if found is None else -found.sqrt()
+        zero = int(p[0] == 0)
+        if zero and self.root == below:
+            return arb(0)
+        found = numbered_root(p, fmpq(0), high * high, self.root - below - zero)
+        return None if found is None else found.sqrt()
 
 
 @dataclass(frozen=True)
@@ -106,48 +100,86 @@ class PrecisionTooLow(Exception):
     """Rounding alone keeps a panel from being enclosed."""
 
 
-def integral_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort) -> arb:
-    """The integral of the branch over a panel, from the window's lower edge: the best enclosure at hand.
+class Part(NamedTuple):
+    """A part of a panel with the branch's integral over it, from the window's lower edge.
+
+    Attributes
+    ----------
+    tried : whether this part has been the whole of what was tried; else it is what was left of something longer, and
+        its integral is known by the window's edges only.
+    """
+
+    left: fmpq
+    right: fmpq
+    integral: arb
+    tried: bool
+
+
+def integrals_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort) -> list[Part]:
+    """The integral of the branch over a panel, in parts: the best enclosures at hand.
 
     Raises
     ------
     PrecisionTooLow
     """
     low, high = effort.heights
-    integral = None
     middle, half = (left + right) / 2, (right - left) / 2
     height = branch.height(middle, low, high)
     if height is not None:
-        integral = _by_series(branch, middle, half, height, effort)
-        if integral is not None:
-            integral -= low * (2 * half)
-        elif 2 * half < effort.shut:
+        found = _by_series(branch, middle, half, height, effort)
+        if found is not None:
+            integral, proved = found
+            ends = (left, middle - proved, middle + proved, right)
+            sides = [_known_by_edges(a, b, effort, False) for a, b in (ends[:2], ends[2:]) if a < b]
+            return [Part(ends[1], ends[2], integral - low * (2 * proved), True), *sides]
+        if 2 * half < effort.shut:
             bottom, top = _enclosed(branch, middle, half, height, effort)
-            integral = arb(bottom - low).union(arb(top - low)) * (2 * half)
-    if integral is None:
-        integral = arb(0).union(arb(2 * half * (high - low)))
-    return integral
+            return [Part(left, right, arb(bottom - low).union(arb(top - low)) * (2 * half), True)]
+    return [_known_by_edges(left, right, effort, True)]
 
 
-def _by_series(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> arb | None:
-    """The integral of the branch over a panel, by its power series; None when no disk of convergence is proved.
+def _known_by_edges(left: fmpq, right: fmpq, effort: Effort, tried: bool) -> Part:
+    low, high = effort.heights
+    return Part(left, right, arb(0).union(arb((right - left) * (high - low))), tried)
+
+
+_FAR, _NEAR = fmpq(4), fmpq(3, 2)
+"""Radii of disks that prove a part of a panel, in halves of it: the larger, the fewer terms of the series."""
+_PROVED = (fmpq(1), fmpq(3, 4), fmpq(1, 2), fmpq(3, 8), fmpq(1, 4), fmpq(3, 16), fmpq(1, 8), fmpq(1, 16))
+"""Shares of a panel that are proved where no disk reaches beyond all of it: longest first."""
+
+
+def _by_series(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> tuple[arb, fmpq] | None:
+    """The integral of the branch over a panel's middle part, by its power series, and half that part's width.
+
+    None when no disk of convergence is proved.
 
     Raises
     ------
     PrecisionTooLow
     """
-    rows = [c(arb_poly([middle, 1])) for c in branch.value]
-    for degree in effort.degrees:
-        integral = _along(rows, half, height, degree, effort)
-        if integral is not None:
-            return integral
-    return None
+    best: tuple[arb, fmpq] | None = None
+    for rows in (branch.squares, branch.value):
+        if rows is None or best is not None:
+            continue
+        shifted = [c(arb_poly([middle, 1])) for c in rows]
+        for degree in effort.degrees:
+            found = _along(shifted, half, height, degree, effort, rows is branch.squares)
+            if found is not None and (best is None or found[1] > best[1]):
+                best = found
+            if best is not None and best[1] == half:
+                break
+    return best
 
 
-def _along(rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effort: Effort) -> arb | None:
-    center, length = height.mid(), degree + 1
+def _along(
+    rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effort: Effort, squares: bool = False
+) -> tuple[arb, fmpq] | None:
+    """As `_by_series`, of the polynomial with these coefficients of the powers of v, or of v^2."""
+    root = height * height if squares else height
+    center, length = root.mid(), degree + 1
     rows = _recentered(rows, center)
-    start = arb_series([height - center], prec=length)
+    start = arb_series([root - center], prec=length)
     # z, less its constant coefficient
     polynomial = arb_poly(
         [arb(0), *(c.mid() for c in _series([row.truncate(length) for row in rows], start, length)[1:])]
@@ -160,27 +192,41 @@ def _along(rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effor
     if len(d) > 2 and not blur * _size(d[2], arb(half)) * 2**20 < steepness * steepness:
         raise PrecisionTooLow  # rounding blurs the branch nearly as far as the next one
     absolute, slope = [_absolute(row) for row in d], _absolute(polynomial)
-    for factor in (4, 2):
-        radius = arb(half * factor)
-        reach = _reach([row(radius) for row in absolute], steepness, slope(radius))
-        if reach is not None:
+    for proved, factor in ((half, _FAR), (half, fmpq(2)), *((half * share, _NEAR) for share in _PROVED)):
+        radius = arb(proved * factor)
+        off = slope(radius)
+        reach = _reach([row(radius) for row in absolute], steepness, off)
+        if reach is not None and (not squares or center > off + reach):
+            bound = (center + off + reach).sqrt() if squares else reach
             break
     else:
         return None
     # order until the tail is negligible
-    ratio, order, tail = fmpq(1, factor), 4, arb(0)
+    ratio, order, tail = 1 / factor, 4, arb(0)
     while True:
-        tail = 2 * arb(half) * reach * arb(ratio) ** order / ((order + 1) * (1 - arb(ratio) ** 2))
+        tail = 2 * arb(proved) * bound * arb(ratio) ** order / ((order + 1) * (1 - arb(ratio) ** 2))
         if tail < effort.share or order >= ctx.prec:
             break
         order += 4
     # beyond its degree z has no coefficients, and those of the branch are t's
-    total, power = 2 * arb(half) * center, arb(half)
-    series = _series(rows, start, max(order, length))
-    for k in range(0, max(order, length), 2):
-        total += (series[k] if k < order else polynomial[k]) * power * fmpq(2, k + 1)
-        power = power * half * half
-    return total + arb(0).union(2 * tail) - tail
+    coefficients = _series(rows, start, max(order, length))
+    coefficients[0] += center
+    if squares:
+        coefficients = _root(coefficients, height)
+    total, power = arb(0), arb(proved)
+    for k in range(0, len(coefficients), 2):
+        total += coefficients[k] * power * fmpq(2, k + 1)
+        power = power * proved * proved
+    return total + arb(0).union(2 * tail) - tail, proved
+
+
+def _root(coefficients: Sequence[arb], constant: arb) -> list[arb]:
+    """The square root of a power series, of which the constant coefficient, not zero, is known."""
+    found = [constant]
+    for k in range(1, len(coefficients)):
+        products = sum((found[i] * found[k - i] for i in range(1, k)), arb(0))
+        found.append((coefficients[k] - products) / (2 * constant))
+    return found
 
 
 def _recentered(rows: Sequence[arb_poly], center: arb) -> list[arb_poly]:
@@ -240,25 +286,37 @@ def _series(d: Sequence[arb_poly], start: arb_series, order: int) -> list[arb]:
     ------
     PrecisionTooLow
     """
+    lengths = [order]
+    while lengths[-1] > 1:
+        lengths.append((lengths[-1] + 1) // 2)
     cap = ctx.cap
-    t, length = start, 1
+    t = start
     try:
-        while length < order:
-            length = min(2 * length, order)
-            ctx.cap = length
-            known = t.coeffs()[:length]
-            t = arb_series(known + [arb(0)] * (length - len(known)), prec=length)
-            value, slope = arb_series([arb(0)], prec=length), arb_series([arb(0)], prec=length)
+        for known, length in pairwise(reversed(lengths)):
+            t = _lengthened(t.coeffs()[:known], length)
+            ctx.cap = length - known
+            slope, value = _lengthened([], ctx.cap), _lengthened([], ctx.cap)
             for row in reversed(d):
                 slope = slope * t + value
-                value = value * t + arb_series(row.coeffs()[:length], prec=length)
+                value = value * t + arb_series(row.coeffs()[: ctx.cap], prec=ctx.cap)
             if slope.coeffs() == [] or slope.coeffs()[0].contains(0):
                 raise PrecisionTooLow  # the root is simple
-            t = t - value / slope
+            ctx.cap = length
+            value = _lengthened([], length)
+            for row in reversed(d):
+                value = value * t + arb_series(row.coeffs()[:length], prec=length)
+            # the first ones are zero, but for rounding: t has been a root to this order
+            step = arb_series(value.coeffs()[known:], prec=length - known) / slope
+            t = t - arb_series([arb(0)] * known + step.coeffs(), prec=length)
         found = t.coeffs()
     finally:
         ctx.cap = cap
     return found + [arb(0)] * (order - len(found))
+
+
+def _lengthened(known: list[arb], length: int) -> arb_series:
+    """A series of so many coefficients; those that are not known are zero."""
+    return arb_series(known + [arb(0)] * (length - len(known)), prec=length)
 
 
 def _enclosed(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> tuple[fmpq, fmpq]:

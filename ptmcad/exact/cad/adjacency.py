@@ -15,7 +15,6 @@ most one point of the line u = a that branches run into, because then separators
   over a are enclosed (`points`): heights between them are separators once the bracket is narrow enough.
 """
 
-
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple

@@ -7,7 +7,6 @@ turning point or cusp. Panels where that fails are halved, and there the branch 
 the curve does not meet.
 """
 
-
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction

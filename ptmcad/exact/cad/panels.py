@@ -5,7 +5,6 @@ Guarantee: the integral lies in the enclosure, whichever way it was found: by th
 between horizontals, or between the window's edges.
 """
 
-
 from collections.abc import Callable
 from fractions import Fraction
 from typing import NamedTuple

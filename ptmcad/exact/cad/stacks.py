@@ -4,7 +4,6 @@ Guarantee: over the whole interval of a stack the walls are disjoint graphs of c
 in the order given, and every part of a curve in the window over it is one of them.
 """
 
-
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple

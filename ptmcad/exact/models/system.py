@@ -3,7 +3,6 @@
 Guarantee: the equations of a potential, and every Jacobian, are derived by exact differentiation; nothing is typed in.
 """
 
-
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 

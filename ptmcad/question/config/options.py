@@ -3,7 +3,6 @@
 Guarantee: whatever is wrong is a `ConfigError` that names the option.
 """
 
-
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
