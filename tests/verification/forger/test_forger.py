@@ -21,7 +21,7 @@ from forger import cells, certified, curves, frame, rearrangements
 from forger.consistency import drop, put, settled, with_plan
 from forger.decompose import decomposed
 from forger.judge import Tally, judge, places_of, violation
-from forger.maps import named
+from forger.maps import CONFIGS, named
 from ptmcad.answer.regionmap import NO_POINT, Component, Kind, RegionMap
 from ptmcad.options import Options
 from ptmcad.question.slice import Count
@@ -81,8 +81,8 @@ def test_areas_next_to_one_of_their_bounds_are_confirmed(shipped: Callable[..., 
 
 @pytest.mark.slow
 def test_areas_within_rounding_of_one_of_their_bounds_are_confirmed() -> None:
-    """Random slice 89: a region's upper bound is 2e-16 above its area, and its lower one is taken away."""
-    r = named("89")
+    """The bounds are 4e-17 apart, and one of each region's is taken away."""
+    r = ptmcad.classify(CONFIGS / "fig3.yaml", area_tolerance="1e-17")
     assert min(g.area[1] - g.area[0] for g in r.regions) < Fraction(1, 10**15)
     for make in rearrangements.lopsided_areas(r):
         assert violation(make(), "areas") is None
