@@ -426,3 +426,16 @@ def balanced(x: float, y: float, samples: int = 4000) -> int:
 
     signs = [moment(2 * pi * (k + 0.5) / samples) > 0 for k in range(samples)]
     return sum(signs[k - 1] != signs[k] for k in range(samples))
+
+
+def test_the_area_under_a_polynomials_graph_is_known_to_the_last_digit_at_any_tolerance() -> None:
+    """Of x^2 = 3 b - a^60 + a: above the graph of (a^60 - a)/3 there are two solutions."""
+    system = {"unknowns": {"x": "real"}, "equations": ["x^2 - 3*b + a^60 - a"]}
+    question = {"system": system, "axes": {"a": ["-1", "1/2"], "b": [-1, 1]}}
+    result = ptmcad.classify(question, area_tolerance="1/10")
+    by_number = {result.cells[region.cells[0]].total: region.area for region in result.regions}
+    graph = (Fraction(1, 2) ** 61 + 1) / 183 - (Fraction(1, 4) - 1) / 6
+    for total, expected in ((2, Fraction(3, 2) - graph), (0, Fraction(3, 2) + graph)):
+        low, high = by_number[total]
+        assert low <= expected <= high
+        assert high - low < Fraction(1, 10**15)

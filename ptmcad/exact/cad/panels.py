@@ -1,15 +1,15 @@
 """Panels: parts of the walls that separate two regions, each with an enclosure of the branch's integral.
 
-Guarantee: the integral lies in the enclosure, whichever way it was found: by the branch's Taylor series
-(`algebra.branches`), by its Puiseux series beside a singular point (`algebra.puiseux`), between arcs (`algebra.arcs`),
-between horizontals, or between the window's edges.
+Guarantee: the integral lies in the enclosure, whichever way it was found: exactly, where the curve is a polynomial's
+graph, by the branch's Taylor series (`algebra.branches`), by its Puiseux series beside a singular point
+(`algebra.puiseux`), between arcs (`algebra.arcs`), between horizontals, or between the window's edges.
 """
 
 from collections.abc import Callable
 from fractions import Fraction
 from typing import NamedTuple
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx, fmpq, fmpq_poly
 
 from ptmcad.algebra.arcs import arc_integral
 from ptmcad.algebra.branches import Integral, PrecisionTooLow, branch_integral
@@ -96,8 +96,8 @@ class Panel(NamedTuple):
 
 
 def panels(border: Border, over: Interval, effort: Effort, allowed: fmpq, singular: int = 0) -> list[Panel]:
-    """Panels over an interval, from the left, each with the first enclosure that works: Taylor series, arcs,
-    horizontals, the window's edges.
+    """Panels over an interval, from the left, each with the first enclosure that works: a polynomial's antiderivative,
+    Taylor series, arcs, horizontals, the window's edges.
 
     Where the series is near enough to the branch in the middle of the interval only, what remains is covered likewise,
     or by a series about the singular point at the stack's end.
@@ -108,6 +108,9 @@ def panels(border: Border, over: Interval, effort: Effort, allowed: fmpq, singul
     """
     if singular:
         return [_rough_panel(border, over, effort, singular)]
+    if (graph := _graph(border.curve)) is not None:
+        whole = graph.integral()
+        return [Panel(border, *over, arb(whole(over[1]) - whole(over[0])), True, 0)]
     done: list[Panel] = []
     left = [over]
     while left:
@@ -129,6 +132,13 @@ def panels(border: Border, over: Interval, effort: Effort, allowed: fmpq, singul
                 high = done[-1].low
         left += [rest for rest in ((low, start), (stop, high)) if rest[0] < rest[1]]
     return sorted(done, key=lambda p: p.low)
+
+
+def _graph(curve: Curve) -> fmpq_poly | None:
+    """The polynomial whose graph the curve is; None where it is no polynomial's."""
+    if len(curve.in_v) != 2 or curve.in_v[1].degree() > 0:
+        return None
+    return fmpq_poly(-curve.in_v[0]) / fmpq(curve.in_v[1][0])
 
 
 def _rough_panel(border: Border, over: Interval, effort: Effort, singular: int) -> Panel:
