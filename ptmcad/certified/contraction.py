@@ -14,10 +14,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ptmcad.certified.affine import Rows, contract_affine
 from ptmcad.certified.arithmetic import down, magnitude, multiply, reciprocal, up
 from ptmcad.certified.compiled import ZERO, compiled, inlined
 from ptmcad.certified.evaluation import Floats, Indices, run
+from ptmcad.certified.linear import Linear, contract_linear
 from ptmcad.certified.system import Arguments
 
 MIN_PIVOT = 1e-200
@@ -189,12 +189,12 @@ def tested(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace
 
 
 @compiled
-def contract_curve(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace, forms: Floats, rows: Rows) -> bool:
-    """Shrink by affine forms."""
+def contract_curve(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace, space: Linear) -> bool:
+    """The same as `contract` by affine forms, without derivatives."""
     for _ in range(SWEEPS):
         if not tested(system, box_low, box_high, work):
             return False
-        step = contract_affine(system, box_low, box_high, work.low, work.high, forms, rows)
+        step = contract_linear(system, box_low, box_high, work.low, work.high, space)
         if step < 0:
             return False
         if step == 0:
