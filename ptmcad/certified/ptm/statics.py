@@ -73,6 +73,8 @@ class Hessian:
     """l3 D: finite also where spring 3 has no length."""
     levelled: Formula
     """l1 l2 l3 D: finite everywhere."""
+    diagonal_times_l3: tuple[Formula, ...]
+    """l3 P11 and l3 P22; empty when spring 3 has no free length."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,9 +136,14 @@ def slice_statics(graph: Graph, slice: Slice, *, phi: bool = False, factored: bo
 
 def positive_base(slice: Slice) -> bool:
     """Whether rho is certainly positive in the open window."""
-    rho = slice.parameters["rho"]
+    return positive_everywhere(slice, "rho")
+
+
+def positive_everywhere(slice: Slice, name: str) -> bool:
+    """Whether a parameter that is nowhere negative is certainly positive in the open window."""
+    value = slice.parameters[name]
     # an axis is positive in the open window; of other expressions only constants are known to be
-    return rho in (axis(0), axis(1)) or (rho.is_constant and rho.constant() > 0)
+    return value in (axis(0), axis(1)) or (value.is_constant and value.constant() > 0)
 
 
 def statics(values: Mapping[str, Formula], angles: Angles, *, positive_base: bool = False) -> Statics:
@@ -309,14 +316,16 @@ def _hessian(z: _Configuration, sines: _SquaredSines) -> Hessian:
     """From the squared sines of the angles between springs and tangents; spring 3 enters D to the first power."""
     (first, second, third), (x3, y3, x4, y4) = z.springs, z.loads
     (c1, s1), (s2, c2) = z.n1, z.t2
-    bend1 = (
+    smooth1 = (
         second.k * (z.rho * c1) + third.k * (z.rho * c1 - z.p2 * z.c12) + x3 * c1 + y3 * s1
-        - second.pull * dot(second.direction, z.n1) - third.pull * dot(third.direction, z.n1)
+        - second.pull * dot(second.direction, z.n1)
     )  # fmt: skip
-    bend2 = (
+    smooth2 = (
         first.k * (z.rho * c2) + third.k * (z.rho * c2 - z.p1 * z.c12) - x4 * c2 + y4 * s2
-        - first.pull * dot(first.direction, z.n2) - third.pull * dot(third.direction, z.n2)
+        - first.pull * dot(first.direction, z.n2)
     )  # fmt: skip
+    bend1 = smooth1 - third.pull * dot(third.direction, z.n1)
+    bend2 = smooth2 - third.pull * dot(third.direction, z.n2)
     sway1, sway2 = z.p1 * (second.pull * sines.across21), z.p2 * (first.pull * sines.across12)
     rigid1, rigid2 = bend1 - second.inverse * sway1, bend2 - first.inverse * sway2
     tilt, mixed = third.pull * third.inverse, -(third.k * z.c12)
@@ -340,6 +349,12 @@ def _hessian(z: _Configuration, sines: _SquaredSines) -> Hessian:
         determinant(1, 1, 1, rigid, tilt),
         determinant(1, 1, third.length, rigid, third.pull),
         determinant(second.length, first.length, third.length, levelled, third.pull),
+        (
+            third.length * (smooth1 - second.inverse * sway1) - third.pull * dot(third.vector, z.n1)
+            - third.pull * (z.p1 * sines.across31),
+            third.length * (smooth2 - first.inverse * sway2) - third.pull * dot(third.vector, z.n2)
+            - third.pull * (z.p2 * sines.across32),
+        ) if third.pull.value != 0 else (),
     )
 
 
