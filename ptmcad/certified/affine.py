@@ -26,13 +26,29 @@ import numpy as np
 from ptmcad.certified.arithmetic import MAX_ANGLE, SINE_ERROR, sine_cosine
 from ptmcad.certified.compiled import compiled
 from ptmcad.certified.evaluation import (
-    ADD, CONSTANT, COSINE, DIRECTION, INVERSE_LENGTH, LENGTH, MEET, MULTIPLY, NEGATE, SINE, SQUARE, SUBTRACT, VARIABLE,
-    Floats, Indices, Program,
-)  # fmt: skip
+    ADD,
+    CONSTANT,
+    COSINE,
+    DIRECTION,
+    INVERSE_LENGTH,
+    LENGTH,
+    MEET,
+    MULTIPLY,
+    NEGATE,
+    SINE,
+    SQUARE,
+    SUBTRACT,
+    VARIABLE,
+    Floats,
+    Indices,
+    Program,
+)
 
-Place = np.uint64
+Place = int
+"""Of a node; compiled code is given numbers without a sign, see `Places`."""
 LANES = 6
 """Slopes in a form: as many unknowns as a system may have here. Loops of a known length are written out."""
+POLAR = (DIRECTION, LENGTH, INVERSE_LENGTH)
 CENTER, ERROR, REACH, FIRST = 0, 1, 2, 3
 """Columns of a form: its value at the middle, the error, how far it is from the center at most, and the slopes."""
 ROUNDING = 2.0**-52
@@ -259,7 +275,8 @@ def run_affine(program: Program, frame: Frame, low: Floats, high: Floats, forms:
     forms : shape (n + 1, FIRST + LANES), for a tape of n nodes.
     """
     operations, first, second, _, _ = program
-    scratch, possible = np.uint64(len(operations)), True
+    scratch: int = np.uint64(len(operations))  # type: ignore[assignment]
+    possible = True
     for i in range(np.uint64(0), np.uint64(end)):
         operation, a, b = operations[i], first[i], second[i]
         if operation == VARIABLE:
@@ -283,7 +300,7 @@ def run_affine(program: Program, frame: Frame, low: Floats, high: Floats, forms:
             _sine(forms, i, a, False)
         elif operation == COSINE:
             _sine(forms, i, a, True)
-        elif operation == DIRECTION or operation == LENGTH or operation == INVERSE_LENGTH:
+        elif operation in POLAR:
             _polar(forms, i, a, b, operation)
         elif operation == MEET:
             low[i], high[i] = max(low[a], low[b]), min(high[a], high[b])

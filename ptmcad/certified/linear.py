@@ -12,8 +12,19 @@ from typing import NamedTuple
 import numpy as np
 
 from ptmcad.certified.affine import (
-    CENTER, ERROR, FIRST, FLOOR, LANES, LARGE, ROUNDING, SLACK, Frame, frame_for, run_affine, set_frame,
-)  # fmt: skip
+    CENTER,
+    ERROR,
+    FIRST,
+    FLOOR,
+    LANES,
+    LARGE,
+    ROUNDING,
+    SLACK,
+    Frame,
+    frame_for,
+    run_affine,
+    set_frame,
+)
 from ptmcad.certified.arithmetic import down, up
 from ptmcad.certified.compiled import compiled
 from ptmcad.certified.evaluation import Floats, Indices

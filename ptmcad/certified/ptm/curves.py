@@ -14,7 +14,7 @@ import numpy as np
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.formula import Formula, Graph, inverse_length, length
 from ptmcad.certified.parameters import parameter_formulas, values_at
-from ptmcad.certified.ptm.flat import FLAT, exchanged, flat_hessian, has_flat_mirror, turned, unfolding
+from ptmcad.certified.ptm.flat import FLAT, Turned, exchanged, flat_hessian, has_flat_mirror, unfolding
 from ptmcad.certified.ptm.mirror import is_own_image, opening
 from ptmcad.certified.ptm.statics import (
     PHI_UNIT,
@@ -208,27 +208,33 @@ def _flat(slice: Slice) -> Iterator[Curve]:
 
 
 def _unflat(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
-    """Folds of minima of the unloaded mechanism that are not flat, each for its mirror image too."""
+    """Folds of minima of the unloaded mechanism that are not flat, each for its mirror image too.
+
+    The torus is four squares around the flat configurations, and each of them two charts: of the angles from there
+    either that of the first bar is larger or that of the second, which is the first one with the bars exchanged.
+    """
     for flat in FLAT:
-        for second in (False, True):
+        for larger in (1, 2):
             graph = Graph()
-            values, t, r = parameter_formulas(graph, slice), graph.variable(TH1), graph.variable(TH2)
-            here = exchanged(values) if second else values
-            m = statics(here, Angles(turned(t, flat.c1), turned(r * t, flat.c2)))
-            e1, e2 = m.equilibrium
-            u = unfolding(here, tuple(inverse_length(*d) for d in m.vectors), flat, t, r)
+            values, one = parameter_formulas(graph, slice), graph.constant(1)
+            values = values if larger == 1 else exchanged(values)
+            t, r = graph.variable(TH1), graph.variable(TH2)
+            m = statics(values, Angles(Turned(flat.c1, one, t), Turned(flat.c2, one, r * t)))
+            u = unfolding(values, tuple(inverse_length(*d) for d in m.vectors), flat, t, r)
             there = m.at_equilibrium
             yield Curve(
-                f"fold {flat} {second}",
+                f"fold of a stable equilibrium near cos th{larger} = {flat.c1}, cos th{3 - larger} = {flat.c2}",
                 "a minimum meets a saddle: det H = 0 with nonnegative diagonal; so do their mirror images",
                 system(
                     [u.u_v, u.g, u.determinant()],
                     (0, 1, 2, 3),
                     _dependent(
-                        without, [e1, e2, *m.dependent, *present(m.unit)], [there.determinant, m.turned]
+                        without,
+                        [*m.equilibrium, *m.dependent, *present(m.unit)],
+                        [there.determinant, m.turned],
                     ),
                     [*_semidefinite(m), u.u_vv, u.g_r],
-                    solved=quotients([u.u_v, u.g], _statical(slice)),
+                    solved=quotients([u.u_v, u.g, *m.equilibrium, *m.dependent], _statical(slice)),
                 ),
                 ((0.0, 1.0), (-1.0, 1.0)),
             )

@@ -37,23 +37,26 @@ FLAT = tuple(Flat(c1, c2) for c1 in (1, -1) for c2 in (1, -1))
 
 
 @dataclass(frozen=True, slots=True)
-class Direction:
-    """An angle of which the cosine and the sine are formulas."""
+class Turned:
+    """An angle, 0 or pi by its ``side`` (1 or -1) and turned by a, of which tan(a/2) = rise/run."""
 
-    cosine: Formula
-    sine: Formula
+    side: int
+    run: Formula
+    rise: Formula
 
     def cos(self) -> Formula:
         """The cosine."""
-        return self.cosine
+        return self.side * (2 * direction(self.run, self.rise).squared() - 1)
 
     def sin(self) -> Formula:
         """The sine."""
-        return self.sine
+        return 2 * self.side * (direction(self.run, self.rise) * direction(self.rise, self.run))
 
-    def __add__(self, other: Direction) -> Direction:
-        return Direction(
-            self.cosine * other.cosine - self.sine * other.sine, self.sine * other.cosine + self.cosine * other.sine
+    def __add__(self, other: Turned) -> Turned:
+        return Turned(
+            self.side * other.side,
+            self.run * other.run - self.rise * other.rise,
+            self.run * other.rise + other.run * self.rise,
         )
 
 
@@ -73,14 +76,18 @@ class Unfolding(NamedTuple):
 
 
 def has_flat_mirror(slice: Slice) -> bool:
-    """Whether there is no load, on a base and with springs' pulls that are each zero or certainly positive."""
-    zero = all(not slice.parameters[name].numerator for name in slice.model.forces if name in slice.parameters)
+    """Whether there is no load, on a base that is certainly positive, with pulls that are zero or certainly positive.
+
+    Where a pull vanished on a line only, minima could run into a configuration in which its spring has no length.
+    """
+    given = slice.parameters
+    loaded = any(given[name].numerator for name in slice.model.forces if name in given)
     pulls = all(
-        not slice.parameters[f"l0_{n}"].numerator
-        or (positive_everywhere(slice, f"l0_{n}") and positive_everywhere(slice, f"k{n}"))
-        for n in (1, 2, 3)
+        not given[free].numerator or (positive_everywhere(slice, free) and positive_everywhere(slice, stiffness))
+        for free, stiffness in (("l0_1", "k1"), ("l0_2", "k2"), ("l0_3", "k3"))
+        if free in given
     )
-    return zero and pulls and positive_everywhere(slice, "rho")
+    return pulls and not loaded and positive_everywhere(slice, "rho")
 
 
 def exchanged(values: Mapping[str, Formula]) -> dict[str, Formula]:
@@ -91,12 +98,6 @@ def exchanged(values: Mapping[str, Formula]) -> dict[str, Formula]:
     return result
 
 
-def turned(t: Formula, side: int) -> Direction:
-    """The angle at tan(a/2) = t from 0, if the side is 1, or pi."""
-    scale = t.graph.constant(1) / (1 + t.squared())
-    return Direction(side * ((1 - t.squared()) * scale), side * (2 * (t * scale)))
-
-
 def unfolding(
     values: Mapping[str, Formula], inverses: tuple[Formula, ...], flat: Flat, t: Formula, r: Formula
 ) -> Unfolding:
@@ -105,7 +106,7 @@ def unfolding(
     Parameters
     ----------
     inverses : 1/l1, 1/l2 and 1/l3.
-    t, r : variables.
+    t, r : variables of the graph.
     """
     graph = t.graph
     rho, bar1, bar2 = values["rho"], values["L1"], values["L2"]
@@ -143,13 +144,14 @@ def unfolding(
             force * by(b[n], ratio, ratio) + bend * (square * b_r.squared()),
         )
         sums = [total + term for total, term in zip(sums, terms, strict=True)]
-    return Unfolding(*sums, square)
+    u_v, u_vv, g, g_v, g_r = sums
+    return Unfolding(u_v, u_vv, g, g_v, g_r, square)
 
 
 class FlatHessian(NamedTuple):
-    """Of a flat configuration: its determinant and diagonal, times lengths of springs and other positive numbers.
+    """Of a flat configuration, times lengths of springs with a pull and other positive numbers.
 
-    Finite, and of the right sign next to springs without length, as no direction has to be known.
+    They are finite, and have the right signs, also next to springs without length: no direction has to be known.
     """
 
     determinant: Formula
@@ -157,23 +159,20 @@ class FlatHessian(NamedTuple):
 
 
 def flat_hessian(values: Mapping[str, Formula], flat: Flat) -> FlatHessian:
-    """For H11/L1 = c1 (g2 rho + g3 d1), H22/L2 = c2 (g1 rho + g3 d2), H12/(L1 L2) = -c1 c2 g3, g_i = k_i - pull_i/l_i.
+    """Of P11 = c1 (g2 rho + g3 d1), P22 = c2 (g1 rho + g3 d2) and q = -c1 c2 g3, where g_i = k_i - pull_i/l_i.
 
     Here d1 = rho - L2 c2, d2 = rho - L1 c1, d3 = rho - L1 c1 - L2 c2 and l_i = |d_i|, so that c1 c2 d1 d2 - L1 L2 =
-    c1 c2 rho d3.
+    c1 c2 rho d3 and D = c1 c2 rho (rho g1 g2 + g1 g3 d1 + g2 g3 d2 + g3^2 d3).
     """
     rho = values["rho"]
-    zero = rho.graph.constant(0)
+    zero, one = rho.graph.constant(0), rho.graph.constant(1)
     arm1, arm2 = flat.c1 * values["L1"], flat.c2 * values["L2"]
     d1, d2, d3 = rho - arm2, rho - arm1, rho - arm1 - arm2
-    l1, l2, l3 = (length(d, zero) for d in (d1, d2, d3))
-    f1, f2, f3 = (
-        values[f"k{n}"] * extent - values[f"k{n}"] * values[f"l0_{n}"] for n, extent in ((1, l1), (2, l2), (3, l3))
-    )
+    pulls = [values[f"k{n}"] * values[f"l0_{n}"] for n in (1, 2, 3)]
+    scales = [length(d, zero) if pull.value != 0 else one for d, pull in zip((d1, d2, d3), pulls, strict=True)]
+    (l1, l2, l3), (f1, f2, f3) = scales, (values[f"k{n + 1}"] * scales[n] - pulls[n] for n in range(3))
+    side3 = direction(d3, zero) if pulls[2].value != 0 else d3
     return FlatHessian(
-        rho * (f1 * f2 * l3) + f3 * (f1 * (d1 * l2) + f2 * (d2 * l1)) + f3.squared() * (l1 * l2 * direction(d3, zero)),
-        (
-            flat.c1 * (rho * (f2 * l3) + d1 * (f3 * l2)),
-            flat.c2 * (rho * (f1 * l3) + d2 * (f3 * l1)),
-        ),
+        rho * (f1 * f2 * l3) + f3 * (f1 * (d1 * l2) + f2 * (d2 * l1)) + f3.squared() * (l1 * l2 * side3),
+        (flat.c1 * (rho * (f2 * l3) + d1 * (f3 * l2)), flat.c2 * (rho * (f1 * l3) + d2 * (f3 * l1))),
     )

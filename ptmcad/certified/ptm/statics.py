@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from ptmcad.certified.formula import Formula, Graph, direction, inverse_length, length, meet
 from ptmcad.certified.parameters import parameter_formulas
@@ -42,6 +42,14 @@ def present(formula: Formula | None) -> list[Formula]:
     return [] if formula is None else [formula]
 
 
+class Angle(Protocol):
+    """An angle as a formula, or what has formulas for its cosine and its sine."""
+
+    def cos(self) -> Formula: ...
+    def sin(self) -> Formula: ...
+    def __add__(self, other: Any, /) -> Angle: ...
+
+
 class Angles(NamedTuple):
     """The angles of a configuration, and which formulas are written in them.
 
@@ -52,8 +60,8 @@ class Angles(NamedTuple):
     that d2 = 2 L1 sin(th1/2) (sin(th1/2), -cos(th1/2)). The formulas then hold for 0 < th2 < 2 pi, or 0 < th1 < 2 pi.
     """
 
-    th1: Formula
-    th2: Formula
+    th1: Angle
+    th2: Angle
     phi: Formula | None = None
     creases: tuple[bool, bool] = (False, False)
 
@@ -202,7 +210,6 @@ class _Configuration(NamedTuple):
     Tangents: d(d2)/dth1 = d(d3)/dth1 = L1 t1, d(d1)/dth2 = d(d3)/dth2 = L2 t2; normals: n1 = dt1/dth1, n2 = dt2/dth2.
     """
 
-    th1: Formula
     rho: Formula
     p1: Formula
     p2: Formula
@@ -232,13 +239,14 @@ def _configuration(values: Mapping[str, Formula], angles: Angles) -> _Configurat
             extent = dot(d, u)
         elif n < 3 and angles.creases[n - 1]:
             turned, bar, side = ((th2, p2, 1), (th1, p1, -1))[n - 1]
+            assert isinstance(turned, Formula)
             half = turned * Fraction(1, 2)
             u, extent = (half.sin(), side * half.cos()), 2 * bar * half.sin()
             inverse = 1 / extent
         k, free = values[f"k{n}"], values[f"l0_{n}"]
         springs.append(_Spring(d, u, extent, inverse, k, free, k * free))
     return _Configuration(
-        th1, rho, p1, p2, (values["F3x"], values["F3"], values["F4x"], values["F4"]),
+        rho, p1, p2, (values["F3x"], values["F3"], values["F4x"], values["F4"]),
         (th1 + th2).cos(), (th1 + th2).sin(), (s1, -c1), (s2, c2), (c1, s1), (c2, -s2),
         (springs[0], springs[1], springs[2]),
     )  # fmt: skip
@@ -350,11 +358,15 @@ def _hessian(z: _Configuration, sines: _SquaredSines) -> Hessian:
         determinant(1, 1, third.length, rigid, third.pull),
         determinant(second.length, first.length, third.length, levelled, third.pull),
         (
-            third.length * (smooth1 - second.inverse * sway1) - third.pull * dot(third.vector, z.n1)
+            third.length * (smooth1 - second.inverse * sway1)
+            - third.pull * dot(third.vector, z.n1)
             - third.pull * (z.p1 * sines.across31),
-            third.length * (smooth2 - first.inverse * sway2) - third.pull * dot(third.vector, z.n2)
+            third.length * (smooth2 - first.inverse * sway2)
+            - third.pull * dot(third.vector, z.n2)
             - third.pull * (z.p2 * sines.across32),
-        ) if third.pull.value != 0 else (),
+        )
+        if third.pull.value != 0
+        else (),
     )
 
 
@@ -399,7 +411,7 @@ def _lift(z: _Configuration) -> tuple[Formula, Formula]:
 def _unloaded_turning(z: _Configuration) -> _Turning:
     lift, give = _lift(z)
     # L1 (P11 - L2 q) = H11 - H12 is the derivative of rho times lift by th1
-    slip = (z.rho / z.p1) * lift.graph.derivative(lift, z.th1.variable).squared()
+    slip = (z.rho / z.p1) * lift.graph.derivative(lift, TH1).squared()
     return _Turning(lift, give, slip)
 
 
