@@ -164,7 +164,7 @@ def narrowed(quotient: Indices, low: Floats, high: Floats, box_low: Floats, box_
 
 
 @compiled
-def tested(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace) -> bool:
+def survives(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace) -> bool:
     """Narrow the axes that are solved for, and run all stages but the Jacobian; False when there is no solution."""
     program, stages, _, _, _, cheap, rest, costly, nonnegative, solved, solved_end = system
     low, high = work.low, work.high
@@ -192,7 +192,7 @@ def tested(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace
 def contract_curve(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace, space: Linear) -> bool:
     """The same as `contract` by affine forms, without derivatives."""
     for _ in range(SWEEPS):
-        if not tested(system, box_low, box_high, work):
+        if not survives(system, box_low, box_high, work):
             return False
         step = contract_linear(system, box_low, box_high, work.low, work.high, space)
         if step < 0:
@@ -212,7 +212,7 @@ def linearise(system: Arguments, box_low: Floats, box_high: Floats, work: Worksp
     program, stages, unknowns, equations, jacobian = system[:5]
     low, high, low_at, high_at, middle_low, middle_high, radius, j_low, j_high, matrix = work[:10]
     m, n = jacobian.shape
-    if not tested(system, box_low, box_high, work):
+    if not survives(system, box_low, box_high, work):
         return -1
     run(program, box_low, box_high, low, high, stages[2], stages[3])
     for k in range(box_low.shape[0]):
