@@ -1,4 +1,4 @@
-"""Affine forms enclose what they say, at every point and next to springs without length; their rows lose no solution."""
+"""Affine forms enclose what they say, next to springs without length too; their rows lose no solution."""
 
 from __future__ import annotations
 
@@ -143,7 +143,7 @@ def plane_system(rng: random.Random, kind: str) -> tuple[System, Floats]:
     if kind == "conditional":  # formulas that hold at solutions only, one of them for a number that the other misses
         vanishing = [meet(f + equations[0] * (3 + x[1].squared()), f) for f in (combination(), combination())]
         vanishing = [v - 0 for v in vanishing]
-    nonnegative = [combination().squared() * -1, combination()] if kind == "nonnegative" else []
+    nonnegative = [combination() + Fraction(1, 3), -combination().squared()] if kind == "nonnegative" else []
     solved = quotients([x[0] - at[0] + f for f in (sines(), sines())], (0,)) if kind == "solved" else ()
     equations += [x[0] - at[0] + sines()] if kind == "solved" else []
     return system(equations[-3:], (0, 1, 2, 3), ((), vanishing), nonnegative, solved=solved), point
