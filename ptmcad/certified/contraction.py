@@ -1,7 +1,7 @@
 """Contraction of a box around the solutions of a system: natural tests, mean-value test, and the linearised equations.
 
 Guarantee: a box that is discarded holds no solution, and a contracted box holds every solution of the box that it was
-made of. (Lemmas 4 to 8 of docs/soundness.md.)
+made of. (Lemmas 4 to 8, 24 and 25 of docs/soundness.md.)
 
 References
 ----------
