@@ -1,7 +1,7 @@
 """Contraction of a box around the solutions of a system: natural tests, mean-value test, and the linearised equations.
 
 Guarantee: a box that is discarded holds no solution, and a contracted box holds every solution of the box that it was
-made of. (Lemmas 4 to 8 of docs/soundness.md.)
+made of. (Lemmas 4 to 8, 24 and 25 of docs/soundness.md.)
 
 References
 ----------
@@ -17,6 +17,7 @@ import numpy as np
 from ptmcad.certified.arithmetic import down, magnitude, multiply, reciprocal, up
 from ptmcad.certified.compiled import ZERO, compiled, inlined
 from ptmcad.certified.evaluation import Floats, Indices, run
+from ptmcad.certified.linear import Linear, contract_linear
 from ptmcad.certified.system import Arguments
 
 MIN_PIVOT = 1e-200
@@ -163,33 +164,57 @@ def narrowed(quotient: Indices, low: Floats, high: Floats, box_low: Floats, box_
 
 
 @compiled
+def survives(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace) -> bool:
+    """Narrow the axes that are solved for, and run all stages but the Jacobian; False when there is no solution."""
+    program, stages, _, _, _, cheap, rest, costly, nonnegative, solved, solved_end = system
+    low, high = work.low, work.high
+    begin = ZERO
+    if len(solved) > 0:
+        if not run(program, box_low, box_high, low, high, ZERO, solved_end):
+            return False
+        begin = solved_end
+        for k in range(len(solved)):
+            if not narrowed(solved[k], low, high, box_low, box_high):
+                return False
+    for stage in range(3):
+        if not run(program, box_low, box_high, low, high, begin, stages[stage]):
+            return False
+        begin = stages[stage]
+        if discarded(low, high, cheap if stage == 0 else rest if stage == 1 else costly):
+            return False
+    for place in nonnegative:
+        if high[place] < 0:
+            return False
+    return True
+
+
+@compiled
+def contract_curve(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace, space: Linear) -> bool:
+    """The same as `contract` by affine forms, without derivatives."""
+    for _ in range(SWEEPS):
+        if not survives(system, box_low, box_high, work):
+            return False
+        step = contract_linear(system, box_low, box_high, work.low, work.high, space)
+        if step < 0:
+            return False
+        if step == 0:
+            return True
+    return True
+
+
+@compiled
 def linearise(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace) -> int:
     """Test a box and enclose its equations' derivatives: -1 no solution, 0 a derivative may be unbounded, 1 done.
 
     Afterwards ``work`` has the middle and the radii of the box, the equations there, their derivatives over the box,
     and the middles of these.
     """
-    program, stages, unknowns, equations, jacobian, cheap, rest, costly, nonnegative, solved, solved_end = system
-    low, high, low_at, high_at, middle_low, middle_high, radius, j_low, j_high, matrix, _ = work
+    program, stages, unknowns, equations, jacobian = system[:5]
+    low, high, low_at, high_at, middle_low, middle_high, radius, j_low, j_high, matrix = work[:10]
     m, n = jacobian.shape
-    begin = ZERO
-    if len(solved) > 0:
-        if not run(program, box_low, box_high, low, high, ZERO, solved_end):
-            return -1
-        begin = solved_end
-        for k in range(len(solved)):
-            if not narrowed(solved[k], low, high, box_low, box_high):
-                return -1
-    for stage in range(4):
-        if not run(program, box_low, box_high, low, high, begin, stages[stage]):
-            return -1
-        begin = stages[stage]
-        if stage < 3 and discarded(low, high, cheap if stage == 0 else rest if stage == 1 else costly):
-            return -1
-        if stage == 2:
-            for place in nonnegative:
-                if high[place] < 0:
-                    return -1
+    if not survives(system, box_low, box_high, work):
+        return -1
+    run(program, box_low, box_high, low, high, stages[2], stages[3])
     for k in range(box_low.shape[0]):
         middle_low[k], middle_high[k] = box_low[k], box_high[k]
     for j in range(n):

@@ -34,9 +34,9 @@ class Program(NamedTuple):
     constant_high: Floats
 
 
-_CONSTANT, _VARIABLE, _ADD, _SUBTRACT = (int(x) for x in list(Operation)[:4])
-_MULTIPLY, _SQUARE, _NEGATE, _SINE, _COSINE = (int(x) for x in list(Operation)[4:9])
-_INVERSE_LENGTH, _DIRECTION, _LENGTH, _MEET, _DIVIDE = (int(x) for x in list(Operation)[9:])
+CONSTANT, VARIABLE, ADD, SUBTRACT = (int(x) for x in list(Operation)[:4])
+MULTIPLY, SQUARE, NEGATE, SINE, COSINE = (int(x) for x in list(Operation)[4:9])
+INVERSE_LENGTH, DIRECTION, LENGTH, MEET, DIVIDE = (int(x) for x in list(Operation)[9:])
 
 
 def program(tape: Tape) -> Program:
@@ -52,38 +52,38 @@ def run(program: Program, box_low: Floats, box_high: Floats, low: Floats, high: 
     operations, first, second, constant_low, constant_high = program
     for i in range(np.uint64(start), np.uint64(end)):
         operation, a, b = operations[i], first[i], second[i]
-        if operation == _MULTIPLY:
+        if operation == MULTIPLY:
             u, v = multiply(low[a], high[a], low[b], high[b])
-        elif operation == _ADD:
+        elif operation == ADD:
             u, v = down(low[a] + low[b]), up(high[a] + high[b])
-        elif operation == _SUBTRACT:
+        elif operation == SUBTRACT:
             u, v = down(low[a] - high[b]), up(high[a] - low[b])
-        elif operation == _NEGATE:
+        elif operation == NEGATE:
             u, v = -high[a], -low[a]
-        elif operation == _SQUARE:
+        elif operation == SQUARE:
             near, far = mignitude(low[a], high[a]), magnitude(low[a], high[a])
             u, v = max(down(near * near), 0.0), up(far * far)
             if not far < inf:
                 u, v = 0.0, inf
-        elif operation == _CONSTANT:
+        elif operation == CONSTANT:
             u, v = constant_low[i], constant_high[i]
-        elif operation == _VARIABLE:
+        elif operation == VARIABLE:
             u, v = box_low[a], box_high[a]
-        elif operation == _DIRECTION:
+        elif operation == DIRECTION:
             u, v = direction(low[a], high[a], low[b], high[b])
-        elif operation == _SINE:
+        elif operation == SINE:
             u, v = sine(low[a], high[a], ZERO)
-        elif operation == _COSINE:
+        elif operation == COSINE:
             u, v = sine(low[a], high[a], ONE)
-        elif operation == _MEET:
+        elif operation == MEET:
             u, v = low[a], high[a]
             u = max(u, low[b])
             v = min(v, high[b])
             if u > v:
                 return False
-        elif operation == _LENGTH:
+        elif operation == LENGTH:
             u, v = length(low[a], high[a], low[b], high[b])
-        elif operation == _INVERSE_LENGTH:
+        elif operation == INVERSE_LENGTH:
             u, v = length(low[a], high[a], low[b], high[b])
             u, v = (down(1 / v) if v > 0 else 0.0), (up(1 / u) if u > 0 else inf)
         else:

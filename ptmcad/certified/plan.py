@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from ptmcad.answer.plan import saving_step, zero_parameters, zero_terms
 from ptmcad.answer.regionmap import PlanStep
+from ptmcad.certified.ptm.flat import has_flat_mirror
 from ptmcad.certified.ptm.mirror import is_own_image
 from ptmcad.certified.ptm.statics import positive_base
 from ptmcad.mechanism import ptm
@@ -26,9 +27,10 @@ def beforehand(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
     if slice.count in (Count.STABLE, Count.ADMISSIBLE):
         steps += [saving_step("folds-of-saddles", without), saving_step("cones-and-creases", without)]
     steps.append(saving_step("dependent-equations", without))
-    if slice.count in (Count.STABLE, Count.ADMISSIBLE) and is_own_image(slice):
+    mirrored = slice.count in (Count.STABLE, Count.ADMISSIBLE) and (is_own_image(slice) or has_flat_mirror(slice))
+    if mirrored:
         steps.append(saving_step("mirror-images", without))
-    if unloaded(slice):
+    if unloaded(slice) and not (mirrored and without.isdisjoint({"mirror-images", "folds-of-saddles"})):
         steps.append(saving_step("unloaded-factor", without))
     return tuple(steps)
 

@@ -15,10 +15,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ptmcad.certified.affine import LANES
 from ptmcad.certified.compiled import ZERO, compiled, inlined
-from ptmcad.certified.contraction import Workspace, contract, determined, workspace
+from ptmcad.certified.contraction import Workspace, contract, contract_curve, determined, workspace
 from ptmcad.certified.evaluation import Floats
 from ptmcad.certified.isolation import inflated
+from ptmcad.certified.linear import space_for
 from ptmcad.certified.system import Arguments
 
 Boxes = Floats
@@ -109,6 +111,8 @@ def branch_and_prune(system: Arguments, equations: Arguments, start: Boxes, limi
     variables = start.shape[1] // 2
     larger = system if len(system.program.operations) > len(equations.program.operations) else equations
     work = workspace(larger, variables)
+    linear = limits.area > 0 and len(system.unknowns) <= LANES
+    space = space_for(system, variables)
     stack, small = start.copy(), np.empty((64, 2 * variables))
     unique, narrow = np.empty((4, 2 * variables)), np.empty((4, 2 * variables))
     top = start.shape[0]
@@ -123,7 +127,8 @@ def branch_and_prune(system: Arguments, equations: Arguments, start: Boxes, limi
         used += 1
         for k in range(len(box)):
             box[k] = stack[top, k]
-        if not contract(system, low, high, work):
+        kept = contract_curve(system, low, high, work, space) if linear else contract(system, low, high, work)
+        if not kept:
             continue
         widest, width = -1, 0.0
         for x in system.unknowns:

@@ -50,15 +50,29 @@ def _quotient(formula: Formula, axis: int) -> Iterator[Quotient]:
 
 def _without(variable: int, formula: Formula) -> Formula | None:
     """The formula with zero in place of the variable; None where that would be a division by zero."""
+    try:
+        return with_formula(variable, formula.graph.constant(0), formula)
+    except ZeroDivisionError:
+        return None
+
+
+def with_formula(variable: int, value: Formula, formula: Formula) -> Formula:
+    """The formula with another one in place of a variable.
+
+    Raises
+    ------
+    ZeroDivisionError
+        Where something would be divided by the constant zero.
+    """
     made: dict[int, Formula] = {}
     for node in _nodes(formula):
         a, b = (None if operand is None else made[operand.number] for operand in (node.a, node.b))
         if node.operation is Operation.VARIABLE and node.variable == variable:
-            made[node.number] = node.graph.constant(0)
+            made[node.number] = value
         elif (a, b) == (node.a, node.b):
             made[node.number] = node
         elif node.operation is Operation.DIVIDE and b is not None and b.value == 0:
-            return None
+            raise ZeroDivisionError
         else:
             made[node.number] = _again(node, a, b)
     return made[formula.number]

@@ -109,11 +109,11 @@ def test_a_search_that_is_to_end_says_so_and_has_all_boxes(monkeypatch: pytest.M
             asked.append(1)
             return len(asked) > tasks
 
-        assert not refine(enclosures, 1e-2, 1, None, late)
+        assert not refine(enclosures, 1e-5, 1, None, late)
         assert len(asked) == tasks + 1
         assert lost(enclosures) == 0
         assert enclosures[0].number() == len(enclosures[0].boxes())
-    assert refine(enclosures, 1e-2, 1, None, lambda: False)
+    assert refine(enclosures, 1e-5, 1, None, lambda: False)
     assert lost(enclosures) == 0
 
 

@@ -12,8 +12,9 @@ from fractions import Fraction
 import numpy as np
 
 from ptmcad.certified.curve import Curve
-from ptmcad.certified.formula import Formula, Graph, length
+from ptmcad.certified.formula import Formula, Graph, inverse_length, length
 from ptmcad.certified.parameters import parameter_formulas, values_at
+from ptmcad.certified.ptm.flat import FLAT, Turned, exchanged, flat_hessian, has_flat_mirror, unfolding
 from ptmcad.certified.ptm.mirror import is_own_image, opening
 from ptmcad.certified.ptm.statics import (
     PHI_UNIT,
@@ -65,6 +66,9 @@ def _stable(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
     if stable and "mirror-images" not in without and is_own_image(slice):
         yield from _on_the_mirror(slice, without)
         yield _off_the_mirror(slice, without)
+    elif stable and "mirror-images" not in without and has_flat_mirror(slice):
+        yield from _flat(slice)
+        yield from _unflat(slice, without)
     else:
         yield from _folds(slice, without, stable=stable)
     if "cones-and-creases" in without:
@@ -190,6 +194,52 @@ def _off_the_mirror(slice: Slice, without: frozenset[str]) -> Curve:
     )
 
 
+def _flat(slice: Slice) -> Iterator[Curve]:
+    """Folds of minima, mostly pitchforks, in flat configurations of the unloaded mechanism: explicit curves."""
+    for flat in FLAT:
+        graph = Graph()
+        h = flat_hessian(parameter_formulas(graph, slice), flat)
+        yield Curve(
+            f"pitchfork of a stable equilibrium, cos th1 = {flat.c1}, cos th2 = {flat.c2}",
+            "a flat minimum parts with two others, or meets two saddles, that are each other's mirror images",
+            system([h.determinant], (0, 1), nonnegative=h.diagonal),
+            (),
+        )
+
+
+def _unflat(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
+    """Folds of minima of the unloaded mechanism that are not flat, each for its mirror image too.
+
+    The torus is four squares around the flat configurations, and each of them two charts: of the angles from there
+    either that of the first bar is larger or that of the second, which is the first one with the bars exchanged.
+    """
+    for flat in FLAT:
+        for larger in (1, 2):
+            graph = Graph()
+            values, one = parameter_formulas(graph, slice), graph.constant(1)
+            values = values if larger == 1 else exchanged(values)
+            t, r = graph.variable(TH1), graph.variable(TH2)
+            m = statics(values, Angles(Turned(flat.c1, one, t), Turned(flat.c2, one, r * t)))
+            u = unfolding(values, tuple(inverse_length(*d) for d in m.vectors), flat, t, r)
+            there = m.at_equilibrium
+            yield Curve(
+                f"fold of a stable equilibrium near cos th{larger} = {flat.c1}, cos th{3 - larger} = {flat.c2}",
+                "a minimum meets a saddle: det H = 0 with nonnegative diagonal; so do their mirror images",
+                system(
+                    [u.u_v, u.g, u.determinant()],
+                    (0, 1, 2, 3),
+                    _dependent(
+                        without,
+                        [*m.equilibrium, *m.dependent, *present(m.unit)],
+                        [there.determinant, m.turned],
+                    ),
+                    [*_semidefinite(m), u.u_vv, u.g_r],
+                    solved=quotients([u.u_v, u.g, *m.equilibrium, *m.dependent], _statical(slice)),
+                ),
+                ((0.0, 1.0), (-1.0, 1.0)),
+            )
+
+
 def _statical(slice: Slice) -> list[int]:
     """The axes that the mechanism's geometry does not depend on: loads, stiffnesses and free lengths."""
     return [k for k in (0, 1) if not any(slice.parameters[name].uses(k) for name in ("rho", "L1", "L2"))]
@@ -197,7 +247,7 @@ def _statical(slice: Slice) -> list[int]:
 
 def _semidefinite(m: Statics) -> list[Formula]:
     """What is at least zero where the Hessian is positive semidefinite, besides D."""
-    return [m.at_equilibrium.p11, m.at_equilibrium.p22, m.turn]
+    return [m.at_equilibrium.p11, m.at_equilibrium.p22, m.turn, *m.at_equilibrium.diagonal_times_l3]
 
 
 def _dependent(

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from ptmcad.certified.formula import Formula, Graph, direction, inverse_length, length, meet
 from ptmcad.certified.parameters import parameter_formulas
@@ -42,6 +42,14 @@ def present(formula: Formula | None) -> list[Formula]:
     return [] if formula is None else [formula]
 
 
+class Angle(Protocol):
+    """An angle as a formula, or what has formulas for its cosine and its sine."""
+
+    def cos(self) -> Formula: ...
+    def sin(self) -> Formula: ...
+    def __add__(self, other: Any, /) -> Angle: ...
+
+
 class Angles(NamedTuple):
     """The angles of a configuration, and which formulas are written in them.
 
@@ -52,8 +60,8 @@ class Angles(NamedTuple):
     that d2 = 2 L1 sin(th1/2) (sin(th1/2), -cos(th1/2)). The formulas then hold for 0 < th2 < 2 pi, or 0 < th1 < 2 pi.
     """
 
-    th1: Formula
-    th2: Formula
+    th1: Angle
+    th2: Angle
     phi: Formula | None = None
     creases: tuple[bool, bool] = (False, False)
 
@@ -73,6 +81,8 @@ class Hessian:
     """l3 D: finite also where spring 3 has no length."""
     levelled: Formula
     """l1 l2 l3 D: finite everywhere."""
+    diagonal_times_l3: tuple[Formula, ...]
+    """l3 P11 and l3 P22; empty when spring 3 has no free length."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,9 +144,14 @@ def slice_statics(graph: Graph, slice: Slice, *, phi: bool = False, factored: bo
 
 def positive_base(slice: Slice) -> bool:
     """Whether rho is certainly positive in the open window."""
-    rho = slice.parameters["rho"]
+    return positive_everywhere(slice, "rho")
+
+
+def positive_everywhere(slice: Slice, name: str) -> bool:
+    """Whether a parameter that is nowhere negative is certainly positive in the open window."""
+    value = slice.parameters[name]
     # an axis is positive in the open window; of other expressions only constants are known to be
-    return rho in (axis(0), axis(1)) or (rho.is_constant and rho.constant() > 0)
+    return value in (axis(0), axis(1)) or (value.is_constant and value.constant() > 0)
 
 
 def statics(values: Mapping[str, Formula], angles: Angles, *, positive_base: bool = False) -> Statics:
@@ -195,7 +210,6 @@ class _Configuration(NamedTuple):
     Tangents: d(d2)/dth1 = d(d3)/dth1 = L1 t1, d(d1)/dth2 = d(d3)/dth2 = L2 t2; normals: n1 = dt1/dth1, n2 = dt2/dth2.
     """
 
-    th1: Formula
     rho: Formula
     p1: Formula
     p2: Formula
@@ -225,13 +239,14 @@ def _configuration(values: Mapping[str, Formula], angles: Angles) -> _Configurat
             extent = dot(d, u)
         elif n < 3 and angles.creases[n - 1]:
             turned, bar, side = ((th2, p2, 1), (th1, p1, -1))[n - 1]
+            assert isinstance(turned, Formula)
             half = turned * Fraction(1, 2)
             u, extent = (half.sin(), side * half.cos()), 2 * bar * half.sin()
             inverse = 1 / extent
         k, free = values[f"k{n}"], values[f"l0_{n}"]
         springs.append(_Spring(d, u, extent, inverse, k, free, k * free))
     return _Configuration(
-        th1, rho, p1, p2, (values["F3x"], values["F3"], values["F4x"], values["F4"]),
+        rho, p1, p2, (values["F3x"], values["F3"], values["F4x"], values["F4"]),
         (th1 + th2).cos(), (th1 + th2).sin(), (s1, -c1), (s2, c2), (c1, s1), (c2, -s2),
         (springs[0], springs[1], springs[2]),
     )  # fmt: skip
@@ -309,14 +324,16 @@ def _hessian(z: _Configuration, sines: _SquaredSines) -> Hessian:
     """From the squared sines of the angles between springs and tangents; spring 3 enters D to the first power."""
     (first, second, third), (x3, y3, x4, y4) = z.springs, z.loads
     (c1, s1), (s2, c2) = z.n1, z.t2
-    bend1 = (
+    smooth1 = (
         second.k * (z.rho * c1) + third.k * (z.rho * c1 - z.p2 * z.c12) + x3 * c1 + y3 * s1
-        - second.pull * dot(second.direction, z.n1) - third.pull * dot(third.direction, z.n1)
+        - second.pull * dot(second.direction, z.n1)
     )  # fmt: skip
-    bend2 = (
+    smooth2 = (
         first.k * (z.rho * c2) + third.k * (z.rho * c2 - z.p1 * z.c12) - x4 * c2 + y4 * s2
-        - first.pull * dot(first.direction, z.n2) - third.pull * dot(third.direction, z.n2)
+        - first.pull * dot(first.direction, z.n2)
     )  # fmt: skip
+    bend1 = smooth1 - third.pull * dot(third.direction, z.n1)
+    bend2 = smooth2 - third.pull * dot(third.direction, z.n2)
     sway1, sway2 = z.p1 * (second.pull * sines.across21), z.p2 * (first.pull * sines.across12)
     rigid1, rigid2 = bend1 - second.inverse * sway1, bend2 - first.inverse * sway2
     tilt, mixed = third.pull * third.inverse, -(third.k * z.c12)
@@ -340,6 +357,16 @@ def _hessian(z: _Configuration, sines: _SquaredSines) -> Hessian:
         determinant(1, 1, 1, rigid, tilt),
         determinant(1, 1, third.length, rigid, third.pull),
         determinant(second.length, first.length, third.length, levelled, third.pull),
+        (
+            third.length * (smooth1 - second.inverse * sway1)
+            - third.pull * dot(third.vector, z.n1)
+            - third.pull * (z.p1 * sines.across31),
+            third.length * (smooth2 - first.inverse * sway2)
+            - third.pull * dot(third.vector, z.n2)
+            - third.pull * (z.p2 * sines.across32),
+        )
+        if third.pull.value != 0
+        else (),
     )
 
 
@@ -384,7 +411,7 @@ def _lift(z: _Configuration) -> tuple[Formula, Formula]:
 def _unloaded_turning(z: _Configuration) -> _Turning:
     lift, give = _lift(z)
     # L1 (P11 - L2 q) = H11 - H12 is the derivative of rho times lift by th1
-    slip = (z.rho / z.p1) * lift.graph.derivative(lift, z.th1.variable).squared()
+    slip = (z.rho / z.p1) * lift.graph.derivative(lift, TH1).squared()
     return _Turning(lift, give, slip)
 
 
