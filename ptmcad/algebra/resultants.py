@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from itertools import pairwise
 
 from flint import fmpz, fmpz_poly
@@ -37,7 +38,7 @@ def discriminant(p: Coefficients, check: Check = nothing) -> fmpz_poly:
         from ptmcad.algebra import modular  # not loaded for short ones
 
         if modular.pays((n, n - 1), bound, modular.discriminant_bits(p)):
-            return modular.discriminant(p, check)
+            return _long_discriminant(tuple(tuple(int(a) for a in c.coeffs()) for c in p), check)
 
     def at(k: int) -> fmpz:
         value = fmpz_poly([c(k) for c in p])
@@ -49,6 +50,14 @@ def discriminant(p: Coefficients, check: Check = nothing) -> fmpz_poly:
         return value.leading_coefficient() ** 2 * (value.discriminant() if n > 2 else 1)
 
     return interpolate(at, bound, check)
+
+
+@lru_cache(maxsize=4)
+def _long_discriminant(p: tuple[tuple[int, ...], ...], check: Check) -> fmpz_poly:
+    """Modulo primes; kept, as a decomposition asks for it once more when it looks for points over the abscissae."""
+    from ptmcad.algebra import modular
+
+    return modular.discriminant([fmpz_poly(list(c)) for c in p], check)
 
 
 def resultant(p: Coefficients, q: Coefficients, check: Check = nothing) -> fmpz_poly:

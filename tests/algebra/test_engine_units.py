@@ -309,24 +309,22 @@ def test_determinants_of_many_rows_in_one_axis(axis: fmpz_mpoly, rank: int) -> N
 
 
 @pytest.mark.parametrize("name", ["forces", "mechanisms/two-bar-chain", "systems/orthogonal-3r"])
-def test_poles_by_another_order_are_those_by_power_traces(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_poles_by_characteristic_polynomials_are_those_by_power_traces(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     problem = problem_of(load(CONFIGS / f"{name}.yaml"))
     equations = on_slice(problem.system, problem.parameters)
-    unknowns = tuple(range(equations.unknowns))
-    algebra, other = (
-        quotient_algebra(groebner_basis(equations.equations, MonomialOrder(order)))
-        for order in (unknowns, unknowns[::-1])
-    )
-    assert algebra is not None and other is not None
+    algebra = quotient_algebra(groebner_basis(equations.equations, MonomialOrder(tuple(range(equations.unknowns)))))
+    assert algebra is not None
     suspects = irreducible_factors(multiplication_denominator(algebra))
     by_traces = proved_poles(equations, algebra, suspects)
-    doubtful = irreducible_factors(multiplication_denominator(other))
-    regular = [f for f in suspects if f not in by_traces and f not in doubtful]
-    assert regular
-    monkeypatch.setattr(variety, "MOST_TRACED", 0)
+    assert 0 < len(by_traces) < len(suspects)
+    # nothing is seen at points, so that all is left to the other two ways
+    monkeypatch.setattr(variety, "poles_at_points", lambda *_: [])
     assert set(map(str, proved_poles(equations, algebra, suspects))) == set(map(str, by_traces))
-    monkeypatch.setattr(variety, "power_trace_denominators", None)  # what the other order tells needs none
-    assert proved_poles(equations, algebra, regular) == []
+    monkeypatch.setattr(variety, "MOST_TRACED", 0)
+    monkeypatch.setattr(variety, "power_trace_denominators", None)
+    assert set(map(str, proved_poles(equations, algebra, suspects))) == set(map(str, by_traces))
 
 
 @pytest.mark.parametrize("name", ["fig2", "fig3", "fig4", "fig5-text"])
