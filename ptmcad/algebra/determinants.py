@@ -27,7 +27,7 @@ from ptmcad.algebra.resultants import interpolate, nothing
 
 LEAST_INTERPOLATED = 12
 """Rows; of fewer the elimination is as fast."""
-LEAST_MODULAR = 8
+LEAST_MODULAR = 6
 """Rows, likewise for values modulo primes."""
 _MANY_TERMS = 10_000
 """Rows times terms from which on costs are predicted; with fewer the elimination takes some tens of milliseconds."""

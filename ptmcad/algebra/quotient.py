@@ -198,6 +198,12 @@ def multiplication_denominator(algebra: QuotientAlgebra) -> Coefficient:
     return lcm(algebra.table[shifted(m, k)][1] for m in algebra.basis for k in range(len(m)))
 
 
+def table_terms(algebra: QuotientAlgebra) -> int:
+    """The number of terms in the multiplication matrices of the unknowns."""
+    rows = (algebra.table[shifted(m, k)][0] for m in algebra.basis for k in range(len(m)))
+    return sum(len(c) for row in rows for c in row)
+
+
 def power_trace_denominators(algebra: QuotientAlgebra, k: int) -> Coefficient:
     """The common denominator of trace(u^j), j = 1 ... dimension, for the unknown number k.
 

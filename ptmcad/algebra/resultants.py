@@ -17,7 +17,7 @@ from ptmcad.algebra.orders import discriminant_degree, resultant_degree
 
 Coefficients = Sequence[fmpz_poly]
 Check = Callable[[], None]
-_LONG = 100_000
+LONG = 100_000
 """Points times the product of the degrees in v; of less, values in integers take milliseconds."""
 
 
@@ -34,7 +34,7 @@ def discriminant(p: Coefficients, check: Check = nothing) -> fmpz_poly:
     if n < 2:
         return fmpz_poly([1])
     bound = discriminant_degree(p)
-    if (bound + 1) * n * (n - 1) >= _LONG:
+    if (bound + 1) * n * (n - 1) >= LONG:
         from ptmcad.algebra import modular  # not loaded for short ones
 
         if modular.pays((n, n - 1), bound, modular.discriminant_bits(p)):
@@ -66,7 +66,7 @@ def resultant(p: Coefficients, q: Coefficients, check: Check = nothing) -> fmpz_
     if n == 0 or m == 0:
         return (p[0] ** m) if n == 0 else (q[0] ** n)
     bound = resultant_degree(p, q)
-    if (bound + 1) * n * m >= _LONG:
+    if (bound + 1) * n * m >= LONG:
         from ptmcad.algebra import modular
 
         if modular.pays((n, m), bound, modular.resultant_bits(p, q)):

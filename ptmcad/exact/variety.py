@@ -44,6 +44,7 @@ from ptmcad.algebra.quotient import (
     poles_of_characteristic_polynomial,
     power_trace_denominators,
     quotient_algebra,
+    table_terms,
     trace_form,
 )
 from ptmcad.algebra.window import Interval, nowhere_zero
@@ -257,7 +258,7 @@ def _with_poles(
     algebra: QuotientAlgebra, suspects: Sequence[Coefficient], coordinates: Sequence[int]
 ) -> list[Coefficient]:
     """Those of the polynomials on which some of the coordinates has a pole; none is missed."""
-    if algebra.dimension > MOST_TRACED:
+    if algebra.dimension > MOST_TRACED or table_terms(algebra) > MOST_TERMS:
         found: list[Coefficient] = []
         for k in coordinates:
             open_ones = [f for f in suspects if f not in found]
@@ -282,6 +283,8 @@ def proved_poles(
 
 MOST_TRACED = 8
 """Solutions up to which power traces show the poles; their degrees grow with the square of the number of solutions."""
+MOST_TERMS = 400
+"""Of the multiplication table, likewise."""
 
 
 def settles(equations: SliceSystem) -> bool:
