@@ -29,10 +29,12 @@ from ptmcad.algebra.real_roots import (
     simplest_between,
     squarefree_part,
 )
-from ptmcad.algebra.resultants import discriminant, interpolate, resultant
+from ptmcad.algebra.resultants import discriminant, interpolate, nothing, resultant
 from ptmcad.algebra.window import nowhere_zero
 from ptmcad.answer.regionmap import Kind
 from ptmcad.exact import variety
+from ptmcad.exact.cad.curves import curve
+from ptmcad.exact.cad.points import _discriminant
 from ptmcad.exact.models import system_of
 from ptmcad.exact.models.system import SliceSystem, at_point, on_slice
 from ptmcad.exact.stages import problem_of
@@ -407,3 +409,10 @@ def test_a_zero_in_the_window_is_never_denied(p: fmpz_mpoly, a: int, b: int) -> 
 def test_pairs_of_components_are_different() -> None:
     for name in SLICES:
         assert all(a.polynomial != b.polynomial for a, b in combinations(shipped(name).components, 2))
+
+
+@pytest.mark.parametrize("p", [(X**2 + Y**2 - 3) * (X * Y**2 - 5) + 7, X**3 * Y**6 - (X + 1) * Y**3 + X - 2, Y**2 - X])
+def test_discriminants_of_least_degree_have_the_roots_of_the_whole_ones(p: fmpz_mpoly) -> None:
+    seen = curve(0, p, 0)
+    least, whole = squarefree_part(_discriminant(seen, nothing)), squarefree_part(discriminant(seen.in_v))
+    assert least.degree() == whole.degree() == least.gcd(whole).degree() > 0
