@@ -10,6 +10,7 @@ import pytest
 from flint import fmpz_mpoly
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import linear_sum_assignment
 from support.examples import examples
 
 from ptmcad.algebra import determinants, grid, pencils
@@ -74,6 +75,14 @@ def test_assignments_are_the_least(costs: list[list[int | None]]) -> None:
         if None not in taken:
             sums.append(sum(c for c in taken if c is not None))
     assert least_assignment(costs) == min(sums, default=None)
+
+
+def test_assignments_of_many_rows_are_those_of_scipy() -> None:
+    source = random.Random(7)
+    for size in range(2, 40):
+        costs = [[source.randint(-9, 40) for _ in range(size)] for _ in range(size)]
+        rows, columns = linear_sum_assignment(costs)
+        assert least_assignment(costs) == sum(costs[i][j] for i, j in zip(rows, columns, strict=True))
 
 
 @given(matrices())
