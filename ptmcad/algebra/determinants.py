@@ -1,6 +1,7 @@
-"""Determinants of matrices over Q(x, y), by fraction-free elimination or, in one axis, by values at integers.
+"""Determinants of matrices over Q(x, y), by fraction-free elimination or by values at integers.
 
-Guarantee: exact.
+Guarantee: exact. Values in one axis are taken in Z, those in two modulo primes, see `pencils`; which way is taken is
+predicted from the number of terms.
 
 References: Bareiss, Math. Comp. 22 (1968); von zur Gathen & Gerhard, Modern Computer Algebra, section 5.5 (determinants
 by evaluation and interpolation).
@@ -13,6 +14,7 @@ from collections.abc import Sequence
 from flint import fmpz_mat, fmpz_poly
 
 from ptmcad.algebra.polynomials import (
+    PLANE,
     Coefficient,
     Ratio,
     coefficients_in,
@@ -21,16 +23,20 @@ from ptmcad.algebra.polynomials import (
     lcm,
     ratio,
 )
-from ptmcad.algebra.resultants import interpolate
+from ptmcad.algebra.resultants import interpolate, nothing
 
 LEAST_INTERPOLATED = 12
 """Rows; of fewer the elimination is as fast."""
+LEAST_MODULAR = 6
+"""Rows, likewise for values modulo primes."""
+_MANY_TERMS = 10_000
+"""Rows times terms from which on costs are predicted; with fewer the elimination takes some tens of milliseconds."""
 
 
 def determinant(rows: list[list[Ratio]]) -> Ratio:
     """The determinant of a square matrix over Q(x, y): rows and columns made primitive first.
 
-    By Bareiss's elimination, or for many rows in one axis by interpolation, which has no long quotients on the way.
+    By Bareiss's elimination, or for many rows by interpolation, which has no long quotients on the way.
     """
     zero, one = (constant_like(rows[0][0][0], value) for value in (0, 1))
     denominator = numerator = one
@@ -54,8 +60,43 @@ def determinant(rows: list[list[Ratio]]) -> Ratio:
         if not common.is_one():
             numerator = numerator * common
             matrix[i] = [c / common for c in line]
+    return ratio(numerator * _primitive_determinant(matrix, denominator), denominator)
+
+
+def _primitive_determinant(matrix: list[list[Coefficient]], denominator: Coefficient) -> Coefficient:
+    """The determinant, by the way that is predicted to be the shortest.
+
+    Parameters
+    ----------
+    denominator : its irreducible factors may divide the determinant to high powers.
+    """
     axis = _only_axis(matrix) if len(matrix) >= LEAST_INTERPOLATED else None
-    return ratio(numerator * (_bareiss(matrix) if axis is None else _interpolated(matrix, axis)), denominator)
+    if axis is not None:
+        return _interpolated(matrix, axis)
+    found = _modular(matrix, denominator) if len(matrix) >= LEAST_MODULAR else None
+    return _bareiss(matrix) if found is None else found
+
+
+def _modular(matrix: list[list[Coefficient]], denominator: Coefficient) -> Coefficient | None:
+    """The determinant by values modulo primes; None where the elimination is predicted to be shorter."""
+    if matrix[0][0].context() is not PLANE or len(matrix) * sum(len(e) for row in matrix for e in row) < _MANY_TERMS:
+        return None
+    from ptmcad.algebra import pencils  # few slices need it
+
+    pencil = pencils.Pencil(matrix)
+    asked = pencils.bounds(pencil, pencils.places_of(denominator))
+    if asked is None:
+        return constant_like(matrix[0][0], 0)
+    if pencils.seconds(pencil, asked) * _MARGIN > pencils.seconds_in_polynomials(pencil, asked):
+        return None
+    cofactor, factors = pencils.determinant(matrix, asked, nothing)
+    for factor, exponent in factors:
+        cofactor = cofactor * factor**exponent
+    return cofactor
+
+
+_MARGIN = 2
+"""By how much the prediction has to favour values modulo primes."""
 
 
 def _only_axis(matrix: Sequence[Sequence[Coefficient]]) -> int | None:

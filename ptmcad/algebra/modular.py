@@ -24,24 +24,18 @@ Review 16 (1974); von zur Gathen & Gerhard, Modern Computer Algebra, sections 5.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from itertools import accumulate
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from flint import fmpz, fmpz_poly, nmod_poly
 
 from ptmcad.algebra import orders
+from ptmcad.algebra.residues import PRIME_BITS, FaultyValue, blocks, combined, expanded, newton, primes, quotients
 
 Coefficients = Sequence[fmpz_poly]
 Check = Callable[[], None]
-PRIME_BITS = 63
-"""FLINT's arithmetic is fastest where two residues add up without overflow."""
 _CALL = 150.0
 """What one value modulo a prime costs besides Euclid's algorithm, in its steps (products of residues)."""
-
-
-class FaultyValue(ArithmeticError):
-    """A result disagrees with a value that it was not made from: the machine or the program is at fault."""
 
 
 def discriminant(p: Coefficients, check: Check) -> fmpz_poly:
@@ -132,15 +126,6 @@ def _half_log(logs: Sequence[tuple[int, float]], s: float) -> float:
     return most + math.log2(math.fsum(4.0 ** (t - most) for t in terms)) / 2
 
 
-def _primes() -> Iterator[int]:
-    """Primes, from the largest of `PRIME_BITS` bits downwards."""
-    candidate = fmpz(2**PRIME_BITS - 1)
-    while True:
-        if candidate.is_prime():
-            yield int(candidate)
-        candidate -= 2
-
-
 ValueModulo = Callable[[int], int]
 """A value in dependence of the prime modulo which it is taken."""
 
@@ -170,20 +155,20 @@ def _lifted(at: Callable[[int], ValueModulo], bounds: Bounds, check: Check) -> f
     values = [at(u) for u in points]
     known = [fmpz(v) for v in orders.values(bounds.factors, points)]
     factor = math.prod((f**e for f, e in bounds.factors), start=fmpz_poly([1]))
-    blocks = _blocks(first, degree + 1)
+    products = blocks(first, degree + 1)
     images: list[tuple[nmod_poly, int]] = []
-    primes = _primes()
+    waiting = primes()
     while (bounds.bits + 1) // (PRIME_BITS - 1) >= len(images):
         check()
-        prime = next(primes)
+        prime = next(waiting)
         divisors = [int(v % prime) for v in known]
         if 0 in divisors:
             continue
-        quotients = _quotients([value(prime) for value in values], divisors, prime)
-        cofactor = _expanded(_newton(quotients, prime), first, blocks, prime)
+        found = quotients([value(prime) for value in values], divisors, prime)
+        cofactor = expanded(newton(found, prime), first, products, prime)
         images.append((cofactor * nmod_poly(factor, prime), prime))
-    result = _combined(images)
-    further, fresh = first + degree + 1, next(primes)
+    result = combined(images)
+    further, fresh = first + degree + 1, next(waiting)
     if int(result(further)) % fresh != at(further)(fresh):
         raise FaultyValue(f"a polynomial interpolated modulo {len(images)} primes is wrong at {further}")
     return result
@@ -194,64 +179,6 @@ def _first_point(factors: orders.Factors, degree: int) -> int:
     zeros = [-int(f[0]) // int(f[1]) for f, _ in factors if f.degree() == 1 and abs(int(f[1])) == 1]
     zeros = sorted(z for z in zeros if -degree <= z <= degree)
     return zeros[-1] + 1 if zeros else -(degree // 2)
-
-
-def _quotients(numerators: Sequence[int], denominators: Sequence[int], prime: int) -> list[int]:
-    """Modulo a prime that divides no denominator; one inverse is computed."""
-    products = list(accumulate(denominators, lambda a, b: a * b % prime))
-    inverse = pow(products[-1], -1, prime)
-    found = []
-    for k in range(len(numerators) - 1, -1, -1):
-        before = products[k - 1] if k else 1
-        found.append(numerators[k] * before % prime * inverse % prime)
-        inverse = inverse * denominators[k] % prime
-    return found[::-1]
-
-
-def _newton(values: Sequence[int], prime: int) -> list[int]:
-    """The coefficients in Newton's form for consecutive integers: sum_j values_j / j! (-1)^(k-j) / (k-j)!."""
-    factorials = list(accumulate(range(1, len(values)), lambda a, b: a * b % prime, initial=1))
-    inverse = _quotients([1] * len(values), factorials, prime)
-    left = nmod_poly([v * w for v, w in zip(values, inverse, strict=True)], prime)
-    right = nmod_poly([-w if k % 2 else w for k, w in enumerate(inverse)], prime)
-    found = [int(c) for c in left.mul_low(right, len(values)).coeffs()]
-    return found + [0] * (len(values) - len(found))
-
-
-_BLOCK = 48
-
-
-def _blocks(first: int, length: int) -> list[fmpz_poly]:
-    """The products of (u - first - k) over `_BLOCK` numbers k each, from 0 on, as far as Newton's form needs them."""
-    starts = range(first, first + length - _BLOCK, _BLOCK)
-    return [math.prod((fmpz_poly([-s - k, 1]) for k in range(_BLOCK)), start=fmpz_poly([1])) for s in starts]
-
-
-def _expanded(newton: Sequence[int], first: int, blocks: Sequence[fmpz_poly], prime: int) -> nmod_poly:
-    """The polynomial with these coefficients in Newton's form: Horner's scheme in blocks, and for the blocks."""
-    result = nmod_poly([0], prime)
-    for b in range(len(blocks), -1, -1):
-        start = b * _BLOCK
-        part = nmod_poly([0], prime)
-        for k in reversed(range(start, min(start + _BLOCK, len(newton)))):
-            part = part * nmod_poly([-(first + k), 1], prime) + newton[k]
-        result = result * nmod_poly(blocks[b], prime) + part if b < len(blocks) else part
-    return result
-
-
-def _combined(images: Sequence[tuple[nmod_poly, int]]) -> fmpz_poly:
-    """The polynomial with these images modulo primes whose coefficients are least in absolute value."""
-    modulus = math.prod(prime for _, prime in images)
-    parts = []
-    for image, prime in images:
-        scaled = image * pow(modulus // prime % prime, -1, prime)
-        parts.append((fmpz_poly([int(c) for c in scaled.coeffs()]), prime))
-    while len(parts) > 1:  # of coprime p and q, remainders a / q and b / p have the sum (a q + b p) / (p q)
-        pairs = zip(parts[::2], parts[1::2], strict=False)
-        rest = parts[-1:] if len(parts) % 2 else []
-        parts = [(a * q + b * p, p * q) for (a, p), (b, q) in pairs] + rest
-    residues = [int(c) % modulus for c in parts[0][0].coeffs()]
-    return fmpz_poly([c - modulus if 2 * c > modulus else c for c in residues])
 
 
 def _fibre(p: Coefficients, u: int) -> fmpz_poly:

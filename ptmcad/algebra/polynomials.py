@@ -82,6 +82,16 @@ def factors_with_multiplicity(p: Coefficient) -> list[tuple[Coefficient, int]]:
     return [(_primitive(factor, ring), int(power)) for factor, power in over_q.factor()[1]]
 
 
+def multiplicity(p: Coefficient, factor: Coefficient) -> int:
+    """How often a polynomial that is not constant divides p, which is not zero."""
+    count = 0
+    quotient, rest = divmod(p, factor)
+    while rest.is_zero():
+        count += 1
+        quotient, rest = divmod(quotient, factor)
+    return count
+
+
 def _primitive(p: fmpq_mpoly, ring: fmpz_mpoly_ctx) -> fmpz_mpoly:
     """The polynomial over Z without common factor, the coefficient of the highest exponents positive."""
     terms = [(tuple(map(int, powers)), c) for powers, c in p.terms()]

@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 from flint import fmpz_mat
 
+from ptmcad.algebra.assignment import least_assignment
 from ptmcad.algebra.determinants import determinant
 from ptmcad.algebra.groebner import GroebnerBasis, Monomial, shifted
 from ptmcad.algebra.polynomials import (
@@ -28,8 +29,10 @@ from ptmcad.algebra.polynomials import (
     constant_like,
     irreducible_factors,
     lcm,
+    multiplicity,
     ratio,
 )
+from ptmcad.algebra.resultants import nothing
 
 Vector = tuple[tuple[Coefficient, ...], Coefficient]
 """Coordinates on the monomial basis: numerators and one common denominator."""
@@ -162,16 +165,6 @@ def multiples(algebra: QuotientAlgebra, p: UnknownPolynomial) -> tuple[Vector, .
     return tuple(images[m] for m in algebra.basis)
 
 
-def multiplicity(p: Coefficient, factor: Coefficient) -> int:
-    """How often a polynomial that is not constant divides p, which is not zero."""
-    count = 0
-    quotient, rest = divmod(p, factor)
-    while rest.is_zero():
-        count += 1
-        quotient, rest = divmod(quotient, factor)
-    return count
-
-
 def bounded_away_from_zero(rows: Sequence[Vector], product: Ratio, factor: Coefficient) -> bool:
     """Whether the values of p at the solutions are proved to stay away from 0 near almost all points of a curve.
 
@@ -190,7 +183,9 @@ def bounded_away_from_zero(rows: Sequence[Vector], product: Ratio, factor: Coeff
     stay away from 0 wherever that coefficient does.
     """
     orders = [[_order(c, denominator, factor) for c in row] for row, denominator in rows]
-    return _least_assignment(orders) == _order(product[0], product[1], factor)
+    for k, row in enumerate(orders):
+        row[k] = min(row[k] or 0, 0)  # a row may be left out with its column
+    return least_assignment(orders) == _order(product[0], product[1], factor)
 
 
 def _order(numerator: Coefficient, denominator: Coefficient, factor: Coefficient) -> int | None:
@@ -198,27 +193,15 @@ def _order(numerator: Coefficient, denominator: Coefficient, factor: Coefficient
     return None if numerator.is_zero() else multiplicity(numerator, factor) - multiplicity(denominator, factor)
 
 
-def _least_assignment(orders: Sequence[Sequence[int | None]]) -> int:
-    """The least sum of entries in different rows and columns of a square matrix, rows left out with their columns.
-
-    None stands for infinity. To leave row and column k out is to take 0 for the entry (k, k).
-    """
-    least = {0: 0}  # set of columns taken by the rows so far -> least sum
-    for i, row in enumerate(orders):
-        following: dict[int, int] = {}
-        for taken, total in least.items():
-            for j, order in enumerate(row):
-                entry = min(order or 0, 0) if i == j else order
-                if entry is not None and not taken >> j & 1:
-                    columns = taken | 1 << j
-                    following[columns] = min(total + entry, following.get(columns, total + entry))
-        least = following
-    return least[2 ** len(orders) - 1]
-
-
 def multiplication_denominator(algebra: QuotientAlgebra) -> Coefficient:
     """A common denominator of the multiplication matrices of the unknowns."""
     return lcm(algebra.table[shifted(m, k)][1] for m in algebra.basis for k in range(len(m)))
+
+
+def table_terms(algebra: QuotientAlgebra) -> int:
+    """The number of terms in the multiplication matrices of the unknowns."""
+    rows = (algebra.table[shifted(m, k)][0] for m in algebra.basis for k in range(len(m)))
+    return sum(len(c) for row in rows for c in row)
 
 
 def power_trace_denominators(algebra: QuotientAlgebra, k: int) -> Coefficient:
@@ -236,6 +219,27 @@ def power_trace_denominators(algebra: QuotientAlgebra, k: int) -> Coefficient:
             total = add_ratios(total, ratio(numerators[i], denominator))
         scale = lcm((scale, total[1]))
     return scale
+
+
+def poles_of_characteristic_polynomial(
+    algebra: QuotientAlgebra, k: int, suspects: Sequence[Coefficient]
+) -> list[Coefficient]:
+    """Those of the irreducible polynomials on which the characteristic polynomial of the unknown number k has a pole.
+
+    The same answer as by `power_trace_denominators`, with proof of each, from one interpolation.
+    """
+    from ptmcad.algebra import pencils  # few slices need it
+
+    rows = [algebra.table[shifted(m, k)] for m in algebra.basis]
+    matrix, scales = [row for row, _ in rows], [scale for _, scale in rows]
+    coefficients, factors = pencils.characteristic(matrix, scales, pencils.places_of(lcm(scales)), nothing)
+    found = []
+    for f in suspects:
+        leading = sum(multiplicity(scale, f) for scale in scales)
+        known = sum(e for g, e in factors if g == f)
+        if any(c and known + multiplicity(c, f) < leading for c in coefficients):
+            found.append(f)
+    return found
 
 
 def poles_at_points(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from itertools import pairwise
 
 from flint import fmpz, fmpz_poly
@@ -16,7 +17,7 @@ from ptmcad.algebra.orders import discriminant_degree, resultant_degree
 
 Coefficients = Sequence[fmpz_poly]
 Check = Callable[[], None]
-_LONG = 100_000
+LONG = 100_000
 """Points times the product of the degrees in v; of less, values in integers take milliseconds."""
 
 
@@ -33,11 +34,11 @@ def discriminant(p: Coefficients, check: Check = nothing) -> fmpz_poly:
     if n < 2:
         return fmpz_poly([1])
     bound = discriminant_degree(p)
-    if (bound + 1) * n * (n - 1) >= _LONG:
+    if (bound + 1) * n * (n - 1) >= LONG:
         from ptmcad.algebra import modular  # not loaded for short ones
 
         if modular.pays((n, n - 1), bound, modular.discriminant_bits(p)):
-            return modular.discriminant(p, check)
+            return _long_discriminant(tuple(tuple(int(a) for a in c.coeffs()) for c in p), check)
 
     def at(k: int) -> fmpz:
         value = fmpz_poly([c(k) for c in p])
@@ -51,13 +52,21 @@ def discriminant(p: Coefficients, check: Check = nothing) -> fmpz_poly:
     return interpolate(at, bound, check)
 
 
+@lru_cache(maxsize=4)
+def _long_discriminant(p: tuple[tuple[int, ...], ...], check: Check) -> fmpz_poly:
+    """Modulo primes; kept, as a decomposition asks for it once more when it looks for points over the abscissae."""
+    from ptmcad.algebra import modular
+
+    return modular.discriminant([fmpz_poly(list(c)) for c in p], check)
+
+
 def resultant(p: Coefficients, q: Coefficients, check: Check = nothing) -> fmpz_poly:
     """The resultant with respect to v, up to sign; ``check`` as for `discriminant`."""
     n, m = len(p) - 1, len(q) - 1
     if n == 0 or m == 0:
         return (p[0] ** m) if n == 0 else (q[0] ** n)
     bound = resultant_degree(p, q)
-    if (bound + 1) * n * m >= _LONG:
+    if (bound + 1) * n * m >= LONG:
         from ptmcad.algebra import modular
 
         if modular.pays((n, m), bound, modular.resultant_bits(p, q)):

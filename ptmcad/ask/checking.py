@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING
 from ptmcad.ask.classification import check_taken
 from ptmcad.ask.engines import is_certified
 from ptmcad.ask.estimate import WORDS, cost
+from ptmcad.ask.forecast import Forecast, curve_text, forecast, way_text
+from ptmcad.ask.forecast import cost_text as in_figures
 from ptmcad.errors import ConfigError, GeometryError, LimitReached, shown
 from ptmcad.mechanism import Mechanism, ptm
 from ptmcad.mechanism.sizes import terms_of
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from flint import fmpq
 
     from ptmcad.exact.models import ParametricSystem
+    from ptmcad.exact.stages import SliceProblem
 
 MAX_UNKNOWNS = 4
 """Beyond, even one point takes too long for a question that should be answered at once."""
@@ -37,6 +40,9 @@ MAX_PROVED = 8
 """Complex solutions: of more it is not proved that the slice is degenerate, which takes seconds and more."""
 MAX_SECONDS = 4.0
 """For that proof."""
+MAX_SIZING = 1.5
+"""Seconds for the size of the critical curve."""
+OUT_OF_REACH = "a curve of such a degree may be out of the exact map's reach: try --timeout, or counts along lines"
 MAX_EXPANDING = 1.0
 """Seconds for what is written out as functions of the axes."""
 MAX_QUICK = 1_000
@@ -63,6 +69,7 @@ class Check:
     bound : of their number by Bezout's theorem, where they were not counted because of it.
     engine : the one that ``--engine auto`` takes.
     cost : in words.
+    forecast : what the exact map is predicted to take; None where the curve's size is not known.
     """
 
     slice: Slice
@@ -71,10 +78,15 @@ class Check:
     engine: str
     cost: str
     bound: int | None = None
+    forecast: Forecast | None = None
 
 
-def check(slice: Slice) -> Check:
+def check(slice: Slice, sized: bool = True) -> Check:
     """What a slice asks and what that will cost.
+
+    Parameters
+    ----------
+    sized : whether the size of the curve is asked for, which takes longer than all else, where solutions are not many.
 
     Raises
     ------
@@ -98,7 +110,7 @@ def check(slice: Slice) -> Check:
         return Check(slice, at, None, "certified", _CERTIFIED)
     if len(slice.model.unknowns) > MAX_UNKNOWNS:
         return Check(slice, at, None, "exact", WORDS[-1])
-    return _counted(slice, at)
+    return _counted(slice, at, sized)
 
 
 _ACROSS, _UP = Fraction(10, 21), Fraction(19, 35)
@@ -136,7 +148,7 @@ def _check_bounded(slice: Slice) -> None:
     patches(problem_of(slice), slice.axes)
 
 
-def _counted(slice: Slice, sample: tuple[Fraction, Fraction]) -> Check:
+def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> Check:
     """The check of a slice that the exact engine takes."""
     from ptmcad.algebra.polynomials import from_fraction
     from ptmcad.exact.point_system import degree_bound
@@ -165,8 +177,22 @@ def _counted(slice: Slice, sample: tuple[Fraction, Fraction]) -> Check:
             return Check(slice, sample, found, "exact", f"not known: {seen}{late}")
     if not found:
         return Check(slice, sample, None, "exact", f"not known: at the sample {doubt}")
-    words = cost(found, problem.system, slice.parameters)
-    return Check(slice, sample, found, "exact", words + (_BY_INTERVALS if found > _LONG and _encloses(slice) else ""))
+    foretold = _foretold(problem, found) if not doubt and (sized or found > _LONG) else None
+    words = cost(found, problem.system, slice.parameters) if foretold is None else in_figures(foretold)
+    far = found > _LONG if foretold is None else not foretold.reachable
+    if far and foretold is not None:
+        words += f"; {OUT_OF_REACH}"
+    offered = _BY_INTERVALS if far and _encloses(slice) else ""
+    return Check(slice, sample, found, "exact", words + offered, forecast=foretold)
+
+
+def _foretold(problem: SliceProblem, solutions: int) -> Forecast | None:
+    """The forecast for a slice with simple solutions; None where the curve is too large to tell its size at once."""
+    from ptmcad.algebra.fibre import Work
+    from ptmcad.exact.sizes import sizes
+
+    found = sizes(problem, solutions, MAX_SIZING, Work(MAX_COUNTED, *MAX_BASIS))
+    return None if found is None else forecast(solutions, found)
 
 
 def _prove(slice: Slice) -> None:
@@ -218,11 +244,22 @@ def warning(slice: Slice) -> str:
     """What to say before an exact map that will take long; empty where it will not, or nobody knows."""
     if slice.model == ptm():
         return ""
-    found = check(slice)
+    found = check(slice, sized=False)
     if found.engine != "exact" or (found.complex_solutions or 0) <= _LONG:
         return ""
     takes = "the exact map's cost is" if found.cost.startswith("not known") else "the exact map takes"
     return f"the equations have {found.complex_solutions} complex solutions, and {takes} {found.cost}"
+
+
+def foretold(slice: Slice) -> Iterator[str]:
+    """What is known of an exact map before its heavy part: solutions, the curve, how it is projected, the cost."""
+    found = check(slice)
+    if found.complex_solutions is not None:
+        yield f"{found.complex_solutions} complex solutions"
+    if found.forecast is not None:
+        yield f"curves {curve_text(found.forecast, slice.axis_names)}"
+        yield way_text(found.forecast)
+    yield f"the whole map takes {found.cost}" if found.forecast is not None else f"cost {found.cost}"
 
 
 _TORSION = (
@@ -268,6 +305,8 @@ def cost_text(found: Check) -> Iterator[str]:
     if found.bound is not None:
         number = "at most " + _complex(found.bound, ", or infinitely many, by the equations' degrees")
     yield f"{'solutions':<12}{number}"
+    if found.forecast is not None:
+        yield f"{'curves':<12}{curve_text(found.forecast, slice.axis_names)}"
     yield f"{'engine':<12}{found.engine}"
     yield f"{'cost':<12}{found.cost}"
 

@@ -192,6 +192,10 @@ def announced(slice: Slice, options: Options) -> tuple[Any, ...]:
         steps = plan.beforehand(slice, off, options.areas)
     click.echo(f"plan of {slice.name}, {'certified' if certified else 'exact'} engine, before it starts:")
     click.echo(explanation(steps))
+    if not certified:
+        from ptmcad.ask.checking import foretold
+
+        click.echo("\n".join(f"foretold: {text}" for text in foretold(slice)))
     later = () if certified else tuple(name for name in plan.LATER if name not in off)
     if later:
         click.echo(f"to be decided on the way: {', '.join(later)}")

@@ -39,11 +39,12 @@ from ptmcad.algebra.quotient import (
     bounded_away_from_zero,
     multiples,
     multiplication_denominator,
-    multiplicity,
     norm,
     poles_at_points,
+    poles_of_characteristic_polynomial,
     power_trace_denominators,
     quotient_algebra,
+    table_terms,
     trace_form,
 )
 from ptmcad.algebra.window import Interval, nowhere_zero
@@ -257,6 +258,12 @@ def _with_poles(
     algebra: QuotientAlgebra, suspects: Sequence[Coefficient], coordinates: Sequence[int]
 ) -> list[Coefficient]:
     """Those of the polynomials on which some of the coordinates has a pole; none is missed."""
+    if algebra.dimension > MOST_TRACED or table_terms(algebra) > MOST_TERMS:
+        found: list[Coefficient] = []
+        for k in coordinates:
+            open_ones = [f for f in suspects if f not in found]
+            found += poles_of_characteristic_polynomial(algebra, k, open_ones) if open_ones else []
+        return found
     if not suspects:
         return []
     poles = [power_trace_denominators(algebra, k) for k in coordinates]
@@ -268,26 +275,16 @@ def proved_poles(
 ) -> list[Coefficient]:
     """Those of the polynomials on which some coordinate of the solutions has a pole, with proof of every answer.
 
-    Where none is seen at points, there is none if another monomial order's multiplication matrices have none, as
-    characteristic polynomials are the same on every basis; of few solutions, or where that does not tell, the power
-    traces do, whose degrees grow with the square of the number of solutions.
+    Where none is seen at points, the characteristic polynomials tell.
     """
     poles = poles_at_points(algebra, suspects, equations.unbounded)
-    open_ones = [f for f in suspects if f not in poles]
-    if open_ones and algebra.dimension > MOST_TRACED:
-        other = quotient_algebra(groebner_basis(equations.equations, _reversed_order(equations)))
-        assert other is not None  # the ideal is zero-dimensional in any order
-        denominator = multiplication_denominator(other)
-        open_ones = [f for f in open_ones if multiplicity(denominator, f)]
-    return poles + _with_poles(algebra, open_ones, equations.unbounded)
+    return poles + _with_poles(algebra, [f for f in suspects if f not in poles], equations.unbounded)
 
 
-MOST_TRACED = 12
-"""Solutions up to which power traces are computed at once."""
-
-
-def _reversed_order(equations: SliceSystem) -> MonomialOrder:
-    return MonomialOrder(tuple(range(equations.unknowns))[::-1])
+MOST_TRACED = 8
+"""Solutions up to which power traces show the poles; their degrees grow with the square of the number of solutions."""
+MOST_TERMS = 400
+"""Of the multiplication table, likewise."""
 
 
 def settles(equations: SliceSystem) -> bool:

@@ -148,8 +148,8 @@ def test_a_planted_fault_is_caught(fault: str, monkeypatch: pytest.MonkeyPatch) 
 def test_a_prime_that_divides_a_known_value_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     p = clustered()
     # among the points are such at which u^2 + 1 is divisible by 5 and by 17
-    primes = modular._primes()
-    monkeypatch.setattr(modular, "_primes", lambda: chain([5, 17], primes))
+    primes = modular.primes()
+    monkeypatch.setattr(modular, "primes", lambda: chain([5, 17], primes))
     assert modular.discriminant(p, nothing) == resultants.discriminant(p)
 
 

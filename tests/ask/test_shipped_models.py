@@ -47,8 +47,8 @@ MECHANISMS = {
     "two-bar-chain",
 }
 SYSTEMS = {
-    "cubic", "cubic-and-quadratic", "duffing", "escape", "kuramoto", "orthogonal-3r", "schloegl", "stability-pair",
-    "von-mises-truss",
+    "cubic", "cubic-and-quadratic", "duffing", "escape", "kuramoto", "kuramoto-4", "orthogonal-3r", "schloegl",
+    "stability-pair", "von-mises-truss",
 }  # fmt: skip
 
 
@@ -109,8 +109,8 @@ def test_numbers_of_solutions(path: Path) -> None:
         assert solutions_at(problem.system, values) == (known["complex_solutions"],) * 2
 
 
-HEAVY = {"four-bar", "stability-pair", "kuramoto", "orthogonal-3r"}
-"""The fast tests have the certified engine's areas of the last two, in `test_known_answers_systems`."""
+HEAVY = {"four-bar", "stability-pair", "kuramoto", "kuramoto-4", "orthogonal-3r"}
+"""The fast tests have the certified engine's areas of the three oscillators and of the manipulator."""
 
 
 @pytest.mark.parametrize("path", few(MAPPED, *(p for p in MAPPED if p.stem not in HEAVY)), ids=lambda path: path.stem)

@@ -12,6 +12,7 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import Coefficient, UnivariatePolynomial, coefficients_in, from_plane, univariate
+from ptmcad.algebra.resultants import balanced
 from ptmcad.answer.regionmap import Component
 
 
@@ -71,6 +72,11 @@ def max_height_bits(curves: Sequence[Curve]) -> int:
     return max((int(q.height_bits()) for c in curves for q in c.in_v), default=0)
 
 
+def stretched(p: UnivariatePolynomial, unit: int, inflation: int) -> UnivariatePolynomial:
+    """p(unit u^inflation)."""
+    return UnivariatePolynomial([c * unit**j for j, c in enumerate(p.coeffs())]).inflate(inflation)
+
+
 def deflation(coefficients: Sequence[UnivariatePolynomial]) -> int:
     """The largest k for which only powers of v^k occur."""
     return max(1, gcd(*(i for i, c in enumerate(coefficients) if c)))
@@ -79,3 +85,26 @@ def deflation(coefficients: Sequence[UnivariatePolynomial]) -> int:
 def base_deflation(coefficients: Sequence[UnivariatePolynomial]) -> int:
     """The largest k for which only powers of u^k occur."""
     return max(1, gcd(*(i for c in coefficients for i, d in enumerate(c.coeffs()) if d)))
+
+
+Coefficients = tuple[UnivariatePolynomial, ...]
+_LONG_COEFFICIENT_BITS = 1000
+"""Bits of coefficients from which on other units for u and v are looked for."""
+
+
+def shortened(polynomials: list[Coefficients], deflate: bool = True) -> tuple[list[Coefficients], int, int]:
+    """The polynomials with u in place of unit u^inflation, unit, and inflation."""
+    deflated, inflation = _deflated(polynomials, deflate)
+    if max(c.height_bits() for p in deflated for c in p) < _LONG_COEFFICIENT_BITS:
+        return deflated, 1, inflation
+    shorter, unit = balanced(deflated)
+    return shorter, unit, inflation
+
+
+def _deflated(polynomials: list[Coefficients], deflate: bool) -> tuple[list[Coefficients], int]:
+    """The polynomials with u in place of u^k, and the largest k for which that can be done in all of them; or k = 1."""
+    if not deflate:
+        return polynomials, 1
+    varying = [base_deflation(p) for p in polynomials if any(q.degree() > 0 for q in p)]
+    k = gcd(*varying) if varying else 1
+    return [tuple(q.deflate(k) if q else q for q in p) for p in polynomials], k

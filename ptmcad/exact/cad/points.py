@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 from itertools import combinations
+from math import gcd
 
 from flint import arb, ctx, fmpq
 
@@ -23,7 +24,7 @@ from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, is_root_of, isolate, refine, squarefree_part
 from ptmcad.algebra.resultants import Check, discriminant, nothing, resultant
 from ptmcad.algebra.window import Interval
-from ptmcad.exact.cad.curves import Curve
+from ptmcad.exact.cad.curves import Curve, deflation, shortened, stretched
 
 _BITS = (128, 512)
 """Of the critical abscissa, until all discs are told apart; with more of them the other way is the shorter one."""
@@ -85,8 +86,10 @@ class PointsOver:
 
     def _meet(self, k: int, m: int) -> bool:
         """Whether two curves have a complex point over the root in common."""
-        common = resultant(self.curves[k].in_v, self.curves[m].in_v, self.check)
-        return _vanishes(common, self.root)
+        rows = self.curves[k].in_v, self.curves[m].in_v
+        power = gcd(*map(deflation, rows))  # of polynomials in v^k it is the k-th power of that in v
+        (first, second), unit, inflation = shortened([r[::power] for r in rows])
+        return _vanishes(stretched(resultant(first, second, self.check), unit, inflation), self.root)
 
     @cached_property
     def _known(self) -> dict[int, list[Interval] | None]:
@@ -94,7 +97,7 @@ class PointsOver:
 
     @cached_property
     def _discriminants(self) -> list[UnivariatePolynomial]:
-        return [discriminant(c.in_v, self.check) for c in self.curves]
+        return [_discriminant(c, self.check) for c in self.curves]
 
     @cached_property
     def _polynomial(self) -> UnivariatePolynomial:
@@ -109,6 +112,18 @@ class PointsOver:
             points = squarefree_part(resultant(c.in_u, constant, self.check))
             product = product * (points // points.gcd(product))
         return product
+
+
+def _discriminant(c: Curve, check: Check) -> UnivariatePolynomial:
+    """A polynomial with the roots of the curve's discriminant, from that of least degree.
+
+    The discriminant of p(u, v^k) is, but for a constant, a power of that of p(u, v) times powers of p(u, 0) and of the
+    leading coefficient.
+    """
+    power = deflation(c.in_v)
+    (shorter,), unit, inflation = shortened([c.in_v[::power]])
+    found = stretched(discriminant(shorter, check), unit, inflation)
+    return found if power == 1 else found * c.in_v[0] * c.in_v[-1]
 
 
 def _vanishes(p: UnivariatePolynomial, root: RealRoot) -> bool:

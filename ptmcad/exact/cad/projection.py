@@ -18,9 +18,9 @@ from typing import NamedTuple
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, refine
-from ptmcad.algebra.resultants import Check, balanced, discriminant, nothing, resultant
+from ptmcad.algebra.resultants import Check, discriminant, nothing, resultant
 from ptmcad.algebra.window import Interval
-from ptmcad.exact.cad.curves import Curve, base_deflation, deflation
+from ptmcad.exact.cad.curves import Curve, base_deflation, deflation, shortened
 
 
 class Projection(NamedTuple):
@@ -100,7 +100,7 @@ def _factors(p: UnivariatePolynomial, unit: int = 1, inflation: int = 1) -> list
 
 def _of_one(c: Curve, fibre: Interval, check: Check, deflate: bool) -> list[tuple[list[UnivariatePolynomial], str]]:
     k = deflation(c.in_v) if deflate else 1
-    (deflated,), unit, inflation = _shortened([c.in_v[::k]], deflate)
+    (deflated,), unit, inflation = shortened([c.in_v[::k]], deflate)
     name = f"component {c.component}"
     result = [(_factors(discriminant(deflated, check), unit, inflation), f"{name}: turning or singular point")]
     if k > 1 and fibre[0] < 0 < fibre[1]:
@@ -112,28 +112,5 @@ def _of_one(c: Curve, fibre: Interval, check: Check, deflate: bool) -> list[tupl
 
 def _of_two(c: Curve, d: Curve, check: Check, deflate: bool) -> list[UnivariatePolynomial]:
     k = gcd(deflation(c.in_v), deflation(d.in_v)) if deflate else 1
-    (first, second), unit, inflation = _shortened([c.in_v[::k], d.in_v[::k]], deflate)
+    (first, second), unit, inflation = shortened([c.in_v[::k], d.in_v[::k]], deflate)
     return _factors(resultant(first, second, check), unit, inflation)
-
-
-Coefficients = tuple[UnivariatePolynomial, ...]
-_LONG_COEFFICIENT_BITS = 1000
-"""Bits of coefficients from which on other units for u and v are looked for."""
-
-
-def _shortened(polynomials: list[Coefficients], deflate: bool) -> tuple[list[Coefficients], int, int]:
-    """The polynomials with u in place of unit u^inflation, unit, and inflation."""
-    deflated, inflation = _deflated(polynomials, deflate)
-    if max(c.height_bits() for p in deflated for c in p) < _LONG_COEFFICIENT_BITS:
-        return deflated, 1, inflation
-    shorter, unit = balanced(deflated)
-    return shorter, unit, inflation
-
-
-def _deflated(polynomials: list[Coefficients], deflate: bool) -> tuple[list[Coefficients], int]:
-    """The polynomials with u in place of u^k, and the largest k for which that can be done in all of them; or k = 1."""
-    if not deflate:
-        return polynomials, 1
-    varying = [base_deflation(p) for p in polynomials if any(q.degree() > 0 for q in p)]
-    k = gcd(*varying) if varying else 1
-    return [tuple(q.deflate(k) if q else q for q in p) for p in polynomials], k

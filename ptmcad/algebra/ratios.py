@@ -1,0 +1,64 @@
+"""A rational function of one variable from its values modulo a prime: what its numerator looks like.
+
+Not guaranteed: that it is the function; that is so where the values left over are no accident.
+
+Reference: von zur Gathen & Gerhard, Modern Computer Algebra, section 5.7 (Cauchy interpolation).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import gcd
+from typing import NamedTuple
+
+from flint import nmod_poly
+
+_SPARE = 4
+"""Values that a fraction has to fit although they were not asked for."""
+
+
+class Numerator(NamedTuple):
+    """A polynomial without multiplicities.
+
+    Attributes
+    ----------
+    degree : without the root 0.
+    has_zero : whether 0 is a root.
+    step : without that root all exponents are multiples of this number.
+    """
+
+    degree: int
+    has_zero: bool
+    step: int
+
+
+def numerator(points: Sequence[tuple[int, int]], prime: int) -> Numerator | None:
+    """Of the fraction of least degree through points (x, y); None where nearly all of them are needed for it."""
+    found = _fraction(points, prime)
+    if found is None:
+        return None
+    parts = (found // found.gcd(found.derivative())).coeffs()
+    zero = len(parts) > 1 and not int(parts[0])
+    exponents = [k for k, c in enumerate(parts[1:] if zero else parts) if int(c)]
+    return Numerator(exponents[-1], zero, gcd(*exponents) or 1)
+
+
+def _fraction(points: Sequence[tuple[int, int]], prime: int) -> nmod_poly | None:
+    product, through = nmod_poly([1], prime), nmod_poly([0], prime)
+    for x, y in points:
+        step = (y - int(through(x))) * pow(int(product(x)), -1, prime) % prime
+        through += product * step
+        product *= nmod_poly([-x, 1], prime)
+    before, rest = product, through
+    last, factor = nmod_poly([0], prime), nmod_poly([1], prime)
+    best: tuple[int, nmod_poly] | None = None
+    while rest.degree() >= 0:
+        size = int(rest.degree()) + int(factor.degree())
+        if best is None or size < best[0]:
+            best = size, rest
+        quotient = before // rest
+        before, rest = rest, before - quotient * rest
+        last, factor = factor, last - quotient * factor
+    if best is None or best[0] + _SPARE >= len(points):
+        return None
+    return best[1]
