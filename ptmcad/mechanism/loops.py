@@ -20,6 +20,7 @@ from fractions import Fraction
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism.closed import ClosedMechanism
+from ptmcad.mechanism.crossed import without_xjoints
 from ptmcad.mechanism.derivative import cofactors, derivative, determinant, negative, product, total
 from ptmcad.mechanism.description import Closing, Mechanism, Model
 from ptmcad.mechanism.proofs import Points
@@ -74,17 +75,19 @@ def check_closing(mechanism: Mechanism, faults: Faults) -> None:
 
 
 def without_loops(model: Mechanism, faults: Faults | None = None) -> Model:
-    """The mechanism itself, or with closed loops the equations of its equilibria.
+    """The mechanism itself, or with closed loops or X-joints the equations of its equilibria.
 
     Raises
     ------
     ConfigError
         When these may have too many terms.
     """
+    if model.xjoints:
+        return without_xjoints(model)
     if not model.closing:
         return model
     conditions = [_condition(model, closing) for closing in model.closing]
-    names = tuple(model.unknowns)
+    names = (*model.angles, *model.reals)
     rows = [[derivative(g, name) for name in names] for g in conditions]
     tangent = cofactors(rows)
     slope = total(*(product(t, f) for t, f in zip(tangent, _forces(model, names), strict=True)))

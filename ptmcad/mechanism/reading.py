@@ -210,6 +210,7 @@ class Reader:
     Parameters
     ----------
     doubtful : names of unknowns that are faulty themselves: they may stand anywhere.
+    second : names of angles that follow from unknown ones.
     """
 
     def __init__(
@@ -217,11 +218,14 @@ class Reader:
         parameters: Mapping[str, Parameter],
         unknowns: Mapping[str, UnknownKind],
         doubtful: frozenset[str] = frozenset(),
+        second: Sequence[str] = (),
     ):
         lengths = [name for name, kind in unknowns.items() if kind is not UnknownKind.ANGLE or name in doubtful]
         angles = [name for name, kind in unknowns.items() if kind is UnknownKind.ANGLE]
-        self.fixed = _Names(parameters, (), unknowns, doubtful)
-        self.moving = _Names((*parameters, *lengths), angles, (), doubtful)
+        self.second = frozenset(second)
+        self.excluded = frozenset((*unknowns, *second))
+        self.fixed = _Names(parameters, (), (*unknowns, *second), doubtful)
+        self.moving = _Names((*parameters, *lengths), (*angles, *second), (), doubtful)
         self.names = dict.fromkeys((*parameters, *unknowns))
 
     def tree(self, value: object, key: str, *, moving: bool = False) -> Tree:

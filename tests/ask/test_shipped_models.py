@@ -34,8 +34,10 @@ VALIDATOR = jsonschema.Draft202012Validator(
     json.loads((ROOT / "ptmcad" / "record.schema.json").read_text(encoding="utf-8"))
 )
 RECORDS = list(OTHER)
-LINES_ONLY = {"three-bar-chain"}
+LINES_ONLY = {"three-bar-chain", "two-x-joints"}
 """Too large for an exact map."""
+SPURIOUS = {"two-x-joints"}
+"""Its equations have two solutions more, which inequalities exclude."""
 MAPPED = [path for path in RECORDS if path.stem not in LINES_ONLY]
 MECHANISMS = {
     "bistable-slider",
@@ -45,6 +47,8 @@ MECHANISMS = {
     "slider-crank",
     "three-bar-chain",
     "two-bar-chain",
+    "two-x-joints",
+    "x-joint",
 }
 SYSTEMS = {
     "cubic", "cubic-and-quadratic", "duffing", "escape", "kuramoto", "orthogonal-3r", "schloegl", "stability-pair",
@@ -106,7 +110,7 @@ def test_numbers_of_solutions(path: Path) -> None:
         problem = problem_of(slice)
         at = tuple(fmpq(29, 100) * (b - a) + a for a, b in problem.window)
         values = point_values(problem.parameters, (at[0], at[1]))
-        assert solutions_at(problem.system, values) == (known["complex_solutions"],) * 2
+        assert solutions_at(problem.system, values, path.stem in SPURIOUS) == (known["complex_solutions"],) * 2
 
 
 HEAVY = {"four-bar", "stability-pair", "kuramoto", "orthogonal-3r"}
