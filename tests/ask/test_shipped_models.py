@@ -34,10 +34,10 @@ VALIDATOR = jsonschema.Draft202012Validator(
     json.loads((ROOT / "ptmcad" / "record.schema.json").read_text(encoding="utf-8"))
 )
 RECORDS = list(OTHER)
-LINES_ONLY = {"three-bar-chain", "two-x-joints"}
+LINES_ONLY = {"three-bar-chain", "two-dof-tensegrity-loaded", "two-x-joints"}
 """Too large for an exact map."""
 SPURIOUS = {"two-x-joints"}
-"""Its equations have two solutions more, which inequalities exclude."""
+"""Its equations have two solutions more, which inequalities exclude; signatures of its forms take a minute."""
 MAPPED = [path for path in RECORDS if path.stem not in LINES_ONLY]
 MECHANISMS = {
     "bistable-slider",
@@ -47,6 +47,8 @@ MECHANISMS = {
     "slider-crank",
     "three-bar-chain",
     "two-bar-chain",
+    "two-dof-tensegrity",
+    "two-dof-tensegrity-loaded",
     "two-x-joints",
     "x-joint",
 }
@@ -102,7 +104,7 @@ def test_numbers_of_solutions(path: Path) -> None:
     """At the points of the record, by both methods; and complex ones."""
     slice, known = load(path), reference(path)
     for entry in known.get("counts", ()):
-        for signature in (False, True):
+        for signature in (False,) if path.stem in SPURIOUS else (False, True):
             found = counts_at(slice, entry["at"], signature)
             told = {key: getattr(found, key) for key in entry if key != "at"}
             assert told == {key: tuple(v) if isinstance(v, list) else v for key, v in entry.items() if key != "at"}
