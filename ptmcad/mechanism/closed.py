@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from ptmcad.mechanism.description import Mechanism, Model, System
 from ptmcad.text.tree import Tree
@@ -27,3 +29,20 @@ class ClosedMechanism(System):
     @property
     def record_key(self) -> str:
         return "mechanism"
+
+    @cached_property
+    def whole(self) -> Mechanism:
+        """The mechanism with the bars that close its loops among the bars, for what shows its poses."""
+        closing = tuple((closing.start, closing.end) for closing in self.mechanism.closing)
+        return replace(self.mechanism, bars=self.mechanism.bars + closing)
+
+    def _trees(self) -> Iterator[Tree]:
+        yield from super()._trees()
+        yield from self.mechanism._trees()
+
+
+def mechanism_in(model: Model) -> Mechanism | None:
+    """The mechanism that a model is, or of whose poses it has the equations; None of another system."""
+    if isinstance(model, ClosedMechanism):
+        return model.whole
+    return model if isinstance(model, Mechanism) else None

@@ -60,8 +60,12 @@ class _Evaluation(NamedTuple):
 
 @lru_cache(maxsize=8)
 def geometry_of(mechanism: Mechanism) -> Geometry:
-    """The points, stiffnesses and loads of a mechanism, with all parameters symbolic."""
-    ring = TrigonometricRing(mechanism.without_free_lengths, mechanism.angles, mechanism.reals)
+    """The points, stiffnesses and loads of a mechanism, with all parameters symbolic.
+
+    Angles that follow from others, of X-joints, are angles of the ring after the unknown ones.
+    """
+    angles = (*mechanism.angles, *mechanism.followers)
+    ring = TrigonometricRing(mechanism.without_free_lengths, angles, mechanism.reals)
     within = _Evaluation(ring)
     return Geometry(
         ring,

@@ -295,6 +295,23 @@ def at_point(
     )
 
 
+def specialised(ring: TrigonometricRing, p: TrigonometricPolynomial, values: Mapping[str, fmpq]) -> RationalPolynomial:
+    """An element of any trigonometric ring with rational numbers for the parameters, exactly."""
+    numbers = [values[name] for name in ring.parameters]
+    found: RationalPolynomial = {}
+    for monomial, part in ring.split(p).items():
+        total = fmpq(0)
+        for powers, coefficient in part.items():
+            term = coefficient
+            for number, e in zip(numbers, powers, strict=True):
+                if e:
+                    term = term * number**e
+            total += term
+        if total:
+            found[monomial] = total
+    return found
+
+
 def polynomial_at(
     system: ParametricSystem, p: TrigonometricPolynomial, values: Mapping[str, fmpq]
 ) -> RationalPolynomial:
