@@ -33,7 +33,7 @@ def with_folds(
     ----------
     at : points of the slice that nobody has chosen.
     """
-    if not isinstance(model, ClosedMechanism):
+    if not isinstance(model, ClosedMechanism) or not model.tangent:
         return error
     seen = [found for p in at if (found := _folds_at(model, system, parameters, p)) is not None]
     if not seen or not all(seen):

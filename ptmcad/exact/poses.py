@@ -170,6 +170,7 @@ def _at_point(
         deflections,
         energy,
         second_bars,
+        len(given.multipliers) if isinstance(given, ClosedMechanism) else 0,
     )
 
 

@@ -12,16 +12,22 @@ from ptmcad.text.tree import Tree
 
 @dataclass(frozen=True)
 class ClosedMechanism(System):
-    """A mechanism with closed loops and one degree of freedom, as the equations of its equilibria.
+    """A mechanism with closed loops, or with X-joints, as the equations of its equilibria.
+
+    Its conditions for stability hold together where a symmetric matrix is positive definite, and the last one is the
+    determinant of that matrix, times what is positive: so off its zeros no other one matters where it changes its sign.
 
     Attributes
     ----------
     mechanism : as it was described.
-    tangent : a direction in which the loops let the unknowns move; zero where a loop folds flat.
+    tangent : the direction in which loops with one degree of freedom let the unknowns move; zero where one folds flat.
+    multipliers : the last unknowns, where more degrees of freedom are left: of each closing bar its tension divided by
+        its length.
     """
 
     mechanism: Mechanism = field(kw_only=True, compare=False)
     tangent: tuple[Tree, ...] = field(kw_only=True, compare=False)
+    multipliers: tuple[str, ...] = field(default=(), kw_only=True, compare=False)
 
     __hash__ = Model.__hash__
     __repr__ = Model.__repr__

@@ -169,6 +169,8 @@ def _with_loops(configuration: Configuration, model: ClosedMechanism) -> Formula
     if model.mechanism.xjoints:
         return _with_xjoints(Configuration(values, circles), model)
     moving = Configuration(values, circles)
+    if model.multipliers:
+        return _stationary(moving, model)
     found = loops.conditions(
         model.mechanism,
         potential(moving, model.mechanism) + loops.constant(fmpq(0), size),
@@ -177,6 +179,20 @@ def _with_loops(configuration: Configuration, model: ClosedMechanism) -> Formula
         [m + loops.constant(fmpq(0), size) for m in _moments(moving, model.mechanism)],
     )
     return Formulas(None, found.equations, (), (found.stability,))
+
+
+def _stationary(moving: Configuration, model: ClosedMechanism) -> Formulas:
+    """With a tension for each closing bar."""
+    nothing = loops.constant(fmpq(0), len(model.unknowns))
+    equations, stability = loops.stationary(
+        model.mechanism,
+        potential(moving, model.mechanism) + nothing,
+        moving.points(model.mechanism),
+        moving.value,
+        [moving.parameters[name] for name in model.multipliers],
+        [m + nothing for m in _moments(moving, model.mechanism)],
+    )
+    return Formulas(None, equations, (), stability)
 
 
 def _with_xjoints(first: Configuration, model: ClosedMechanism) -> Formulas:

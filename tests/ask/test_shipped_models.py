@@ -34,18 +34,21 @@ VALIDATOR = jsonschema.Draft202012Validator(
     json.loads((ROOT / "ptmcad" / "record.schema.json").read_text(encoding="utf-8"))
 )
 RECORDS = list(OTHER)
-LINES_ONLY = {"three-bar-chain", "two-dof-tensegrity-loaded", "two-x-joints"}
+LINES_ONLY = {"five-bar", "three-bar-chain", "two-dof-tensegrity-loaded", "two-x-joints"}
 """Too large for an exact map."""
 SPURIOUS = {"two-x-joints"}
 """Its equations have two solutions more, which inequalities exclude; signatures of its forms take a minute."""
 MAPPED = [path for path in RECORDS if path.stem not in LINES_ONLY]
 MECHANISMS = {
     "bistable-slider",
+    "five-bar",
     "four-bar",
     "inverted-pendulum",
     "platform",
+    "platform-loop",
     "slider-crank",
     "three-bar-chain",
+    "three-rpr",
     "two-bar-chain",
     "two-dof-tensegrity",
     "two-dof-tensegrity-loaded",

@@ -17,7 +17,7 @@ from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
 from ptmcad.exact.models.system import ParametricSystem, from_equations, from_potential
 from ptmcad.exact.models.turns import with_turns
-from ptmcad.mechanism import Mechanism, Model, System
+from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, System
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.work import split_moments
 from ptmcad.text.tree import Tree
@@ -138,7 +138,13 @@ def _equations_of(model: System) -> ParametricSystem:
     if model.potential is not None:
         (potential,) = elements([model.potential])
         return from_potential(ring, potential, **asked)
-    return from_equations(ring, elements(model.equations), stability=elements(model.stability), **asked)
+    return from_equations(
+        ring,
+        elements(model.equations),
+        stability=elements(model.stability),
+        definite=isinstance(model, ClosedMechanism),
+        **asked,
+    )
 
 
 def _equilibria_of(mechanism: Mechanism) -> ParametricSystem:
