@@ -5,7 +5,8 @@ Guarantee: the second bar's angle psi follows from the first one's, th, on the b
     cos psi = ((L^2 + b^2) cos th - 2 L b)/D,   sin psi = (L^2 - b^2) sin th/D,   D = L^2 + b^2 - 2 L b cos th
 
 with L the bars' length and b the base's, both angles against the base. That is tan(psi/2) = (L + b)/(L - b) tan(th/2),
-and D, the squared distance of the two ends on the right, is positive as L > b. The top is turned by th + psi - pi.
+and D, the squared distance of the two ends on the right, is positive where L and b differ. The top is turned by
+th + psi - pi.
 
 Source: elementary; Furet and Wenger, Kinetostatic analysis and actuation strategy of a planar tensegrity 2-X
 manipulator, J. Mech. Robotics 11 (2019), name it.

@@ -312,12 +312,47 @@ def test_a_tension_has_a_name_of_its_own() -> None:
                           "loads": {"C": ["F", "-G"], "Q": ["tension_CQ", 0]}})  # fmt: skip
 
 
-@pytest.mark.parametrize("lengths", [(1, 1, 2, 2), (1, 2, 2, 1), ("3/2", "3/2", 1, 1)],
-                         ids=["parallelogram", "kite", "another parallelogram"])  # fmt: skip
-def test_a_loop_that_folds_flat_everywhere_is_told(lengths: tuple[Any, ...]) -> None:
+@pytest.mark.parametrize(
+    ("lengths", "said"),
+    [
+        ((1, 1, 2, 2), "A0 P Q B0 is a parallelogram with two branches, on one A0P and B0Q are parallel"),
+        (("3/2", "3/2", 1, 1), "A0 P Q B0 is a parallelogram"),
+        ((2, 1, 1, 2), "A0 P Q B0 is a kite with two branches, on one P stays at B0"),
+        ((2, 1, 2, 1), "A0 P Q B0 is a kite with two branches, on one Q stays at A0"),
+        ((1, 1, 1, 1), "A0 P Q B0 is a rhombus with three branches"),
+        ((1, 2, 3, 2), "as lengths of its bars add up alike"),
+    ],
+    ids=str,
+)
+def test_a_loop_that_folds_flat_everywhere_is_told_with_its_branches(lengths: tuple[Any, ...], said: str) -> None:
     numbers = dict(zip(("L1", "L2", "L3", "b"), lengths, strict=True))
-    with pytest.raises(DegenerateSliceError, match="the loop that PQ closes can fold flat"):
+    with pytest.raises(DegenerateSliceError) as caught:
         components(slice_of(FOUR_BAR, **LOADS, parameters=numbers))
+    assert "the loop that PQ closes can fold flat" in str(caught.value)
+    assert said in str(caught.value)
+
+
+def test_the_branches_of_a_parallelogram_by_themselves() -> None:
+    """As an open chain and as an X-joint: minima and maxima of the energy along each."""
+    without = {k: v for k, v in FOUR_BAR.items() if k not in ("closing", "bars")}
+    parameters = {k: v for k, v in FOUR_BAR["parameters"].items() if k not in ("L2", "L3")}
+    ends = {k: v for k, v in FOUR_BAR["points"].items() if k in ("A0", "B0")}
+    parallel = {**without, "name": "parallel", "parameters": parameters, "unknowns": {"th1": "angle"},
+                "points": {**FOUR_BAR["points"], "Q": ["b + L1*cos(th1)", "L1*sin(th1)"]}}  # fmt: skip
+    joint = {"base": ["A0", "B0"], "bars": "L1", "angles": ["th1", "th2"], "top": ["Q", "P"]}
+    crossed = {**without, "name": "crossed", "parameters": parameters, "unknowns": {"th1": "angle"}, "points": ends,
+               "x-joint": {"X": joint}}  # fmt: skip
+    th = 2 * math.pi * (np.arange(40000) + 0.37) / 40000
+    z = np.exp(1j * th)
+    for mechanism, w in ((parallel, z), (crossed, (z - 2) / (1 - 2 * z))):
+        p, q = z, 2 + w
+        assert np.abs(np.abs(p - q) - 2).max() < 1e-9
+        for F, G in (("17/13", "-9/11"), ("1/3", "1/5")):
+            found = ptmcad.solve(slice_of(mechanism, **LOADS, parameters={"L1": 1, "b": 2}), F=F, G=G)
+            u = np.abs(q) ** 2 / 2 + np.abs(p - 2) ** 2 / 2 - float(Fraction(F)) * p.imag - float(Fraction(G)) * q.imag
+            minima = int(((u < np.roll(u, 1)) & (u < np.roll(u, -1))).sum())
+            maxima = int(((u > np.roll(u, 1)) & (u > np.roll(u, -1))).sum())
+            assert (found.stable, len(found.equilibria)) == (minima, minima + maxima)
 
 
 def test_lengths_and_stiffnesses_written_where_they_are_used_are_proved_positive() -> None:

@@ -154,7 +154,7 @@ def test_a_map_is_stored_with_its_joint_and_verified() -> None:
         ({"x-joint": {"X": {"base": ["A", "B"], "bars": "L"}}}, "x-joint.X.top", "is missing"),
         ({"base": ["A", "Z"]}, "X.base", "no point 'Z'"),
         ({"base": ["B", "A"]}, "X.base", "a length is positive"),
-        ({"bars": "1/2"}, "X.bars", "a length is positive"),
+        ({"bars": 1}, "X.bars", "a length is positive"),
         ({"angles": ["th", "th"]}, "X.angles.2", "is given twice"),
         ({"angles": ["F", "psi"]}, "X.angles.1", "no unknown angle"),
         ({"angles": "th"}, "X.angles", "two names"),
@@ -181,7 +181,7 @@ def test_what_is_wrong_is_told_by_its_key(change: dict[str, Any], key: str, said
     assert any(said in fault.message for fault in wrong), [(f.key, f.message) for f in caught.value.faults]
 
 
-def test_bars_are_longer_than_the_base_all_over_the_window() -> None:
+def test_bars_are_not_as_long_as_the_base_all_over_the_window() -> None:
     with pytest.raises(ConfigError, match=r"x-joint.X.bars: a length must be positive in the whole window"):
         ptmcad.classify({"mechanism": ONE, "axes": {"F": [-1, 1], "b": [1, 3]}})
 
