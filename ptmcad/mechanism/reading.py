@@ -351,7 +351,7 @@ def parsed(value: object, key: str) -> Tree:
         return located(lambda: parse(value), value, key)
     if isinstance(value, bool) or not isinstance(value, int | Fraction):
         raise ConfigError(f"{as_written(value)} is neither an exact number nor an expression as text", key=key)
-    number = Number(abs(Fraction(value)))
+    number = Number(abs(Fraction(value)), int(value < 0))  # where it stands in the number's text, which is read alike
     return Negative(number) if value < 0 else number
 
 
