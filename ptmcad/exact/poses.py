@@ -170,7 +170,6 @@ def _at_point(
         deflections,
         energy,
         second_bars,
-        len(given.multipliers) if isinstance(given, ClosedMechanism) else 0,
     )
 
 

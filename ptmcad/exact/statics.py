@@ -48,7 +48,6 @@ class PointModel:
     energy : of springs and loads, where there is no Hessian: with closed loops.
     second_bars : of X-joints: number of the first bar's angle, the bars' length, the base's. Nodes, energy and
         deflections are polynomials in their cosines and sines too, which stand after those of the unknown angles.
-    multipliers : the number of the last unknowns, in which nodes and energy are no polynomials.
     """
 
     angles: int
@@ -62,7 +61,6 @@ class PointModel:
     deflections: tuple[tuple[RationalPolynomial, RationalPolynomial], ...] = ()
     energy: RationalPolynomial | None = None
     second_bars: tuple[tuple[int, fmpq, fmpq], ...] = ()
-    multipliers: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,18 +139,14 @@ def state_at(model: PointModel, point: RealPoint) -> State:
 
 
 def _with_second_bars(model: PointModel, point: RealPoint) -> RealPoint:
-    """The point with the cosines and sines of X-joints' second bars after those of the unknown angles.
-
-    And without multipliers.
-    """
+    """The point with the cosines and sines of X-joints' second bars after those of the unknown angles."""
     turns = list(point.unknowns[: 2 * model.angles])
     for number, bars, length in model.second_bars:
         far, near = point.field.constant(bars), point.field.constant(length)
         cosine, sine, below = second_bar(far, near, *turns[2 * number : 2 * number + 2])
         inverse = below.inverse()
         turns += [cosine * inverse, sine * inverse]
-    reals = point.unknowns[2 * model.angles : len(point.unknowns) - model.multipliers]
-    return replace(point, unknowns=(*turns, *reals))
+    return replace(point, unknowns=(*turns, *point.unknowns[2 * model.angles :]))
 
 
 def is_positive(element: Element) -> bool:

@@ -38,9 +38,10 @@ class ClosedMechanism(System):
 
     @cached_property
     def whole(self) -> Mechanism:
-        """The mechanism with the bars that close its loops among the bars, for what shows its poses."""
+        """The mechanism with the bars that close its loops among the bars, and their tensions among the unknowns, for
+        what shows its poses."""
         closing = tuple((closing.start, closing.end) for closing in self.mechanism.closing)
-        return replace(self.mechanism, bars=self.mechanism.bars + closing)
+        return replace(self.mechanism, bars=self.mechanism.bars + closing, unknowns=self.unknowns)
 
     def _trees(self) -> Iterator[Tree]:
         yield from super()._trees()

@@ -19,18 +19,21 @@ AT = {
     "slider-crank": {"W": "1/3", "M": "1/10"},
     "x-joint": {"F": "1/4", "G": "1/2"},
     "two-dof-tensegrity-loaded": {"r1": "37/20", "r2": "163/100"},
+    "platform-loop": {"L": "1", "W": "5/2"},
 }
 LENGTHS = {
     "four-bar": {"A0P": 1, "B0Q": 1.2, "PQ": 1.5},
     "slider-crank": {"OP": 1, "PS": 2},
     "x-joint": {"AD": 2, "BC": 2, "CD": 1},
     "two-dof-tensegrity-loaded": {"AC": 1.85, "AD": 1, "BC": 1, "BD": 1.63},
+    "platform-loop": {"OP": 1, "PQ": 1.5, "QR": 2**0.5, "RP": 1.25**0.5},
 }
 LOADS: dict[str, dict[str, tuple[float, float]]] = {
     "four-bar": {"P": (0, 2.875), "Q": (0, 0.875)},
     "slider-crank": {"P": (0, -1 / 3)},
     "x-joint": {"C": (0.25, -0.5), "D": (0.25, -0.5)},
     "two-dof-tensegrity-loaded": {"C": (0, -0.5)},
+    "platform-loop": {"Q": (0, -2.5)},
 }
 
 
@@ -68,7 +71,7 @@ def test_a_mirror_image_has_the_same_energy() -> None:
     assert all(abs(a - b) < 10**-8 for a, b in zip(energies[::2], energies[1::2], strict=True))
 
 
-@pytest.mark.parametrize("name", ["slider-crank", "x-joint"])
+@pytest.mark.parametrize("name", ["slider-crank", "x-joint", "platform-loop"])
 def test_poses_are_stored_shown_and_drawn(name: str) -> None:
     from ptmcad.show.render.poses import draw_poses
 
@@ -82,5 +85,5 @@ def test_poses_are_stored_shown_and_drawn(name: str) -> None:
     assert "force" in table
     figure = draw_poses(found)
     drawn = {artist.get_gid() for axes in figure.axes for artist in axes.lines}
-    bar = {"slider-crank": "PS", "x-joint": "CD"}[name]
+    bar = {"slider-crank": "PS", "x-joint": "CD", "platform-loop": "OP"}[name]
     assert f"pose-1-bar-{bar}" in drawn
