@@ -12,6 +12,8 @@ import yaml
 
 import ptmcad
 from ptmcad.show.render import draw
+from ptmcad.show.render.poses import draw_poses
+from ptmcad.show.render.printing import save
 
 _START = """# Gallery
 
@@ -27,6 +29,13 @@ records when this manual is built.
 CERTIFIED = {"three-bar-chain": {"a": "1", "F": "1/2"}}
 """Records whose map takes the certified engine minutes, each with a point of which the table is; `scripts/free-maps`
 draws their maps."""
+
+POSES = {
+    "five-bar": {"F": "2", "G": "2"},
+    "two-dof-tensegrity-loaded": {"r1": "37/20", "r2": "163/100"},
+    "two-x-joints": {"F": "-1/8", "G": "5/4"},
+}
+"""Records without a map, each with a point whose poses are shown."""
 
 
 def page(configs: Path, folder: Path) -> str:
@@ -59,6 +68,13 @@ def entry(path: Path, configs: Path, folder: Path) -> str:
         commands = (f"ptmcad classify {record} --engine certified --tolerance 1/100 --format png",
                     f"ptmcad solve {record} --at {place}")  # fmt: skip
         table = ptmcad.solve(model=slice.model, **at).table()
+    elif path.stem in POSES:
+        at = POSES[path.stem]
+        place = ",".join(f"{name}={value}" for name, value in at.items())
+        found = ptmcad.solve(slice, **at)
+        save(draw_poses(found), folder / picture)
+        commands = (f"ptmcad check {record}", f"ptmcad solve {record} --at {place} --format table,svg")
+        table = found.table()
     else:
         result = ptmcad.classify(slice)
         draw(result, folder / picture)
@@ -72,7 +88,7 @@ def entry(path: Path, configs: Path, folder: Path) -> str:
             "",
             f"{slice.heading}",
             "",
-            f"![The map of {path.stem}]({picture})",
+            f"![{'Poses' if path.stem in POSES else 'The map'} of {path.stem}]({picture})",
             "",
             *((notes, "") if notes else ()),
             *((f"Answers to compare with: {source}.", "") if source else ()),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from fractions import Fraction
 
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism import Mechanism, Model, mechanism_in
 from ptmcad.mechanism.moments import acting, foreign, moments_at
 from ptmcad.mechanism.work import split_moments
 
@@ -17,7 +17,7 @@ def noun(model: Model, number: int = 2) -> str:
     >>> noun(ptm()), noun(ptm(), 1)
     ('equilibria', 'equilibrium')
     """
-    if isinstance(model, Mechanism):
+    if mechanism_in(model) is not None:
         return "equilibrium" if number == 1 else "equilibria"
     return "solution" if number == 1 else "solutions"
 

@@ -20,7 +20,7 @@ from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.values import files, point, settings
 from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism import Model, mechanism_in
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import file_name, point_from_options, units_of
 from ptmcad.question.examples import POINT
@@ -48,7 +48,7 @@ def drawable(model: Model, names: tuple[str, ...], start: str, landscape: bool) 
         For pictures of a system's poses, where no landscape is asked for.
     """
     landscapes = tuple(name for name in names if name.startswith(f"{start}-landscape."))
-    if not isinstance(model, Mechanism):
+    if mechanism_in(model) is None:
         kept = tuple(name for name in names if name.endswith(".json") or name in landscapes)
         if kept != names and not landscape:
             further = ", or --landscape" if not no_landscape(model) else ""

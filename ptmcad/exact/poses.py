@@ -22,12 +22,14 @@ from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.exact.models.potential import deflections_of, geometry_of, system_from
-from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, polynomial_at
+from ptmcad.exact.models.potential import potential as potential_of
+from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, polynomial_at, specialised
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
 from ptmcad.exact.statics import PointModel, State, is_positive, pose_of, state_at
-from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
+from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, mechanism_in
 from ptmcad.mechanism.description import System
 from ptmcad.mechanism.evaluate import value_at
+from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.tree import to_text as text_of
 
 
@@ -51,7 +53,7 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int, m
     try:
         point, found = _solutions(system, values, most)
     except DegeneratePoint:
-        what = "equilibria" if system.has_index or isinstance(given, Mechanism) else "solutions"
+        what = "equilibria" if system.has_index or mechanism_in(given) is not None else "solutions"
         return Poses(given, parameters, (), Status.UNDECIDED, digits, 0, f"infinitely many {what}")
     # where equations are simpler in other angles there are more coordinates than those of the unknowns
     real = [replace(p, unknowns=p.unknowns[: system.ring.width]) for p in found.real]
@@ -137,17 +139,23 @@ def _at_point(
     nodes: dict[str, tuple[RationalPolynomial, RationalPolynomial]] = {}
     torsion: tuple[tuple[str, Fraction], ...] = ()
     deflections: tuple[tuple[RationalPolynomial, RationalPolynomial], ...] = ()
-    if isinstance(given, Mechanism):
-        springs = tuple((s.name, s.start, s.end, value_at(s.stiffness, parameters)) for s in given.springs)
+    energy: RationalPolynomial | None = None
+    second_bars: tuple[tuple[int, fmpq, fmpq], ...] = ()
+    if (mechanism := mechanism_in(given)) is not None:
+        geometry = geometry_of(mechanism)
+        springs = tuple((s.name, s.start, s.end, value_at(s.stiffness, parameters)) for s in mechanism.springs)
         nodes = {
-            name: (polynomial_at(system, x, values), polynomial_at(system, y, values))
-            for name, (x, y) in geometry_of(given).nodes.items()
+            name: (specialised(geometry.ring, x, values), specialised(geometry.ring, y, values))
+            for name, (x, y) in geometry.nodes.items()
         }
-        torsion = tuple((t.name, value_at(t.stiffness, parameters)) for t in given.torsion)
+        torsion = tuple((t.name, value_at(t.stiffness, parameters)) for t in mechanism.torsion)
         deflections = tuple(
-            (polynomial_at(system, cosine, values), polynomial_at(system, sine, values))
-            for cosine, sine in deflections_of(given)
+            (specialised(geometry.ring, cosine, values), specialised(geometry.ring, sine, values))
+            for cosine, sine in deflections_of(mechanism)
         )
+        if mechanism.has_potential and given is not mechanism:
+            energy = specialised(geometry.ring, potential_of(mechanism), values)
+        second_bars = _second_bars(mechanism, parameters)
     potential = None if system.potential is None else polynomial_at(system, system.potential, values)
     angles = len(system.ring.angles)
     return PointModel(
@@ -160,6 +168,17 @@ def _at_point(
         point.stability,
         torsion,
         deflections,
+        energy,
+        second_bars,
+    )
+
+
+def _second_bars(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> tuple[tuple[int, fmpq, fmpq], ...]:
+    """Of X-joints: number of the first bar's angle, the bars' length, the base's."""
+    lengths = [(value_at(j.bars, parameters), value_at(j.length, parameters)) for j in mechanism.xjoints]
+    return tuple(
+        (mechanism.angles.index(joint.angle), from_fraction(bars), from_fraction(length))
+        for joint, (bars, length) in zip(mechanism.xjoints, lengths, strict=True)
     )
 
 
@@ -189,18 +208,30 @@ def _energy_ranks(
     poses: Sequence[Pose], states: Sequence[State], algebra: Fibre, model: PointModel, is_compact: bool
 ) -> list[int]:
     """A number for each pose, ordered as their energies are and equal where these are, as all are without energies."""
-    if model.potential is None:
+    potential = model.energy if model.potential is None else model.potential
+    if potential is None:
         return [0] * len(poses)
     energies = [pose.energy for pose in poses if pose.energy is not None]
     by_energy = sorted(range(len(poses)), key=lambda k: energies[k].center)
     if all(energies[a].high < energies[b].low for a, b in pairwise(by_energy)):
         return [by_energy.index(k) for k in range(len(poses))]
+    if model.second_bars:  # the energy is no polynomial in the algebra's coordinates
+        return _ranks_by_enclosures([pose.known_energy for pose in poses])
     # cosines and sines are at most 1
-    bound = 1 + sum((abs(c) for c in model.potential.values()), fmpq(0)) if is_compact else None
-    further = len(algebra.multiplication) - len(next(iter(model.potential), ()))
-    potential = {(*m, *(0,) * further): c for m, c in model.potential.items()}
+    bound = 1 + sum((abs(c) for c in potential.values()), fmpq(0)) if is_compact else None
+    further = len(algebra.multiplication) - len(next(iter(potential), ()))
+    potential = {(*m, *(0,) * further): c for m, c in potential.items()}
     values = real_values(algebra, potential, bound)
     return [_rank(state.energy, values) for state in states if state.energy is not None]
+
+
+def _ranks_by_enclosures(energies: Sequence[Enclosure]) -> list[int]:
+    """The same, where energies that all their digits do not tell apart count as equal."""
+    order = sorted(range(len(energies)), key=lambda k: energies[k].center)
+    ranks = [0] * len(energies)
+    for a, b in pairwise(order):
+        ranks[b] = ranks[a] + int(energies[a].high < energies[b].low)
+    return ranks
 
 
 def _rank(energy: Element, values: Sequence[RealRoot]) -> int:

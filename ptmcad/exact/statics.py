@@ -10,7 +10,7 @@ an eigenvalue is a root of a quadratic over it; and an angle is a rational numbe
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import gcd
 
@@ -22,6 +22,7 @@ from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.answer.poses import Pose, Spring, TorsionSpring, Vector
 from ptmcad.exact.models.system import RationalPolynomial
 from ptmcad.exact.stiffness import Number, Stiffness, eigenvalues, square_root, stiffness_of
+from ptmcad.mechanism.xjoint import second_bar
 from ptmcad.text.balls import ball_of
 from ptmcad.text.enclosure import Enclosure
 
@@ -44,6 +45,9 @@ class PointModel:
     inequalities, stability : the system's.
     torsion : name and stiffness of each torsion spring.
     deflections : cosine and sine of their angles, each less the one at rest.
+    energy : of springs and loads, where there is no Hessian: with closed loops.
+    second_bars : of X-joints: number of the first bar's angle, the bars' length, the base's. Nodes, energy and
+        deflections are polynomials in their cosines and sines too, which stand after those of the unknown angles.
     """
 
     angles: int
@@ -55,6 +59,8 @@ class PointModel:
     stability: tuple[RationalPolynomial, ...] = ()
     torsion: tuple[tuple[str, Fraction], ...] = ()
     deflections: tuple[tuple[RationalPolynomial, RationalPolynomial], ...] = ()
+    energy: RationalPolynomial | None = None
+    second_bars: tuple[tuple[int, fmpq, fmpq], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +121,8 @@ def state_at(model: PointModel, point: RealPoint) -> State:
     ArithmeticError
         When the Jacobian is singular at a simple point or regular at a multiple one.
     """
-    nodes = {name: (value_at(point, x), value_at(point, y)) for name, (x, y) in model.nodes.items()}
+    whole = _with_second_bars(model, point)
+    nodes = {name: (value_at(whole, x), value_at(whole, y)) for name, (x, y) in model.nodes.items()}
     squares = []
     for _, start, end, _ in model.springs:
         dx, dy = (nodes[end][i] - nodes[start][i] for i in (0, 1))
@@ -124,10 +131,22 @@ def state_at(model: PointModel, point: RealPoint) -> State:
     stiffness = stiffness_of(matrix, model.potential is not None)
     if bool(stiffness.nullity) != (point.multiplicity > 1):
         raise ArithmeticError(f"a point of multiplicity {point.multiplicity} contradicts its Jacobian")
-    energy = None if model.potential is None else value_at(point, model.potential)
+    potential = model.energy if model.potential is None else model.potential
+    energy = None if potential is None else value_at(whole, potential)
     conditions = tuple(value_at(point, p) for p in (*model.inequalities, *model.stability))
-    deflections = tuple((value_at(point, cosine), value_at(point, sine)) for cosine, sine in model.deflections)
+    deflections = tuple((value_at(whole, cosine), value_at(whole, sine)) for cosine, sine in model.deflections)
     return State(point, point.unknowns, nodes, tuple(squares), energy, stiffness, conditions, deflections)
+
+
+def _with_second_bars(model: PointModel, point: RealPoint) -> RealPoint:
+    """The point with the cosines and sines of X-joints' second bars after those of the unknown angles."""
+    turns = list(point.unknowns[: 2 * model.angles])
+    for number, bars, length in model.second_bars:
+        far, near = point.field.constant(bars), point.field.constant(length)
+        cosine, sine, below = second_bar(far, near, *turns[2 * number : 2 * number + 2])
+        inverse = below.inverse()
+        turns += [cosine * inverse, sine * inverse]
+    return replace(point, unknowns=(*turns, *point.unknowns[2 * model.angles :]))
 
 
 def is_positive(element: Element) -> bool:
@@ -199,6 +218,7 @@ def _numbers(model: PointModel, state: State) -> Iterator[Number]:
         yield number(sine.times(from_fraction(stiffness)))
     if state.energy is not None:
         yield number(state.energy)
+    if model.potential is not None:
         yield from eigenvalues(state.stiffness, number)
 
 
@@ -252,7 +272,7 @@ def _assembled(model: PointModel, state: State, numbers: Iterator[Enclosure]) ->
     values = tuple(numbers)
     multiplicity = state.point.multiplicity
     index = stable = None
-    if multiplicity == 1 and energy is not None:
+    if multiplicity == 1 and model.potential is not None:
         index = sum(value.high < 0 for value in values)
         stable = index == 0
     elif multiplicity == 1 and model.stability:

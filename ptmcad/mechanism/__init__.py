@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism.closed import ClosedMechanism
+from ptmcad.mechanism.closed import ClosedMechanism, mechanism_in
 from ptmcad.mechanism.description import Kind, Mechanism, Model, Parameter, Support, System
 from ptmcad.mechanism.loops import without_loops
 from ptmcad.mechanism.ptm import ptm
@@ -27,6 +27,7 @@ __all__ = [
     "described",
     "described_system",
     "known_of",
+    "mechanism_in",
     "mechanism_of",
     "ptm",
     "read_mechanism",

@@ -13,6 +13,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, NamedTuple
 
+from ptmcad.mechanism.xjoint import XJoint
 from ptmcad.text.tree import Call, Chain, Number, Step, Tree, names_of
 from ptmcad.text.tree import to_text as text_of
 
@@ -287,7 +288,8 @@ class Mechanism(Model):
     bodies : to the points fixed to them, for drawings.
     moments : generalised forces that need not come from a potential.
     torsion : springs between directions, in the record's order.
-    closing : bars that close loops; with any, `ptmcad.mechanism.loops` makes a `ClosedMechanism` of it.
+    closing, xjoints : bars that close loops, and X-joints; with any, `ptmcad.mechanism.closures` makes a
+        `ClosedMechanism` of it.
     """
 
     points: Mapping[str, tuple[Tree, Tree]]
@@ -300,6 +302,7 @@ class Mechanism(Model):
     moments: tuple[Moment, ...] = ()
     torsion: tuple[TorsionSpring, ...] = ()
     closing: tuple[Closing, ...] = ()
+    xjoints: tuple[XJoint, ...] = ()
 
     __hash__ = Model.__hash__
     __repr__ = Model.__repr__
@@ -310,16 +313,24 @@ class Mechanism(Model):
         return all(self.unknowns.keys() & set(names_of(moment.value)) <= {moment.unknown} for moment in self.moments)
 
     @cached_property
+    def followers(self) -> Mapping[str, str]:
+        """The angles that follow from an unknown one, to this: those of the second bars of X-joints."""
+        return {joint.other: joint.angle for joint in self.xjoints}
+
+    @cached_property
     def moving(self) -> tuple[str, ...]:
         """The points whose coordinates depend on an unknown."""
         return tuple(
-            name for name, (x, y) in self.points.items() if {*names_of(x), *names_of(y)} & self.unknowns.keys()
+            name
+            for name, (x, y) in self.points.items()
+            if {*names_of(x), *names_of(y)} & {*self.unknowns, *self.followers}
         )
 
     @cached_property
     def rising(self) -> tuple[str, ...]:
         """Those of them whose height does, unlike that of a slider on a level."""
-        return tuple(name for name in self.moving if set(names_of(self.points[name][1])) & self.unknowns.keys())
+        movers = {*self.unknowns, *self.followers}
+        return tuple(name for name in self.moving if set(names_of(self.points[name][1])) & movers)
 
     @cached_property
     def pivots(self) -> Mapping[str, str]:
@@ -355,6 +366,8 @@ class Mechanism(Model):
             yield from (torsion.angle, torsion.stiffness)
         for closing in self.closing:
             yield closing.length
+        for joint in self.xjoints:
+            yield from (joint.length, joint.bars)
 
 
 @dataclass(frozen=True)

@@ -123,11 +123,11 @@ def _direction(mechanism: Mechanism, x: Polynomial, y: Polynomial) -> Direction 
     if not (x.terms or y.terms):
         return None
     found = {}
-    for unknown in mechanism.unknowns:
+    for unknown in (*mechanism.unknowns, *mechanism.followers):
         dx, dy = x.derivative(unknown), y.derivative(unknown)
         term, c = next(iter((x.terms or y.terms).items()))
         n = (dy if x.terms else dx).terms.get(term, Fraction(0)) / c * (1 if x.terms else -1)
-        if dy.terms != _times(x, n) or dx.terms != _times(y, -n) or (n and unknown not in mechanism.angles):
+        if dy.terms != _times(x, n) or dx.terms != _times(y, -n) or (n and unknown in mechanism.reals):
             return None
         found[unknown] = int(n)
     return frozenset((name, n) for name, n in found.items() if n)

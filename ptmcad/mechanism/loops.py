@@ -1,4 +1,4 @@
-"""Closed loops with one degree of freedom left, as equations: each loop is cut at a bar, which keeps its length.
+"""Closed loops, as equations: each loop is cut at a bar, which keeps its length. With one degree of freedom left:
 
 Guarantee: off the places where a loop folds flat the solutions are the equilibria, and the stable ones are the strict
 minima of the energy under the loops' conditions.
@@ -10,18 +10,22 @@ where that is zero the second derivative T . grad E: which is the determinant of
 an equilibrium is a zero of g and E, simple where the determinant is not zero, and stable where it is positive. Where T
 vanishes E does, and the determinant: such places are on the curves at which solutions meet.
 
-Source: elementary (Lagrange's condition in one dimension); no multiplier is among the unknowns.
+Source: elementary (Lagrange's condition in one dimension); no multiplier is among the unknowns. Where more degrees of
+freedom are left there is no such vector, and `ptmcad.mechanism.multipliers` has the equations.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism.closed import ClosedMechanism
+from ptmcad.mechanism.crossed import without_xjoints
 from ptmcad.mechanism.derivative import cofactors, derivative, determinant, negative, product, total
-from ptmcad.mechanism.description import Closing, Mechanism, Model
+from ptmcad.mechanism.description import Closing, Mechanism, Model, UnknownKind
+from ptmcad.mechanism.multipliers import stationary, tensions
 from ptmcad.mechanism.proofs import Points
 from ptmcad.mechanism.sizes import check_sizes
 from ptmcad.mechanism.work import split_moments
@@ -41,11 +45,11 @@ def check_loops(mechanism: Mechanism, faults: Faults) -> None:
         if free < 1:
             raise ConfigError("no degree of freedom is left: there have to be more unknowns than closing bars",
                               key="closing")  # fmt: skip
-        if free > 1:
+        if free > 1 and not mechanism.has_potential:
             raise ConfigError(
-                f"{free} degrees of freedom are left: closed loops are computed where one is; write the equations, "
-                "with multipliers, as a 'system:'",
-                key="closing",
+                "a moment depends on another unknown than its own: then closed loops are computed where they leave one "
+                f"degree of freedom, not {free}",
+                key="moments",
             )
     for n, spring in enumerate(mechanism.springs, 1):
         with faults:
@@ -74,28 +78,38 @@ def check_closing(mechanism: Mechanism, faults: Faults) -> None:
 
 
 def without_loops(model: Mechanism, faults: Faults | None = None) -> Model:
-    """The mechanism itself, or with closed loops the equations of its equilibria.
+    """The mechanism itself, or with closed loops or X-joints the equations of its equilibria.
 
     Raises
     ------
     ConfigError
         When these may have too many terms.
     """
+    if model.xjoints:
+        return without_xjoints(model)
     if not model.closing:
         return model
     conditions = [_condition(model, closing) for closing in model.closing]
-    names = tuple(model.unknowns)
-    rows = [[derivative(g, name) for name in names] for g in conditions]
-    tangent = cofactors(rows)
-    slope = total(*(product(t, f) for t, f in zip(tangent, _forces(model, names), strict=True)))
-    second = determinant([*rows, [derivative(slope, name) for name in names]])
+    names = (*model.angles, *model.reals)
+    forces = _forces(model, names)
+    further: dict[str, UnknownKind] = {}
+    tangent: tuple[Tree, ...] = ()
+    if len(names) > len(conditions) + 1:
+        further = tensions(model)
+        equations, stability = stationary(forces, conditions, names, tuple(further))
+    else:
+        rows = [[derivative(g, name) for name in names] for g in conditions]
+        tangent = cofactors(rows)
+        slope = total(*(product(t, f) for t, f in zip(tangent, forces, strict=True)))
+        equations = (*conditions, slope)
+        stability = (determinant([*rows, [derivative(slope, name) for name in names]]),)
     found = ClosedMechanism(
-        model.name, model.parameters, model.unknowns, (*conditions, slope), stability=(second,), mechanism=model,
-        tangent=tangent, source=model.source,
+        model.name, model.parameters, {**model.unknowns, **further}, equations, stability=stability, mechanism=model,
+        tangent=tangent, multipliers=tuple(further), source=model.source,
     )  # fmt: skip
     sizes = Faults()
     try:
-        check_sizes(found, sizes)
+        check_sizes(replace(found, stability=()) if further else found, sizes)
         sizes.check()
     except (ConfigError, ExpressionError) as error:
         raise ConfigError(f"with their loops closed {error.message}", key="closing") from error

@@ -8,10 +8,11 @@ from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, Faults, shown
 from ptmcad.mechanism.closed import ClosedMechanism
+from ptmcad.mechanism.derivative import negative, total
 from ptmcad.mechanism.description import Kind, Mechanism, Model
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.text.numerals import text_of as value_text
-from ptmcad.text.tree import Name, Tree, names_of
+from ptmcad.text.tree import Name, Number, Power, Tree, names_of
 from ptmcad.text.tree import to_text as text_of
 
 MAX_SHOWN = 60
@@ -51,6 +52,13 @@ def parts(model: Model) -> Iterator[Part]:
         yield from _unless_known(model, Part(f"torsion.{n}.k", Kind.STIFFNESS, torsion.stiffness))
     for n, closing in enumerate(model.closing, 1):
         yield from _unless_known(model, Part(f"closing.{n}.length", Kind.LENGTH, closing.length))
+    for joint in model.xjoints:
+        yield from _unless_known(model, Part(f"x-joint.{joint.name}.base", Kind.LENGTH, joint.length))
+        yield Part(
+            f"x-joint.{joint.name}.bars",
+            Kind.LENGTH,
+            Power(total(joint.bars, negative(joint.length)), Number(Fraction(2))),
+        )
 
 
 def fault_of_number(part: Part, value: Fraction) -> str:

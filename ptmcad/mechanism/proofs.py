@@ -135,12 +135,15 @@ def _product(one: Monomial, two: Monomial) -> Iterator[tuple[Monomial, int]]:
 def check_bars(mechanism: Mechanism, faults: Faults) -> None:
     """Note each bar whose length varies, or is too large an expression."""
     points = Points(mechanism)
+    rigid = {bar for joint in mechanism.xjoints for bar in joint.rigid}
     for n, (start, end) in enumerate(mechanism.bars, 1):
         key = f"bars.{n}"
+        if (start, end) in rigid:
+            continue  # by the joint's own formulas
         with faults:
             try:
                 squared = points.squared(start, end)
-                loose = [u for u in mechanism.unknowns if squared.derivative(u).terms]
+                loose = [u for u in (*mechanism.unknowns, *mechanism.followers) if squared.derivative(u).terms]
             except ExpressionError as error:
                 raise ConfigError(f"it is not proved that its length is constant: {error.message}", key=key) from None
             if loose:
@@ -164,7 +167,7 @@ def check_springs(mechanism: Mechanism, faults: Faults) -> None:
                 )
     for n, torsion in enumerate(mechanism.torsion, 1):
         with faults:
-            if not any(multiples(torsion.angle).get(angle) for angle in mechanism.angles):
+            if not any(multiples(torsion.angle).get(angle) for angle in (*mechanism.angles, *mechanism.followers)):
                 raise ConfigError("no unknown changes its angle, so that this spring does nothing", key=f"torsion.{n}")
 
 
@@ -205,6 +208,7 @@ def _held(mechanism: Mechanism) -> set[str]:
     energy -= points.work_of_loads()  # twice the energy throughout
     for torsion in mechanism.torsion:
         energy += points.value(torsion.energy) * ring.constant(Fraction(2))
+    held |= {first for second, first in mechanism.followers.items() if energy.derivative(second).terms}
     return held | {u for u in mechanism.unknowns if energy.derivative(u).terms}
 
 
@@ -367,7 +371,7 @@ class Points:
 
     def moves(self, start: str, end: str) -> bool:
         """Whether a distance changes with an unknown; also where that is too much to be multiplied out."""
-        unknowns = self.mechanism.unknowns.keys()
+        unknowns = {*self.mechanism.unknowns, *self.mechanism.followers}
         if not any({*names_of(tree)} & unknowns for point in (start, end) for tree in self.mechanism.points[point]):
             return False
         try:

@@ -210,6 +210,7 @@ class Reader:
     Parameters
     ----------
     doubtful : names of unknowns that are faulty themselves: they may stand anywhere.
+    second : names of angles that follow from unknown ones.
     """
 
     def __init__(
@@ -217,11 +218,14 @@ class Reader:
         parameters: Mapping[str, Parameter],
         unknowns: Mapping[str, UnknownKind],
         doubtful: frozenset[str] = frozenset(),
+        second: Sequence[str] = (),
     ):
         lengths = [name for name, kind in unknowns.items() if kind is not UnknownKind.ANGLE or name in doubtful]
         angles = [name for name, kind in unknowns.items() if kind is UnknownKind.ANGLE]
-        self.fixed = _Names(parameters, (), unknowns, doubtful)
-        self.moving = _Names((*parameters, *lengths), angles, (), doubtful)
+        self.second = frozenset(second)
+        self.excluded = frozenset((*unknowns, *second))
+        self.fixed = _Names(parameters, (), (*unknowns, *second), doubtful)
+        self.moving = _Names((*parameters, *lengths), (*angles, *second), (), doubtful)
         self.names = dict.fromkeys((*parameters, *unknowns))
 
     def tree(self, value: object, key: str, *, moving: bool = False) -> Tree:
@@ -347,7 +351,7 @@ def parsed(value: object, key: str) -> Tree:
         return located(lambda: parse(value), value, key)
     if isinstance(value, bool) or not isinstance(value, int | Fraction):
         raise ConfigError(f"{as_written(value)} is neither an exact number nor an expression as text", key=key)
-    number = Number(abs(Fraction(value)))
+    number = Number(abs(Fraction(value)), int(value < 0))  # where it stands in the number's text, which is read alike
     return Negative(number) if value < 0 else number
 
 

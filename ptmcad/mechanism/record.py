@@ -13,6 +13,7 @@ from typing import Any
 from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
 from ptmcad.mechanism.angles import angle_name
 from ptmcad.mechanism.bodies import add_bodies
+from ptmcad.mechanism.crossed import check_crossed
 from ptmcad.mechanism.description import Closing, Load, Mechanism, Moment, Spring, Support, TorsionSpring
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.loops import CLOSING_KEYS, check_closing, check_loops
@@ -37,12 +38,14 @@ from ptmcad.mechanism.reading import (
 )
 from ptmcad.mechanism.sizes import check_sizes
 from ptmcad.mechanism.work import split_moments
+from ptmcad.mechanism.xjoint import XJoint
+from ptmcad.mechanism.xjoints import add_xjoints, second_angles
 from ptmcad.text.syntax import did_you_mean, parse
 from ptmcad.text.tree import Name, Negative, Number, Tree
 
 KEYS = (
     "name", "parameters", "unknowns", "points", "bodies", "bars", "supports", "springs", "torsion", "loads", "moments",
-    "symmetries", "closing",
+    "symmetries", "closing", "x-joint",
 )  # fmt: skip
 SPRING_KEYS = ("between", "k", "free")
 TORSION_KEYS = ("angle", "k", "rest", "at")
@@ -51,9 +54,6 @@ NAMED_RESTS = {
     "0": (1, 0), "pi/2": (0, 1), "pi": (-1, 0), "-pi": (-1, 0), "-pi/2": (0, -1), "3*pi/2": (0, -1),
 }  # fmt: skip
 """Cosine and sine of the angles that have both rational and are written with pi."""
-_LATER = {
-    "x-joint": "crossed joints cannot be computed yet: write the equations as a 'system:'",
-}
 _LIKE = {
     "points": "{A: [0, 0]}", "bars": "[[O, P]]", "supports": "{O: pin}", "springs": "[{between: [A, P], k: 1}]",
     "torsion": "[{angle: th, k: 1}]", "loads": "{P: [0, -W]}", "moments": "{th: M}", "symmetries": "[{th: -th}]",
@@ -87,11 +87,7 @@ def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
 
 def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = False) -> Mechanism:
     """As `described`, but what is wrong is noted, and left out or replaced."""
-    for key, why in _LATER.items():
-        with faults:
-            if key in record:
-                raise ConfigError(why, key=key)
-    check_keys({key: value for key, value in record.items() if key not in _LATER}, KEYS, "", faults)
+    check_keys(record, KEYS, "", faults)
     name, parameters, unknowns = DEFAULT_NAME, {}, {}
     with faults:
         name = new_name(record.get("name", DEFAULT_NAME), "name", {})
@@ -103,8 +99,12 @@ def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = Fal
                 raise ConfigError("is missing", key=key)
     with faults:
         unknowns = unknowns_of(record["unknowns"], parameters, faults) if "unknowns" in record else {}
-    parts = _Parts(record, Reader(parameters, unknowns, faulty_entries(faults, "unknowns")), faults)
+    second = second_angles(record.get("x-joint"))
+    parts = _Parts(record, Reader(parameters, unknowns, faulty_entries(faults, "unknowns"), second), faults)
     points = parts.points()
+    xjoints: tuple[XJoint, ...] = ()
+    with faults:
+        xjoints = add_xjoints(record.get("x-joint", {}), parts.reader, points, {**parameters, **unknowns}, faults)
     bodies = {}
     with faults:
         bodies = add_bodies(mapping(record.get("bodies", {}), "bodies", MAX_BODIES), parts.reader, points, faults)
@@ -115,7 +115,7 @@ def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = Fal
         parameters,
         unknowns,
         points,
-        bars,
+        (*bars, *(bar for joint in xjoints for bar in joint.rigid)),
         supports,
         parts.springs(points),
         loads,
@@ -124,6 +124,7 @@ def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = Fal
         moments,
         torsion,
         parts.closing(points),
+        xjoints,
         source=record,
     )
     if not proved:
@@ -133,7 +134,7 @@ def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = Fal
     return found
 
 
-_SHAPE = frozenset({"parameters", "unknowns", "points", "bodies"})
+_SHAPE = frozenset({"parameters", "unknowns", "points", "bodies", "x-joint"})
 _FORCELESS = frozenset({"name", "bars", "supports", "symmetries"})
 
 
@@ -151,6 +152,7 @@ def _prove(found: Mechanism, faults: Faults) -> None:
         check_symmetries(found, faults)
         check_moments(found, faults)
         check_loops(found, faults)
+        check_crossed(found, faults)
 
 
 def check_moments(mechanism: Mechanism, faults: Faults) -> None:

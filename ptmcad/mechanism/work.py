@@ -110,6 +110,11 @@ def _listed(p: Polynomial) -> _Terms:
     return [(dict(monomial), c) for monomial, c in sorted(p.terms.items())]
 
 
+def tree_of(p: Polynomial, angles: Sequence[str]) -> Tree:
+    """A polynomial as a sum of products."""
+    return _tree(_listed(p), angles) if p.terms else Number(Fraction(0))
+
+
 def _tree(terms: Sequence[tuple[_Factors, Fraction]], angles: Sequence[str]) -> Tree:
     """A sum of products."""
     (first, c), *rest = terms

@@ -7,9 +7,10 @@ from ptmcad.mechanism.moments import foreign
 
 
 def no_drawing(model: Model) -> str:
-    """Why there is no picture of the solutions of a system that is no mechanism."""
+    """Why there is no picture, or no film, of a model's solutions."""
     if isinstance(model, ClosedMechanism):
-        return f"poses of {model.name}, a mechanism with closed loops, are not drawn yet"
+        what = "X-joints" if model.mechanism.xjoints else "closed loops"
+        return f"of {model.name}, a mechanism with {what}, solve and plot draw poses, and nothing more is drawn yet"
     return f"solutions of a {_named(model)} cannot be drawn, as it has no points, bars or springs"
 
 

@@ -11,7 +11,7 @@ from itertools import pairwise
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.answer.words import counted, noun, of_what, untold
-from ptmcad.mechanism import Mechanism, built_in
+from ptmcad.mechanism import Mechanism, built_in, mechanism_in
 from ptmcad.question.slice import merged
 from ptmcad.show.units import energy_unit
 from ptmcad.text.enclosure import Enclosure, exact_text
@@ -59,8 +59,8 @@ def table(poses: Poses, digits: int | None = None) -> str:
 
 def _units(poses: Poses) -> list[str]:
     """In what numbers are measured; nothing of a system, whose numbers have no units."""
-    mechanism, units = poses.model, poses.units
-    if not isinstance(mechanism, Mechanism):
+    mechanism, units = mechanism_in(poses.model), poses.units
+    if mechanism is None:
         return []
     length, force = (
         units.get(what) or (f"that of {name}" if name else "")
@@ -82,15 +82,19 @@ def _in_products(mechanism: Mechanism, product: str) -> list[str]:
     moments = "moments" if mechanism.torsion else ""
     if not mechanism.has_potential:
         return [f"{moments} in {product}"] if moments else []
+    if mechanism.closing or mechanism.xjoints:
+        return [f"energies{moments and f' and {moments}'} in {product}"]
     return [f"energies{moments and f', {moments}'} and the Hessian's eigenvalues in {product}"]
 
 
 def _energy_note(poses: Poses) -> str:
     """What the column of energies leaves out, or why there is none."""
-    model = poses.model
+    model = mechanism_in(poses.model) or poses.model
     if model.has_potential:
         return of_what(model, poses.parameters)
-    return f"none, and {untold(model)}" if isinstance(model, Mechanism) else ""
+    if not isinstance(model, Mechanism):
+        return ""
+    return "none" if poses.model.tells_stability else f"none, and {untold(model)}"
 
 
 _TORSION = "deflection: angle - rest; moment: k sin(deflection), positive where it turns back an angle beyond rest"
@@ -140,7 +144,8 @@ def _blocks(poses: Poses, digits: int) -> list[list[Column]]:
     if not found:
         return []
     model = poses.model
-    moving = model.moving if isinstance(model, Mechanism) else ()
+    mechanism = mechanism_in(model)
+    moving = () if mechanism is None else mechanism.moving
 
     def column(header: str, unit: str, numbers: Sequence[Enclosure]) -> Column:
         return header, unit, [x.text(digits) for x in numbers]
@@ -148,7 +153,7 @@ def _blocks(poses: Poses, digits: int) -> list[list[Column]]:
     first = found[0]
     called = {"solution": noun(model, 1)}
     states: list[Column] = [("state", "", [called.get(kind, kind) for kind in map(kind_of, found)])]
-    if isinstance(model, Mechanism):
+    if mechanism is not None:
         states.append(("flat", "", ["yes" if p.flat else "no" for p in found]))
     if first.admissible is not None:
         states.append(("tense", "", ["yes" if p.admissible else "no" for p in found]))

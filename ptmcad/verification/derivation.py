@@ -12,14 +12,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from math import prod
 from typing import Any, NamedTuple
 
-from flint import fmpq
+from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
 from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, Model, System, ptm
 from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Tree, names_of
-from ptmcad.verification import loops
+from ptmcad.verification import loops, xjoints
 
 MECHANISM = ptm()
 ANGLES = MECHANISM.angles
@@ -165,7 +166,11 @@ def _with_loops(configuration: Configuration, model: ClosedMechanism) -> Formula
     for k, name in enumerate(model.reals, len(model.angles)):
         values[name] = loops.line(k, configuration.parameters[name], size)
     circles = {a: loops.circle(k, *configuration.circles[a], size) for k, a in enumerate(model.angles)}
+    if model.mechanism.xjoints:
+        return _with_xjoints(Configuration(values, circles), model)
     moving = Configuration(values, circles)
+    if model.multipliers:
+        return _stationary(moving, model)
     found = loops.conditions(
         model.mechanism,
         potential(moving, model.mechanism) + loops.constant(fmpq(0), size),
@@ -174,6 +179,57 @@ def _with_loops(configuration: Configuration, model: ClosedMechanism) -> Formula
         [m + loops.constant(fmpq(0), size) for m in _moments(moving, model.mechanism)],
     )
     return Formulas(None, found.equations, (), (found.stability,))
+
+
+def _stationary(moving: Configuration, model: ClosedMechanism) -> Formulas:
+    """With a tension for each closing bar."""
+    nothing = loops.constant(fmpq(0), len(model.unknowns))
+    equations, stability = loops.stationary(
+        model.mechanism,
+        potential(moving, model.mechanism) + nothing,
+        moving.points(model.mechanism),
+        moving.value,
+        [moving.parameters[name] for name in model.multipliers],
+        [m + nothing for m in _moments(moving, model.mechanism)],
+    )
+    return Formulas(None, equations, (), stability)
+
+
+def _with_xjoints(first: Configuration, model: ClosedMechanism) -> Formulas:
+    """Of a mechanism with X-joints, from the mechanism itself; the first bars' angles are known."""
+    mechanism, joints = model.mechanism, model.mechanism.xjoints
+    nothing = loops.constant(fmpq(0), len(model.unknowns))
+    found = xjoints.conditions(
+        [model.angles.index(joint.angle) for joint in joints],
+        _in_units(first, mechanism),
+        _powers(mechanism),
+        [(first.value(joint.length) + nothing, first.value(joint.bars) + nothing) for joint in joints],
+        [first.circles[joint.angle] for joint in joints],
+        [m + nothing for m in _moments(first, mechanism)],
+    )
+    return Formulas(None, found.equations, found.distances, found.stability)
+
+
+def _in_units(first: Configuration, mechanism: Mechanism) -> xjoints.Units:
+    """The energy as a polynomial in the units of the second bars."""
+    count = len(mechanism.xjoints)
+    none = xjoints.Units({}, count)
+    lifted = {a: (none + c, none + s) for a, (c, s) in first.circles.items()}
+    second = {joint.other: xjoints.unit_circle(k, count) for k, joint in enumerate(mechanism.xjoints)}
+    known = {name: none + value for name, value in first.parameters.items()}
+    energy: Any = potential(Configuration(known, lifted | second), mechanism)
+    found: xjoints.Units = none + energy
+    return found
+
+
+@lru_cache(maxsize=8)
+def _powers(mechanism: Mechanism) -> tuple[int, ...]:
+    """Of the units in the energy, with a variable for everything else."""
+    names = (*parameters_of(mechanism), *coordinates_of(mechanism))
+    ring: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(names, Ordering.lex)
+    known = {name: ring.gen(k) for k, name in enumerate(names)}
+    circles = {a: (known[f"cos_{a}"], known[f"sin_{a}"]) for a in mechanism.angles}
+    return xjoints.powers_in(_in_units(Configuration(known, circles), mechanism))
 
 
 def _moments(configuration: Configuration, mechanism: Mechanism) -> tuple[Any, ...]:

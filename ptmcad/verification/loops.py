@@ -134,3 +134,54 @@ def _determinant(rows: Sequence[Sequence[Any]]) -> Any:
             term = row[k] * term
         total = term + total
     return total
+
+
+def stationary(
+    mechanism: Mechanism,
+    energy: Second,
+    points: Mapping[str, tuple[Second, Second]],
+    length: Callable[[Any], Any],
+    tensions: Sequence[Second],
+    moments: Sequence[Second],
+) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    """Equations and conditions for stability where several degrees of freedom are left.
+
+    The equations are the derivatives of the energy plus half of each tension times what its bar keeps. With s added to
+    the unknowns' own second derivatives the determinant of the bordered matrix is a polynomial in s; its coefficients,
+    with one sign, are all positive at a minimum. They are interpolated from values.
+
+    Parameters
+    ----------
+    tensions : of the bars, the last unknowns.
+    moments : generalised forces on the other unknowns; none where the description has none.
+    """
+    whole = energy
+    for closing, tension in zip(mechanism.closing, tensions, strict=True):
+        across, up = (points[closing.end][i] - points[closing.start][i] for i in (0, 1))
+        far = length(closing.length)
+        whole = whole + tension * (across * across + up * up - far * far) * fmpq(1, 2)
+    count, bars = len(whole.slopes), len(tensions)
+    loads = [*moments, *[constant(fmpq(0), count)] * (count - len(moments))]
+    equations = tuple(whole.slopes[k] - loads[k].value for k in range(count))
+    rows = [[whole.bends[i, j] - loads[i].slopes[j] for j in range(count)] for i in range(count)]
+    inner, free = count - bars, count - 2 * bars
+    values = []
+    for s in range(free + 1):
+        shifted = [[x + fmpq(s) if i == j and i < inner else x for j, x in enumerate(r)] for i, r in enumerate(rows)]
+        values.append(_determinant(shifted) * fmpq(-1 if bars % 2 else 1))
+    coefficients = _interpolated(values)
+    return equations, tuple(coefficients[free - k] for k in range(1, free + 1))
+
+
+def _interpolated(values: Sequence[Any]) -> list[Any]:
+    """The coefficients of the polynomial with these values at 0, 1, 2, ..., from the constant one on."""
+    size = len(values)
+    found: list[Any] = [fmpq(0)] * size
+    for k, value in enumerate(values):
+        basis, scale = [fmpq(1)], fmpq(1)
+        for j in range(size):
+            if j != k:  # times (s - j)
+                basis = [a - fmpq(j) * b for a, b in zip([fmpq(0), *basis], [*basis, fmpq(0)], strict=True)]
+                scale = scale * fmpq(k - j)
+        found = [value * (b / scale) + old for old, b in zip(found, basis, strict=True)]
+    return found

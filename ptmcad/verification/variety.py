@@ -34,7 +34,7 @@ from math import gcd, lcm, prod
 from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpz_poly
 
 from ptmcad.answer.regionmap import HARMLESS, Kind
-from ptmcad.mechanism import System
+from ptmcad.mechanism import ClosedMechanism, System
 from ptmcad.text.numerals import text_of
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import Claims, PlaneCurve, fraction
@@ -199,19 +199,24 @@ def condition_exponents(claims: Claims, seed: str) -> list[list[int]]:
     """
     return [
         _product_of_powers(claims, random_points(claims, seed, BITS), partial(FibrePoint.condition_norm, k=k), name)[1]
-        for k, name in enumerate(_conditions(claims))
+        for k, name in _conditions(claims).items()
     ]
 
 
-def _conditions(claims: Claims) -> list[str]:
-    """The names of inequalities and of conditions for stability."""
+def _conditions(claims: Claims) -> dict[int, str]:
+    """The numbers of inequalities and of conditions for stability, with their names.
+
+    With closed loops or X-joints the conditions for stability are those for a matrix to be definite, the last of them
+    its determinant: where that is not zero the matrix does not stop or begin to be definite.
+    """
     model = claims.result.slice.model
     if not isinstance(model, System):
-        return []
-    return [
-        *(f"inequality {k}" for k in range(len(model.inequalities))),
-        *(f"condition {k} for stability" for k in range(len(model.stability))),
-    ]
+        return {}
+    inequalities, stability = len(model.inequalities), len(model.stability)
+    first = max(stability - 1, 0) if isinstance(model, ClosedMechanism) else 0
+    return {k: f"inequality {k}" for k in range(inequalities)} | {
+        inequalities + k: f"condition {k} for stability" for k in range(first, stability)
+    }
 
 
 _Norm = tuple[FibrePoint, Fraction]

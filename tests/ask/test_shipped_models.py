@@ -34,17 +34,26 @@ VALIDATOR = jsonschema.Draft202012Validator(
     json.loads((ROOT / "ptmcad" / "record.schema.json").read_text(encoding="utf-8"))
 )
 RECORDS = list(OTHER)
-LINES_ONLY = {"three-bar-chain"}
+LINES_ONLY = {"five-bar", "three-bar-chain", "two-dof-tensegrity-loaded", "two-x-joints"}
 """Too large for an exact map."""
+SPURIOUS = {"two-x-joints"}
+"""Its equations have two solutions more, which inequalities exclude; signatures of its forms take a minute."""
 MAPPED = [path for path in RECORDS if path.stem not in LINES_ONLY]
 MECHANISMS = {
     "bistable-slider",
+    "five-bar",
     "four-bar",
     "inverted-pendulum",
     "platform",
+    "platform-loop",
     "slider-crank",
     "three-bar-chain",
+    "three-rpr",
     "two-bar-chain",
+    "two-dof-tensegrity",
+    "two-dof-tensegrity-loaded",
+    "two-x-joints",
+    "x-joint",
 }
 SYSTEMS = {
     "cubic", "cubic-and-quadratic", "duffing", "escape", "kuramoto", "kuramoto-4", "orthogonal-3r", "schloegl",
@@ -98,7 +107,7 @@ def test_numbers_of_solutions(path: Path) -> None:
     """At the points of the record, by both methods; and complex ones."""
     slice, known = load(path), reference(path)
     for entry in known.get("counts", ()):
-        for signature in (False, True):
+        for signature in (False,) if path.stem in SPURIOUS else (False, True):
             found = counts_at(slice, entry["at"], signature)
             told = {key: getattr(found, key) for key in entry if key != "at"}
             assert told == {key: tuple(v) if isinstance(v, list) else v for key, v in entry.items() if key != "at"}
@@ -106,7 +115,7 @@ def test_numbers_of_solutions(path: Path) -> None:
         problem = problem_of(slice)
         at = tuple(fmpq(29, 100) * (b - a) + a for a, b in problem.window)
         values = point_values(problem.parameters, (at[0], at[1]))
-        assert solutions_at(problem.system, values) == (known["complex_solutions"],) * 2
+        assert solutions_at(problem.system, values, path.stem in SPURIOUS) == (known["complex_solutions"],) * 2
 
 
 HEAVY = {"four-bar", "stability-pair", "kuramoto", "kuramoto-4", "orthogonal-3r"}

@@ -7,10 +7,12 @@ import math
 import random
 from fractions import Fraction
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from flint import fmpq
 
 import ptmcad
@@ -58,6 +60,16 @@ SLIDER_CRANK: dict[str, Any] = {
     "loads": {"P": [0, "-W"]},
     "moments": {"th": "M"},
 }  # fmt: skip
+
+
+CONFIGS = Path(__file__).resolve().parents[2] / "configs" / "mechanisms"
+
+
+def description(name: str) -> dict[str, Any]:
+    return dict(yaml.safe_load((CONFIGS / f"{name}.yaml").read_text(encoding="utf-8"))["mechanism"])
+
+
+FIVE_BAR, PLATFORM = description("five-bar"), description("platform-loop")
 
 
 def slice_of(mechanism: dict[str, Any], **record: Any) -> ptmcad.Slice:
@@ -160,7 +172,10 @@ def test_a_slider_is_an_unknown_on_the_line() -> None:
         assert len(found.equilibria) == total
 
 
-@pytest.mark.parametrize("mechanism", [FOUR_BAR, SLIDER_CRANK], ids=lambda m: m["name"])
+LINE_FIRST = {**SLIDER_CRANK, "name": "line_first", "unknowns": {"x": "length", "th": "angle"}}
+
+
+@pytest.mark.parametrize("mechanism", [FOUR_BAR, SLIDER_CRANK, LINE_FIRST, PLATFORM, FIVE_BAR], ids=lambda m: m["name"])
 def test_two_derivations_are_equal(mechanism: dict[str, Any]) -> None:
     """The engine's, of trees, and the checker's, by automatic differentiation."""
     model = ptmcad.Mechanism(mechanism)
@@ -175,7 +190,7 @@ def test_two_derivations_are_equal(mechanism: dict[str, Any]) -> None:
         for k, angle in enumerate(model.angles):
             u = fmpq(t[k], t[2])
             place[f"cos_{angle}"], place[f"sin_{angle}"] = (1 - u * u) / (1 + u * u), 2 * u / (1 + u * u)
-        place |= {name: fmpq(t[1], 3) for name in model.reals}
+        place |= {name: fmpq(t[1] + n, 3) for n, name in enumerate(model.reals)}
         at = list(place.values())
         mine = []
         for p in ours:
@@ -235,19 +250,111 @@ def test_what_is_not_computed_is_refused_by_its_key(change: dict[str, Any], key:
     assert any(said in fault.message for fault in wrong), [(f.key, f.message) for f in caught.value.faults]
 
 
-def test_more_than_one_degree_of_freedom_is_refused() -> None:
-    points = {**FOUR_BAR["points"], "Q": ["b + L2*cos(th2) + cos(th3)", "L2*sin(th2) + sin(th3)"]}
-    with pytest.raises(ConfigError, match="2 degrees of freedom are left"):
-        ptmcad.Mechanism({**FOUR_BAR, "points": points, "bars": [],
-                          "unknowns": {**FOUR_BAR["unknowns"], "th3": "angle"}})  # fmt: skip
+CHAIN = {
+    **{key: value for key, value in PLATFORM.items() if key != "closing"},
+    "unknowns": {"phi": "angle", "th": "angle"},
+    "points": {**PLATFORM["points"], "P": ["L*cos(th)", "L*sin(th)"]},
+}
+"""The same platform as an open chain."""
+LEG = {"axes": {"L": ["1/10", 3], "W": [-3, 3]}, "count": "stable"}
 
 
-@pytest.mark.parametrize("lengths", [(1, 1, 2, 2), (1, 2, 2, 1), ("3/2", "3/2", 1, 1)],
-                         ids=["parallelogram", "kite", "another parallelogram"])  # fmt: skip
-def test_a_loop_that_folds_flat_everywhere_is_told(lengths: tuple[Any, ...]) -> None:
+def test_two_degrees_of_freedom_are_those_of_an_open_chain() -> None:
+    random.seed(11)
+    loop, chain = slice_of(PLATFORM, **LEG), slice_of(CHAIN, **LEG)
+    seen = set()
+    for _ in range(8):
+        at = {"L": Fraction(random.randrange(10, 300), 100), "W": Fraction(random.randrange(-300, 300), 100)}
+        found, known = ptmcad.solve(loop, **at), ptmcad.solve(chain, **at)
+        kinds = [[(p.stable, p.known_energy.text(8)) for p in poses.equilibria] for poses in (found, known)]
+        assert kinds[0] == kinds[1]
+        seen.add(len(kinds[0]))
+    assert seen == {4, 6}
+
+
+def test_two_degrees_of_freedom_have_the_curves_of_an_open_chain() -> None:
+    """All of them: of the conditions for stability none brings a curve of its own."""
+    found, known = (
+        {c.polynomial: c.kind for c in components(slice_of(mechanism, **LEG))} for mechanism in (PLATFORM, CHAIN)
+    )
+    assert found == known
+
+
+def test_a_tension_is_what_a_longer_bar_saves() -> None:
+    """The energy of a pose changes with the bar's length at minus the tension."""
+    slice, step = slice_of(PLATFORM, **LEG), Fraction(1, 1000)
+    below, here, above = (ptmcad.solve(slice, L=1 + k * step, W=-2).equilibria for k in (-1, 0, 1))
+    assert len(here) == 4
+    for one, pose, two in zip(below, here, above, strict=True):
+        slope = (two.known_energy.center - one.known_energy.center) / (2 * step)
+        assert float(slope) == pytest.approx(-float(pose.reals[-1].center), rel=1e-4)
+
+
+def test_a_five_bar_has_44_complex_solutions() -> None:
+    found = ptmcad.solve(slice_of(FIVE_BAR, axes={"F": [-3, 3], "G": [-3, 3]}), F=2, G=2)
+    assert (len(found.equilibria), found.stable) == (10, 1)
+
+
+@pytest.mark.slow
+def test_a_map_with_two_degrees_of_freedom_is_verified() -> None:
+    found = ptmcad.classify(slice_of(PLATFORM, **LEG))
+    again = ptmcad.RegionMap.from_json(found.to_json())
+    assert again == found
+    assert ptmcad.verify(again).ok
+
+
+def test_a_moment_on_another_unknown_needs_one_degree_of_freedom() -> None:
+    with pytest.raises(ConfigError, match="one degree of freedom, not 2"):
+        ptmcad.Mechanism({**FIVE_BAR, "moments": {"a": "sin(b)"}})
+
+
+def test_a_tension_has_a_name_of_its_own() -> None:
+    with pytest.raises(ConfigError, match="'tension_CQ' is the name of a closing bar's tension"):
+        ptmcad.Mechanism({**FIVE_BAR, "parameters": {**FIVE_BAR["parameters"], "tension_CQ": {"kind": "force"}},
+                          "loads": {"C": ["F", "-G"], "Q": ["tension_CQ", 0]}})  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("lengths", "said"),
+    [
+        ((1, 1, 2, 2), "A0 P Q B0 is a parallelogram with two branches, on one A0P and B0Q are parallel"),
+        (("3/2", "3/2", 1, 1), "A0 P Q B0 is a parallelogram"),
+        ((2, 1, 1, 2), "A0 P Q B0 is a kite with two branches, on one P stays at B0"),
+        ((2, 1, 2, 1), "A0 P Q B0 is a kite with two branches, on one Q stays at A0"),
+        ((1, 1, 1, 1), "A0 P Q B0 is a rhombus with three branches"),
+        ((1, 2, 3, 2), "as lengths of its bars add up alike"),
+    ],
+    ids=str,
+)
+def test_a_loop_that_folds_flat_everywhere_is_told_with_its_branches(lengths: tuple[Any, ...], said: str) -> None:
     numbers = dict(zip(("L1", "L2", "L3", "b"), lengths, strict=True))
-    with pytest.raises(DegenerateSliceError, match="the loop that PQ closes can fold flat"):
+    with pytest.raises(DegenerateSliceError) as caught:
         components(slice_of(FOUR_BAR, **LOADS, parameters=numbers))
+    assert "the loop that PQ closes can fold flat" in str(caught.value)
+    assert said in str(caught.value)
+
+
+def test_the_branches_of_a_parallelogram_by_themselves() -> None:
+    """As an open chain and as an X-joint: minima and maxima of the energy along each."""
+    without = {k: v for k, v in FOUR_BAR.items() if k not in ("closing", "bars")}
+    parameters = {k: v for k, v in FOUR_BAR["parameters"].items() if k not in ("L2", "L3")}
+    ends = {k: v for k, v in FOUR_BAR["points"].items() if k in ("A0", "B0")}
+    parallel = {**without, "name": "parallel", "parameters": parameters, "unknowns": {"th1": "angle"},
+                "points": {**FOUR_BAR["points"], "Q": ["b + L1*cos(th1)", "L1*sin(th1)"]}}  # fmt: skip
+    joint = {"base": ["A0", "B0"], "bars": "L1", "angles": ["th1", "th2"], "top": ["Q", "P"]}
+    crossed = {**without, "name": "crossed", "parameters": parameters, "unknowns": {"th1": "angle"}, "points": ends,
+               "x-joint": {"X": joint}}  # fmt: skip
+    th = 2 * math.pi * (np.arange(40000) + 0.37) / 40000
+    z = np.exp(1j * th)
+    for mechanism, w in ((parallel, z), (crossed, (z - 2) / (1 - 2 * z))):
+        p, q = z, 2 + w
+        assert np.abs(np.abs(p - q) - 2).max() < 1e-9
+        for F, G in (("17/13", "-9/11"), ("1/3", "1/5")):
+            found = ptmcad.solve(slice_of(mechanism, **LOADS, parameters={"L1": 1, "b": 2}), F=F, G=G)
+            u = np.abs(q) ** 2 / 2 + np.abs(p - 2) ** 2 / 2 - float(Fraction(F)) * p.imag - float(Fraction(G)) * q.imag
+            minima = int(((u < np.roll(u, 1)) & (u < np.roll(u, -1))).sum())
+            maxima = int(((u > np.roll(u, 1)) & (u > np.roll(u, -1))).sum())
+            assert (found.stable, len(found.equilibria)) == (minima, minima + maxima)
 
 
 def test_lengths_and_stiffnesses_written_where_they_are_used_are_proved_positive() -> None:

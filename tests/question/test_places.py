@@ -122,7 +122,7 @@ MECHANISMS = [
     ("    P: {weight: W}", "    P: [W]", 0, "loads.P", "expected two components"),
     ("    P: {weight: W}", "    P: {wait: W}", 0, "loads.P.wait", "did you mean 'weight'?"),
     ("    th: 1/10", "    tth: 1/10", 0, "moments.tth", "did you mean 'th'?"),
-    ("    th: 1/10", "    th: 1/10\n  x-joint: []", 1, "x-joint", "crossed joints"),
+    ("    th: 1/10", "    th: 1/10\n  x-joint: []", 1, "x-joint", "expected a mapping"),
 ]  # fmt: skip
 SYSTEMS = [
     (K, "      default: 1/0\n", 0, "parameters.b.default", "division by zero"),

@@ -32,7 +32,7 @@ FIRST = 2
 """Number of the first unknown among the variables, after the two axes."""
 
 _IRRELEVANT = frozenset({"name", "parameters", "unknowns", "source", "bars", "bodies", "supports", "symmetries"})
-_SAID_IN_EQUATIONS = frozenset({"mechanism", "tangent"})
+_SAID_IN_EQUATIONS = frozenset({"mechanism", "tangent", "multipliers"})
 """Of a mechanism with closed loops."""
 _USED = frozenset(
     {"points", "springs", "torsion", "loads", "moments", "equations", "potential", "inequalities", "stability"}

@@ -17,7 +17,7 @@ from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
 from ptmcad.exact.models.system import ParametricSystem, from_equations, from_potential
 from ptmcad.exact.models.turns import with_turns
-from ptmcad.mechanism import Mechanism, Model, System
+from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, System
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.work import split_moments
 from ptmcad.text.tree import Tree
@@ -60,8 +60,12 @@ class _Evaluation(NamedTuple):
 
 @lru_cache(maxsize=8)
 def geometry_of(mechanism: Mechanism) -> Geometry:
-    """The points, stiffnesses and loads of a mechanism, with all parameters symbolic."""
-    ring = TrigonometricRing(mechanism.without_free_lengths, mechanism.angles, mechanism.reals)
+    """The points, stiffnesses and loads of a mechanism, with all parameters symbolic.
+
+    Angles that follow from others, of X-joints, are angles of the ring after the unknown ones.
+    """
+    angles = (*mechanism.angles, *mechanism.followers)
+    ring = TrigonometricRing(mechanism.without_free_lengths, angles, mechanism.reals)
     within = _Evaluation(ring)
     return Geometry(
         ring,
@@ -134,7 +138,13 @@ def _equations_of(model: System) -> ParametricSystem:
     if model.potential is not None:
         (potential,) = elements([model.potential])
         return from_potential(ring, potential, **asked)
-    return from_equations(ring, elements(model.equations), stability=elements(model.stability), **asked)
+    return from_equations(
+        ring,
+        elements(model.equations),
+        stability=elements(model.stability),
+        definite=isinstance(model, ClosedMechanism),
+        **asked,
+    )
 
 
 def _equilibria_of(mechanism: Mechanism) -> ParametricSystem:

@@ -43,6 +43,8 @@ class ParametricSystem(NamedTuple):
     stability : where there is no potential a solution is stable where all of these are positive.
     positive : parameters that must be positive (rod lengths and stiffnesses).
     nonnegative : parameters that must not be negative (the base length).
+    definite : whether the conditions for stability hold together where a symmetric matrix is positive definite, and
+        the last one is its determinant, times what is positive: then no other one's zeros matter.
     turns : the equations in other angles, `ptmcad.exact.models.turns.Turns`, where these are simpler.
     """
 
@@ -57,6 +59,7 @@ class ParametricSystem(NamedTuple):
     positive: tuple[str, ...] = ()
     nonnegative: tuple[str, ...] = ()
     turns: Any = None
+    definite: bool = False
 
     @property
     def dimension(self) -> int:
@@ -146,7 +149,8 @@ class SliceSystem(NamedTuple):
     equations : the system's, each divided by its content and cleared of denominators, then the circles
         cos^2 + sin^2 - 1; exponent vector -> element of Z[x, y].
     jacobian : the Jacobian's determinant, cleared of denominators (these vanish only on ``boundary``).
-    inequalities, stability : the system's, cleared of denominators in the same way.
+    inequalities, stability : the system's, cleared of denominators in the same way; of conditions that say that a
+        matrix is definite the last one, its determinant.
     boundary : polynomials where the slice's equations lose their meaning: denominators of the parameters, and
         factors common to all coefficients of an equation (there that equation vanishes identically).
     unknowns : the number of coordinates.
@@ -187,7 +191,8 @@ def on_slice(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Slice
         boundary += removed
     equations += [{m: one * c for m, c in circle.items()} for circle in ring.circles]
     conditions = []
-    for condition in (*system.inequalities, *system.stability):
+    asked = system.stability[-1:] if system.definite else system.stability
+    for condition in (*system.inequalities, *asked):
         substituted = _substitute(system, condition, parameters, one)
         conditions.append(_without_denominators(substituted))
         boundary += [q for q in (lcm(d for _, d in substituted.values()),) if not q.is_constant()]
@@ -291,6 +296,23 @@ def at_point(
         tuple(_specialised(system, e, values) for e in system.equation_terms),
         tuple(tuple(_specialised(system, d, values) for d in row) for row in system.jacobian_terms),
     )
+
+
+def specialised(ring: TrigonometricRing, p: TrigonometricPolynomial, values: Mapping[str, fmpq]) -> RationalPolynomial:
+    """An element of any trigonometric ring with rational numbers for the parameters, exactly."""
+    numbers = [values[name] for name in ring.parameters]
+    found: RationalPolynomial = {}
+    for monomial, part in ring.split(p).items():
+        total = fmpq(0)
+        for powers, coefficient in part.items():
+            term = coefficient
+            for number, e in zip(numbers, powers, strict=True):
+                if e:
+                    term = term * number**e
+            total += term
+        if total:
+            found[monomial] = total
+    return found
 
 
 def polynomial_at(

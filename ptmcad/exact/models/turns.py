@@ -93,6 +93,7 @@ def _moved(
         potential=None if system.potential is None else moved(system.potential),
         inequalities=tuple(map(moved, system.inequalities)),
         stability=tuple(map(moved, system.stability)),
+        definite=system.definite,
         positive=system.positive,
         nonnegative=system.nonnegative,
     )

@@ -16,7 +16,7 @@ from typing import TypeVar
 
 from ptmcad.answer.poses import MAX_DIGITS, Pose, Poses, Spring, TorsionSpring
 from ptmcad.answer.regionmap import Status
-from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism import mechanism_in
 from ptmcad.show.document import codec
 from ptmcad.show.document.codec import NATURAL, TEXT, TRUTH, Codec, line, listed, optional, record
 from ptmcad.show.document.model import MODEL, either
@@ -65,7 +65,8 @@ def _check_lengths(found: Poses, document: Node) -> None:
     angles, reals = len(found.model.angles), len(found.model.reals)
     wanted = {"angles": angles, "degrees": angles, "cosines_sines": 2 * angles, "reals": reals}
     if any(pose.torsion for pose in found.equilibria):  # documents of earlier versions have none
-        wanted["torsion"] = len(found.model.torsion) if isinstance(found.model, Mechanism) else 0
+        mechanism = mechanism_in(found.model)
+        wanted["torsion"] = 0 if mechanism is None else len(mechanism.torsion)
     for place in document.mapping()["equilibria"].each(lambda node: node):
         entries = place.mapping()
         for key, length in wanted.items():

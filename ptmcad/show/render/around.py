@@ -19,7 +19,7 @@ from matplotlib.text import Text
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism import mechanism_in
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.blocks import GAP, Block, Point, Side, Slot, arranged, sized
 from ptmcad.show.render.clearance import Box, Position
@@ -56,7 +56,7 @@ def draw_around(
     ConfigError
         For a system without points to draw, too many points, or a size in which poses have no room.
     """
-    if not isinstance(result.slice.model, Mechanism):
+    if mechanism_in(result.slice.model) is None:
         raise ConfigError(no_drawing(result.slice.model), key="at")
     if len(points) > MAX_POINTS:
         raise ConfigError(f"poses of at most {MAX_POINTS} points fit around a map", key="at")
@@ -181,8 +181,8 @@ def _draw_block(figure: Figure, block: Block, frame: Frame, slot: Slot, style: S
             va="center_baseline", color=INK,
         )  # fmt: skip
     top = slot.top - 1.3 * em * len(block.head)
-    mechanism = block.poses.model
-    assert isinstance(mechanism, Mechanism)  # others have been refused
+    mechanism = mechanism_in(block.poses.model)
+    assert mechanism is not None  # others have been refused
     scene = Scene(mechanism, frame, arrow_lengths(block.poses))
     for k, pose in enumerate(block.shown):
         row, column = divmod(k, block.across)

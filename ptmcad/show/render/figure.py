@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism import mechanism_in
 from ptmcad.question.slice import Slice
 from ptmcad.show.render import regionmap
 from ptmcad.show.render.layout import GAP, LEFT, SIDE
@@ -62,8 +62,8 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
     told = poses.model.tells_stability
     shown = [pose for pose in in_order(poses) if pose.stable or not told]
     arrows = arrow_lengths(poses)
-    mechanism = poses.model
-    assert isinstance(mechanism, Mechanism)  # `arrow_lengths` has refused others
+    mechanism = mechanism_in(poses.model)
+    assert mechanism is not None  # `arrow_lengths` has refused others
     parts = (Entry(("spring; bars are thick",), spring_mark()), *support_legend(mechanism))
     entries = (*parts, *_LOADS) if arrows else parts
     below = below_panel(shown[0], mechanism) if shown else BELOW

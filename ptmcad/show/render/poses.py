@@ -19,7 +19,7 @@ from matplotlib.lines import Line2D
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import counted, kind_name, noun, of_what, untold
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Mechanism, Model, Support
+from ptmcad.mechanism import Mechanism, Model, Support, mechanism_in
 from ptmcad.mechanism.joints import joints_of
 from ptmcad.question.slice import merged
 from ptmcad.show.drawable import no_drawing
@@ -57,7 +57,8 @@ def draw_poses(poses: Poses) -> Figure:
     ConfigError
         For a system that is no mechanism: it has no points to be drawn.
     """
-    if not isinstance(poses.model, Mechanism):
+    mechanism = mechanism_in(poses.model)
+    if mechanism is None:
         raise ConfigError(no_drawing(poses.model))
     shown = in_order(poses)
     if not shown:
@@ -72,7 +73,7 @@ def draw_poses(poses: Poses) -> Figure:
     width = 2 * MARGIN + columns * (wide + GAP) + KEY
     title = heading(poses, round(12.4 * (width - 2 * MARGIN)))
     top = below + MARGIN
-    scene = Scene(poses.model, frame, arrows)
+    scene = Scene(mechanism, frame, arrows)
     with settings():
         figure = titled(title, (width, top + TITLE_LINE * len(title) + 0.08 + MARGIN), MARGIN)
         figure.set_label(f"{' '.join(title)}\n{describe(poses)}")
@@ -96,7 +97,7 @@ def kind(pose: Pose) -> str:
     if pose.multiplicity > 1:
         return f"degenerate, multiplicity {pose.multiplicity}"
     if pose.index is None:
-        return "equilibrium"
+        return {True: "stable", False: "unstable", None: "equilibrium"}[pose.stable]
     return "stable (minimum)" if pose.index == 0 else kind_name(pose.index, len(pose.eigenvalues))
 
 
@@ -184,7 +185,8 @@ def values(poses: Poses) -> list[str]:
     rest = {name: value for name, value in shown.items() if name not in loads}
     texts = [assigned(name, value) for name, value in rest.items()]
     texts += [assigned(name, value) for name, value in loads.items() if value]
-    unloaded = isinstance(model, Mechanism) and bool(model.loads) and not any(load_values(poses).values())
+    mechanism = mechanism_in(model)
+    unloaded = mechanism is not None and bool(mechanism.loads) and not any(load_values(poses).values())
     return [*texts, "no load"] if unloaded else texts
 
 
@@ -209,7 +211,7 @@ def describe(poses: Poses) -> str:
         + _unknowns_in_words(poses.model, p)
         for n, p in enumerate(in_order(poses), 1)
     ]
-    what = "mechanism" if isinstance(poses.model, Mechanism) else "system"
+    what = "system" if mechanism_in(poses.model) is None else "mechanism"
     return (
         f"{noun(poses.model).capitalize()} of the {what}, {', '.join(values(poses))}. "
         + "; ".join(parts)
@@ -247,21 +249,22 @@ def empty(poses: Poses) -> Figure:
 
 def legend(poses: Poses, arrows: Mapping[str, float]) -> Iterator[Entry]:
     """What lines and colours mean."""
-    assert isinstance(poses.model, Mechanism)
+    mechanism = mechanism_in(poses.model)
+    assert mechanism is not None
     yield Entry(("Poses",), strong=True)
     if poses.model.tells_stability:
         yield Entry(("stable: strong colours, dark frame",), bar_mark(0, STRONG))
         yield Entry(("unstable or degenerate: pale",), bar_mark(0, PALE))
     else:
-        yield Entry(tuple(textwrap.wrap(untold(poses.model), _KEY_COLUMNS)))
-    if poses.model.has_potential:
-        left_out = of_what(poses.model, poses.parameters)
+        yield Entry(tuple(textwrap.wrap(untold(mechanism), _KEY_COLUMNS)))
+    if mechanism.has_potential:
+        left_out = of_what(mechanism, poses.parameters)
         yield Entry((f"U: energy, in {energy_unit(poses.units)}", *textwrap.wrap(left_out, _KEY_COLUMNS)))
     yield Entry(())
     yield Entry(("Parts",), strong=True)
-    yield from parts_legend(poses.model)
+    yield from parts_legend(mechanism)
     if arrows:
-        loads = list(_load_texts(poses.model, load_values(poses)))
+        loads = list(_load_texts(mechanism, load_values(poses)))
         shortened = any(abs(length) == SHORTEST_ARROW < LONGEST_ARROW for length in arrows.values())
         lines = ["loads; arrows in proportion to them" if len(loads) > 1 else "load"]
         lines += ["except that short ones are lengthened"] if shortened else []

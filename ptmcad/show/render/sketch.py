@@ -15,7 +15,7 @@ from fractions import Fraction
 from math import hypot
 
 from ptmcad.answer.poses import Pose, Poses
-from ptmcad.mechanism import Mechanism, Support
+from ptmcad.mechanism import Mechanism, Support, mechanism_in
 from ptmcad.mechanism.description import Load
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.joints import joints_of
@@ -128,8 +128,8 @@ def arrow_lengths(poses: Poses) -> dict[str, float]:
 
 def load_values(poses: Poses) -> dict[str, Fraction]:
     """The components of all loads by their names; constants and expressions are named by their text."""
-    mechanism = poses.model
-    assert isinstance(mechanism, Mechanism)
+    mechanism = mechanism_in(poses.model)
+    assert mechanism is not None
     values = dict.fromkeys(mechanism.variables, Fraction(0)) | dict(poses.parameters)
     components = (pair for load in mechanism.loads for pair in zip(load.names, (load.x, load.y), strict=True))
     return {name: value_at(tree, values) for name, tree in components}

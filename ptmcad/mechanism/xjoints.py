@@ -1,0 +1,102 @@
+"""X-joints of a record: what each is on, the points that it adds, and what is wrong with it.
+
+Guarantee: a base is known by direction and length: it lies on a level, from left to right, where no unknown moves it,
+or it is the top of a joint that stands above in the record.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from ptmcad.errors import ConfigError, Faults
+from ptmcad.mechanism.derivative import negative, product, total
+from ptmcad.mechanism.reading import MAX_UNKNOWNS, Reader, as_written, check_keys, ends, mapping, new_name
+from ptmcad.mechanism.xjoint import LEVEL, XJoint
+from ptmcad.text.tree import Tree, names_of
+
+XJOINT_KEYS = ("base", "bars", "angles", "top")
+LIKE = "{X: {base: [A, B], bars: L, angles: [th, psi], top: [C, D]}}"
+Place = tuple[Tree, Tree]
+
+
+def second_angles(value: object) -> tuple[str, ...]:
+    """The names that the record gives to angles of second bars, before anything of it is checked."""
+    found = []
+    for entry in value.values() if isinstance(value, Mapping) else ():
+        angles = entry.get("angles") if isinstance(entry, Mapping) else None
+        if isinstance(angles, list | tuple) and len(angles) == 2 and isinstance(angles[1], str):
+            found.append(angles[1])
+    return tuple(found)
+
+
+def add_xjoints(
+    value: object, reader: Reader, points: dict[str, Place], taken: Mapping[str, object], faults: Faults
+) -> tuple[XJoint, ...]:
+    """Add the joints' tops to the points.
+
+    Parameters
+    ----------
+    taken : parameters and unknowns.
+    """
+    found: dict[str, XJoint] = {}
+    for name, entry in mapping(value, "x-joint", MAX_UNKNOWNS, LIKE).items():
+        key = f"x-joint.{name}"
+        with faults:
+            new_name(name, key, {})
+            fields = mapping(entry, key, like="{base: [A, B], bars: L, angles: [th, psi], top: [C, D]}")
+            check_keys(fields, XJOINT_KEYS, key, faults)
+            missing = [needed for needed in XJOINT_KEYS if needed not in fields]
+            for needed in missing:
+                with faults:
+                    raise ConfigError("is missing", key=f"{key}.{needed}")
+            if not missing:
+                joint = _joint(name, fields, reader, points, {**taken, **{j.other: j for j in found.values()}}, found)
+                for point, angle, (x, y) in zip(
+                    joint.top, (joint.other, joint.angle), (points[p] for p in joint.base[::-1]), strict=True
+                ):
+                    c, s = joint.bar(angle)
+                    points[point] = total(x, product(joint.bars, c)), total(y, product(joint.bars, s))
+                found[name] = joint
+    return tuple(found.values())
+
+
+def _joint(
+    name: str,
+    fields: Mapping[str, Any],
+    reader: Reader,
+    points: Mapping[str, Place],
+    taken: Mapping[str, object],
+    below: Mapping[str, XJoint],
+) -> XJoint:
+    key = f"x-joint.{name}"
+    base = ends(fields["base"], f"{key}.base", points)
+    angles, top = (
+        _two_names(fields[k], f"{key}.{k}", like) for k, like in (("angles", "[th, psi]"), ("top", "[C, D]"))
+    )
+    new_name(angles[1], f"{key}.angles.2", taken)
+    if angles[0] not in reader.moving.angles or angles[0] in reader.second:
+        raise ConfigError(f"{as_written(angles[0])} is no unknown angle", key=f"{key}.angles.1")
+    if any(joint.angle == angles[0] for joint in below.values()):
+        raise ConfigError(f"{angles[0]} is the angle of another x-joint", key=f"{key}.angles.1")
+    for n, point in enumerate(top, 1):
+        new_name(point, f"{key}.top.{n}", {**points, **({top[0]: None} if n == 2 else {})})
+    bars = reader.tree(fields["bars"], f"{key}.bars")
+    under = next((joint for joint in below.values() if joint.top == base), None)
+    if under is not None:
+        return XJoint(name, base, top, *angles, under.length, bars, *under.upper)
+    (x, y), (x1, y1) = (points[p] for p in base)
+    moving = {*reader.moving.angles, *(u for u in taken if u in reader.excluded)}
+    if y != y1 or moving & {*names_of(x), *names_of(x1), *names_of(y)}:
+        raise ConfigError(
+            "the base of an x-joint is the top of another one above, as [left, right], or two points that no unknown "
+            "moves, from left to right on one level: turn a frame that moves by its unknowns' angles instead",
+            key=f"{key}.base",
+        )
+    return XJoint(name, base, top, *angles, total(x1, negative(x)), bars, LEVEL, 0)
+
+
+def _two_names(value: object, key: str, like: str) -> tuple[str, str]:
+    if not (isinstance(value, list | tuple) and len(value) == 2 and all(isinstance(name, str) for name in value)):
+        raise ConfigError(f"expected two names, such as {like}", key=key)
+    return value[0], value[1]
