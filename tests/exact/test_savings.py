@@ -347,9 +347,12 @@ def test_curves_of_the_certified_engine() -> None:
     assert {v[2] for v in found(slice, *CERTIFIED).values()} == {0}
     assert all(v[2] > 0 for v in found(slice).values())
     unloaded = record("free02-unloaded")
-    # the factor rho is what allows to do without a second chart
-    assert list(found(unloaded)) == ["fold of a stable equilibrium"]
-    assert len(found(unloaded, "unloaded-factor")) == 2
+    # a pitchfork at each flat configuration, and a search beside it from either side
+    names = list(found(unloaded))
+    assert [name.partition(" ")[0] for name in names] == ["pitchfork"] * 4 + ["fold"] * 8
+    # without mirror images the factor rho is what allows to do without a second chart
+    assert list(found(unloaded, "mirror-images")) == ["fold of a stable equilibrium"]
+    assert len(found(unloaded, "mirror-images", "unloaded-factor")) == 2
 
 
 @pytest.mark.slow

@@ -44,6 +44,7 @@ KERNELS = {
     "certified/ptm/cones.py",
     "certified/ptm/curves.py",
     "certified/ptm/equilibria.py",
+    "certified/ptm/flat.py",
     "certified/ptm/mirror.py",
     "certified/ptm/statics.py",
 }

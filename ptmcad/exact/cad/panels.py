@@ -9,10 +9,11 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import NamedTuple
 
-from flint import arb, ctx, fmpq, fmpq_poly
+from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.arcs import arc_integral
 from ptmcad.algebra.branches import Integral, PrecisionTooLow, branch_integral
+from ptmcad.algebra.graphs import graph_integral
 from ptmcad.algebra.puiseux import Beside, puiseux_integral
 from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
 from ptmcad.algebra.window import Interval
@@ -108,9 +109,8 @@ def panels(border: Border, over: Interval, effort: Effort, allowed: fmpq, singul
     """
     if singular:
         return [_rough_panel(border, over, effort, singular)]
-    if (graph := _graph(border.curve)) is not None:
-        whole = graph.integral()
-        return [Panel(border, *over, arb(whole(over[1]) - whole(over[0])), True, 0)]
+    if (integral := graph_integral(border.curve.in_v, *over)) is not None:
+        return [Panel(border, *over, arb(integral), True, 0)]
     done: list[Panel] = []
     left = [over]
     while left:
@@ -132,13 +132,6 @@ def panels(border: Border, over: Interval, effort: Effort, allowed: fmpq, singul
                 high = done[-1].low
         left += [rest for rest in ((low, start), (stop, high)) if rest[0] < rest[1]]
     return sorted(done, key=lambda p: p.low)
-
-
-def _graph(curve: Curve) -> fmpq_poly | None:
-    """The polynomial whose graph the curve is; None where it is no polynomial's."""
-    if len(curve.in_v) != 2 or curve.in_v[1].degree() > 0:
-        return None
-    return fmpq_poly(-curve.in_v[0]) / fmpq(curve.in_v[1][0])
 
 
 def _rough_panel(border: Border, over: Interval, effort: Effort, singular: int) -> Panel:

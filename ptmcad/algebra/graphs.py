@@ -1,0 +1,20 @@
+"""Curves that are graphs of polynomials, whose integrals are rational."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from flint import fmpq, fmpq_poly, fmpz_poly
+
+
+def graph_integral(in_v: Sequence[fmpz_poly], low: fmpq, high: fmpq) -> fmpq | None:
+    """The integral of v over [low, high] on the curve p(u, v) = 0; None where it is not the graph of a polynomial in u.
+
+    Parameters
+    ----------
+    in_v : coefficients in Z[u] of p as a polynomial in v.
+    """
+    if len(in_v) != 2 or in_v[1].degree() > 0:
+        return None
+    whole = fmpq_poly(-in_v[0]).integral()
+    return (whole(high) - whole(low)) / fmpq(in_v[1][0])
