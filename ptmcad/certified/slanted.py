@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from fractions import Fraction
-from math import ceil, comb, inf
+from math import ceil, comb
 
 import numpy as np
 from flint import fmpq, fmpq_poly
@@ -84,7 +84,7 @@ class Slanting:
         steps = self.lattice.steps
         limit = int(SPECK_SHARE * tolerance * steps**2)
         window = (0, steps, 0, steps)
-        waiting = [_Leaf(window, tuple(enclosure.boxes() for enclosure in self.enclosures), window)]
+        waiting = [_Leaf(window, tuple(_sorted(enclosure.boxes()) for enclosure in self.enclosures), window)]
         patches: list[Patch] = []
         with ThreadPoolExecutor(jobs) as pool:
             while sum(leaf.area for leaf in waiting) > limit:
@@ -226,6 +226,11 @@ def _q(value: Fraction) -> fmpq:
     return fmpq(value.numerator, value.denominator)
 
 
+def _sorted(boxes: Boxes) -> Boxes:
+    """The boxes in an order that does not depend on which task was done first."""
+    return boxes[np.lexsort(boxes.T)]
+
+
 def _hull(boxes: Boxes) -> tuple[np.ndarray, np.ndarray]:
     """The ends of the boxes' projections."""
     half = boxes.shape[1] // 2
@@ -277,5 +282,3 @@ def _parted(rectangle: Rectangle, along: int, ends: tuple[int, int], found: list
     patch = Patch(frame, along, tuple(found))
     return None if exact.flaw(patch, 2**62) else patch
 
-
-__all__ = ["Slanting", "inf", "slanting"]

@@ -13,7 +13,7 @@ beside them along the pieces of the frame's sides that no tube has.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -22,9 +22,11 @@ from numpy.typing import NDArray
 from ptmcad.cover import tubes
 from ptmcad.cover.complement import Components, Frames, Tiling, as_rectangles, bounding_boxes, grown, sums_of_areas
 from ptmcad.cover.rectangles import Cover, Patch, Rectangle
-from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array
+from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array, subdivide
 
 Integers = NDArray[np.int64]
+COLUMNS = 24
+"""Rectangles in place of a tube where it is drawn."""
 _WIDTHS = (Fraction(1, 2), Fraction(1, 8), Fraction(1, 64), Fraction(1, 1024))
 """Of rectangles that are tried within a part of a frame, as parts of the frame's length."""
 
@@ -287,3 +289,53 @@ def _within(patch: Patch, number: int) -> Rectangle:
             if _size(found) > _size(best):
                 best = found
     return best
+
+
+def staircase(patch: Patch, columns: int) -> Iterator[Rectangle]:
+    """Rectangles that cover a frame's tubes, so many for each."""
+    low, high = tubes.ends(patch)
+    bottom, top = tubes.heights(patch)
+    columns = min(columns, high - low)
+    for tube in patch.tubes:
+        for k in range(columns):
+            start, end = low + (high - low) * k // columns, low + (high - low) * (k + 1) // columns
+            least, most = tubes.bounds_between(
+                tube.controls, Fraction(start - low, high - low), Fraction(end - low, high - low)
+            )
+            first, last = max(bottom, (least - tube.half).__floor__()), min(top, (most + tube.half).__ceil__())
+            if first < last:
+                yield (start, end, first, last) if patch.along == 0 else (first, last, start, end)
+
+
+def stepped(cover: Cover, columns: int = COLUMNS) -> Cover:
+    """A cover of more, of rectangles alone: a staircase in place of each tube."""
+    steps = (piece for patch in cover.patches for piece in staircase(patch, columns))
+    return Cover(cover.steps, tuple(sorted({*cover.rectangles, *steps})))
+
+
+def shown(complement: Components, columns: int = COLUMNS) -> Components:
+    """The same components with a subdivision in which rectangles cover the tubes, to draw them by.
+
+    What these rectangles have of a component is in none of its leaves; a leaf's owner is still its component.
+    """
+    if complement.frames is None:
+        return complement
+    cover = complement.cover
+    tree = subdivide(rectangle_array(stepped(cover, columns)), cover.steps)
+    free = np.flatnonzero(tree.state == FREE)
+    bounds = tree.bounds[free]
+    there = complement.subdivision.leaves_right_above(bounds[:, 0], bounds[:, 2])
+    found = complement.owner[there]
+    frame_of = complement.frames.frame_of[there]
+    for k in np.flatnonzero(frame_of >= 0).tolist():
+        patch = cover.patches[int(frame_of[k])]
+        inside = [
+            Fraction(max(int(bounds[k, 2 * a]), patch.frame[2 * a]) + min(int(bounds[k, 2 * a + 1]),
+                     patch.frame[2 * a + 1]), 2)
+            for a in (0, 1)
+        ]  # fmt: skip
+        number = tubes.place(patch, inside[patch.along], inside[1 - patch.along])
+        found[k] = -1 if number is None else complement.frames.owners[int(frame_of[k])][number]
+    owner = np.full(len(tree.state), -1, dtype=np.int64)
+    owner[free] = found
+    return replace(complement, subdivision=tree, owner=owner)
