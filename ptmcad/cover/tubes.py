@@ -161,18 +161,19 @@ def crossing(patch: Patch, tube: Tube, height: int) -> tuple[int, int]:
     level = sign * height
     # where c + half >= level begins, and where c - half <= level ends
     first = _first(c, low, high, level - tube.half)
-    last = _first(c, low, high, level + tube.half + 1)
+    last = _first(c, low, high, level + tube.half, beyond=True)
     return (max(first - 1, low), min(last, high)) if first <= high else (1, 0)
 
 
-def _first(controls: Controls, low: int, high: int, level: int) -> int:
-    """The first lattice point from low to high at which an ascending polynomial is at least level; else high + 1."""
+def _first(controls: Controls, low: int, high: int, level: int, beyond: bool = False) -> int:
+    """The first lattice point from low to high at which an ascending polynomial is at least level, or above it; else
+    high + 1."""
     width = high - low
-    if controls[-1] < level:
+    if controls[-1] < level + beyond:
         return high + 1
-    reach = level * width ** (len(controls) - 1)
+    reach = level * width ** (len(controls) - 1) + beyond
     a, b = low - 1, high
-    if controls[0] >= level:
+    if controls[0] >= level + beyond:
         return low
     guess = low + int(width * _guess(controls, level))
     for distance in (2, 2**10, 2**20):
