@@ -71,7 +71,7 @@ MAP_SHRINK_RATIO = Fraction(9, 10)
 """A map on the way is worth making when the boxes' share is at most this part of what it was at the last one."""
 SLANTED_BELOW = Fraction(1, 2000)
 """Tolerances below are met by slanted pieces: of upright ones it takes twice as many for half of the error ..."""
-SLANTED_SHARE = Fraction(1, 100)
+SLANTED_SHARE = Fraction(1, 500)
 """... once the boxes have at most this part of the window."""
 LATTICE_STEPS = 2**24
 """Lattice steps of a cover along each axis; more for a tolerance below 1e-5."""
@@ -148,7 +148,7 @@ class _Run:
             cover = self._box_cover()
             undetermined = _share(cover)
             if undetermined > tolerance and self._slantable(undetermined):
-                slanted = self._slanted()
+                slanted = self._slanted(self.area * 4.0**-level)
                 if slanted is not None:
                     return slanted
             thin = None if undetermined <= tolerance else self.thin_cover(undetermined)
@@ -173,17 +173,25 @@ class _Run:
         """Whether it is time for slanted pieces: the tolerance is small, and so are the boxes."""
         return self.tolerance < SLANTED_BELOW and undetermined <= SLANTED_SHARE
 
-    def _slanted(self) -> RegionMap | None:
-        """The map of a cover with slanted pieces; None where it did not come about in time, or leaves too much."""
-        start = self.clock()
+    def _slanted(self, area: float) -> RegionMap | None:
+        """The map of a cover with slanted pieces; None where it leaves too much, and then it may be the best so far.
+
+        Parameters
+        ----------
+        area : of a box's projection, below which the search has left it alone.
+        """
+        start, boxes = self.clock(), self.boxes()
         lattice = Lattice(self.lattice.window, MAX_STEPS)
-        boxes = self.boxes()
         cover = slanting(self.enclosures, lattice).cover(self.tolerance, self.jobs, lambda: self.pace.late(boxes))
         self.seconds["curves"] += self.clock() - start
-        if cover is None:
-            return None
+        if not self.pace.late(boxes):
+            cover = without_specks(cover, self.enclosures, lattice, area)
         result = self.map(cover, Status.CERTIFIED)
-        return result if result.undetermined <= self.tolerance else None
+        if result.undetermined <= self.tolerance:
+            return result
+        if self.best is None or result.undetermined < self.best.undetermined:
+            self.best = replace(result, status=Status.PARTIAL)
+        return None
 
     def boxes(self) -> int:
         """The number of boxes there are by now."""

@@ -64,9 +64,7 @@ def _product(
 
 
 @compiled
-def _weighted(
-    a_low: Floats, a_high: Floats, b_low: Floats, b_high: Floats, k: int
-) -> tuple[float, float]:
+def _weighted(a_low: Floats, a_high: Floats, b_low: Floats, b_high: Floats, k: int) -> tuple[float, float]:
     """The sum of i a_i b_(k - i) for i from 1 to k, over k."""
     u = v = 0.0
     for i in range(1, k + 1):
@@ -137,7 +135,7 @@ def extend(program: Program, low_of: Floats, high_of: Floats, into: Series, firs
                     u, v = multiply(low[a, 0], high[a, 0], p, q)
                 else:
                     u, v = _quotient_coefficient(low[a, k], high[a, k], low[i], high[i], low[b], high[b], k)
-            elif operation == _SINE or operation == _COSINE:
+            elif operation in (_SINE, _COSINE):
                 u, v = _wave(operation == _COSINE, low[a], high[a], into, i, k)
             else:
                 u, v = _of_length(operation, low, high, other_low[i], other_high[i], a, b, i, k)
@@ -145,9 +143,7 @@ def extend(program: Program, low_of: Floats, high_of: Floats, into: Series, firs
 
 
 @inlined
-def _wave(
-    cosine: bool, low: Floats, high: Floats, into: Series, i: int, k: int
-) -> tuple[float, float]:
+def _wave(cosine: bool, low: Floats, high: Floats, into: Series, i: int, k: int) -> tuple[float, float]:
     """Coefficient k of a sine or cosine, whose derivative is the other one, up to its sign."""
     if k == 0:
         u, v = sine(low[0], high[0], ONE if cosine else ZERO)

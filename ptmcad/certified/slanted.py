@@ -14,12 +14,14 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from fractions import Fraction
+from heapq import heappop, heappush
 from math import ceil, comb
 
 import numpy as np
 from flint import fmpq, fmpq_poly
 
 from ptmcad.certified.covering import Lattice
+from ptmcad.certified.evaluation import Floats
 from ptmcad.certified.refinement import Enclosure
 from ptmcad.certified.search import Boxes, search_curve
 from ptmcad.certified.system import Arguments, equations_alone
@@ -29,7 +31,7 @@ from ptmcad.cover import tubes as exact
 from ptmcad.cover.rectangles import Cover, Patch, Rectangle, Tube
 from ptmcad.cover.rounding import from_boxes
 
-FINER = 16
+FINER = 64
 """Boxes over a leaf are bisected until their projection is so many times smaller than the leaf."""
 BUDGET = 2000
 """Boxes that are treated for that, at most."""
@@ -37,7 +39,7 @@ MOST_BOXES = 1500
 """A leaf with more is quartered at once."""
 MAX_LEAF = Fraction(1, 4)
 """Of the window's sides: a larger one, too."""
-BISECTIONS, BISECTIONS_PER_BOX = 100, 2
+BISECTIONS, BISECTIONS_PER_BOX = 300, 2
 """Boxes that are treated until all are in tubes."""
 TUBE_SHARE = Fraction(1, 200)
 """Of the tolerance: half width of tubes, as a part of the window, at most. The curves would have to be fifty times as
@@ -46,8 +48,8 @@ SPECK_SHARE = Fraction(3, 4)
 """Of the tolerance: what leaves that are not done may have."""
 MERGED = 8
 """Tubes are one if they are nearer to each other than this many times their half widths."""
-GRAIN = 4
-"""Leaves that are quartered together are at most this many times smaller than the largest."""
+LEAVES_PER_JOB = 4
+"""Leaves that are quartered before it is asked again whether it is late: some tenths of a second."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,29 +81,30 @@ class Slanting:
     whole: tuple[Arguments, ...]
     alone: tuple[Arguments, ...]
 
-    def cover(self, tolerance: Fraction, jobs: int, late: Callable[[], bool]) -> Cover | None:
-        """A cover that leaves at most this part of the window undetermined; None when it is too late."""
+    def cover(self, tolerance: Fraction, jobs: int, late: Callable[[], bool]) -> Cover:
+        """A cover that leaves at most this part of the window undetermined; more when it was late, or at the lattice's
+        end."""
         steps = self.lattice.steps
         limit = int(SPECK_SHARE * tolerance * steps**2)
         window = (0, steps, 0, steps)
-        waiting = [_Leaf(window, tuple(_sorted(enclosure.boxes()) for enclosure in self.enclosures), window)]
+        first = _Leaf(window, tuple(_sorted(enclosure.boxes()) for enclosure in self.enclosures), window)
+        number, total = 0, first.area
+        waiting = [(-total, number, first)]
         patches: list[Patch] = []
+        rectangles: set[Rectangle] = set()
         with ThreadPoolExecutor(jobs) as pool:
-            while sum(leaf.area for leaf in waiting) > limit:
-                if late():
-                    return None
-                least = max(leaf.area for leaf in waiting) // GRAIN
-                chosen = [leaf for leaf in waiting if leaf.area >= least and _splittable(leaf.rectangle)]
-                if not chosen:
-                    return None
-                waiting = [leaf for leaf in waiting if not (leaf.area >= least and _splittable(leaf.rectangle))]
+            while waiting and total > limit and not late():
+                chosen = [heappop(waiting)[2] for _ in range(min(len(waiting), LEAVES_PER_JOB * jobs))]
                 quarters = [(leaf, quarter) for leaf in chosen for quarter in _quarters(leaf.rectangle)]
+                rectangles |= {leaf.inner for leaf in chosen if not _quarters(leaf.rectangle)}
+                total -= sum(leaf.area for leaf in chosen if _quarters(leaf.rectangle))
                 for found in pool.map(lambda pair: self._settled(pair[1], pair[0].boxes, tolerance), quarters):
                     if isinstance(found, Patch):
                         patches.append(found)
                     elif found is not None:
-                        waiting.append(found)
-        rectangles = {leaf.inner for leaf in waiting}
+                        number, total = number + 1, total + found.area
+                        heappush(waiting, (-found.area, number, found))
+        rectangles |= {leaf.inner for _, _, leaf in waiting}
         return Cover(steps, tuple(sorted(rectangles)), tuple(sorted(patches)))
 
     def _settled(self, rectangle: Rectangle, around: tuple[Boxes, ...], tolerance: Fraction) -> _Leaf | Patch | None:
@@ -231,7 +234,7 @@ def _sorted(boxes: Boxes) -> Boxes:
     return boxes[np.lexsort(boxes.T)]
 
 
-def _hull(boxes: Boxes) -> tuple[np.ndarray, np.ndarray]:
+def _hull(boxes: Boxes) -> tuple[Floats, Floats]:
     """The ends of the boxes' projections."""
     half = boxes.shape[1] // 2
     return boxes[:, :2].min(axis=0), boxes[:, half : half + 2].max(axis=0)
@@ -245,12 +248,11 @@ def _meeting(frame: tuple[float, float, float, float], boxes: Boxes) -> Boxes:
     return boxes[kept]
 
 
-def _splittable(rectangle: Rectangle) -> bool:
-    return rectangle[1] - rectangle[0] > 1 and rectangle[3] - rectangle[2] > 1
-
-
 def _quarters(rectangle: Rectangle) -> list[Rectangle]:
+    """None where the lattice is too coarse."""
     left, right, bottom, top = rectangle
+    if right - left < 2 or top - bottom < 2:
+        return []
     x, y = (left + right) // 2, (bottom + top) // 2
     return [(a, b, c, d) for a, b in ((left, x), (x, right)) for c, d in ((bottom, y), (y, top))]
 
@@ -281,4 +283,3 @@ def _parted(rectangle: Rectangle, along: int, ends: tuple[int, int], found: list
     frame = (*ends, bottom, top) if along == 0 else (bottom, top, *ends)
     patch = Patch(frame, along, tuple(found))
     return None if exact.flaw(patch, 2**62) else patch
-

@@ -14,14 +14,13 @@ from math import inf
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ptmcad.certified.arithmetic import down, magnitude, multiply, up
 from ptmcad.certified.compiled import ZERO, compiled, inlined
 from ptmcad.certified.contraction import contract, precondition, workspace
 from ptmcad.certified.evaluation import Floats, Indices, run
 from ptmcad.certified.search import Boxes
-from ptmcad.certified.series import Series, extend, series
+from ptmcad.certified.series import extend, series
 from ptmcad.certified.system import Arguments
 
 NEWTON_STEPS = 12
@@ -178,14 +177,22 @@ def _residual(system: Arguments, z: Floats) -> Floats:
 
 
 @compiled
-def _range(z: Floats, t_low: float, t_high: float) -> tuple[float, float]:
-    """The values of a polynomial for t in an interval within [-1, 1]: about its middle, term by term."""
-    # Horner's rule over the whole interval is good enough where the interval is short
+def _centered(z: Floats, start: float, end: float) -> tuple[float, float]:
+    """The values of a polynomial over an interval within [-1, 1]: its coefficients about the middle, summed up."""
+    c = 0.5 * (start + end)
+    r = up(max(end - c, c - start))
+    n = len(z)
+    low, high = z.copy(), z.copy()
+    # Horner's rule, again and again, makes the coefficients about c
+    for k in range(n - 1):
+        for j in range(n - 2, k - 1, -1):
+            u, v = multiply(low[j + 1], high[j + 1], c, c)
+            low[j], high[j] = down(low[j] + u), up(high[j] + v)
     u = v = 0.0
-    for j in range(len(z) - 1, -1, -1):
-        u, v = multiply(u, v, t_low, t_high)
-        u, v = down(u + z[j]), up(v + z[j])
-    return u, v
+    for j in range(n - 1, 0, -1):
+        a = magnitude(low[j], high[j])
+        v = up(up(v + a) * r)
+    return down(low[0] - v), up(high[0] + v)
 
 
 @compiled
@@ -206,6 +213,9 @@ def _distance(
         curve_low[x], curve_high[x] = _centered(z[x], t_low, t_high)
     for x in range(len(low)):
         far[x] = 0.0 if x == u else up(max(up(high[x] - curve_low[x]), up(curve_high[x] - low[x])))
+    for x in range(len(low)):
+        if not far[x] < inf:
+            return inf
     rest, bound, nearer = np.empty((m, m)), np.empty(m), np.empty(len(low))
     for _ in range(SHRINKAGES):
         for x in range(len(low)):
@@ -239,8 +249,8 @@ def _distance(
                 total = bound[i]
                 for j in range(m):
                     total = up(total + up(rest[i, j] * far[unknowns[work.pivots[j]]]))
-                if total < nearer[x]:
-                    nearer[x] = total
+                # a sum that is no number is passed over
+                nearer[x] = min(nearer[x], total)
             for x in range(len(low)):
                 far[x] = nearer[x]
         for x in range(len(low)):
@@ -248,7 +258,8 @@ def _distance(
                 return -1.0
         if not far.max() <= 0.5 * before:
             break
-    return far.max()
+    result: float = far.max()
+    return result
 
 
 @compiled
@@ -293,9 +304,7 @@ def tubes(
             count += 1
     left = len(boxes)
     if count > 0:
-        left = _refined(
-            system, equations, boxes, weights, centers[:count], residuals, half, (u, most, budget), work
-        )
+        left = _refined(system, equations, boxes, weights, centers[:count], residuals, half, (u, most, budget), work)
     used = half[:count] >= 0
     return Tubes(centers[:count, 1 - u, : order + 1][used], half[:count][used], middle, radius, left)
 
@@ -408,161 +417,3 @@ def _refined(
         stack[top + 1, widest] = middle
         top += 2
     return 0
-
-
-@compiled
-def chart(equations: Arguments, weights: Floats, point: Floats, radius: float, order: int) -> tuple[int, Floats, Floats, float]:
-    """Polynomials along a curve of zeros next to a point, in the variable u that changes most along it.
-
-    ``point`` moves onto the curve. u is -1 where Newton's method fails.
-    """
-    work = _work(equations)
-    z = np.zeros((len(point), order + 2))
-    residual = np.full(len(equations.equations), inf)
-    for j in range(len(equations.unknowns)):
-        work.widths[j] = 1 / weights[equations.unknowns[j]]
-    run(equations.program, point, point, work.low, work.high, ZERO, equations.stages[3])
-    if not _eliminated(equations, work):
-        return -1, z, residual, inf
-    u = -1
-    for j in range(len(equations.unknowns)):
-        chosen = True
-        for i in range(len(work.pivots)):
-            if work.pivots[i] == j:
-                chosen = False
-        if chosen:
-            u = equations.unknowns[j]
-            work.widths[j] = 0.0
-    if not _newton(equations, point, work):
-        return -1, z, residual, inf
-    radius /= weights[u]
-    z = _expanded(equations, point, u, radius, order, work)
-    residual = _residual(equations, z)
-    return u, z, residual, _reach(residual, work)
-
-
-@compiled
-def absorbed(
-    system: Arguments, equations: Arguments, boxes: Boxes, weights: Floats, z: Floats, residual: Floats,
-    u: int, limits: tuple[float, float, int],
-) -> tuple[Boxes, Floats, int]:
-    """Boxes without the parts whose solutions are near the curve z; and how near: -1 where there were none."""
-    most, least, budget = limits
-    variables = boxes.shape[1] // 2
-    work = _work(equations)
-    for j in range(len(equations.unknowns)):
-        work.widths[j] = 0.0 if equations.unknowns[j] == u else 1.0
-    contraction = workspace(system, variables)
-    distance, error = np.empty(variables), np.full(variables, -1.0)
-    stack = np.empty((len(boxes) + 2 * budget + 2, 2 * variables))
-    stack[: len(boxes)] = boxes
-    top, kept, end = len(boxes), 0, len(stack)
-    curve_low, curve_high = np.empty(variables), np.empty(variables)
-    for x in range(variables):
-        curve_low[x], curve_high[x] = _range(z[x], -1.0, 1.0)
-    box = np.empty(2 * variables)
-    low, high = box[:variables], box[variables:]
-    first, last = down(z[u, 0] - z[u, 1] * (1 - 1e-15)), up(z[u, 0] + z[u, 1] * (1 - 1e-15))
-    first, last = up(z[u, 0] - z[u, 1]), down(z[u, 0] + z[u, 1])
-    used = 0
-    # kept ones are stored from the end of the stack
-    while top > 0:
-        top -= 1
-        for k in range(len(box)):
-            box[k] = stack[top, k]
-        apart = budget <= 0
-        for x in range(variables):
-            if low[x] > curve_high[x] + 1e-3 or high[x] < curve_low[x] - 1e-3:
-                apart = True
-        if apart:
-            end -= 1
-            for k in range(len(box)):
-                stack[end, k] = box[k]
-            continue
-        budget -= 1
-        if not contract(system, low, high, contraction):
-            continue
-        widest, middle = -1, 0.0
-        if low[u] < first < high[u]:
-            widest, middle = u, first
-        elif low[u] < last < high[u]:
-            widest, middle = u, last
-        elif low[u] >= first and high[u] <= last:
-            far = _distance(equations, z, residual, low, high, u, distance, work)
-            if far <= most:
-                if far >= 0:
-                    used += 1
-                    for x in range(variables):
-                        error[x] = max(error[x], distance[x])
-                continue
-        if widest < 0:
-            width = least
-            for x in system.unknowns:
-                half = low[x] + 0.5 * (high[x] - low[x])
-                size = (high[x] - low[x]) * weights[x]
-                if size > width and low[x] < half < high[x]:
-                    widest, width, middle = x, size, half
-        if widest < 0 or (low[u] >= last or high[u] <= first):
-            end -= 1
-            for k in range(len(box)):
-                stack[end, k] = box[k]
-            continue
-        for k in range(len(box)):
-            stack[top, k] = stack[top + 1, k] = box[k]
-        stack[top, variables + widest] = middle
-        stack[top + 1, widest] = middle
-        top += 2
-    return stack[end:].copy(), error, used
-
-
-@compiled
-def along_curve(z: Floats, error: Floats, u: int, window: Floats, size: float, weights: Floats) -> Boxes:
-    """Small boxes around a tube in all variables, where it projects to a window (left, bottom, right, top)."""
-    variables = len(z)
-    found, count = np.empty((64, 2 * variables)), 0
-    stack = np.empty((256, 2))
-    stack[0, 0], stack[0, 1] = -1.0, 1.0
-    top = 1
-    box = np.empty(2 * variables)
-    low, high = box[:variables], box[variables:]
-    while top > 0:
-        top -= 1
-        start, end = stack[top, 0], stack[top, 1]
-        for x in range(variables):
-            p, q = _centered(z[x], start, end)
-            low[x], high[x] = down(p - error[x]), up(q + error[x])
-        if low[0] > window[2] or high[0] < window[0] or low[1] > window[3] or high[1] < window[1]:
-            continue
-        wide = max((high[0] - low[0]) * weights[0], (high[1] - low[1]) * weights[1])
-        if wide > size and end - start > 1e-9:
-            half = 0.5 * (start + end)
-            stack[top, 0], stack[top, 1] = start, half
-            stack[top + 1, 0], stack[top + 1, 1] = half, end
-            top += 2
-            continue
-        if count == len(found):
-            larger = np.empty((2 * count, 2 * variables))
-            larger[:count] = found
-            found = larger
-        found[count] = box
-        count += 1
-    return found[:count]
-
-
-@compiled
-def _centered(z: Floats, start: float, end: float) -> tuple[float, float]:
-    """The values of a polynomial over an interval within [-1, 1]: its coefficients about the middle, summed up."""
-    c = 0.5 * (start + end)
-    r = up(max(end - c, c - start))
-    n = len(z)
-    low, high = z.copy(), z.copy()
-    # Horner's rule, again and again, makes the coefficients about c
-    for k in range(n - 1):
-        for j in range(n - 2, k - 1, -1):
-            u, v = multiply(low[j + 1], high[j + 1], c, c)
-            low[j], high[j] = down(low[j] + u), up(high[j] + v)
-    u = v = 0.0
-    for j in range(n - 1, 0, -1):
-        a = magnitude(low[j], high[j])
-        v = up(up(v + a) * r)
-    return down(low[0] - v), up(high[0] + v)

@@ -116,17 +116,13 @@ class Components:
 
 
 def components(cover: Cover, tiling: Tiling = PLAIN) -> Components:
-    """The connected components of the open window without the closed rectangles.
+    """The connected components of the open window without the closed rectangles, of a cover without slanted pieces.
 
     Raises
     ------
     ValueError
         When a rectangle is not one, or the lattice is too fine.
     """
-    if cover.patches:
-        from ptmcad.cover.slanted import slanted_components
-
-        return slanted_components(cover, tiling)
     tree = tiling.subdivide(rectangle_array(cover), cover.steps)
     parts = np.flatnonzero(tree.state != CUT)
     leaves, free = tree.bounds[parts], tree.state[parts] == FREE
@@ -246,9 +242,7 @@ def sums_of_areas(boxes: Integers, group: Integers, groups: int) -> list[int]:
 
 
 def union_area(cover: Cover, tiling: Tiling = PLAIN) -> int:
-    """The area of the rectangles' union, in squares of a lattice step; with slanted pieces what it is at most."""
-    if cover.patches:
-        return cover.steps**2 - sum(components(cover, tiling).areas)
+    """The area of the rectangles' union, in squares of a lattice step."""
     tree = tiling.subdivide(rectangle_array(cover), cover.steps)
     covered = tree.bounds[tree.state == COVERED]
     return sums_of_areas(covered, np.zeros(len(covered), dtype=np.int64), 1)[0]

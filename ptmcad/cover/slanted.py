@@ -87,9 +87,8 @@ def _frames_of(tree: Subdivision, frames: Integers, rectangles: Integers) -> Int
     result = np.full(len(tree.state), -1, dtype=np.int64)
     box, leaf = tree.meeting(frames, closed=False)
     result[leaf] = box
-    held, _ = np.unique(np.column_stack([leaf, box]), axis=0, return_counts=True)
-    others, leaf_of_others = tree.meeting(rectangles[: len(rectangles) - len(frames)], closed=False)
-    if len(np.unique(leaf)) < len(held) or (result[leaf_of_others] >= 0).any():
+    _, leaf_of_others = tree.meeting(rectangles[: len(rectangles) - len(frames)], closed=False)
+    if len(np.unique(leaf)) < len(leaf) or (result[leaf_of_others] >= 0).any():
         raise ValueError("the frame of a slanted piece meets another one, or a rectangle")
     return result
 
@@ -203,9 +202,7 @@ def _assembled(
         rank[order] = np.arange(len(order))
     own = rank[inverse]
     at: list[set[int]] = [set() for _ in shown[True]]
-    for n, m, n_free in zip(
-        own[border[0]].tolist(), own[border[1]].tolist(), free[border[0]].tolist(), strict=True
-    ):
+    for n, m, n_free in zip(own[border[0]].tolist(), own[border[1]].tolist(), free[border[0]].tolist(), strict=True):
         component, cluster = (n, m) if n_free else (m, n)
         if component >= 0:
             at[component].add(cluster)
@@ -237,7 +234,11 @@ def _ordered(roots: Integers, sums: list[int], chosen: NDArray[np.bool_]) -> lis
 
 
 def _rectangles(
-    tree: Subdivision, nodes: _Nodes, own: Integers, number: int, patches: tuple[Patch, ...],
+    tree: Subdivision,
+    nodes: _Nodes,
+    own: Integers,
+    number: int,
+    patches: tuple[Patch, ...],
     owners: tuple[tuple[int, ...], ...],
 ) -> tuple[Rectangle, ...]:
     """For each component an open rectangle inside of it, without area where none was found."""

@@ -170,11 +170,11 @@ class Frame:
             value = _fraction(primitive(ONE) * width)
             return value, value
         marks = [Fraction(0)]
-        for level in (self.bottom, self.top)[:: turn]:
+        for level in (self.bottom, self.top)[::turn]:
             at = self._reached(k, level - shift)
             marks.append(min(max((at - self.low) / width, Fraction(0)), Fraction(1)))
         marks.append(Fraction(1))
-        before, after = (self.bottom, self.top)[:: turn]
+        before, after = (self.bottom, self.top)[::turn]
         middle = _fraction(primitive(_q(marks[2])) - primitive(_q(marks[1])))
         total = width * (before * marks[1] + middle + after * (1 - marks[2]))
         slack = Fraction(2 * (self.top - self.bottom) + 2, _FINER)
@@ -280,8 +280,8 @@ class SlantedSweep:
                 k += 1
 
 
-def _right(item: _Item) -> int:
-    return item.right
+def _right(item: _Item) -> Fraction:
+    return Fraction(item.right)
 
 
 def slanted_sweep(cover: Cover) -> SlantedSweep:
@@ -302,9 +302,9 @@ def slanted_sweep(cover: Cover) -> SlantedSweep:
     lines = sorted({0, cover.steps, *begin, *end})
     free, areas, sets = list[bool](), list[Fraction](), Sets([])
 
-    def node(is_free: bool, area: Fraction) -> int:
+    def node(is_free: bool, area: Fraction | int) -> int:
         free.append(is_free)
-        areas.append(area)
+        areas.append(Fraction(area))
         return sets.add()
 
     first_part, first_tube = [], []
@@ -316,7 +316,7 @@ def slanted_sweep(cover: Cover) -> SlantedSweep:
         rest = (frame.high - frame.low) * (frame.top - frame.bottom) - sum(frame.parts)
         for k in range(len(frame.centers)):
             # all of what no part has is the first one's: where tubes are not in one cluster the rest is at least 0
-            node(False, max(rest, Fraction(0)) if k == 0 and len(frame.centers) == 1 else Fraction(0))
+            node(False, max(rest, 0) if k == 0 and len(frame.centers) == 1 else Fraction(0))
     pairs: set[tuple[int, int]] = set()
 
     def meet(below: Iterator[Part], above: Iterator[Part], low: Fraction | int, high: Fraction | int) -> None:

@@ -127,9 +127,8 @@ def check_form(claims: CertifiedClaims) -> str:
     for one, two in pairwise(r.cover.rectangles):
         if not one < two:
             raise Violation(f"the rectangles {one} and {two} are not sorted")
-    for one, two in pairwise(r.cover.patches):
-        if not one < two:
-            raise Violation(f"the slanted pieces {one} and {two} are not sorted")
+    if any(not one < two for one, two in pairwise(r.cover.patches)):
+        raise Violation("the slanted pieces are not sorted")
     for patch in r.cover.patches:
         left, right, bottom, top = patch.frame
         if not (0 <= left < right <= steps and 0 <= bottom < top <= steps and patch.along in (0, 1)):
@@ -175,7 +174,7 @@ def check_components(claims: CertifiedClaims) -> str:
     """Every cell is a component of the cover's complement; the undetermined share is what the cells leave."""
     r, found = claims.result, claims.sweep
     cells = claims.cell_of
-    larger = Counter(found.areas.values())
+    larger = Counter[Fraction | int](found.areas.values())
     for component, n in cells.items():
         area, level = found.areas[component], r.cells[n].level
         before = sum(number for other, number in larger.items() if other > area + claims.slack)
