@@ -25,8 +25,8 @@ from ptmcad.cover.rectangles import Cover, Patch, Rectangle
 from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array, subdivide
 
 Integers = NDArray[np.int64]
-COLUMNS = 24
-"""Rectangles in place of a tube where it is drawn."""
+HALVINGS = 5
+"""Of a tube's interval: where it is drawn, there are so many rectangles in its place, as a power of two."""
 _WIDTHS = (Fraction(1, 2), Fraction(1, 8), Fraction(1, 64), Fraction(1, 1024))
 """Of rectangles that are tried within a part of a frame, as parts of the frame's length."""
 
@@ -292,29 +292,27 @@ def _within(patch: Patch, number: int) -> Rectangle:
     return best
 
 
-def staircase(patch: Patch, columns: int) -> Iterator[Rectangle]:
-    """Rectangles that cover a frame's tubes, so many for each."""
+def staircase(patch: Patch, halvings: int) -> Iterator[Rectangle]:
+    """Rectangles that cover a frame's tubes: 2^halvings for each."""
     low, high = tubes.ends(patch)
     bottom, top = tubes.heights(patch)
-    columns = min(columns, high - low)
+    columns = 2**halvings
     for tube in patch.tubes:
-        for k in range(columns):
-            start, end = low + (high - low) * k // columns, low + (high - low) * (k + 1) // columns
-            least, most = tubes.bounds_between(
-                tube.controls, Fraction(start - low, high - low), Fraction(end - low, high - low)
-            )
-            first, last = max(bottom, (least - tube.half).__floor__()), min(top, (most + tube.half).__ceil__())
+        for k, (least, most) in enumerate(tubes.bounds_by_halving(tube.controls, halvings)):
+            start, end = low + (high - low) * k // columns, low - (low - high) * (k + 1) // columns
+            end = min(high, end + 1)
+            first, last = max(bottom, least - tube.half), min(top, most + tube.half)
             if first < last:
                 yield (start, end, first, last) if patch.along == 0 else (first, last, start, end)
 
 
-def stepped(cover: Cover, columns: int = COLUMNS) -> Cover:
+def stepped(cover: Cover, halvings: int = HALVINGS) -> Cover:
     """A cover of more, of rectangles alone: a staircase in place of each tube."""
-    steps = (piece for patch in cover.patches for piece in staircase(patch, columns))
+    steps = (piece for patch in cover.patches for piece in staircase(patch, halvings))
     return Cover(cover.steps, tuple(sorted({*cover.rectangles, *steps})))
 
 
-def shown(complement: Components, columns: int = COLUMNS) -> Components:
+def shown(complement: Components, halvings: int = HALVINGS) -> Components:
     """The same components with a subdivision in which rectangles cover the tubes, to draw them by.
 
     What these rectangles have of a component is in none of its leaves; a leaf's owner is still its component.
@@ -322,7 +320,7 @@ def shown(complement: Components, columns: int = COLUMNS) -> Components:
     if complement.frames is None:
         return complement
     cover = complement.cover
-    tree = subdivide(rectangle_array(stepped(cover, columns)), cover.steps)
+    tree = subdivide(rectangle_array(stepped(cover, halvings)), cover.steps)
     free = np.flatnonzero(tree.state == FREE)
     bounds = tree.bounds[free]
     there = complement.subdivision.leaves_right_above(bounds[:, 0], bounds[:, 2])

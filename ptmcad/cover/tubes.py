@@ -267,6 +267,24 @@ def bounds_between(controls: Controls, start: Fraction, end: Fraction) -> tuple[
     return min(part), max(part)
 
 
+def bounds_by_halving(controls: Controls, halvings: int) -> list[tuple[int, int]]:
+    """Bounds of the polynomial over 2^halvings equal parts of its interval: their controls, rounded outward."""
+    n, parts = len(controls) - 1, [list(controls)]
+    for _ in range(halvings):
+        finer = []
+        for row in parts:
+            # de Casteljau's rule for the middle, all numbers times 2^n
+            first, last = [row[0] << n], [row[-1] << n]
+            for k in range(1, n + 1):
+                row = [a + b for a, b in pairwise(row)]
+                first.append(row[0] << (n - k))
+                last.append(row[-1] << (n - k))
+            finer += [first, last[::-1]]
+        parts = finer
+    scale = 2 ** (n * halvings)
+    return [(min(row) // scale, -(-max(row) // scale)) for row in parts]
+
+
 def _split(controls: list[Fraction], t: Fraction) -> tuple[list[Fraction], list[Fraction]]:
     """Controls over [0, t] and over [t, 1] (de Casteljau)."""
     first, last = [controls[0]], [controls[-1]]

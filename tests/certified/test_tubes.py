@@ -71,9 +71,7 @@ def exponential(order: int, most: float, end: float = 0.5) -> Tubes:
          for k in range(16) for a, b in [(end * (k - 8) / 8, end * (k - 7) / 8)]]
     )  # fmt: skip
     limits = (order, most, 4000)
-    return tubes(
-        curve.arguments(), equations_alone(curve).arguments(), boxes, np.ones(3), (0, -end, end), limits
-    )
+    return tubes(curve.arguments(), equations_alone(curve).arguments(), boxes, np.ones(3), (0, -end, end), limits)
 
 
 def test_a_tube_holds_its_curve_and_is_thinner_with_a_higher_order() -> None:

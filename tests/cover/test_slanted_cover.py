@@ -115,8 +115,14 @@ def test_areas_of_parts_are_lower_bounds_and_near(patch: Patch) -> None:
         total = Fraction(0)
         for k in range(columns):
             t = Fraction(2 * k + 1, 2 * columns)
-            floor = Fraction(bottom) if number == 0 else value(patch.tubes[number - 1], t) + patch.tubes[number - 1].half
-            roof = Fraction(top) if number == len(patch.tubes) else value(patch.tubes[number], t) - patch.tubes[number].half
+            floor = (
+                Fraction(bottom) if number == 0 else value(patch.tubes[number - 1], t) + patch.tubes[number - 1].half
+            )
+            roof = (
+                Fraction(top)
+                if number == len(patch.tubes)
+                else value(patch.tubes[number], t) - patch.tubes[number].half
+            )
             total += max(Fraction(0), min(roof, Fraction(top)) - max(floor, Fraction(bottom)))
         total *= Fraction(high - low, columns)
         assert abs(total - area) <= Fraction((top - bottom) * (high - low), 50)
