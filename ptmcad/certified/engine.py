@@ -128,6 +128,8 @@ class _Run:
         """The strips of the boxes as they are, when they are known."""
         self.enclosed = Fraction(1)
         """The share that the boxes had when it was made."""
+        self.exhausted = False
+        """Whether slanted pieces alone left more than the tolerance."""
         self.seconds["plan"] = self.clock() - self.pace.started
 
     def run(self) -> RegionMap:
@@ -151,6 +153,8 @@ class _Run:
                 slanted = self._slanted(self.area * 4.0**-level)
                 if slanted is not None:
                     return slanted
+                if self.exhausted:
+                    return self._stopped("slanted pieces are as thin as doubles can make them")
             thin = None if undetermined <= tolerance else self.thin_cover(undetermined)
             if thin is not None:
                 cover = thin
@@ -191,6 +195,9 @@ class _Run:
             return result
         if self.best is None or result.undetermined < self.best.undetermined:
             self.best = replace(result, status=Status.PARTIAL)
+            if self.options.partial is not None:
+                self.options.partial(self.best)
+        self.exhausted = _share(replace(cover, patches=())) <= self.tolerance
         return None
 
     def boxes(self) -> int:

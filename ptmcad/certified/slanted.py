@@ -44,6 +44,10 @@ BISECTIONS, BISECTIONS_PER_BOX = 300, 2
 TUBE_SHARE = Fraction(1, 200)
 """Of the tolerance: half width of tubes, as a part of the window, at most. The curves would have to be fifty times as
 long as the window for tubes to use up half of it."""
+LEAST_HALF = Fraction(1, 2**38)
+"""... and thinner ones are not asked for: doubles have not many digits more."""
+MAX_LEAVES = 20_000
+"""That wait: a set of solutions that is no curve would have them without end."""
 SPECK_SHARE = Fraction(3, 4)
 """Of the tolerance: what leaves that are not done may have."""
 MERGED = 8
@@ -82,8 +86,8 @@ class Slanting:
     alone: tuple[Arguments, ...]
 
     def cover(self, tolerance: Fraction, jobs: int, late: Callable[[], bool]) -> Cover:
-        """A cover that leaves at most this part of the window undetermined; more when it was late, or at the lattice's
-        end."""
+        """A cover that leaves at most this part of the window undetermined; more when it was late, or where leaves do not
+        become fewer."""
         steps = self.lattice.steps
         limit = int(SPECK_SHARE * tolerance * steps**2)
         window = (0, steps, 0, steps)
@@ -93,7 +97,7 @@ class Slanting:
         patches: list[Patch] = []
         rectangles: set[Rectangle] = set()
         with ThreadPoolExecutor(jobs) as pool:
-            while waiting and total > limit and not late():
+            while waiting and total > limit and len(waiting) <= MAX_LEAVES and not late():
                 chosen = [heappop(waiting)[2] for _ in range(min(len(waiting), LEAVES_PER_JOB * jobs))]
                 quarters = [(leaf, quarter) for leaf in chosen for quarter in _quarters(leaf.rectangle)]
                 rectangles |= {leaf.inner for leaf in chosen if not _quarters(leaf.rectangle)}
@@ -167,7 +171,7 @@ class Slanting:
     def _patch(self, leaf: _Leaf, along: int, tolerance: Fraction) -> Patch | None:
         """The leaf's tubes along an axis, if they part it as they should."""
         low, high = self.lattice.window[1 - along]
-        most = float((high - low) * tolerance * TUBE_SHARE)
+        most = float((high - low) * max(tolerance * TUBE_SHARE, LEAST_HALF))
         hulls = [_hull(own) for own in leaf.boxes if len(own)]
         interval = (along, min(float(h[0][along]) for h in hulls), max(float(h[1][along]) for h in hulls))
         order = order_for(tolerance)

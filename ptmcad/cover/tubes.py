@@ -274,11 +274,11 @@ def bounds_by_halving(controls: Controls, halvings: int) -> list[tuple[int, int]
         finer = []
         for row in parts:
             # de Casteljau's rule for the middle, all numbers times 2^n
-            first, last = [row[0] << n], [row[-1] << n]
+            own, first, last = row, [row[0] << n], [row[-1] << n]
             for k in range(1, n + 1):
-                row = [a + b for a, b in pairwise(row)]
-                first.append(row[0] << (n - k))
-                last.append(row[-1] << (n - k))
+                own = [a + b for a, b in pairwise(own)]
+                first.append(own[0] << (n - k))
+                last.append(own[-1] << (n - k))
             finer += [first, last[::-1]]
         parts = finer
     scale = 2 ** (n * halvings)

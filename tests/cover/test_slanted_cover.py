@@ -98,7 +98,7 @@ def test_places_and_sides_agree_with_de_casteljau(patch: Patch, seed: int) -> No
         assert Frame(patch, 0).place(u, v) == expected
     for end, height in ((0, bottom), (1, top)):
         pieces = tubes.side(patch, 1 - patch.along, end)
-        assert [p.low for p in pieces][0] == low and pieces[-1].high == high
+        assert pieces[0].low == low and pieces[-1].high == high
         for piece in pieces:
             if not piece.tube and piece.high > piece.low:
                 for k in (1, 5, 9):
