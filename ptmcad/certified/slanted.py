@@ -86,8 +86,10 @@ class Slanting:
     alone: tuple[Arguments, ...]
 
     def cover(self, tolerance: Fraction, jobs: int, late: Callable[[], bool]) -> Cover:
-        """A cover that leaves at most this part of the window undetermined; more when it was late, or where leaves do not
-        become fewer."""
+        """A cover that leaves at most this part of the window undetermined.
+
+        It leaves more when it was late, or where leaves become too many, or tubes cannot be thin enough.
+        """
         steps = self.lattice.steps
         limit = int(SPECK_SHARE * tolerance * steps**2)
         window = (0, steps, 0, steps)
