@@ -119,37 +119,43 @@ def _edges(
     found: list[tuple[int, int]] = []
     for k in np.flatnonzero(~plain & ((a_frame != b_frame) | (a_frame < 0))).tolist():
         a, b = int(first[k]), int(second[k])
-        axis, low, high, below, above = _edge(nodes.leaves[a], nodes.leaves[b])
-        pieces = []
-        for leaf, end in ((below, 1), (above, 0)):
-            node = a if leaf == 0 else b
-            frame = int(nodes.frame_of[node])
-            if frame < 0:
-                pieces.append([(low, high, node)])
-                continue
-            if (frame, axis, end) not in sides:
-                sides[frame, axis, end] = tubes.side(patches[frame], axis, end)
-            pieces.append(
-                [
-                    (p.low, p.high, (nodes.tube if p.tube else nodes.part)[frame] + p.number)
-                    for p in sides[frame, axis, end]
-                ]
-            )
-        found.extend(_meeting(pieces[0], pieces[1], low, high, nodes.free))
+        for axis, low, high, lower, upper in _edges_between(nodes.leaves[a], nodes.leaves[b]):
+            pieces = []
+            for leaf, end in ((lower, 1), (upper, 0)):
+                node = a if leaf == 0 else b
+                frame = int(nodes.frame_of[node])
+                if frame < 0:
+                    pieces.append([(low, high, node)])
+                    continue
+                if (frame, axis, end) not in sides:
+                    sides[frame, axis, end] = tubes.side(patches[frame], axis, end)
+                pieces.append(
+                    [
+                        (p.low, p.high, (nodes.tube if p.tube else nodes.part)[frame] + p.number)
+                        for p in sides[frame, axis, end]
+                    ]
+                )
+            found.extend(_meeting(pieces[0], pieces[1], low, high, nodes.free))
+    for f, patch in enumerate(patches):
+        for number in range(len(patch.tubes)):
+            tube = nodes.tube[f] + number
+            found += [(nodes.part[f] + number, tube), (nodes.part[f] + number + 1, tube)]
     extra = np.array(found, dtype=np.int64).reshape(-1, 2)
     return np.concatenate([*ones, extra[:, 0]]), np.concatenate([*twos, extra[:, 1]])
 
 
-def _edge(a: Integers, b: Integers) -> tuple[int, int, int, int, int]:
-    """The axis across the common edge of two leaves, its ends, and which of the leaves is below it and above."""
+def _edges_between(a: Integers, b: Integers) -> Iterator[tuple[int, int, int, int, int]]:
+    """The axis across each common edge of two leaves, its ends, and which of the leaves is below it and above.
+
+    A corner that is all that they share counts as an edge across both axes, since what a tube has of it is rounded.
+    """
     for axis in (0, 1):
         low = max(int(a[2 - 2 * axis]), int(b[2 - 2 * axis]))
         high = min(int(a[3 - 2 * axis]), int(b[3 - 2 * axis]))
         if a[2 * axis + 1] == b[2 * axis]:
-            return axis, low, high, 0, 1
-        if b[2 * axis + 1] == a[2 * axis]:
-            return axis, low, high, 1, 0
-    raise AssertionError("leaves that touch have an edge or a corner in common")
+            yield axis, low, high, 0, 1
+        elif b[2 * axis + 1] == a[2 * axis]:
+            yield axis, low, high, 1, 0
 
 
 Part = tuple[int, int, int]

@@ -130,9 +130,9 @@ class Frame:
         if turn == 0:
             return None
         ends = sorted(self._reached(k, height - sign * turn * self.halves[k]) for sign in (1, -1))
-        first, last = Fraction(ends[0].__floor__()), Fraction((ends[1] + Fraction(1, _FINER)).__ceil__())
-        if last < self.low or first > self.high or ends[0] > self.high:
+        if ends[1] < self.low or ends[0] > self.high:
             return None
+        first, last = Fraction(ends[0].__floor__()), Fraction((ends[1] + Fraction(1, _FINER)).__ceil__())
         return max(first, Fraction(self.low)), min(last, Fraction(self.high))
 
     def _reached(self, k: int, level: int) -> Fraction:
@@ -177,7 +177,9 @@ class Frame:
         before, after = (self.bottom, self.top)[::turn]
         middle = _fraction(primitive(_q(marks[2])) - primitive(_q(marks[1])))
         total = width * (before * marks[1] + middle + after * (1 - marks[2]))
-        slack = Fraction(2 * (self.top - self.bottom) + 2, _FINER)
+        # outside of the frame, or from one end of it to the other, nothing was rounded
+        rounded = not {marks[1], marks[2]} <= {Fraction(0), Fraction(1)}
+        slack = Fraction(2 * (self.top - self.bottom) + 2, _FINER) if rounded else Fraction(0)
         return total - slack, total + slack
 
     def avoids(self, low: tuple[Fraction, Fraction], high: tuple[Fraction, Fraction]) -> bool:
@@ -317,7 +319,13 @@ def slanted_sweep(cover: Cover) -> SlantedSweep:
         for k in range(len(frame.centers)):
             # all of what no part has is the first one's: where tubes are not in one cluster the rest is at least 0
             node(False, max(rest, 0) if k == 0 and len(frame.centers) == 1 else Fraction(0))
-    pairs: set[tuple[int, int]] = set()
+    pairs = {
+        (part, tube + k)
+        for frame, first, tube in zip(frames, first_part, first_tube, strict=True)
+        for k in range(len(frame.centers))
+        for part in (first + k, first + k + 1)
+        if areas[part] >= 1
+    }
 
     def meet(below: Iterator[Part], above: Iterator[Part], low: Fraction | int, high: Fraction | int) -> None:
         others = list(above)
