@@ -127,6 +127,9 @@ def _edges(
                 if frame < 0:
                     pieces.append([(low, high, node)])
                     continue
+                if patches[frame].frame[2 * axis + end] != nodes.leaves[node][2 * axis + end]:
+                    pieces.append([])  # a corner on another side of the frame
+                    continue
                 if (frame, axis, end) not in sides:
                     sides[frame, axis, end] = tubes.side(patches[frame], axis, end)
                 pieces.append(

@@ -363,7 +363,8 @@ def slanted_sweep(cover: Cover) -> SlantedSweep:
             meet(parts(one, 0, 1, (low, high)), parts(two, 0, 0, (low, high)), low, high)
         if rows:
             for one, two in _touching(rows[-1], row):
-                if one.frame < 0 or one.frame != two.frame:
+                # what a frame that goes on across the line meets there, it meets along its upright sides in one strip
+                if _ends(one, frames, low, 3) and _ends(two, frames, low, 2):
                     span = max(one.left, two.left), min(one.right, two.right)
                     meet(parts(one, 1, 1, (one.left, one.right)), parts(two, 1, 0, (two.left, two.right)), *span)
         rows.append(tuple(row))
@@ -376,6 +377,11 @@ def slanted_sweep(cover: Cover) -> SlantedSweep:
         {n: area for n, area in found[0].items() if area > 0}, dict(found[1]),
         frozenset((component_of[a], component_of[b]) for a, b in pairs),
     )  # fmt: skip
+
+
+def _ends(item: _Item, frames: Sequence[Frame], line: int, side: int) -> bool:
+    """Whether an item has its bottom (side 2) or its top (3) on the line between two strips."""
+    return item.frame < 0 or frames[item.frame].patch.frame[side] == line
 
 
 def _row(active: list[tuple[int, int, int]], steps: int) -> Iterator[tuple[int, int, bool, int]]:
