@@ -20,6 +20,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.location import component_cells
 from ptmcad.cover.outlines import outlines
 from ptmcad.cover.rectangles import Cover
+from ptmcad.cover.slanted import shown
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.chains import Chain, chains, critical_shares
 from ptmcad.exact.cad.curves import lines_of
@@ -165,6 +166,7 @@ def _upper(value: Fraction) -> float:
 def _outlines(result: RegionMap, cover: Cover) -> Iterator[Boundary]:
     """The outlines of a certified map's cells."""
     complement, cells = component_cells(result, cover)
+    complement = shown(complement)
     numbers = [n for n in cells if n is not None]
     scale = [((a.high - a.low) / cover.steps, a.low) for a in result.slice.axes]
     for number, polygons in zip(numbers, outlines(complement, numbers), strict=True):

@@ -21,6 +21,7 @@ from ptmcad.cover import components
 from ptmcad.cover.complement import Components
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.samples import samples
+from ptmcad.cover.slanted import stepped
 from ptmcad.cover.subdivision import FREE
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Point
@@ -99,6 +100,7 @@ def cover_difference(first: Side, second: Side) -> Comparison:
 def _finer(cover: Cover, steps: int) -> list[tuple[int, int, int, int]]:
     """A cover's rectangles on a lattice with more steps."""
     by = steps // cover.steps
+    cover = stepped(cover)
     return [(by * left, by * right, by * bottom, by * top) for left, right, bottom, top in cover.rectangles]
 
 
@@ -107,11 +109,24 @@ def _held(complement: Components, sides: Sequence[Side]) -> dict[int, Held]:
     corners = np.array(complement.rectangles, dtype=np.int64).reshape(-1, 4)
     found = []
     for of in sides:
+        if of.complement.frames is not None:
+            found.append(_located(of, complement))
+            continue
         tree, coarser = of.complement.subdivision, complement.cover.steps // of.complement.cover.steps
         leaves = tree.leaves_right_above(corners[:, 0] // coarser, corners[:, 2] // coarser)
         assert (tree.state[leaves] == FREE).all()  # what is outside both covers is outside each of them
         found.append([of.region_of.get(place) for place in of.complement.owner[leaves].tolist()])
     return {n: (a, b) for n, (a, b) in enumerate(zip(*found, strict=True)) if a is not None and b is not None}
+
+
+def _located(of: Side, complement: Components) -> list[int | None]:
+    """The region of a map with slanted pieces that holds the middle of each component's rectangle."""
+    scale = Fraction(of.complement.cover.steps, complement.cover.steps)
+    regions = []
+    for left, right, bottom, top in complement.rectangles:
+        place = of.complement.locate(scale * (left + right) / 2, scale * (bottom + top) / 2)
+        regions.append(None if place is None else of.region_of.get(place))
+    return regions
 
 
 def _possible(

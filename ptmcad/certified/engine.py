@@ -26,6 +26,7 @@ from ptmcad.certified.loading import load
 from ptmcad.certified.pace import SAFETY, Pace
 from ptmcad.certified.refinement import Enclosure, begin, refine
 from ptmcad.certified.search import Boxes
+from ptmcad.certified.slanted import slanting
 from ptmcad.certified.specks import without_specks
 from ptmcad.certified.statement import plan_of
 from ptmcad.certified.tape import enclosing_floats
@@ -68,6 +69,10 @@ SECONDS_PER_RECTANGLE = 3e-5
 """That a map takes for each rectangle, with its JSON: less, on most machines."""
 MAP_SHRINK_RATIO = Fraction(9, 10)
 """A map on the way is worth making when the boxes' share is at most this part of what it was at the last one."""
+SLANTED_BELOW = Fraction(1, 2000)
+"""Tolerances below are met by slanted pieces: of upright ones it takes twice as many for half of the error ..."""
+SLANTED_SHARE = Fraction(1, 500)
+"""... once the boxes have at most this part of the window."""
 LATTICE_STEPS = 2**24
 """Lattice steps of a cover along each axis; more for a tolerance below 1e-5."""
 
@@ -123,6 +128,8 @@ class _Run:
         """The strips of the boxes as they are, when they are known."""
         self.enclosed = Fraction(1)
         """The share that the boxes had when it was made."""
+        self.exhausted = False
+        """Whether slanted pieces alone left more than the tolerance."""
         self.seconds["plan"] = self.clock() - self.pace.started
 
     def run(self) -> RegionMap:
@@ -142,6 +149,12 @@ class _Run:
                 return self._stopped("the time limit was reached")
             cover = self._box_cover()
             undetermined = _share(cover)
+            if undetermined > tolerance and self._slantable(undetermined):
+                slanted = self._slanted(self.area * 4.0**-level)
+                if slanted is not None:
+                    return slanted
+                if self.exhausted:
+                    return self._stopped("slanted pieces are as thin as doubles can make them")
             thin = None if undetermined <= tolerance else self.thin_cover(undetermined)
             if thin is not None:
                 cover = thin
@@ -159,6 +172,33 @@ class _Run:
             if self.boxes() > MAX_BOXES:
                 break
         return self._stopped(f"the search ended at {self.boxes():,} boxes")
+
+    def _slantable(self, undetermined: Fraction) -> bool:
+        """Whether it is time for slanted pieces: the tolerance is small, and so are the boxes."""
+        return self.tolerance < SLANTED_BELOW and undetermined <= SLANTED_SHARE
+
+    def _slanted(self, area: float) -> RegionMap | None:
+        """The map of a cover with slanted pieces; None where it leaves too much, and then it may be the best so far.
+
+        Parameters
+        ----------
+        area : of a box's projection, below which the search has left it alone.
+        """
+        start, boxes = self.clock(), self.boxes()
+        lattice = Lattice(self.lattice.window, MAX_STEPS)
+        cover = slanting(self.enclosures, lattice).cover(self.tolerance, self.jobs, lambda: self.pace.late(boxes))
+        self.seconds["curves"] += self.clock() - start
+        if not self.pace.late(boxes):
+            cover = without_specks(cover, self.enclosures, lattice, area)
+        result = self.map(cover, Status.CERTIFIED)
+        if result.undetermined <= self.tolerance:
+            return result
+        if self.best is None or result.undetermined < self.best.undetermined:
+            self.best = replace(result, status=Status.PARTIAL)
+            if self.options.partial is not None:
+                self.options.partial(self.best)
+        self.exhausted = _share(replace(cover, patches=())) <= self.tolerance
+        return None
 
     def boxes(self) -> int:
         """The number of boxes there are by now."""
@@ -198,7 +238,7 @@ class _Run:
     def map(self, cover: Cover, status: Status) -> RegionMap:
         """The map of a cover; what is not counted when the time is over is undetermined."""
         start, boxes = self.clock(), self.boxes()
-        if _overlap(cover) > OVERLAP_RATIO:
+        if not cover.patches and _overlap(cover) > OVERLAP_RATIO:
             cover = simplified(cover, COMPILED)
         times = self.seconds | {"total": start - self.pace.started}
         result = self.assembler.map(cover, status, times, self._must_hand_over)

@@ -20,8 +20,9 @@ from ptmcad.certified.evaluation import program, run
 from ptmcad.certified.formula import Graph
 from ptmcad.certified.search import isolate
 from ptmcad.certified.strips import areas_of_pieces, numbers_of_pieces, pieces, strips
-from ptmcad.certified.system import System, system
+from ptmcad.certified.system import System, equations_alone, system
 from ptmcad.certified.tiling import COMPILED
+from ptmcad.certified.tubes import tubes
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
 
@@ -110,6 +111,8 @@ def _functions() -> Iterator[None]:
     pieces(thin, 0.25)
     yield
     isolate(point.arguments(), point.arguments(), square, (1e-3, 64, 4), weights)
+    yield
+    tubes(line.arguments(), equations_alone(line).arguments(), square, weights, (0, 0.0, 1.0), (2, 1e-3, 4))
     yield
 
 

@@ -11,6 +11,7 @@ next bisection would discard it. Such slivers are a few hundred-thousandths of t
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -58,7 +59,8 @@ def without_specks(cover: Cover, enclosures: Sequence[Enclosure], lattice: Latti
         found = search_curve(curve.system.arguments(), near, FINER * area, BUDGET, curve.importance())
         held[cluster_of[chosen[_meeting(rectangles, found.left()).any(axis=1)]]] = True
     kept = ~small[cluster_of] | held[cluster_of]
-    return Cover(cover.steps, tuple(r for r, keep in zip(cover.rectangles, kept.tolist(), strict=True) if keep))
+    left = tuple(r for r, keep in zip(cover.rectangles, kept.tolist(), strict=True) if keep)
+    return replace(cover, rectangles=left)
 
 
 def _outward(lattice: Lattice, cover: Cover, rectangle: Rectangle) -> tuple[float, float, float, float]:

@@ -11,9 +11,10 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ptmcad.certified.evaluation import Indices, Program, program
-from ptmcad.certified.formula import Formula
+from ptmcad.certified.formula import Formula, Operation
 from ptmcad.certified.solved import Quotient
 from ptmcad.certified.tape import Tape, record
 
@@ -109,3 +110,46 @@ def system(
         np.column_stack([np.array([quotient.variable for quotient in solved], np.int64), places]),
         solved_end,
     )
+
+
+def equations_alone(whole: System) -> System:
+    """The same equations and derivatives, on a tape without anything else: at points that are no solutions, formulas
+    that are equal at solutions only may exclude each other."""
+    tape = whole.tape
+    first = _needed(tape, whole.equations)
+    rest = _needed(tape, whole.jacobian.ravel()) & ~first
+    order = np.concatenate([np.flatnonzero(first), np.flatnonzero(rest)])
+    place = np.full(len(tape) + 1, -1, np.int64)  # the last one stands for no operand
+    place[order] = np.arange(len(order))
+    plain = np.isin(tape.operations[order], _WITHOUT_OPERANDS)
+    equations = int(first.sum())
+    shorter = Tape(
+        tape.operations[order],
+        np.where(plain, tape.first[order], place[tape.first[order]]),
+        np.where(plain, tape.second[order], place[tape.second[order]]),
+        tape.low[order],
+        tape.high[order],
+        {int(place[k]): value for k, value in tape.constants.items() if place[k] >= 0},
+        np.array([equations, equations, equations, len(order)], np.int64),
+        (),
+    )
+    none = np.empty(0, np.int64)
+    return System(
+        shorter, whole.unknowns, place[whole.equations], place[whole.jacobian], (none, none, none), none,
+        np.empty((0, 3), np.int64), 0,
+    )  # fmt: skip
+
+
+_WITHOUT_OPERANDS = (int(Operation.CONSTANT), int(Operation.VARIABLE))
+
+
+def _needed(tape: Tape, outputs: Indices) -> NDArray[np.bool_]:
+    """Which nodes of a tape some outputs need."""
+    needed = np.zeros(len(tape), dtype=np.bool_)
+    needed[outputs] = True
+    for k in range(len(tape) - 1, -1, -1):
+        if needed[k] and tape.operations[k] not in _WITHOUT_OPERANDS:
+            for operand in (tape.first[k], tape.second[k]):
+                if operand >= 0:
+                    needed[operand] = True
+    return needed

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def components(cover: Cover, tiling: Tiling | None = None) -> Components:
-    """The connected components of the open window without the closed rectangles.
+    """The connected components of the open window without the closed rectangles and the tubes.
 
     Parameters
     ----------
@@ -27,17 +27,21 @@ def components(cover: Cover, tiling: Tiling | None = None) -> Components:
     Raises
     ------
     ValueError
-        When a rectangle is not one, or the lattice is too fine.
+        When a rectangle or a slanted piece is not one, frames meet others inside, or the lattice is too fine.
     """
-    from ptmcad.cover import complement
+    from ptmcad.cover import complement, slanted
 
+    if cover.patches:
+        return slanted.slanted_components(cover, tiling or complement.PLAIN)
     return complement.components(cover, tiling or complement.PLAIN)
 
 
 def union_area(cover: Cover, tiling: Tiling | None = None) -> int:
-    """The area of the rectangles' union, in squares of a lattice step."""
+    """The area of the rectangles' union, in squares of a lattice step; with slanted pieces what it is at most."""
     from ptmcad.cover import complement
 
+    if cover.patches:
+        return cover.steps**2 - sum(components(cover, tiling).areas)
     return complement.union_area(cover, tiling or complement.PLAIN)
 
 

@@ -17,6 +17,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from ptmcad.cover import tubes
 from ptmcad.cover.graph import Touching, connected, touching
 from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
 from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array, subdivide
@@ -47,6 +48,14 @@ PLAIN = Tiling(subdivide, lambda tree, leaves: touching(tree.bounds[leaves]), co
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Frames:
+    """Of a cover with slanted pieces: the frame of each part of the subdivision, or -1; the owners of frames' parts."""
+
+    frame_of: Integers
+    owners: tuple[tuple[int, ...], ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Components:
     """The components, by descending area, then from the left, then from below; and the clusters in the same order.
 
@@ -59,7 +68,9 @@ class Components:
     cluster_of : for each rectangle of the cover the number of its cluster.
     clusters_at : for each component the clusters that it touches along a segment or in a point, ascending.
     subdivision : of the window.
-    owner : for each part of the subdivision the number of its component or, for a covered one, of its cluster.
+    owner : for each part of the subdivision the number of its component or, for a covered one, of its cluster; -1 in
+        a frame.
+    frames : of the slanted pieces; None when there are none.
     """
 
     cover: Cover
@@ -70,6 +81,7 @@ class Components:
     clusters_at: tuple[tuple[int, ...], ...]
     subdivision: Subdivision
     owner: Integers
+    frames: Frames | None = None
 
     def locate(self, u: Fraction, v: Fraction) -> int | None:
         """The component of a point in lattice coordinates; None when the point is in a closed rectangle.
@@ -82,10 +94,20 @@ class Components:
         steps = self.cover.steps
         if not (0 < u < steps and 0 < v < steps):
             raise ValueError(f"({u}, {v}) is not in the open window")
-        leaves = self.subdivision.leaves_at(u, v)
-        if any(self.subdivision.state[leaf] == COVERED for leaf in leaves):
-            return None
-        return int(self.owner[leaves[0]])
+        found = {self._owner_at(leaf, u, v) for leaf in self.subdivision.leaves_at(u, v)}
+        return found.pop() if len(found) == 1 else None
+
+    def _owner_at(self, leaf: int, u: Fraction, v: Fraction) -> int | None:
+        """The component to which a leaf says that a point of it belongs."""
+        frame = -1 if self.frames is None else int(self.frames.frame_of[leaf])
+        if frame < 0:
+            return None if self.subdivision.state[leaf] == COVERED else int(self.owner[leaf])
+        assert self.frames is not None
+        patch = self.cover.patches[frame]
+        across = (u, v) if patch.along == 0 else (v, u)
+        number = tubes.place(patch, *across)
+        owner = -1 if number is None else self.frames.owners[frame][number]
+        return None if owner < 0 else owner
 
     @property
     def touching(self) -> tuple[tuple[int, int], ...]:
@@ -94,7 +116,7 @@ class Components:
 
 
 def components(cover: Cover, tiling: Tiling = PLAIN) -> Components:
-    """The connected components of the open window without the closed rectangles.
+    """The connected components of the open window without the closed rectangles, of a cover without slanted pieces.
 
     Raises
     ------
@@ -111,7 +133,7 @@ def components(cover: Cover, tiling: Tiling = PLAIN) -> Components:
 
     number, areas, thick = _numbered(leaves, label, free)
     clusters, cluster_areas, _ = _numbered(leaves, label, ~free)
-    rectangles = _grown(tree, thick, _bounding_boxes(leaves[free], number[free], len(areas)))
+    rectangles = grown(tree, thick, bounding_boxes(leaves[free], number[free], len(areas)))
     own = np.where(free, number, clusters)
     border = a_free != b_free
     inner = np.where(a_free, pairs.first, pairs.second)[border]
@@ -154,7 +176,7 @@ def _numbered(
         return number, (), np.zeros((0, 4), dtype=np.int64)
     own = leaves[chosen]
     labels, inverse = np.unique(label[chosen], return_inverse=True)
-    areas = _sums_of_areas(own, inverse, len(labels))
+    areas = sums_of_areas(own, inverse, len(labels))
     first = np.empty(len(labels), dtype=np.int64)
     corner = np.lexsort((own[:, 2], own[:, 0]))[::-1]
     first[inverse[corner]] = corner  # the last one written is the first from the left and below
@@ -170,7 +192,7 @@ def _numbered(
     return number, tuple(areas[k] for k in order), own[thick[order]]
 
 
-def _bounding_boxes(leaves: Integers, group: Integers, groups: int) -> Integers:
+def bounding_boxes(leaves: Integers, group: Integers, groups: int) -> Integers:
     """The smallest rectangle around the leaves of each group."""
     boxes = np.empty((groups, 4), dtype=np.int64)
     for k, (extreme, start) in enumerate(((np.minimum, MAX_STEPS), (np.maximum, 0)) * 2):
@@ -179,7 +201,7 @@ def _bounding_boxes(leaves: Integers, group: Integers, groups: int) -> Integers:
     return boxes
 
 
-def _grown(tree: Subdivision, boxes: Integers, around: Integers) -> Integers:
+def grown(tree: Subdivision, boxes: Integers, around: Integers) -> Integers:
     """Free rectangles made as long as they can be, first along their shorter sides; each stays in what is around it."""
     boxes = boxes.copy()
     upright = boxes[:, 1] - boxes[:, 0] > boxes[:, 3] - boxes[:, 2]
@@ -204,7 +226,7 @@ def as_rectangles(array: Integers) -> tuple[Rectangle, ...]:
     return tuple((left, right, bottom, top) for left, right, bottom, top in array.tolist())
 
 
-def _sums_of_areas(boxes: Integers, group: Integers, groups: int) -> list[int]:
+def sums_of_areas(boxes: Integers, group: Integers, groups: int) -> list[int]:
     """The exact sum of the areas in each group."""
     width, tall = boxes[:, 1] - boxes[:, 0], boxes[:, 3] - boxes[:, 2]
     mask = (1 << _LIMB) - 1
@@ -223,4 +245,4 @@ def union_area(cover: Cover, tiling: Tiling = PLAIN) -> int:
     """The area of the rectangles' union, in squares of a lattice step."""
     tree = tiling.subdivide(rectangle_array(cover), cover.steps)
     covered = tree.bounds[tree.state == COVERED]
-    return _sums_of_areas(covered, np.zeros(len(covered), dtype=np.int64), 1)[0]
+    return sums_of_areas(covered, np.zeros(len(covered), dtype=np.int64), 1)[0]

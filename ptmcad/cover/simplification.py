@@ -58,6 +58,12 @@ def simplified(cover: Cover, tiling: Tiling = PLAIN) -> Cover:
     return cover_of(_merged(array[kept]), cover.steps)
 
 
+def framed(cover: Cover) -> Cover:
+    """A cover of more, in which slanted pieces are the whole of their frames."""
+    frames = (patch.frame for patch in cover.patches)
+    return Cover(cover.steps, tuple(sorted({*cover.rectangles, *frames}))) if cover.patches else cover
+
+
 def combined(cover: Cover) -> Cover:
     """A cover of the same points by at most as many rectangles, found at small cost, as a start for what costs more."""
     return cover_of(_fewer(rectangle_array(cover)), cover.steps)
@@ -66,11 +72,12 @@ def combined(cover: Cover) -> Cover:
 def gathered(cover: Cover, most: int) -> Cover:
     """A cover of more, by at most so many rectangles: boxes around what the cover has in each square of a grid.
 
-    The grid is the finest that needs no more of them; a cover of no more rectangles stays as it is.
+    The grid is the finest that needs no more of them; a cover of no more rectangles stays as it is, but for frames of
+    slanted pieces, which become rectangles.
     """
-    array = rectangle_array(cover)
+    array = rectangle_array(framed(cover))
     if len(array) <= most:
-        return cover
+        return cover_of(array, cover.steps)
     result = array
     for shift in reversed(range(cover.steps.bit_length())):
         boxes = _in_squares(array, shift, most)

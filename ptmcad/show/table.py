@@ -113,7 +113,9 @@ def _curves(result: RegionMap) -> str:
 
 def _covered(cover: Cover) -> str:
     n = len(cover.rectangles)
-    return f"cover     {n} rectangle{'s' * (n != 1)} around the curves where counts change"
+    slanted = sum(len(patch.tubes) for patch in cover.patches)
+    tubes = f" and {slanted} slanted piece{'s' * (slanted != 1)}" if slanted else ""
+    return f"cover     {n} rectangle{'s' * (n != 1)}{tubes} around the curves where counts change"
 
 
 _Bounds = tuple[str, tuple[Fraction, Fraction]]

@@ -136,7 +136,7 @@ def test_a_limit_leaves_a_map_from_which_the_search_goes_on() -> None:
     partial, timeout = None, 1
     while partial is None:  # as long as the limit comes before anything is decided
         with pytest.raises(LimitReached) as stopped:
-            ptmcad.classify(slice, engine="certified", tolerance=Fraction(1, 10**6), timeout=timeout)
+            ptmcad.classify(slice, engine="certified", tolerance=Fraction(1, 10**13), timeout=timeout)
         partial, timeout = stopped.value.partial, 2 * timeout
     assert isinstance(partial, RegionMap)
     assert partial.status is Status.PARTIAL

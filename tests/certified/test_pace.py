@@ -17,7 +17,7 @@ from numba.core.event import install_listener
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.certified import assembly, engine, loading, refinement
+from ptmcad.certified import assembly, engine, loading, refinement, slanted
 from ptmcad.certified.compiled import FUNCTIONS
 from ptmcad.certified.headway import PARTS, Headway
 from ptmcad.certified.pace import ALLOWANCE, MAP_TIME_SHARE, MIN_RESERVE, SAFETY, Pace
@@ -124,6 +124,7 @@ def stopped(
         patch.setattr(engine, "Pace", lambda until: Pace(until, clock, clock))
         patch.setattr(refinement, "BUDGET", 500)
         patch.setattr(refinement, "search_curve", clock.slowed(refinement.search_curve, 0.1))
+        patch.setattr(slanted, "search_curve", clock.slowed(slanted.search_curve, 0.1))
         if phase == "handing":
             hand = clock.slowed(handed.append, length)
         else:
@@ -132,7 +133,7 @@ def stopped(
             patch.setattr(module, phase, clock.slowed(getattr(module, phase), length))
         with pytest.raises(LimitReached) as limit:
             engine.certified_map(
-                window(), Options(tolerance=Fraction(1, 10**9), deadline=deadline, jobs=1, partial=hand)
+                window(), Options(tolerance=Fraction(1, 10**14), deadline=deadline, jobs=1, partial=hand)
             )
     found = limit.value.partial
     assert found is None or isinstance(found, RegionMap)

@@ -1,17 +1,23 @@
 """Reading the cover of a certified map from its JSON document.
 
 Guarantee: what is returned keeps what `Cover` promises: steps are a power of two, the rectangles lie in the window, and
-are sorted and distinct.
+are sorted and distinct, and so are the patches, each of which is one.
 """
 
 from __future__ import annotations
 
 from itertools import pairwise
 
-from ptmcad.cover.rectangles import MAX_STEPS, Cover
+from ptmcad.cover.rectangles import MAX_STEPS, Cover, Patch, Tube
+from ptmcad.cover.tubes import flaw
 from ptmcad.show.document.node import Node
 
 MAX_RECTANGLES = 1_000_000
+MAX_PATCHES = 200_000
+MAX_CONTROLS = 64
+MAX_CONTROL = 2**60
+"""Of a half width, and of a control's absolute value: the curve passes a frame within the window."""
+_FIRST_TUBE = 5
 
 
 def read_cover(node: Node) -> Cover:
@@ -22,7 +28,7 @@ def read_cover(node: Node) -> Cover:
     ValueError
         With the place of the first fault.
     """
-    entry = node.record("steps", "rectangles")
+    entry = node.record("steps", "rectangles", "patches?")
     steps = entry["steps"].value
     if type(steps) is not int or not 0 < steps <= MAX_STEPS or steps & (steps - 1):
         raise entry["steps"].fault(f"is not a power of two up to {MAX_STEPS}")
@@ -39,4 +45,33 @@ def read_cover(node: Node) -> Cover:
     for k, (one, next_one) in enumerate(pairwise(rectangles)):
         if one >= next_one:
             raise place.fault(f"is not sorted, or not of distinct rectangles: see numbers {k} and {k + 1}")
-    return Cover(steps, rectangles)
+    return Cover(steps, rectangles, _patches(entry["patches"], steps) if "patches" in entry else ())
+
+
+def _patches(node: Node, steps: int) -> tuple[Patch, ...]:
+    """The slanted pieces, each in its frame; whether frames are disjoint is known when the components are."""
+    if not isinstance(node.value, list) or len(node.value) > MAX_PATCHES:
+        raise node.fault(f"is not a list of at most {MAX_PATCHES} patches")
+    found = []
+    for k, value in enumerate(node.value):
+        place = Node(value, f"{node.place}[{k}]")
+        if not isinstance(value, list) or len(value) < _FIRST_TUBE:
+            raise place.fault("is not a frame, an axis and tubes")
+        head, tubes = value[:_FIRST_TUBE], value[_FIRST_TUBE:]
+        if not all(type(n) is int for n in head):
+            raise place.fault("does not begin with a frame and an axis: five integers")
+        for tube in tubes:
+            if not isinstance(tube, list) or not 1 < len(tube) <= MAX_CONTROLS or not all(map(_is_short, tube)):
+                raise place.fault(f"has a tube that is not a half width and up to {MAX_CONTROLS} controls")
+        patch = Patch((head[0], head[1], head[2], head[3]), head[4], tuple(Tube(t[0], tuple(t[1:])) for t in tubes))
+        wrong = flaw(patch, steps)
+        if wrong:
+            raise place.fault(f"is no slanted piece: {wrong}")
+        found.append(patch)
+    if any(one >= next_one for one, next_one in pairwise(found)):
+        raise node.fault("is not sorted, or has a patch twice")
+    return tuple(found)
+
+
+def _is_short(value: object) -> bool:
+    return type(value) is int and abs(value) <= MAX_CONTROL

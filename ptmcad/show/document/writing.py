@@ -10,7 +10,7 @@ import json
 from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.cover.rectangles import Cover
+from ptmcad.cover.rectangles import Cover, Patch
 from ptmcad.show.document.parts import SLICE, SYSTEM, sequences
 from ptmcad.text.numerals import text_of
 
@@ -54,4 +54,11 @@ def _encode(result: RegionMap) -> dict[str, Any]:
 def _cover(cover: Cover) -> str:
     """The cover with a line for each rectangle and nothing more: there may be a million of them."""
     rectangles = ",\n".join(f"{left},{right},{low},{high}" for left, right, low, high in cover.rectangles)
-    return f'  "cover": {{"steps": {cover.steps}, "rectangles": [\n{rectangles}\n]}}'
+    slanted = ",\n".join(json.dumps(_patch(patch), separators=(",", ":")) for patch in cover.patches)
+    patches = f', "patches": [\n{slanted}\n]' if cover.patches else ""
+    return f'  "cover": {{"steps": {cover.steps}, "rectangles": [\n{rectangles}\n]{patches}}}'
+
+
+def _patch(patch: Patch) -> list[Any]:
+    """Its frame and its axis, then for each tube the half width and the controls."""
+    return [*patch.frame, patch.along, *([tube.half, *tube.controls] for tube in patch.tubes)]

@@ -18,9 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.cover.complement import Components, components
+from ptmcad.cover import components
+from ptmcad.cover.complement import Components
 from ptmcad.cover.outlines import outlines
 from ptmcad.cover.rectangles import Cover
+from ptmcad.cover.slanted import shown as with_steps
 from ptmcad.cover.subdivision import FREE
 from ptmcad.show.render.simplification import simplified
 from ptmcad.show.render.view import Floats, Same, View
@@ -125,6 +127,7 @@ def _cover_outline(of: Same[RegionMap], covered: Same[Cover]) -> CoverOutline:
     region_at = np.full(len(complement.areas) + 1, -1, dtype=np.int64)
     for cell, number in number_of.items():
         region_at[number] = result.cells[cell].region
+    complement = with_steps(complement)
     traced = outlines(complement, list(number_of.values()))
     return CoverOutline(result, View.whole(result), complement, traced, region_at)
 

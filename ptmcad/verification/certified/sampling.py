@@ -22,12 +22,15 @@ from fractions import Fraction
 from itertools import accumulate
 from math import ceil, isqrt
 
-from ptmcad.cover.rectangles import Rectangle
+from flint import fmpq
+
+from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.counted import Counted, differs, stored
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.parameters import exact
 from ptmcad.verification.certified.points import HOPELESS, counting_of
+from ptmcad.verification.certified.slanted import Frame
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.report import Unchecked, Violation
 
@@ -41,6 +44,8 @@ MIN_WINDOW_PARTS = 2**30
 _MAX_TRIALS = 400
 """Random points looked at for one that is free."""
 _FIRST_TRIALS = 40
+PLACES_ON_TUBES = 4
+"""Beside which points are tried, for each tube."""
 """The same for points beside rectangles, of which others will do."""
 Edge = tuple[Fraction, Fraction, Fraction, Fraction]
 """A side of a rectangle within a square: left, right, bottom, top, one pair of them equal."""
@@ -147,6 +152,8 @@ def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[Sa
     cover = claims.result.cover
     assert cover is not None
     edges = _edges(cover.rectangles, claims.sweep.steps, _side(number))
+    for square, places in _along_tubes(cover, _side(number), rng).items():
+        edges.setdefault(square, []).extend(places)
     order = sorted(edges)
     rng.shuffle(order)
     totals = {k: list(accumulate(right - left + top - bottom for left, right, bottom, top in edges[k])) for k in order}
@@ -181,6 +188,24 @@ def _edges(rectangles: tuple[Rectangle, ...], steps: int, side: int) -> dict[tup
                 for j, low, high in _cut(bottom, top, steps, side):
                     edge = (Fraction(across), Fraction(across), low, high)
                     found.setdefault((across * side // steps, j), []).append(edge)
+    return found
+
+
+def _along_tubes(cover: Cover, side: int, rng: random.Random) -> dict[tuple[int, int], list[Edge]]:
+    """Places on tubes, in the form of short edges that points are across of, some in each frame."""
+    found: dict[tuple[int, int], list[Edge]] = {}
+    for k, patch in enumerate(cover.patches):
+        frame = Frame(patch, k)
+        for center in frame.centers:
+            for _ in range(PLACES_ON_TUBES):
+                s = _uniform(rng)
+                u, value = frame.low + s * (frame.high - frame.low), center(fmpq(s.numerator, s.denominator))
+                v = Fraction(int(value.p), int(value.q))
+                if not frame.bottom <= v <= frame.top:
+                    continue
+                edge = (u, u + 1, v, v) if patch.along == 0 else (v, v, u, u + 1)
+                place = (edge[0] * side // cover.steps, edge[2] * side // cover.steps)
+                found.setdefault((int(place[0]), int(place[1])), []).append(edge)
     return found
 
 

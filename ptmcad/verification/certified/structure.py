@@ -14,6 +14,7 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.mechanism import System
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import approximate_text, text_of
+from ptmcad.verification.certified.slanted import SlantedSweep, slanted_sweep
 from ptmcad.verification.certified.sweep import Sweep, sweep
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import MECHANISM, shorthands_of, tells_stability
@@ -21,6 +22,8 @@ from ptmcad.verification.report import Violation
 
 MAX_STEPS = 2**40
 MAX_UNKNOWNS = 3
+SLACK = 4
+"""Columns and rows of lattice squares of a frame that rounding may concern, for each of its parts."""
 _NEEDED = {
     Count.STABLE: {"stable"},
     Count.ADMISSIBLE: {"stable", "admissible"},
@@ -34,9 +37,19 @@ class CertifiedClaims(Claims):
     """The result, and what follows from its cover."""
 
     @cached_property
-    def sweep(self) -> Sweep:
-        assert self.result.cover is not None
-        return sweep(self.result.cover)
+    def sweep(self) -> Sweep | SlantedSweep:
+        cover = self.result.cover
+        assert cover is not None
+        return slanted_sweep(cover) if cover.patches else sweep(cover)
+
+    @cached_property
+    def slack(self) -> int:
+        """By how much areas may be told differently because of rounding, in squares of the lattice."""
+        cover = self.result.cover
+        assert cover is not None
+        sides = ((right - left + top - bottom) * (len(patch.tubes) + 1) for patch in cover.patches
+                 for left, right, bottom, top in [patch.frame])  # fmt: skip
+        return SLACK * sum(sides)
 
     @cached_property
     def square(self) -> Fraction:
@@ -114,6 +127,14 @@ def check_form(claims: CertifiedClaims) -> str:
     for one, two in pairwise(r.cover.rectangles):
         if not one < two:
             raise Violation(f"the rectangles {one} and {two} are not sorted")
+    if any(not one < two for one, two in pairwise(r.cover.patches)):
+        raise Violation("the slanted pieces are not sorted")
+    for patch in r.cover.patches:
+        left, right, bottom, top = patch.frame
+        if not (0 <= left < right <= steps and 0 <= bottom < top <= steps and patch.along in (0, 1)):
+            raise Violation(f"{patch.frame} is not a frame of the lattice")
+        if any(len(tube.controls) < 2 for tube in patch.tubes):
+            raise Violation(f"a slanted piece in {patch.frame} has no polynomial")
     needed = {"stable" if r.slice.count is Count.STABLE else "total"}
     if r.slice.model.has_potential:
         needed = _NEEDED[r.slice.count]
@@ -128,7 +149,8 @@ def check_form(claims: CertifiedClaims) -> str:
         for name in (*needed - {"index"},):
             if getattr(cell, name) < 0:
                 raise Violation(f"cell {n} has a negative count")
-    return f"{len(r.cover.rectangles)} rectangles, {len(r.cells)} cells, {len(r.regions)} regions"
+    slanted = f"{len(r.cover.patches)} slanted pieces, " if r.cover.patches else ""
+    return f"{len(r.cover.rectangles)} rectangles, {slanted}{len(r.cells)} cells, {len(r.regions)} regions"
 
 
 def _check_model(slice: Slice) -> None:
@@ -152,18 +174,18 @@ def check_components(claims: CertifiedClaims) -> str:
     """Every cell is a component of the cover's complement; the undetermined share is what the cells leave."""
     r, found = claims.result, claims.sweep
     cells = claims.cell_of
-    larger = Counter(found.areas.values())
+    larger = Counter[Fraction | int](found.areas.values())
     for component, n in cells.items():
         area, level = found.areas[component], r.cells[n].level
-        before = sum(number for other, number in larger.items() if other > area)
-        if not before <= level < before + larger[area]:
+        before = sum(number for other, number in larger.items() if other > area + claims.slack)
+        if not before <= level < sum(number for other, number in larger.items() if other >= area - claims.slack):
             raise Violation(f"cell {n} is said to be component {level} by area, but {before} are larger")
     levels = [cell.level for cell in r.cells]
     if len(set(levels)) != len(levels):
         raise Violation("two cells are said to be the same component")
     known = sum(found.areas[component] for component in cells)
     true = 1 - Fraction(known, found.steps**2)
-    if true != r.undetermined:
+    if not true <= r.undetermined <= true + Fraction(claims.slack, found.steps**2):
         raise Violation(f"the undetermined share of the window is {approximate_text(true)}, not "
                         f"{approximate_text(r.undetermined)}")  # fmt: skip
     return f"{len(found.areas)} components, {len(found.areas) - len(cells)} of them undetermined"
@@ -191,7 +213,7 @@ def check_regions(claims: CertifiedClaims) -> str:
         if not (0 <= low <= least * claims.square):
             raise Violation(f"region {number} is said to have at least the area {text_of(low)}, but "
                             f"only {approximate_text(least * claims.square)} is proved")  # fmt: skip
-        if high < reach * claims.square:
+        if high < (reach - claims.slack) * claims.square:
             raise Violation(f"region {number} is said to have at most the area {approximate_text(high)}, but with "
                             f"what is undetermined beside it, it may have "
                             f"{approximate_text(reach * claims.square)}")  # fmt: skip
@@ -200,7 +222,7 @@ def check_regions(claims: CertifiedClaims) -> str:
     return f"{len(r.regions)} regions"
 
 
-def _reach(claims: CertifiedClaims, component: int) -> int:
+def _reach(claims: CertifiedClaims, component: int) -> int | Fraction:
     """The area that a region, which is a cell, has if all that is undetermined beside it belongs to it, in squares.
 
     Not its neighbours' cells, but components without a cell that only undetermined rectangles part from it.
