@@ -178,12 +178,16 @@ def prepare(slice: Slice, options: Options) -> float:
         if "imports" in options.without:
             with loading("all that there is"):
                 load_all()
-        return load_certified(options.progress)
+        return load_certified(options.progress, options)
     return 0.0
 
 
-def load_certified(progress: Progress | None = None) -> float:
+def load_certified(progress: Progress | None = None, options: Options | None = None) -> float:
     """Load the certified engine, and compile it where this machine has not done so; the seconds that this took.
+
+    Parameters
+    ----------
+    options : of what is wanted; all that there is is made ready where nothing is said.
 
     Raises
     ------
@@ -192,9 +196,10 @@ def load_certified(progress: Progress | None = None) -> float:
     """
     with loading("the certified engine"):
         import_module("ptmcad.certified.compiled")  # first: where numba is missing, it says so
+        from ptmcad.certified.engine import may_be_slanted
         from ptmcad.certified.loading import load
     check_room("the certified engine")
-    return load(progress)
+    return load(progress, options is None or may_be_slanted(options))
 
 
 def _check_certified(slice: Slice, options: Options) -> None:

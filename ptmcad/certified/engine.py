@@ -77,6 +77,11 @@ LATTICE_STEPS = 2**24
 """Lattice steps of a cover along each axis; more for a tolerance below 1e-5."""
 
 
+def may_be_slanted(options: Options) -> bool:
+    """Whether a tolerance is so small that slanted pieces are tried."""
+    return (options.tolerance or TOLERANCE) < SLANTED_BELOW
+
+
 def certified_map(slice: Slice, options: Options = DEFAULTS) -> RegionMap:
     """The region map of a slice by interval methods.
 
@@ -104,7 +109,7 @@ class _Run:
     """One computation of a map: the enclosures, which shrink, and the time each part took."""
 
     def __init__(self, slice: Slice, options: Options):
-        load(options.progress)
+        load(options.progress, slanted=may_be_slanted(options))
         self.pace = Pace(options.deadline)
         self.clock = self.pace.clock
         self.headway = Headway(float(options.tolerance or TOLERANCE))
@@ -175,7 +180,7 @@ class _Run:
 
     def _slantable(self, undetermined: Fraction) -> bool:
         """Whether it is time for slanted pieces: the tolerance is small, and so are the boxes."""
-        return self.tolerance < SLANTED_BELOW and undetermined <= SLANTED_SHARE
+        return may_be_slanted(self.options) and undetermined <= SLANTED_SHARE
 
     def _slanted(self, area: float) -> RegionMap | None:
         """The map of a cover with slanted pieces; None where it leaves too much, and then it may be the best so far.

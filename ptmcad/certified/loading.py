@@ -1,7 +1,7 @@
 """All compiled code made ready: read from disk, or compiled where this machine has not done it yet.
 
 Guarantee: after `load` nothing is compiled in this process any more, whatever the slice; so no compilation falls into
-the time that a limit allows.
+the time that a limit allows. What slanted pieces alone need, half of all, is loaded where they may be wanted.
 """
 
 from __future__ import annotations
@@ -32,26 +32,28 @@ MIN_GARBAGE = 20_000
 """New objects between two collections while numba compiles, which makes millions that live: a seventh of its time went
 into looking for garbage among them. More would gain nothing and take memory."""
 _done: list[bool] = []
+"""For each time that all was made ready, whether slanted pieces were."""
 
 
-def load(progress: Progress | None = None) -> float:
+def load(progress: Progress | None = None, slanted: bool = True) -> float:
     """Use each compiled function once, on the line x = y, its point (1/2, 1/2) and a cover of one square.
 
     Parameters
     ----------
     progress : called as progress(STAGE, done, total) with numbers of functions, as long as some have to be compiled.
+    slanted : whether covers with slanted pieces may be wanted.
 
     Returns
     -------
     The seconds that compiling took now; 0 where all was read from disk, or had been loaded before.
     """
-    if _done:
+    if slanted in _done or True in _done:
         return 0.0
     compiling = _Compiling(progress)
     with install_listener("numba:compile", compiling), _fewer_collections():
-        for _ in _functions():
+        for _ in _functions(slanted):
             pass
-    _done.append(True)
+    _done.append(slanted)
     return compiling.seconds
 
 
@@ -92,7 +94,7 @@ class _Compiling(Listener):
             self.progress(STAGE, sum(bool(function.overloads) for function in FUNCTIONS), len(FUNCTIONS))
 
 
-def _functions() -> Iterator[None]:
+def _functions(slanted: bool) -> Iterator[None]:
     """One by one all that Python calls, the fastest to compile first, so that there is soon something to report."""
     weights = np.ones(2)
     square = np.array([[0.0, 0.0, 1.0, 1.0]])
@@ -112,8 +114,9 @@ def _functions() -> Iterator[None]:
     yield
     isolate(point.arguments(), point.arguments(), square, (1e-3, 64, 4), weights)
     yield
-    tubes(line.arguments(), equations_alone(line).arguments(), square, weights, (0, 0.0, 1.0), (2, 1e-3, 4))
-    yield
+    if slanted:
+        tubes(line.arguments(), equations_alone(line).arguments(), square, weights, (0, 0.0, 1.0), (2, 1e-3, 4))
+        yield
 
 
 def _systems() -> tuple[System, System]:

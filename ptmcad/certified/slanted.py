@@ -15,11 +15,12 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from fractions import Fraction
 from heapq import heappop, heappush
-from math import ceil, comb
+from math import ceil
 
 import numpy as np
-from flint import fmpq, fmpq_poly
+from flint import fmpq
 
+from ptmcad.certified.controls import controls
 from ptmcad.certified.covering import Lattice
 from ptmcad.certified.evaluation import Floats
 from ptmcad.certified.refinement import Enclosure
@@ -196,18 +197,13 @@ class Slanting:
         step = (high - low) / steps
         radius = Fraction(found.radius)
         start = (low + ends[0] * step - Fraction(found.middle)) / radius
-        time = fmpq_poly([_q(start), _q((ends[1] - ends[0]) * step / radius)])
+        length = (ends[1] - ends[0]) * step / radius
         scale = steps / (top - bottom)
         result = []
         for coefficients, half in zip(found.coefficients.tolist(), found.half.tolist(), strict=True):
-            composed = (fmpq_poly([_q(Fraction(c)) for c in coefficients])(time) - _q(bottom)) * _q(scale)
-            n = len(coefficients) - 1
-            powers = [composed[j] for j in range(n + 1)]
-            controls = tuple(
-                round_half(sum((fmpq(comb(k, j), comb(n, j)) * powers[j] for j in range(k + 1)), fmpq(0)))
-                for k in range(n + 1)
-            )
-            result.append(Tube(ceil(Fraction(half) * scale) + 1, controls))
+            heights = controls([_q(Fraction(c)) for c in coefficients], _q(start), _q(length))
+            places = tuple(round_half((height - _q(bottom)) * _q(scale)) for height in heights)
+            result.append(Tube(ceil(Fraction(half) * scale) + 1, places))
         return result
 
 

@@ -241,10 +241,11 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
         report_idle((Idle("out", not names, why), Idle("name", not names, why)))
         if enclosed and not request.critical:
             from ptmcad.ask.classification import load_certified
+            from ptmcad.options import DEFAULTS
 
             # the time that compiling takes is not the computation's
             with clock_stopped(limits.timeout), ProgressBar() as progress:
-                load_certified(progress)
+                load_certified(progress, DEFAULTS)
         found = answer(slice, request)
         click.echo(found.text)
         if names:

@@ -152,11 +152,12 @@ def command(
         )
         from ptmcad.ask.classification import load_certified
         from ptmcad.ask.solving import needs_intervals, poses_at
+        from ptmcad.options import DEFAULTS
 
         # the time that imports and compiling take is not the computation's
         with clock_stopped(limits.timeout), ProgressBar() as progress:
             if needs_intervals(model, parameters):
-                load_certified(progress)
+                load_certified(progress, DEFAULTS)
         poses = replace(poses_at(model, parameters, digits), units={} if config is None else units_of(config))
         if names:
             save(poses, out, start, names)

@@ -124,9 +124,10 @@ def command(
 
         if any(case.has_free_lengths for case in cases):
             from ptmcad.ask.classification import load_certified
+            from ptmcad.options import DEFAULTS
 
             with clock_stopped(limit), ProgressBar() as progress:  # the time that compiling takes is not the cases'
-                load_certified(progress)
+                load_certified(progress, DEFAULTS)
         deadline = None if timeout is None else perf_counter() + timeout
         with ProgressBar() as progress:
             found = campaign(cases, seed=seed, repeats=repeats, deadline=deadline, progress=progress)

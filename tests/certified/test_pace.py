@@ -210,7 +210,7 @@ def test_garbage_is_looked_for_less_while_compiling(before: int, during: int, mo
     """A caller's own threshold comes back, also when compiling ends by an exception; 0 is a collector switched off."""
     usual = gc.get_threshold()
 
-    def functions() -> Iterator[None]:
+    def functions(_slanted: bool) -> Iterator[None]:
         assert gc.get_threshold()[0] == during
         yield
         raise KeyboardInterrupt
