@@ -292,6 +292,7 @@ def exactly(text: str) -> Callable[[], tuple[Fraction, Fraction]]:
 AREAS: dict[str, tuple[list[fmpz_mpoly], Window, str, str, tuple[Fraction, Fraction]]] = {
     # curves, window, a point of the piece, its area
     "disc": ([circle(0, 0, 1)], SQUARE, "0", "0", PI),
+    "sheared disc": ([X**2 + (2 * Y - X - 1) ** 2 - 1], SQUARE, "0", "1/2", (PI[0] / 2, PI[1] / 2)),
     "outside of a disc": ([circle(0, 0, 1)], SQUARE, "3/2", "3/2", (16 - PI[1], 16 - PI[0])),
     "quarter of a disc": ([circle(0, 0, 1)], ("0", "2", "0", "2"), "1/2", "1/2", (PI[0] / 4, PI[1] / 4)),
     "corner outside a disc that touches the edges": (
@@ -339,10 +340,24 @@ def check_area(name: str, base: int, tolerance: Fraction) -> None:
         (circle(0, 0, 1), ("-2", "3/2", "-1/2", "2"), 1),
         ((X**2 + Y**2) ** 3 - 4 * X**2 * Y**2, ("-2", "3/2", "-1", "3/4"), 3),
         (Y**2 - X**2 * (X + 1), SQUARE, 2),
+        (X**2 + (3 * Y - X - 1) ** 2 - 4, ("-2", "3/2", "-1", "1"), 1),
+        ((X**2 + (2 * Y + X) ** 2) ** 3 - 4 * X**2 * (2 * Y + X) ** 2, ("-1", "3/2", "-3/5", "1/2"), 5),
+        ((2 * Y - X - 1) ** 2 - X**2 * (X + 1), ("-2", "2", "-1", "1"), 2),
+        ((2 * Y - X - 1) ** 4 + X**2 * (2 * Y - X - 1) - 1, SQUARE, 0),
         (Y - X**2, ("-2", "2", "1/2", "5/2"), 1),
         (X * Y - 1, ("-2", "2", "-2", "2"), 0),
     ],
-    ids=["disc", "rose", "node", "parabola", "hyperbola"],
+    ids=[
+        "disc",
+        "rose",
+        "node",
+        "sheared disc",
+        "sheared rose",
+        "sheared node",
+        "sheared, but odd",
+        "parabola",
+        "hyperbola",
+    ],
 )
 def test_mirror_images_of_walls_are_walls(
     p: fmpz_mpoly, window: Window, least: int, monkeypatch: pytest.MonkeyPatch

@@ -5,14 +5,15 @@ graph, by the branch's Taylor series (`algebra.branches`), by its Puiseux series
 (`algebra.puiseux`), between arcs (`algebra.arcs`), between horizontals, or between the window's edges.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
-from flint import arb, ctx, fmpq, fmpq_poly
+from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.arcs import arc_integral
 from ptmcad.algebra.branches import Integral, PrecisionTooLow, branch_integral
+from ptmcad.algebra.polynomials import RationalPolynomial
 from ptmcad.algebra.puiseux import Beside, puiseux_integral
 from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
 from ptmcad.algebra.window import Interval
@@ -43,6 +44,7 @@ class Effort(NamedTuple):
     broad : on panels broader than this horizontals would be too coarse to be worth their time.
     narrowest : narrower panels would need a higher precision.
     roots : of a component over an abscissa within the window; isolated once for all of a stack's walls.
+    axes : for each component m(u), if the reflection (u, v) to (u, 2 m(u) - v) maps it to itself.
     """
 
     order: int
@@ -51,6 +53,7 @@ class Effort(NamedTuple):
     broad: fmpq
     narrowest: fmpq
     roots: Callable[[int, fmpq], tuple[RealRoot, ...]]
+    axes: Mapping[int, RationalPolynomial | None]
 
 
 class Border(NamedTuple):
@@ -134,11 +137,11 @@ def panels(border: Border, over: Interval, effort: Effort, allowed: fmpq, singul
     return sorted(done, key=lambda p: p.low)
 
 
-def _graph(curve: Curve) -> fmpq_poly | None:
+def _graph(curve: Curve) -> RationalPolynomial | None:
     """The polynomial whose graph the curve is; None where it is no polynomial's."""
     if len(curve.in_v) != 2 or curve.in_v[1].degree() > 0:
         return None
-    return fmpq_poly(-curve.in_v[0]) / fmpq(curve.in_v[1][0])
+    return RationalPolynomial(-curve.in_v[0]) / fmpq(curve.in_v[1][0])
 
 
 def _rough_panel(border: Border, over: Interval, effort: Effort, singular: int) -> Panel:
