@@ -14,14 +14,16 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
-from flint import fmpq, fmpz_mpoly, fmpz_poly
+from flint import arb, ctx, fmpq, fmpz_mpoly, fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.examples import examples
 
+from ptmcad.algebra.branches import PrecisionTooLow
 from ptmcad.algebra.polynomials import PLANE, coefficients_in
+from ptmcad.algebra.puiseux import puiseux_integral
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part
-from ptmcad.exact.cad import area, mirrors
+from ptmcad.exact.cad import area, mirrors, panels
 from ptmcad.exact.cad.adjacency import Separator, cross
 from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.curves import Curve, curve
@@ -332,6 +334,23 @@ def check_area(name: str, base: int, tolerance: Fraction) -> None:
     whole = (found.base[1] - found.base[0]) * (found.fibre[1] - found.fibre[0])
     window_area = Fraction(int(whole.p), int(whole.q))
     assert sum(a for a, _ in areas) <= window_area <= sum(b for _, b in areas)
+
+
+@pytest.mark.parametrize("failures", [1, 2])
+def test_a_series_beside_a_cusp_is_tried_at_twice_the_precision(failures: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where that does not suffice either, the area is found by panels cut nearer and nearer to the cusp."""
+    tried: list[int] = []
+
+    def scarce(*arguments: Any) -> tuple[arb, fmpq] | None:
+        tried.append(ctx.prec)
+        if len(tried) % (failures + 1):
+            raise PrecisionTooLow
+        return puiseux_integral(*arguments)
+
+    monkeypatch.setattr(panels, "puiseux_integral", scarce)
+    check_area("between cusp and line", 0, Fraction(1, 10**6))
+    assert len(tried) >= 2
+    assert tried[1] == 2 * tried[0]
 
 
 @pytest.mark.parametrize(
