@@ -146,7 +146,7 @@ def region_areas(
     bits = 64 + 6 * digits + min(max_height_bits(parts.curves) // 2, _LONG_COEFFICIENT_BITS)
     bits += _bits_lost(parts.base) + _bits_lost(parts.fibre)
     broad, narrowest = width * fmpq(1, 2 ** (3 * digits // 2)), min(map(_isolated, parts.stacks))
-    more = _LEAST_ORDER + max(0, max(len(c.in_v) for c in parts.curves) - _LONG_FIBRE) // _FIBRE_PER_ORDER
+    more = _LEAST_ORDER + max(0, max((len(c.in_v) for c in parts.curves), default=0) - _LONG_FIBRE) // _FIBRE_PER_ORDER
     strips, finer = _Strips(fmpq(1, 10 ** (digits + 3) * 4), own=True), 20
     curve_of = by_component(parts.curves)
     axes = {component: axis_of(curve.in_v) for component, curve in curve_of.items()}
