@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from flint import acb, acb_poly, arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
+from ptmcad.algebra.reflections import axis_of, squared
 
 _RADII = 8
 """Numbers of radii that are tried, the least first, in geometric progression."""
@@ -50,20 +51,30 @@ class Cluster(NamedTuple):
 
 def clusters_over(rows: Sequence[UnivariatePolynomial], abscissa: arb) -> list[Cluster] | None:
     """The clusters of a polynomial in v with coefficients in Z[u], for u in a ball."""
-    return clusters([arb_poly(row)(abscissa) for row in rows])
+    coefficients, axis = [arb_poly(row)(abscissa) for row in rows], axis_of(rows)
+    if axis is None:
+        return clusters(coefficients)
+    # p is q((d (v - m))^2), of half the degree; the roots are starts only, so m may be that of the ball's middle
+    middle, d = abscissa.mid().fmpq(), axis.denom()
+    squares = _approximate([arb_poly(row)(abscissa) for row in squared(rows, axis)])
+    steps = [((square.sqrt() / d).mid(), m) for square, m in squares]
+    return clusters(coefficients, [((acb(axis(middle)) + w).mid(), m) for s, m in steps for w in (s, -s)])
 
 
-def clusters(coefficients: Sequence[arb]) -> list[Cluster] | None:
+def clusters(coefficients: Sequence[arb], starts: Sequence[tuple[acb, int]] | None = None) -> list[Cluster] | None:
     """Disjoint discs that hold all roots; None where the balls are too large to tell.
 
     Roots so near to each other that the balls do not part them are in one disc.
+
+    Parameters
+    ----------
+    starts : all roots about where they are, with multiplicities; they are computed where they are not given. Nothing
+        that is proved depends on them.
     """
     if len(coefficients) < 2 or coefficients[-1].contains(0):
         return None
-    middle = fmpq_poly([c.mid().fmpq() for c in coefficients])
     polynomial = acb_poly(list(coefficients))
-    roots: Any = middle.numer().complex_roots()  # pairs; FLINT's stub says otherwise
-    waiting: list[_Group] = [(root.mid(),) * m for root, m in roots]
+    waiting: list[_Group] = [(root,) * m for root, m in (_approximate(coefficients) if starts is None else starts)]
     found: list[tuple[_Group, Cluster]] = []
     while waiting:
         group = waiting.pop()
@@ -81,6 +92,13 @@ def clusters(coefficients: Sequence[arb]) -> list[Cluster] | None:
     if any(c.meets(d) for c, d in combinations(discs, 2)) or not all(map(_is_settled, discs)):
         return None
     return discs
+
+
+def _approximate(coefficients: Sequence[arb]) -> list[tuple[acb, int]]:
+    """The roots of the polynomial in the middle of the balls, with their multiplicities."""
+    middle = fmpq_poly([c.mid().fmpq() for c in coefficients])
+    roots: Any = middle.numer().complex_roots()  # pairs; FLINT's stub says otherwise
+    return [(root.mid(), m) for root, m in roots]
 
 
 _Group = tuple[acb, ...]

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 from functools import reduce
 
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpq_poly, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
 from ptmcad.text.expressions import Expression
 from ptmcad.text.plane import PlanePolynomial
@@ -26,6 +26,8 @@ Coefficient = fmpz_mpoly
 """An element of Z[x, y], or of Z[x, y, z]."""
 UnivariatePolynomial = fmpz_poly
 """An element of Z[u] or Z[v], the polynomials in one axis."""
+RationalPolynomial = fmpq_poly
+"""An element of Q[u]."""
 Ratio = tuple[fmpz_mpoly, fmpz_mpoly]
 """Numerator and nonzero denominator."""
 

@@ -81,17 +81,19 @@ def puiseux_integral(
     branch : the branch's value at a rational abscissa, isolated.
     order : degree of the polynomial approximation.
     allowed : an error that would do; positive.
+
+    Raises
+    ------
+    PrecisionTooLow
+        When too few bits are left to say whether there is one.
     """
-    try:
-        chart = _straightened(in_v, beside, branch)
-        if chart is None:
-            return None
-        q, n = chart.power, chart.power + chart.exponent
-        size = abs(beside.width) * fmpq(q, n)  # of the integral of s^exponent
-        wanted = arb(allowed / size)
-        tube = tube_around(_regular(chart, beside), order, wanted / 2**_ROOM_BITS, wanted)
-    except PrecisionTooLow:
+    chart = _straightened(in_v, beside, branch)
+    if chart is None:
         return None
+    q, n = chart.power, chart.power + chart.exponent
+    size = abs(beside.width) * fmpq(q, n)  # of the integral of s^exponent
+    wanted = arb(allowed / size)
+    tube = tube_around(_regular(chart, beside), order, wanted / 2**_ROOM_BITS, wanted)
     if tube is None:
         return None
     cut = beside.far

@@ -2,6 +2,8 @@
 
 Guarantee: exact. The number of evaluation points comes from a proved bound for the degree, see `orders`: nothing is
 left to chance. Values of high degree are taken modulo primes, see `modular`, the others in Z; predicted cost decides.
+Of a long polynomial that a reflection v to 2 m(u) - v maps to itself, the discriminant in (v - m)^2 is computed, of
+half the degree; where m = 0 that is left to the caller.
 """
 
 from __future__ import annotations
@@ -11,9 +13,10 @@ from collections.abc import Callable, Sequence
 from functools import lru_cache
 from itertools import pairwise
 
-from flint import fmpz, fmpz_poly
+from flint import fmpq_poly, fmpz, fmpz_poly
 
 from ptmcad.algebra.orders import discriminant_degree, resultant_degree
+from ptmcad.algebra.reflections import axis_of, squared
 
 Coefficients = Sequence[fmpz_poly]
 Check = Callable[[], None]
@@ -34,6 +37,8 @@ def discriminant(p: Coefficients, check: Check = nothing) -> fmpz_poly:
     if n < 2:
         return fmpz_poly([1])
     bound = discriminant_degree(p)
+    if (bound + 1) * n * (n - 1) >= LONG and (axis := axis_of(p)):
+        return _by_reflection(p, axis, check)
     if (bound + 1) * n * (n - 1) >= LONG:
         from ptmcad.algebra import modular  # not loaded for short ones
 
@@ -50,6 +55,18 @@ def discriminant(p: Coefficients, check: Check = nothing) -> fmpz_poly:
         return value.leading_coefficient() ** 2 * (value.discriminant() if n > 2 else 1)
 
     return interpolate(at, bound, check)
+
+
+def _by_reflection(p: Coefficients, axis: fmpq_poly, check: Check) -> fmpz_poly:
+    """The discriminant of a polynomial of degree n = 2 k, which a reflection of v maps to itself, from that of q.
+
+    With p(v) d^n = q(W), W = w^2, w = d (v - m), the leading coefficients are the same, and the squares of the roots'
+    differences are d^2 times as large: disc_w q(w^2) = d^(n (n - 1)) disc p. And disc_w q(w^2) is
+    (-4)^k q_0 q_k disc(q)^2, as the roots come in pairs +-w with w^2 = W, whose product is (-1)^k q_0 / q_k.
+    """
+    n, q = len(p) - 1, squared(p, axis)
+    full: fmpz_poly = (-4) ** (n // 2) * q[0] * q[-1] * discriminant(q, check) ** 2
+    return full // axis.denom() ** (n * (n - 1))
 
 
 @lru_cache(maxsize=4)

@@ -14,14 +14,16 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
-from flint import fmpq, fmpz_mpoly, fmpz_poly
+from flint import arb, ctx, fmpq, fmpz_mpoly, fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.examples import examples
 
+from ptmcad.algebra.branches import PrecisionTooLow
 from ptmcad.algebra.polynomials import PLANE, coefficients_in
+from ptmcad.algebra.puiseux import puiseux_integral
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part
-from ptmcad.exact.cad import area, mirrors
+from ptmcad.exact.cad import area, mirrors, panels
 from ptmcad.exact.cad.adjacency import Separator, cross
 from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.curves import Curve, curve
@@ -292,6 +294,7 @@ def exactly(text: str) -> Callable[[], tuple[Fraction, Fraction]]:
 AREAS: dict[str, tuple[list[fmpz_mpoly], Window, str, str, tuple[Fraction, Fraction]]] = {
     # curves, window, a point of the piece, its area
     "disc": ([circle(0, 0, 1)], SQUARE, "0", "0", PI),
+    "sheared disc": ([X**2 + (2 * Y - X - 1) ** 2 - 1], SQUARE, "0", "1/2", (PI[0] / 2, PI[1] / 2)),
     "outside of a disc": ([circle(0, 0, 1)], SQUARE, "3/2", "3/2", (16 - PI[1], 16 - PI[0])),
     "quarter of a disc": ([circle(0, 0, 1)], ("0", "2", "0", "2"), "1/2", "1/2", (PI[0] / 4, PI[1] / 4)),
     "corner outside a disc that touches the edges": (
@@ -333,16 +336,47 @@ def check_area(name: str, base: int, tolerance: Fraction) -> None:
     assert sum(a for a, _ in areas) <= window_area <= sum(b for _, b in areas)
 
 
+@pytest.mark.parametrize("failures", [1, 2])
+def test_a_series_beside_a_cusp_is_tried_at_twice_the_precision(failures: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where that does not suffice either, the area is found by panels cut nearer and nearer to the cusp."""
+    tried: list[int] = []
+
+    def scarce(*arguments: Any) -> tuple[arb, fmpq] | None:
+        tried.append(ctx.prec)
+        if len(tried) % (failures + 1):
+            raise PrecisionTooLow
+        return puiseux_integral(*arguments)
+
+    monkeypatch.setattr(panels, "puiseux_integral", scarce)
+    check_area("between cusp and line", 0, Fraction(1, 10**6))
+    assert len(tried) >= 2
+    assert tried[1] == 2 * tried[0]
+
+
 @pytest.mark.parametrize(
     ("p", "window", "least"),
     [
         (circle(0, 0, 1), ("-2", "3/2", "-1/2", "2"), 1),
         ((X**2 + Y**2) ** 3 - 4 * X**2 * Y**2, ("-2", "3/2", "-1", "3/4"), 3),
         (Y**2 - X**2 * (X + 1), SQUARE, 2),
+        (X**2 + (3 * Y - X - 1) ** 2 - 4, ("-2", "3/2", "-1", "1"), 1),
+        ((X**2 + (2 * Y + X) ** 2) ** 3 - 4 * X**2 * (2 * Y + X) ** 2, ("-1", "3/2", "-3/5", "1/2"), 5),
+        ((2 * Y - X - 1) ** 2 - X**2 * (X + 1), ("-2", "2", "-1", "1"), 2),
+        ((2 * Y - X - 1) ** 4 + X**2 * (2 * Y - X - 1) - 1, SQUARE, 0),
         (Y - X**2, ("-2", "2", "1/2", "5/2"), 1),
         (X * Y - 1, ("-2", "2", "-2", "2"), 0),
     ],
-    ids=["disc", "rose", "node", "parabola", "hyperbola"],
+    ids=[
+        "disc",
+        "rose",
+        "node",
+        "sheared disc",
+        "sheared rose",
+        "sheared node",
+        "sheared, but odd",
+        "parabola",
+        "hyperbola",
+    ],
 )
 def test_mirror_images_of_walls_are_walls(
     p: fmpz_mpoly, window: Window, least: int, monkeypatch: pytest.MonkeyPatch

@@ -19,6 +19,7 @@ from flint import arb, ctx, fmpq
 from ptmcad.algebra.branches import PrecisionTooLow
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
+from ptmcad.algebra.reflections import axis_of
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve, by_component, max_height_bits
 from ptmcad.exact.cad.mirrors import Wall, mirrored, wall_of
@@ -38,6 +39,10 @@ _PANELS = 16
 """Twice the number of panels that a border may take, about."""
 _HOPELESS_RATIO = 2**8
 """So much larger than allowed are strips against rough areas, when it is pointless to find out about the exact ones."""
+_LEAST_ORDER = 6
+"""Of series, besides the tolerance's digits."""
+_LONG_FIBRE, _FIBRE_PER_ORDER = 16, 3
+"""Of higher degrees in v fibres and local coefficients cost more than series, so longer ones on fewer panels pay."""
 _CACHED_FIBRES = 1024
 """Fibres whose roots are remembered."""
 
@@ -141,8 +146,10 @@ def region_areas(
     bits = 64 + 6 * digits + min(max_height_bits(parts.curves) // 2, _LONG_COEFFICIENT_BITS)
     bits += _bits_lost(parts.base) + _bits_lost(parts.fibre)
     broad, narrowest = width * fmpq(1, 2 ** (3 * digits // 2)), min(map(_isolated, parts.stacks))
+    more = _LEAST_ORDER + max(0, max((len(c.in_v) for c in parts.curves), default=0) - _LONG_FIBRE) // _FIBRE_PER_ORDER
     strips, finer = _Strips(fmpq(1, 10 ** (digits + 3) * 4), own=True), 20
     curve_of = by_component(parts.curves)
+    axes = {component: axis_of(curve.in_v) for component, curve in curve_of.items()}
 
     @lru_cache(maxsize=_CACHED_FIBRES)
     def roots(component: int, u: fmpq) -> tuple[RealRoot, ...]:
@@ -150,7 +157,7 @@ def region_areas(
         return isolate(curve_of[component].fibre(u), *parts.fibre)
 
     while True:
-        effort = Effort(digits + 6, width, parts.fibre, broad, narrowest / 2 ** (bits // 2), roots)
+        effort = Effort(digits + more, width, parts.fibre, broad, narrowest / 2 ** (bits // 2), roots, axes)
         try:
             with ctx.workprec(bits):
                 bounds = _areas(parts, strips, tolerance * 3 / 4, effort, check)
@@ -191,7 +198,7 @@ def _areas(
     lost = sum((b[0] - a[1] for a, b in pairwise(spans)), fmpq(0)) * parts.height
     borders = list(parts.borders(spans))
     rough = _rough(spans, parts, borders, effort)
-    if strips.own and lost * 4 > from_fraction(tolerance) * min(rough) * _HOPELESS_RATIO:
+    if lost * 4 > from_fraction(tolerance) * min(rough) * _HOPELESS_RATIO:
         raise _Unreachable(strips=True)
     load = Counter(i for row in borders for b in row for i in (b.below, b.above))
     # of a panel's integral: what would do if all were about as bad, with some more panels than borders
@@ -199,10 +206,10 @@ def _areas(
     known: dict[Wall, list[Panel]] = {}
     for border in chain.from_iterable(borders):
         check()
-        found = mirrored(border, known, effort)
+        found = mirrored(border, border.span, known, effort)
         if found is None:
             found = panels(border, border.span, effort, min(allowed[border.below], allowed[border.above]))
-        known[wall_of(border)] = found
+        known[wall_of(border, border.span)] = found
     covered = [p for found in known.values() for p in found]
     return _refine(covered, _Frame(_edges(spans, parts), lost, allowed), tolerance, effort, check)
 
@@ -288,14 +295,19 @@ def _refine(
         load = Counter(i for p in panels for i in (p.border.below, p.border.above))
         target = {i: tolerance * max(bounds[i][0], bounds[i][1] / 8) / (2 * max(load[i], 1)) for i in poor}
         refined: list[Panel] = []
+        known: dict[Wall, list[Panel]] = {}
         for p in panels:
             allowed = min((target[i] for i in poor & {p.border.below, p.border.above}), default=p.width)
             if p.width > allowed:
                 check()
                 if p.high - p.low < effort.narrowest:
                     raise _Unreachable(strips=False)
-                least = min(frame.allowed[p.border.below], frame.allowed[p.border.above])
-                refined += halves(p, effort, min(least, from_fraction(allowed) / 4))
+                found = mirrored(p.border, (p.low, p.high), known, effort)
+                if found is None:
+                    least = min(frame.allowed[p.border.below], frame.allowed[p.border.above])
+                    found = halves(p, effort, min(least, from_fraction(allowed) / 4))
+                known[wall_of(p.border, (p.low, p.high))] = found
+                refined += found
             else:
                 refined.append(p)
         panels = refined

@@ -5,7 +5,7 @@ graph, by the branch's Taylor series (`algebra.branches`), by its Puiseux series
 (`algebra.puiseux`), between arcs (`algebra.arcs`), between horizontals, or between the window's edges.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -14,6 +14,7 @@ from flint import arb, ctx, fmpq
 from ptmcad.algebra.arcs import arc_integral
 from ptmcad.algebra.branches import Integral, PrecisionTooLow, branch_integral
 from ptmcad.algebra.graphs import graph_integral
+from ptmcad.algebra.polynomials import RationalPolynomial
 from ptmcad.algebra.puiseux import Beside, puiseux_integral
 from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
 from ptmcad.algebra.window import Interval
@@ -44,6 +45,7 @@ class Effort(NamedTuple):
     broad : on panels broader than this horizontals would be too coarse to be worth their time.
     narrowest : narrower panels would need a higher precision.
     roots : of a component over an abscissa within the window; isolated once for all of a stack's walls.
+    axes : for each component m(u), if the reflection (u, v) to (u, 2 m(u) - v) maps it to itself.
     """
 
     order: int
@@ -52,6 +54,7 @@ class Effort(NamedTuple):
     broad: fmpq
     narrowest: fmpq
     roots: Callable[[int, fmpq], tuple[RealRoot, ...]]
+    axes: Mapping[int, RationalPolynomial | None]
 
 
 class Border(NamedTuple):
@@ -156,18 +159,44 @@ def _at_end(border: Border, over: Interval, side: int, effort: Effort, allowed: 
         near = simplest_between(*sorted((near + left_out / 2, near + left_out)))
         strip = arb(bottom).union(arb(top)) * arb(abs(near - end.value))
     bits = ctx.prec + 3 * int(abs(width / (near - end.value)).ceil()).bit_length()
-    with ctx.workprec(bits):
-        abscissa = arb(end.value)
-        if end.root is not None:
-            root = refine(end.root, abs(width) / fmpq(2) ** bits)
-            abscissa = arb(root.low).union(arb(root.high))
-        beside = Beside(abscissa, near, far)
-        found = puiseux_integral(border.curve.in_v, beside, lambda u: border.over(u, effort), 2 * effort.order, allowed)
+    found = _about_end(border, end, (near, far), effort, allowed, bits)
     if found is None:
         return _rough_panel(border, over, effort, 2 * side - 1)
     value, cut = found
     ends = (over[0], cut) if side == 0 else (cut, over[1])
     return Panel(border, *ends, value + strip, True, 0)
+
+
+def _about_end(
+    border: Border, end: BaseEnd, ends: Interval, effort: Effort, allowed: fmpq, bits: int
+) -> tuple[arb, fmpq] | None:
+    """The integral from beside an end of the stack as far as a series about it reaches, and how far; None when that
+    fails.
+
+    It is tried with so many bits, then with twice as many where they do not suffice: a cusp's series is divided by high
+    powers of the distance from it, and panels cut nearer and nearer to it in place of a series would be many.
+
+    Parameters
+    ----------
+    ends : the place beside the end, then the other one.
+    """
+    near, far = ends
+
+    def enclosed() -> tuple[arb, fmpq] | None:
+        abscissa = arb(end.value)
+        if end.root is not None:
+            root = refine(end.root, abs(far - near) / fmpq(2) ** ctx.prec)
+            abscissa = arb(root.low).union(arb(root.high))
+        beside = Beside(abscissa, near, far)
+        return puiseux_integral(border.curve.in_v, beside, lambda u: border.over(u, effort), 2 * effort.order, allowed)
+
+    for precision in (bits, 2 * bits):
+        try:
+            with ctx.workprec(precision):
+                return enclosed()
+        except PrecisionTooLow:
+            continue
+    return None
 
 
 def halves(p: Panel, effort: Effort, allowed: fmpq) -> list[Panel]:
