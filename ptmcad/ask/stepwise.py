@@ -111,6 +111,7 @@ def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object
     """
     if timeout is not None and (isinstance(timeout, bool) or not isinstance(timeout, int | float) or not timeout > 0):
         raise ConfigError(f"{shown(repr(timeout), 60)} is not a positive number of seconds", key="timeout")
+    from ptmcad.algebra.bases import MISSING
     from ptmcad.algebra.polynomials import from_fraction
     from ptmcad.exact.counting import count_by_isolation
     from ptmcad.exact.models import system_from
@@ -129,8 +130,10 @@ def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object
         begun = monotonic()
     try:
         return counts_by_search(model, point, timeout)
-    except LimitReached:
-        more = work_by_msolve()
-        if more is None or (timeout is not None and monotonic() > begun + timeout):
+    except LimitReached as error:
+        if timeout is not None and monotonic() > begun + timeout:
             raise
+        more = work_by_msolve()
+        if more is None:
+            raise LimitReached(f"{error}; {MISSING}") from error
         return count_by_isolation(system, exact, more)
