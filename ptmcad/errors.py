@@ -83,6 +83,10 @@ class PtmcadError(Exception):
         return shown(super().__str__())
 
 
+class PtmcadWarning(UserWarning):
+    """Something went wrong that the answer does not suffer from; the command line prints it as a line."""
+
+
 class ConfigError(PtmcadError):
     """The input is wrong.
 

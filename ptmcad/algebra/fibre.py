@@ -41,10 +41,12 @@ class Fibre(NamedTuple):
     ----------
     basis : the monomial basis, 1 first.
     multiplication : one matrix for each unknown; column j holds the normal form of unknown times basis[j].
+    by_msolve : whether msolve has found it; that it is right is proved then.
     """
 
     basis: tuple[Monomial, ...]
     multiplication: tuple[fmpq_mat, ...]
+    by_msolve: bool = False
 
     @property
     def dimension(self) -> int:
@@ -59,12 +61,19 @@ class Work(NamedTuple):
     ----------
     dimension : of the quotient.
     polynomials, terms, bits : of the basis before it is reduced: how many, and what each may have.
+    by_msolve : dimension of a quotient that msolve is asked for where the basis is larger; 0 for none.
     """
 
     dimension: int
     polynomials: int
     terms: int
     bits: int
+    by_msolve: int = 0
+
+
+def bezout_bound(equations: Sequence[RationalPolynomial]) -> int:
+    """The product of the degrees, which bounds the number of complex solutions where they are finitely many."""
+    return math.prod(max(map(sum, e), default=0) or 1 for e in equations)
 
 
 def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: Work | None = None) -> Fibre | None:
@@ -83,7 +92,7 @@ def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: Work | N
     if most is None:
         found = fmpz_mpoly_vec(integral, context).buchberger_naive()
     else:
-        limited: Any = fmpz_mpoly_vec(integral, context).buchberger_naive(limits=most[1:])  # a pair
+        limited: Any = fmpz_mpoly_vec(integral, context).buchberger_naive(limits=most[1:4])  # a pair
         found, done = limited
         if not done:
             raise LimitReached("the basis of the equations grows beyond what is counted at once")
@@ -99,6 +108,19 @@ def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: Work | N
         return None
     if most is not None and len(basis) > most.dimension:
         raise LimitReached(f"there are {len(basis)} solutions with multiplicity, more than are counted at once")
+    return fibre_of_rules(rules, basis, unknowns)
+
+
+def fibre_of_rules(
+    rules: Mapping[Monomial, Mapping[Monomial, fmpq]], basis: tuple[Monomial, ...], unknowns: int
+) -> Fibre:
+    """The quotient by a reduced Groebner basis.
+
+    Parameters
+    ----------
+    rules : a leading monomial to what it is equal to.
+    basis : the monomials that no leading monomial divides.
+    """
     normal_forms = _normal_forms(basis, rules, unknowns)
     size = len(basis)
     matrices = []
@@ -167,7 +189,7 @@ def combined_angles(algebra: Fibre, matrix: Sequence[Sequence[int]], reals: int)
         sums += [cosine, sine]
     own, real = algebra.multiplication[: 2 * angles], algebra.multiplication[2 * angles :]
     basis = tuple((*(0,) * (2 * angles), *m[2 * angles :], *m[: 2 * angles]) for m in algebra.basis)
-    return Fibre(basis, (*sums, *real[:reals], *own))
+    return Fibre(basis, (*sums, *real[:reals], *own), algebra.by_msolve)
 
 
 def evaluate(algebra: Fibre, p: RationalPolynomial) -> fmpq_mat:

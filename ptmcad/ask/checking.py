@@ -9,7 +9,7 @@ not counted.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -70,6 +70,7 @@ class Check:
     engine : the one that ``--engine auto`` takes.
     cost : in words.
     forecast : what the exact map is predicted to take; None where the curve's size is not known.
+    bases : how Groebner bases at points are computed, in words; empty where they are small by the bound.
     """
 
     slice: Slice
@@ -79,6 +80,7 @@ class Check:
     cost: str
     bound: int | None = None
     forecast: Forecast | None = None
+    bases: str = ""
 
 
 def check(slice: Slice, sized: bool = True) -> Check:
@@ -110,7 +112,10 @@ def check(slice: Slice, sized: bool = True) -> Check:
         return Check(slice, at, None, "certified", _CERTIFIED)
     if len(slice.model.unknowns) > MAX_UNKNOWNS:
         return Check(slice, at, None, "exact", WORDS[-1])
-    return _counted(slice, at, sized)
+    found, bound = _counted(slice, at, sized)
+    from ptmcad.algebra.bases import plan_text
+
+    return replace(found, bases=plan_text(bound))
 
 
 _ACROSS, _UP = Fraction(10, 21), Fraction(19, 35)
@@ -148,8 +153,8 @@ def _check_bounded(slice: Slice) -> None:
     patches(problem_of(slice), slice.axes)
 
 
-def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> Check:
-    """The check of a slice that the exact engine takes."""
+def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tuple[Check, int]:
+    """The check of a slice that the exact engine takes, and the bound for its solutions by Bezout's theorem."""
     from ptmcad.algebra.polynomials import from_fraction
     from ptmcad.exact.point_system import degree_bound
     from ptmcad.exact.stages import point_values, problem_of
@@ -159,31 +164,30 @@ def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> Ch
     values = point_values(problem.parameters, (from_fraction(sample[0]), from_fraction(sample[1])))
     degree, bound = degree_bound(problem.system, values)
     if degree > MAX_DEGREE or bound > MAX_BOUND:
-        return Check(slice, sample, None, "exact", _UNCOUNTED, bound)
+        return Check(slice, sample, None, "exact", _UNCOUNTED, bound), bound
     others = (point_values(problem.parameters, at) for at in points(problem.window))
     try:
         found, doubt = _solutions(problem.system, values)
         everywhere = bool(doubt) and all(_solutions(problem.system, other)[1] for other in others)
     except LimitReached:
-        return Check(slice, sample, None, "exact", _UNCOUNTED, bound)
+        return Check(slice, sample, None, "exact", _UNCOUNTED, bound), bound
     if everywhere:
         seen = f"at {len(SHARES)} points that were tried {doubt}"
         if (found or 0) > MAX_PROVED:
-            return Check(
-                slice, sample, found, "exact", f"not known: {seen}; a slice where that is so everywhere is refused"
-            )
+            refused = f"not known: {seen}; a slice where that is so everywhere is refused"
+            return Check(slice, sample, found, "exact", refused), bound
         if not returns_within(MAX_SECONDS, _prove, slice):
             late = "; that it is so everywhere, where the slice is refused, was not proved in the time"
-            return Check(slice, sample, found, "exact", f"not known: {seen}{late}")
+            return Check(slice, sample, found, "exact", f"not known: {seen}{late}"), bound
     if not found:
-        return Check(slice, sample, None, "exact", f"not known: at the sample {doubt}")
+        return Check(slice, sample, None, "exact", f"not known: at the sample {doubt}"), bound
     foretold = _foretold(problem, found) if not doubt and (sized or found > _LONG) else None
     words = cost(found, problem.system, slice.parameters) if foretold is None else in_figures(foretold)
     far = found > _LONG if foretold is None else not foretold.reachable
     if far and foretold is not None:
         words += f"; {OUT_OF_REACH}"
     offered = _BY_INTERVALS if far and _encloses(slice) else ""
-    return Check(slice, sample, found, "exact", words + offered, forecast=foretold)
+    return Check(slice, sample, found, "exact", words + offered, forecast=foretold), bound
 
 
 def _foretold(problem: SliceProblem, solutions: int) -> Forecast | None:
@@ -259,6 +263,8 @@ def foretold(slice: Slice) -> Iterator[str]:
     if found.forecast is not None:
         yield f"curves {curve_text(found.forecast, slice.axis_names)}"
         yield way_text(found.forecast)
+    if found.bases:
+        yield f"bases at points of {found.bases}"
     yield f"the whole map takes {found.cost}" if found.forecast is not None else f"cost {found.cost}"
 
 
@@ -308,6 +314,8 @@ def cost_text(found: Check) -> Iterator[str]:
     if found.forecast is not None:
         yield f"{'curves':<12}{curve_text(found.forecast, slice.axis_names)}"
     yield f"{'engine':<12}{found.engine}"
+    if found.bases:
+        yield f"{'bases':<12}{found.bases}"
     yield f"{'cost':<12}{found.cost}"
 
 

@@ -27,6 +27,9 @@ FEW = 3
 _LARGEST = 64, 120, 500, 5_000
 """Solutions, and polynomials, terms and bits of a basis, which take about two seconds."""
 
+_MOST_BY_MSOLVE = 150
+"""Solutions, whose algebra takes some tens of seconds: 70 take ten, of which the basis's proof is the half."""
+
 
 def work_for(model: Model) -> Work | None:
     """How much work the exact solutions at a point may be before the certified engine is asked; None for any.
@@ -39,6 +42,14 @@ def work_for(model: Model) -> Work | None:
     if len(model.unknowns) <= FEW or model.reals or not model.has_potential or not counted_alike:
         return None
     return Work(*_LARGEST) if find_spec("numba") is not None else None
+
+
+def work_by_msolve() -> Work | None:
+    """How much work the exact solutions may be where the search has not told all apart; None without msolve."""
+    from ptmcad.algebra.bases import SMALL
+    from ptmcad.algebra.msolve import program
+
+    return SMALL._replace(by_msolve=_MOST_BY_MSOLVE) if program() is not None else None
 
 
 def counts_by_search(model: Model, point: Mapping[str, Fraction], timeout: float | None) -> Counts:

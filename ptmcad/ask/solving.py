@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from ptmcad.answer.poses import DIGITS, MAX_DIGITS, Poses
-from ptmcad.ask.manyangles import poses_by_search, work_for
+from ptmcad.answer.regionmap import Status
+from ptmcad.ask.manyangles import poses_by_search, work_by_msolve, work_for
 from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
 from ptmcad.mechanism import Mechanism, Model, ptm
 from ptmcad.process.memory import check_room, loading
@@ -65,7 +66,8 @@ def solve(
 def poses_at(model: Model, parameters: Mapping[str, Fraction], digits: int) -> Poses:
     """All solutions of a model; only the engine that is used is loaded.
 
-    Of a mechanism with more than three angles whose basis grows too large it is the certified one, see `manyangles`.
+    Of a mechanism with more than three angles whose basis grows too large it is the certified one, see `manyangles`;
+    where that leaves the point undecided, the exact one with a basis by msolve, if it is installed.
 
     Parameters
     ----------
@@ -91,7 +93,12 @@ def poses_at(model: Model, parameters: Mapping[str, Fraction], digits: int) -> P
         return exact_poses(model, given, digits, most)
     except LimitReached:
         assert isinstance(model, Mechanism)  # no other is limited
-        return poses_by_search(model, parameters, digits)
+    found = poses_by_search(model, parameters, digits)
+    more = work_by_msolve() if found.status is Status.UNDECIDED else None
+    try:
+        return found if more is None else exact_poses(model, given, digits, more)
+    except LimitReached:
+        return found
 
 
 def needs_intervals(model: Model, parameters: Mapping[str, Fraction]) -> bool:

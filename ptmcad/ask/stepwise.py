@@ -1,17 +1,19 @@
 """The exact engine's steps one by one, for any mechanism or system: the variety, an open CAD, counts at a point.
 
 Guarantee: exact, as the map is that these are the steps of; none of them draws or stores anything. Where the basis at a
-point grows too large in more than three angles, the count is one that the certified engine proves.
+point grows too large in more than three angles, the count is one that the certified engine proves; where it does not
+tell, one from a basis by msolve, proved, if that is installed.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.slicevariety import SliceVariety
-from ptmcad.ask.manyangles import counts_by_search, work_for
+from ptmcad.ask.manyangles import counts_by_search, work_by_msolve, work_for
 from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
 from ptmcad.mechanism import Model
 from ptmcad.question.config import point_from_mapping, slice_from
@@ -109,6 +111,7 @@ def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object
     """
     if timeout is not None and (isinstance(timeout, bool) or not isinstance(timeout, int | float) or not timeout > 0):
         raise ConfigError(f"{shown(repr(timeout), 60)} is not a positive number of seconds", key="timeout")
+    from ptmcad.algebra.bases import MISSING
     from ptmcad.algebra.polynomials import from_fraction
     from ptmcad.exact.counting import count_by_isolation
     from ptmcad.exact.models import system_from
@@ -124,4 +127,13 @@ def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object
     try:
         return count_by_isolation(system, exact, work_for(model))
     except LimitReached:
+        begun = monotonic()
+    try:
         return counts_by_search(model, point, timeout)
+    except LimitReached as error:
+        if timeout is not None and monotonic() > begun + timeout:
+            raise
+        more = work_by_msolve()
+        if more is None:
+            raise LimitReached(f"{error}; {MISSING}") from error
+        return count_by_isolation(system, exact, more)

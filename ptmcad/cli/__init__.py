@@ -12,15 +12,17 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from errno import ENOMEM
 from importlib import import_module
 from types import FrameType
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import click
 
-from ptmcad.errors import ConfigError, LimitReached, PtmcadError, shown
+from ptmcad.errors import ConfigError, LimitReached, PtmcadError, PtmcadWarning, shown
 from ptmcad.process.handover import Topic, send, watched
 from ptmcad.version import __version__
 
@@ -113,7 +115,8 @@ def run(arguments: Sequence[str] | None = None) -> int:
             from ptmcad.cli.completion import answer
 
             return answer(group, os.environ[COMPLETION], "ptmcad", COMPLETION)
-        status = group.main(args=arguments, prog_name="ptmcad", standalone_mode=False)
+        with _warnings_as_lines():
+            status = group.main(args=arguments, prog_name="ptmcad", standalone_mode=False)
         if sys.stdout is not None:  # None when it was closed by the caller
             sys.stdout.flush()
     except click.ClickException as error:
@@ -138,6 +141,24 @@ def run(arguments: Sequence[str] | None = None) -> int:
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - so that the exit does not try again
         return 2
     return status if isinstance(status, int) else 0
+
+
+@contextmanager
+def _warnings_as_lines() -> Iterator[None]:
+    """What ptmcad warns of is one line each, every text once; Python's own warnings look as ever."""
+    usual, said = warnings.showwarning, set[str]()
+
+    def show(message: Warning | str, category: type[Warning], *place: Any, **further: Any) -> None:
+        if not issubclass(category, PtmcadWarning):
+            usual(message, category, *place, **further)
+        elif str(message) not in said:
+            said.add(str(message))
+            click.echo(f"warning: {shown(str(message))}", err=True)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", PtmcadWarning)
+        warnings.showwarning = show
+        yield
 
 
 def _exhausted() -> int:

@@ -13,7 +13,7 @@ from itertools import combinations
 
 from flint import fmpq
 
-from ptmcad.algebra.fibre import fibre
+from ptmcad.algebra.bases import quotient
 from ptmcad.algebra.polynomials import Ratio, evaluate
 from ptmcad.errors import DegenerateSliceError, ExpressionError, InfiniteSolutionsError
 from ptmcad.exact.models.potential import elements_of
@@ -62,7 +62,7 @@ def _folds_at(
     values = {name: evaluate(a, *at) / b for (name, (a, _)), b in zip(parameters.items(), below, strict=True)}
     flat = [polynomial_at(system, p, values) for p in elements_of(model, model.tangent)]
     circles = [{m: fmpq(c) for m, c in circle.items()} for circle in system.ring.circles]
-    found = fibre([e for e in (*at_point(system, values)[0], *flat) if e] + circles, system.ring.width)
+    found = quotient([e for e in (*at_point(system, values)[0], *flat) if e] + circles, system.ring.width)
     return found is None or found.dimension > 0
 
 

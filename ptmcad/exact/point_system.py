@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 from flint import fmpq
 
+from ptmcad.algebra.bases import quotient
 from ptmcad.algebra.fibre import (
     Fibre,
     UnivariateRepresentation,
     Work,
     evaluate,
-    fibre,
     hermite_matrix,
     univariate_representation,
 )
@@ -81,7 +81,7 @@ def point_system(
         inverse = {(*m, 1): c for m, c in _product(inequalities).items()}
         generators.append({**inverse, (0,) * (width + 1): fmpq(-1)})
         width += 1
-    algebra = fibre(generators, width, most)
+    algebra = quotient(generators, width, most)
     if algebra is None:
         raise DegeneratePoint(f"infinitely many solutions at {text_of_point(values)}")
     if turns is not None:

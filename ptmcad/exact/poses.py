@@ -32,6 +32,8 @@ from ptmcad.mechanism.evaluate import value_at
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.tree import to_text as text_of
 
+BY_MSOLVE = "the Groebner basis was computed by msolve and proved to be one of the equations"
+
 
 def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int, most: Work | None = None) -> Poses:
     """All solutions of a mechanism without free lengths, or of another system.
@@ -74,7 +76,12 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int, m
         Status.ON_VARIETY if degenerate else Status.EXACT,
         digits,
         max((bits for _, bits in results), default=0),
-        "; ".join([*filter(None, ["" if degenerate else _remark(found)]), *_vanishing(given, model, states, order)]),
+        "; ".join(
+            [
+                *filter(None, ["" if degenerate else _remark(found), BY_MSOLVE if point.algebra.by_msolve else ""]),
+                *_vanishing(given, model, states, order),
+            ]
+        ),
     )
 
 
