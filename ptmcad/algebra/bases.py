@@ -15,7 +15,7 @@ from ptmcad.errors import LimitReached, PtmcadWarning
 
 MANY = 128
 """Solutions by Bezout's theorem, from which on a basis may not end by Buchberger's algorithm."""
-SMALL = Work(1_000, 60, 200, 2_000)
+SMALL = Work(1_000, 120, 400, 4_000)
 """Of such a system our own basis is tried up to this size, some tenths of a second."""
 SECONDS = 120.0
 """For msolve, and as many again for the proof."""

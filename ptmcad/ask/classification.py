@@ -196,10 +196,9 @@ def load_certified(progress: Progress | None = None, options: Options | None = N
     """
     with loading("the certified engine"):
         import_module("ptmcad.certified.compiled")  # first: where numba is missing, it says so
-        from ptmcad.certified.engine import may_be_slanted
         from ptmcad.certified.loading import load
     check_room("the certified engine")
-    return load(progress, options is None or may_be_slanted(options))
+    return load(progress, options)
 
 
 def _check_certified(slice: Slice, options: Options) -> None:

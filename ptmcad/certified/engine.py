@@ -22,7 +22,7 @@ from ptmcad.certified.assembly import Assembler
 from ptmcad.certified.covering import Lattice, Thinning, box_rectangles, thinning
 from ptmcad.certified.formulation import curves, distance_from_degeneracy, point_counter
 from ptmcad.certified.headway import PARTS, Headway
-from ptmcad.certified.loading import load
+from ptmcad.certified.loading import load, may_be_slanted
 from ptmcad.certified.pace import SAFETY, Pace
 from ptmcad.certified.refinement import Enclosure, begin, refine
 from ptmcad.certified.search import Boxes
@@ -69,17 +69,10 @@ SECONDS_PER_RECTANGLE = 3e-5
 """That a map takes for each rectangle, with its JSON: less, on most machines."""
 MAP_SHRINK_RATIO = Fraction(9, 10)
 """A map on the way is worth making when the boxes' share is at most this part of what it was at the last one."""
-SLANTED_BELOW = Fraction(1, 2000)
-"""Tolerances below are met by slanted pieces: of upright ones it takes twice as many for half of the error ..."""
 SLANTED_SHARE = Fraction(1, 500)
-"""... once the boxes have at most this part of the window."""
+"""Slanted pieces are tried once the boxes have at most this part of the window."""
 LATTICE_STEPS = 2**24
 """Lattice steps of a cover along each axis; more for a tolerance below 1e-5."""
-
-
-def may_be_slanted(options: Options) -> bool:
-    """Whether a tolerance is so small that slanted pieces are tried."""
-    return (options.tolerance or TOLERANCE) < SLANTED_BELOW
 
 
 def certified_map(slice: Slice, options: Options = DEFAULTS) -> RegionMap:
@@ -109,7 +102,7 @@ class _Run:
     """One computation of a map: the enclosures, which shrink, and the time each part took."""
 
     def __init__(self, slice: Slice, options: Options):
-        load(options.progress, slanted=may_be_slanted(options))
+        load(options.progress, options)
         self.pace = Pace(options.deadline)
         self.clock = self.pace.clock
         self.headway = Headway(float(options.tolerance or TOLERANCE))

@@ -9,6 +9,7 @@ from __future__ import annotations
 import gc
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from fractions import Fraction
 from time import perf_counter
 
 import numpy as np
@@ -25,28 +26,37 @@ from ptmcad.certified.tiling import COMPILED
 from ptmcad.certified.tubes import tubes
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
+from ptmcad.options import Options
 
 STAGE = "compiling the certified engine, once on this machine:"
 Progress = Callable[[str, int, int], None]
 MIN_GARBAGE = 20_000
 """New objects between two collections while numba compiles, which makes millions that live: a seventh of its time went
 into looking for garbage among them. More would gain nothing and take memory."""
+SLANTED_BELOW = Fraction(1, 2000)
+"""Tolerances below are met by slanted pieces: of upright ones it takes twice as many for half of the error."""
 _done: list[bool] = []
 """For each time that all was made ready, whether slanted pieces were."""
 
 
-def load(progress: Progress | None = None, slanted: bool = True) -> float:
+def may_be_slanted(options: Options) -> bool:
+    """Whether a tolerance is so small that slanted pieces are tried."""
+    return options.tolerance is not None and options.tolerance < SLANTED_BELOW
+
+
+def load(progress: Progress | None = None, options: Options | None = None) -> float:
     """Use each compiled function once, on the line x = y, its point (1/2, 1/2) and a cover of one square.
 
     Parameters
     ----------
     progress : called as progress(STAGE, done, total) with numbers of functions, as long as some have to be compiled.
-    slanted : whether covers with slanted pieces may be wanted.
+    options : of what is wanted; all that there is is made ready where nothing is said.
 
     Returns
     -------
     The seconds that compiling took now; 0 where all was read from disk, or had been loaded before.
     """
+    slanted = options is None or may_be_slanted(options)
     if slanted in _done or True in _done:
         return 0.0
     compiling = _Compiling(progress)

@@ -58,7 +58,7 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     monkeypatch.setitem(sys.modules, "ptmcad.certified.compiled", compiled)
     monkeypatch.setitem(sys.modules, "ptmcad.certified.engine", module)
     loading = ModuleType("ptmcad.certified.loading")
-    loading.load = lambda progress: 0.0  # type: ignore[attr-defined]
+    loading.load = lambda progress, options: 0.0  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "ptmcad.certified.loading", loading)
     # the map made by hand has more counts than its question needs, which a stored map must not have
     monkeypatch.setattr("ptmcad.verification.certified.checks.contradiction", lambda result: "")
@@ -134,7 +134,7 @@ def test_compilation_is_told_apart(
     engine: dict[str, Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     taken = [38.0, 0.0, 0.0, 0.0]
-    monkeypatch.setattr(sys.modules["ptmcad.certified.loading"], "load", lambda progress: taken.pop(0))
+    monkeypatch.setattr(sys.modules["ptmcad.certified.loading"], "load", lambda progress, options: taken.pop(0))
     assert run(["classify", *HAND, "--out", str(tmp_path)]) == 0
     assert " s, of which 38 s compilation (once); 28 % undetermined;" in capsys.readouterr().out
     timings = json.loads((tmp_path / SAVED).read_text(encoding="utf-8"))["timings"]
@@ -147,7 +147,7 @@ def test_the_engine_is_compiled_beforehand(
     engine: dict[str, Any], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     taken = [12.34, 0.0]
-    monkeypatch.setattr(sys.modules["ptmcad.certified.loading"], "load", lambda progress: taken.pop(0))
+    monkeypatch.setattr(sys.modules["ptmcad.certified.loading"], "load", lambda progress, options: taken.pop(0))
     assert run(["warm-up"]) == run(["warm-up"]) == 0
     said = capsys.readouterr().out.splitlines()
     assert said == ["the certified engine is compiled (12.3 s)", "the certified engine was compiled already"]
@@ -231,7 +231,7 @@ from ptmcad.question.slice import Count
 def arrived():
     (here / "arrived").touch()
     time.sleep(60)
-def load(progress):
+def load(progress, options):
     return 0.0
 def search():
     pass
@@ -289,7 +289,7 @@ def test_a_signal_saves_the_best_map_and_says_how_to_go_on(tmp_path: Path, stop:
 
 @forked
 def test_a_signal_before_the_first_map_says_that_there_is_none(tmp_path: Path) -> None:
-    status, said = _stand_in(tmp_path, "def load(progress):\n    arrived()", stop=signal.SIGTERM)
+    status, said = _stand_in(tmp_path, "def load(progress, options):\n    arrived()", stop=signal.SIGTERM)
     why = "the engine was still being loaded or compiled"
     assert (status, said) == (143, f"terminated (SIGTERM); there was no partial map to save yet: {why}\n")
     assert not list((tmp_path / "out").iterdir())
@@ -304,7 +304,7 @@ def test_compiling_is_no_part_of_the_time_limit(
     monkeypatch.setattr(time, "monotonic", lambda: monotonic() + clock["ahead"])
     monkeypatch.setattr("ptmcad.ask.classification.perf_counter", lambda: counter() + clock["ahead"])
 
-    def load(progress: object) -> float:
+    def load(progress: object, options: object) -> float:
         clock["ahead"] += 1000
         return 1000.0
 
@@ -369,7 +369,7 @@ def _resumed_and_stopped(earlier: RegionMap, found: RegionMap) -> None:
         raise LimitReached("the time limit was reached", partial=found)
 
     loading, module = ModuleType("ptmcad.certified.loading"), ModuleType("ptmcad.certified.engine")
-    loading.load = lambda progress: 0.0  # type: ignore[attr-defined]
+    loading.load = lambda progress, options: 0.0  # type: ignore[attr-defined]
     module.certified_map = stand_in  # type: ignore[attr-defined]
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(sys.modules, "ptmcad.certified.compiled", ModuleType("ptmcad.certified.compiled"))
