@@ -38,10 +38,10 @@ MAX_ENTRIES = 8
 
 def tensions(mechanism: Mechanism) -> dict[str, UnknownKind]:
     """The further unknowns: a name for each closing bar."""
-    names = [f"tension_{closing.start}{closing.end}" for closing in mechanism.closing]
+    names = [f"force_density_{closing.start}{closing.end}" for closing in mechanism.closing]
     taken = {*mechanism.parameters, *mechanism.unknowns}
     if clash := next((name for name in names if name in taken), None):
-        raise ConfigError(f"'{clash}' is the name of a closing bar's tension: choose another name", key="closing")
+        raise ConfigError(f"'{clash}' is the name of a closing bar's force density: choose another name", key="closing")
     return dict.fromkeys(names, UnknownKind.REAL)
 
 

@@ -26,11 +26,13 @@ class Part(NamedTuple):
     ----------
     key : where it stands in the description, such as ``springs.2.k``.
     kind : what it measures, which decides which values make sense.
+    meaning : what has to hold, in place of what its kind says.
     """
 
     key: str
     kind: Kind
     tree: Tree
+    meaning: str = ""
 
     @property
     def text(self) -> str:
@@ -54,10 +56,13 @@ def parts(model: Model) -> Iterator[Part]:
         yield from _unless_known(model, Part(f"closing.{n}.length", Kind.LENGTH, closing.length))
     for joint in model.xjoints:
         yield from _unless_known(model, Part(f"x-joint.{joint.name}.base", Kind.LENGTH, joint.length))
+        key, off = f"x-joint.{joint.name}.bars", total(joint.bars, negative(joint.length))
+        yield from _unless_known(model, Part(key, Kind.LENGTH, joint.bars))
         yield Part(
-            f"x-joint.{joint.name}.bars",
+            key,
             Kind.LENGTH,
-            Power(total(joint.bars, negative(joint.length)), Number(Fraction(2))),
+            Power(off, Number(Fraction(2))),
+            "the bars of an x-joint are longer or shorter than its base",
         )
 
 
@@ -67,6 +72,8 @@ def fault_of_number(part: Part, value: Fraction) -> str:
         return ""
     number = value_text(value)
     is_what = number if part.text == number else f"{part.text} = {number}"
+    if part.meaning:
+        return f"{part.meaning}, but {part.text} = {number}"
     return f"a {part.kind.noun} is {'not negative' if part.kind.may_vanish else 'positive'}, but this is {is_what}"
 
 

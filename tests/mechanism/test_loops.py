@@ -309,9 +309,9 @@ def test_a_moment_on_another_unknown_needs_one_degree_of_freedom() -> None:
 
 
 def test_a_tension_has_a_name_of_its_own() -> None:
-    with pytest.raises(ConfigError, match="'tension_CQ' is the name of a closing bar's tension"):
-        ptmcad.Mechanism({**FIVE_BAR, "parameters": {**FIVE_BAR["parameters"], "tension_CQ": {"kind": "force"}},
-                          "loads": {"C": ["F", "-G"], "Q": ["tension_CQ", 0]}})  # fmt: skip
+    with pytest.raises(ConfigError, match="'force_density_CQ' is the name of a closing bar's force density"):
+        ptmcad.Mechanism({**FIVE_BAR, "parameters": {**FIVE_BAR["parameters"], "force_density_CQ": {"kind": "force"}},
+                          "loads": {"C": ["F", "-G"], "Q": ["force_density_CQ", 0]}})  # fmt: skip
 
 
 @pytest.mark.parametrize(

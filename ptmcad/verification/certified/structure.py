@@ -149,7 +149,8 @@ def check_form(claims: CertifiedClaims) -> str:
         for name in (*needed - {"index"},):
             if getattr(cell, name) < 0:
                 raise Violation(f"cell {n} has a negative count")
-    slanted = f"{len(r.cover.patches)} slanted pieces, " if r.cover.patches else ""
+    number = sum(len(patch.tubes) for patch in r.cover.patches)
+    slanted = f"{number} slanted pieces, " if number else ""
     return f"{len(r.cover.rectangles)} rectangles, {slanted}{len(r.cells)} cells, {len(r.regions)} regions"
 
 
