@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer import with_methods
 from ptmcad.answer.counts import MorseIndex
-from ptmcad.cover.rectangles import Cover
 from ptmcad.question.slice import Point, Slice
 from ptmcad.text.plane import PlanePolynomial
 
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from ptmcad.answer.comparison import Comparison
     from ptmcad.answer.field import Field
     from ptmcad.answer.motion import Motion
+    from ptmcad.cover.rectangles import Cover
 
 
 class Status(Enum):

@@ -18,8 +18,8 @@ from ptmcad.answer.design import BestDesign
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown
 from ptmcad.process.commit import recover
-from ptmcad.show.document import FORMAT
 from ptmcad.show.document.design import FORMAT as DESIGN
+from ptmcad.show.document.writing import FORMAT
 from ptmcad.show.style import Style
 from ptmcad.text.textfile import read_text
 

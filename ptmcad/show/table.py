@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from ptmcad.answer.regionmap import COMPILATION, Region, RegionMap
 from ptmcad.answer.words import index_words, noun
-from ptmcad.cover.rectangles import Cover
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.question.slice import Count
 from ptmcad.show.units import area_unit
 from ptmcad.text.bounds import certified_digits, interval_text, percent
 from ptmcad.text.numerals import magnitude
+
+if TYPE_CHECKING:  # a map of the exact engine has no cover
+    from ptmcad.cover.rectangles import Cover
 
 _NAMES = {
     Count.STABLE: "stable",

@@ -27,7 +27,7 @@ from ptmcad.mechanism.systems import SYSTEM_KEYS
 from ptmcad.question.config import RECORD_KEYS, slice_from_mapping
 from ptmcad.question.config.starters import NAMES, starter_mechanism, starter_text
 from ptmcad.question.slice import Count
-from ptmcad.show.document import FORMAT
+from ptmcad.show.document.writing import FORMAT
 
 SCHEMA = json.loads(files("ptmcad").joinpath("record.schema.json").read_text(encoding="utf-8"))
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)  # `jsonschema.validate` would check the schema each time

@@ -4,12 +4,5 @@ Guarantee: reading what was written gives an equal map. A document that is not o
 first fault: every key must be known and present, every value of its type and within limits, and no key may occur twice.
 Whether what it claims is true is not asked here; `ptmcad.verify` does that.
 
-The schema is published as docs/region-map.schema.json; its version is part of `FORMAT`.
+The schema is published as docs/region-map.schema.json; its version is part of `writing.FORMAT`.
 """
-
-from __future__ import annotations
-
-from ptmcad.show.document.reading import read
-from ptmcad.show.document.writing import FORMAT, write
-
-__all__ = ["FORMAT", "read", "write"]

@@ -7,12 +7,14 @@ gives the same text, timings apart.
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.cover.rectangles import Cover, Patch
 from ptmcad.show.document.parts import SLICE, SYSTEM, sequences
 from ptmcad.text.numerals import text_of
+
+if TYPE_CHECKING:  # a map of the exact engine has no cover
+    from ptmcad.cover.rectangles import Cover, Patch
 
 FORMAT = "ptmcad-region-map/2"
 
