@@ -10,10 +10,32 @@ powers of w. Four oscillators have such a curve: the frame of one of them hides 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from flint import fmpq_poly, fmpz_poly
 
+from ptmcad.algebra.restrictions import Restrictions
+
 Coefficients = Sequence[fmpz_poly]
+
+
+class Reflection(NamedTuple):
+    """A reflection along the fibres that maps a curve to itself.
+
+    Attributes
+    ----------
+    axis : m(u), of degree 1 at most, with the common denominator d.
+    squares : coefficients in Z[u] of powers of W = d^2 (v - m)^2, as `squared` says.
+    """
+
+    axis: fmpq_poly
+    squares: Restrictions
+
+
+def reflection_of(p: Coefficients) -> Reflection | None:
+    """The reflection that maps the curve to itself; None where there is none."""
+    axis = axis_of(p)
+    return None if axis is None else Reflection(axis, Restrictions(tuple(squared(p, axis))))
 
 
 def axis_of(p: Coefficients) -> fmpq_poly | None:

@@ -14,7 +14,7 @@ from flint import fmpq
 from numpy.typing import NDArray
 
 from ptmcad.algebra.polynomials import from_fraction
-from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
+from ptmcad.algebra.real_roots import RealRoot, sign_at
 from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.regionmap import Cell, RegionMap
 from ptmcad.ask.location import component_cells, in_steps, locate, stack_over
@@ -84,7 +84,7 @@ def _exact(result: RegionMap, centres: list[list[Fraction]]) -> Labels:
                 image[k, row] = NONE if cell is None else cell
             continue
         stack = result.stacks[number]
-        roots = {n: isolate(curves[n].fibre(u), *fibre) for n in {w.component for w in stack.walls}}
+        roots = {n: curves[n].roots_over(u, fibre) for n in {w.component for w in stack.walls}}
         first = 0
         for cell, wall in zip(stack.cells, stack.walls, strict=False):
             below, on_wall = _below(roots[wall.component][wall.root], heights)

@@ -28,7 +28,7 @@ from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.algebra.space import Rows, at_value, common_zeros, discriminant, predicted_work, resultant, rows_in
 from ptmcad.algebra.window import Interval
-from ptmcad.exact.cad.curves import Curve
+from ptmcad.exact.cad.curves import curve
 from ptmcad.exact.cad.projection import predicted_cost, project
 
 MAX_WORK = 5 * 10**10
@@ -62,17 +62,13 @@ def critical_values(
         )
     curves, points = _projected(surfaces, axis, box[axis], check)
     base, fibre = box[2], box[1 - axis]
-    seen = [_curve(n, p) for n, p in enumerate(curves) if p.degrees()[1] > 0]
+    seen = [curve(n, p, 0) for n, p in enumerate(curves) if p.degrees()[1] > 0]
     lines = [coefficients_in(p, 1)[0] for p in curves if p.degrees()[1] == 0]
     cost = predicted_cost(seen)
     if cost > MAX_COST:
         return OutOfReach(f"the second projection would take {cost:.1e} operations, more than {MAX_COST:.0e}")
     found = project(seen, [*lines, *points], base, fibre, check)
     return found.abscissae
-
-
-def _curve(number: int, p: Coefficient) -> Curve:
-    return Curve(number, coefficients_in(p, 1), coefficients_in(p, 0))
 
 
 def _work(surfaces: Sequence[Coefficient], axis: int) -> int:

@@ -20,7 +20,7 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
-from ptmcad.algebra.real_roots import isolate, refine, simplest_between
+from ptmcad.algebra.real_roots import refine, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.boundarysurface import ACCURACY
 from ptmcad.answer.regionmap import Wall
@@ -138,7 +138,7 @@ class Strips:
 
     def _heights(self, part: _Part, u: fmpq, accuracy: Fraction = ACCURACY) -> tuple[Fraction, ...]:
         width = (self._fibre[1] - self._fibre[0]) * from_fraction(accuracy)
-        roots = {c: isolate(self._curves[c].fibre(u), *self._fibre) for c in {w.component for w in part.walls}}
+        roots = {c: self._curves[c].roots_over(u, self._fibre) for c in {w.component for w in part.walls}}
         return tuple(to_fraction(refine(roots[w.component][w.root], width).middle) for w in part.walls)
 
     def _parts(self, picture: Picture) -> list[_Part]:

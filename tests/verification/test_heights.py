@@ -13,9 +13,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from support.curves_with_known_points import KnownCurves, known_curves
 
+from ptmcad.algebra.polynomials import from_plane
 from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.answer.regionmap import CriticalValue
-from ptmcad.exact.cad.curves import Curve
+from ptmcad.exact.cad.curves import curve
 from ptmcad.exact.cad.points import PointsOver
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import PlaneCurve
@@ -29,16 +30,7 @@ LOW, HIGH = fmpq(-7, 2), fmpq(10, 3)
 
 def engine(known: KnownCurves) -> PointsOver:
     """The engine's view of the curves."""
-
-    def coefficients(terms: tuple[tuple[int, int, int], ...], kept: int) -> tuple[fmpz_poly, ...]:
-        rows: list[list[int]] = [
-            [0] * (1 + max(t[1 - kept] for t in terms)) for _ in range(1 + max(t[kept] for t in terms))
-        ]
-        for t in terms:
-            rows[t[kept]][t[1 - kept]] = t[2]
-        return tuple(map(fmpz_poly, rows))
-
-    curves = tuple(Curve(n, coefficients(t, 1), coefficients(t, 0)) for n, t in enumerate(known.terms))
+    curves = tuple(curve(n, from_plane(PlanePolynomial.of(t)), 0) for n, t in enumerate(known.terms))
     return PointsOver(curves, RealRoot(SQRT2, fmpq(1), fmpq(2)))
 
 

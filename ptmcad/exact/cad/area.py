@@ -18,8 +18,7 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.branches import PrecisionTooLow
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
-from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
-from ptmcad.algebra.reflections import axis_of
+from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve, by_component, max_height_bits
 from ptmcad.exact.cad.mirrors import Wall, mirrored, wall_of
@@ -149,12 +148,12 @@ def region_areas(
     more = _LEAST_ORDER + max(0, max((len(c.in_v) for c in parts.curves), default=0) - _LONG_FIBRE) // _FIBRE_PER_ORDER
     strips, finer = _Strips(fmpq(1, 10 ** (digits + 3) * 4), own=True), 20
     curve_of = by_component(parts.curves)
-    axes = {component: axis_of(curve.in_v) for component, curve in curve_of.items()}
+    axes = {component: curve.reflection and curve.reflection.axis for component, curve in curve_of.items()}
 
     @lru_cache(maxsize=_CACHED_FIBRES)
     def roots(component: int, u: fmpq) -> tuple[RealRoot, ...]:
         # walls over the same stack are cut at the same places, and again when an attempt is repeated
-        return isolate(curve_of[component].fibre(u), *parts.fibre)
+        return curve_of[component].roots_over(u, parts.fibre)
 
     while True:
         effort = Effort(digits + more, width, parts.fibre, broad, narrowest / 2 ** (bits // 2), roots, axes)

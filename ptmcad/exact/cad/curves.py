@@ -11,9 +11,18 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import Coefficient, UnivariatePolynomial, coefficients_in, from_plane, univariate
+from ptmcad.algebra.polynomials import Coefficient, UnivariatePolynomial, coefficients_in, from_plane
+from ptmcad.algebra.real_roots import RealRoot, isolate
+from ptmcad.algebra.reflected_roots import isolate_reflected
+from ptmcad.algebra.reflections import Reflection, reflection_of
+from ptmcad.algebra.restrictions import Restrictions
 from ptmcad.algebra.resultants import balanced
+from ptmcad.algebra.window import Interval
 from ptmcad.answer.regionmap import Component
+
+_LONG_FIBRE = 16
+"""Coefficients up to which a polynomial's roots are found as fast as those of one of half its degree, and their square
+roots."""
 
 
 class Curve(NamedTuple):
@@ -24,24 +33,43 @@ class Curve(NamedTuple):
     component : its number in the variety.
     in_v : coefficients as a polynomial in v, each in Z[u].
     in_u : coefficients as a polynomial in u, each in Z[v].
+    on_fibres, on_horizontals : the polynomial over given u, and for given v.
+    reflection : the reflection along the fibres that maps it to itself, if there is one.
     """
 
     component: int
     in_v: tuple[UnivariatePolynomial, ...]
     in_u: tuple[UnivariatePolynomial, ...]
+    on_fibres: Restrictions
+    on_horizontals: Restrictions
+    reflection: Reflection | None
 
     def fibre(self, u: fmpq) -> UnivariatePolynomial:
         """A positive multiple of p(u, v) in Z[v]."""
-        return univariate(self.in_v, u)
+        return self.on_fibres.at(u)
+
+    def roots_over(self, u: fmpq, fibre: Interval) -> tuple[RealRoot, ...]:
+        """The roots of p(u, v) in the open interval, in increasing order.
+
+        Raises
+        ------
+        ValueError
+            When one of them is multiple, as it is over critical abscissae only.
+        """
+        if self.reflection is None or len(self.in_v) <= _LONG_FIBRE:
+            return isolate(self.fibre(u), *fibre)
+        axis, squares = self.reflection
+        return isolate_reflected(self.fibre(u), squares.at(u), axis(u), int(axis.denom()), *fibre)
 
     def trace(self, v: fmpq) -> UnivariatePolynomial:
         """A positive multiple of p(u, v) in Z[u]."""
-        return univariate(self.in_u, v)
+        return self.on_horizontals.at(v)
 
 
 def curve(component: int, p: Coefficient, base: int) -> Curve:
     """The curve of a component, for the base axis 0 or 1."""
-    return Curve(component, coefficients_in(p, 1 - base), coefficients_in(p, base))
+    in_v, in_u = coefficients_in(p, 1 - base), coefficients_in(p, base)
+    return Curve(component, in_v, in_u, Restrictions(in_v), Restrictions(in_u), reflection_of(in_v))
 
 
 def curves_of(components: Sequence[Component], base: int, reason: str = "") -> list[Curve]:

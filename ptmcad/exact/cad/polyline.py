@@ -21,7 +21,7 @@ from flint import arb, ctx, fmpq
 from ptmcad.algebra.branches import local_coefficients
 from ptmcad.algebra.chords import slope_over
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
-from ptmcad.algebra.real_roots import RealRoot, isolate, refine
+from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve
 from ptmcad.text.balls import exact
@@ -70,7 +70,7 @@ class Branch:
 
     def at(self, u: fmpq) -> RealRoot:
         """Its height over an abscissa, isolated."""
-        return isolate(self.curve.fibre(u), *self.fibre)[self.root]
+        return self.curve.roots_over(u, self.fibre)[self.root]
 
     def share_at(self, share: Fraction) -> Fraction:
         """The same in shares of the window, rounded by at most a half of `ROUNDING`."""

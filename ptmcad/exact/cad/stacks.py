@@ -11,7 +11,7 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, sign_at, simplest_between
+from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, sign_at, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.curves import Curve
@@ -42,7 +42,7 @@ def roots_over(curves: Sequence[Curve], u: fmpq, fibre: Interval) -> tuple[tuple
     """
     found: list[tuple[Wall, RealRoot]] = []
     for c in curves:
-        found += [(Wall(c.component, k), r) for k, r in enumerate(isolate(c.fibre(u), *fibre))]
+        found += [(Wall(c.component, k), r) for k, r in enumerate(c.roots_over(u, fibre))]
     if len(found) < 2:
         return tuple(found)
     separate = disjoint([r for _, r in found])

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.algebra.polynomials import coefficients_in, from_fraction, from_plane, to_fraction
-from ptmcad.algebra.real_roots import RealRoot, isolate, refine
+from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.answer.regionmap import RegionMap, Stack
 from ptmcad.exact.cad.curves import Curve, by_component, curves_of
 from ptmcad.show.render.simplification import simplified_line
@@ -269,7 +269,7 @@ class _Tracer:
         u = from_fraction(at)
         roots: dict[int, list[float]] = {}
         for n, c in self.curves.items():
-            found = isolate(c.fibre(u), *self.fibre)
+            found = c.roots_over(u, self.fibre)
             roots[n] = [self._height(to_fraction(refine(r, self.width).middle)) for r in found]
         heights = [roots[w.component][w.root] for w in self.stack.walls]
         return (self._position(at if drawn_at is None else drawn_at), self.edges[0], *heights, self.edges[1])

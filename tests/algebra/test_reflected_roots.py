@@ -1,0 +1,124 @@
+"""Roots of a polynomial that a reflection maps to itself: the same as without its help."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import pairwise
+
+import pytest
+from flint import fmpq, fmpz_poly
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from support.examples import examples
+
+from ptmcad.algebra import reflected_roots
+from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
+from ptmcad.algebra.reflected_roots import isolate_reflected
+
+SMALL = st.fractions(min_value=-4, max_value=4, max_denominator=6)
+SQUARES = st.lists(st.fractions(min_value=-9, max_value=30, max_denominator=9), min_size=1, max_size=6, unique=True)
+
+
+def ratio(value: Fraction) -> fmpq:
+    return fmpq(value.numerator, value.denominator)
+
+
+def with_roots(squares: list[Fraction]) -> fmpz_poly:
+    """The polynomial in W with these roots."""
+    product = fmpz_poly([1])
+    for square in squares:
+        product *= fmpz_poly([-square.numerator, square.denominator])
+    return product
+
+
+def reflected(q: fmpz_poly, middle: fmpq, d: int) -> fmpz_poly:
+    """q(d^2 (v - middle)^2), times a positive integer."""
+    p, q_of = int(middle.p), int(middle.q)
+    line = fmpz_poly([-p, q_of]) * d  # q_of d (v - middle)
+    total = fmpz_poly([0])
+    n = q.degree()
+    for k, c in enumerate(q.coeffs()):
+        total += c * line ** (2 * k) * q_of ** (2 * (n - k))
+    return total
+
+
+def the_same(found: tuple[RealRoot, ...], expected: tuple[RealRoot, ...]) -> bool:
+    """Whether intervals are disjoint, in order, with ends that are no roots, and each meets its own one alone."""
+    assert len(found) == len(expected)
+    for a, b in pairwise(found):
+        assert a.high <= b.low
+        assert not (a.is_rational and b.is_rational and a.low == b.low)
+    for root, other in zip(found, expected, strict=True):
+        if root.is_rational:
+            assert sign_at(root.polynomial, root.low) == 0
+            assert other.low <= root.low <= other.high
+        else:
+            assert sign_at(root.polynomial, root.low) * sign_at(root.polynomial, root.high) == -1
+            low, high = max(root.low, other.low), min(root.high, other.high)
+            inside = sign_at(root.polynomial, low) * sign_at(root.polynomial, high) <= 0 if low < high else low == high
+            assert inside
+    return True
+
+
+@given(SQUARES, SMALL, st.integers(1, 4), SMALL, st.fractions(min_value=Fraction(1, 5), max_value=8, max_denominator=5))
+@settings(max_examples=examples(200))
+def test_roots_are_those_found_without_the_reflection(
+    squares: list[Fraction], middle: Fraction, d: int, low: Fraction, width: Fraction
+) -> None:
+    q, m = with_roots(squares), ratio(middle)
+    p, window = reflected(q, m, d), (ratio(low), ratio(low + width))
+    try:
+        expected = isolate(p, *window)
+    except ValueError:
+        with pytest.raises(ValueError, match="not squarefree"):
+            isolate_reflected(p, q, m, d, *window)
+        return
+    assert the_same(isolate_reflected(p, q, m, d, *window), expected)
+
+
+def test_a_root_on_an_edge_is_outside(monkeypatch: pytest.MonkeyPatch) -> None:
+    """v = +-1, +-2 about 0, in intervals that end there; without the general way to fall back on."""
+    q = with_roots([Fraction(1), Fraction(4)])
+    p = reflected(q, fmpq(0), 1)
+    asked: list[fmpz_poly] = []
+
+    def watched(polynomial: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
+        asked.append(polynomial)
+        return isolate(polynomial, low, high)
+
+    monkeypatch.setattr(reflected_roots, "isolate", watched)
+
+    def inside(low: int, high: int) -> int:
+        return len(isolate_reflected(p, q, fmpq(0), 1, fmpq(low), fmpq(high)))
+
+    assert [inside(-1, 2), inside(-2, 2), inside(-3, 2)] == [1, 2, 3]
+    assert [inside(1, 2), inside(0, 3), inside(-2, -1)] == [0, 2, 0]
+    assert asked
+    assert all(polynomial == q for polynomial in asked)
+
+
+def test_a_multiple_root_outside_of_the_interval_is_no_matter() -> None:
+    """(9 v^2 - 49)^2 (v^2 - 1), one of the double roots between the ends or none."""
+    q = with_roots([Fraction(49, 9), Fraction(49, 9), Fraction(1)])
+    p = reflected(q, fmpq(0), 1)
+    found = isolate(p, fmpq(-2), fmpq(2))
+    assert the_same(isolate_reflected(p, q, fmpq(0), 1, fmpq(-2), fmpq(2)), found)
+    assert isolate_reflected(p, q, fmpq(0), 1, fmpq(5, 2), fmpq(3)) == ()  # a double root is within reach, and outside
+    with pytest.raises(ValueError, match="not squarefree"):
+        isolate_reflected(p, q, fmpq(0), 1, fmpq(-4), fmpq(2))
+
+
+def test_close_roots_are_parted_by_longer_square_roots() -> None:
+    near = [Fraction(2), 2 + Fraction(1, 2**90), 2 + Fraction(1, 2**89)]
+    q = with_roots(near)
+    p = reflected(q, fmpq(1, 3), 3)
+    found = isolate_reflected(p, q, fmpq(1, 3), 3, fmpq(-4), fmpq(4))
+    assert the_same(found, isolate(p, fmpq(-4), fmpq(4)))
+
+
+def test_close_roots_far_from_the_axis_are_parted_too() -> None:
+    """Their square roots are nearer to each other than they are, by a factor of a million."""
+    q = with_roots([Fraction(10**18 + 1), Fraction(10**18 + 2), Fraction(10**18 + 3)])
+    p = reflected(q, fmpq(0), 1)
+    window = fmpq(0), fmpq(2 * 10**9)
+    assert the_same(isolate_reflected(p, q, fmpq(0), 1, *window), isolate(p, *window))
