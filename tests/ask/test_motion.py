@@ -137,9 +137,9 @@ def test_a_certified_map_and_what_it_leaves_open() -> None:
     pytest.importorskip("numba")
     slice = ptmcad.slice_from_options(CONFIGS / "free02.yaml", ranges=["rho=1:3/2", "L2=7/5:8/5"])
     result = ptmcad.classify(slice, tolerance="1/5", jobs=1)
-    motion = result.animate("rho=11/10:7/5,L2=3/2", "stable:2", frames=16)
+    motion = result.animate("rho=11/10:7/5,L2=3/2", "stable:2", frames=100)
     still = [step for step in motion.steps if not step.falling]
-    assert (len(motion.falls), motion.counted, len(still)) == (1, 16, 16)
+    assert (len(motion.falls), motion.counted, len(still)) == (1, 100, 100)
     labels = [result.locate(rho=step.at[0], L2=step.at[1]).cell for step in still]
     assert None in labels
     assert any(label is not None for label in labels)
