@@ -7,27 +7,25 @@ or it is the top of a joint that stands above in the record.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from fractions import Fraction
 from typing import Any
 
 from ptmcad.errors import ConfigError, Faults
 from ptmcad.mechanism.derivative import negative, product, total
 from ptmcad.mechanism.reading import MAX_UNKNOWNS, Reader, as_written, check_keys, ends, mapping, new_name
 from ptmcad.mechanism.xjoint import LEVEL, XJoint
-from ptmcad.text.tree import Tree, names_of
+from ptmcad.text.tree import Number, Tree, names_of
 
 XJOINT_KEYS = ("base", "bars", "angles", "top")
 LIKE = "{X: {base: [A, B], bars: L, angles: [th, psi], top: [C, D]}}"
 Place = tuple[Tree, Tree]
+_ZERO: Tree = Number(Fraction(0))
 
 
 def second_angles(value: object) -> tuple[str, ...]:
     """The names that the record gives to angles of second bars, before anything of it is checked."""
-    found = []
-    for entry in value.values() if isinstance(value, Mapping) else ():
-        angles = entry.get("angles") if isinstance(entry, Mapping) else None
-        if isinstance(angles, list | tuple) and len(angles) == 2 and isinstance(angles[1], str):
-            found.append(angles[1])
-    return tuple(found)
+    entries = value.values() if isinstance(value, Mapping) else ()
+    return tuple(name for entry in entries for name in _named(entry, "angles")[1:2])
 
 
 def add_xjoints(
@@ -58,7 +56,16 @@ def add_xjoints(
                     c, s = joint.bar(angle)
                     points[point] = total(x, product(joint.bars, c)), total(y, product(joint.bars, s))
                 found[name] = joint
+        if name not in found:  # what refers to the points of its top is not to blame for it
+            for point in _named(entry, "top"):
+                points.setdefault(point, (_ZERO, _ZERO))
     return tuple(found.values())
+
+
+def _named(entry: object, key: str) -> tuple[str, ...]:
+    """The names in a list of an entry, before anything of it is checked."""
+    listed = entry.get(key) if isinstance(entry, Mapping) else None
+    return tuple(name for name in listed if isinstance(name, str)) if isinstance(listed, list | tuple) else ()
 
 
 def _joint(

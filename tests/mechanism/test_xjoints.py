@@ -183,6 +183,25 @@ def test_what_is_wrong_is_told_by_its_key(change: dict[str, Any], key: str, said
     assert any(said in fault.message for fault in wrong), [(f.key, f.message) for f in caught.value.faults]
 
 
+@pytest.mark.parametrize(
+    ("change", "key"),
+    [
+        ({"bars": None}, "bars"),
+        ({"base": ["A", "Z"]}, "base"),
+        ({"angles": ["th"]}, "angles"),
+        ({"angles": ["th", "psi", "chi"]}, "angles"),
+        ({"top": ["C", "D", "C"]}, "top"),
+    ],
+    ids=str,
+)
+def test_one_fault_of_a_joint_is_told_alone(change: dict[str, Any], key: str) -> None:
+    """Springs and loads that name the points of its top are not to blame."""
+    joint = {k: v for k, v in {**ONE["x-joint"]["X"], **change}.items() if v is not None}
+    with pytest.raises(ConfigError) as caught:
+        ptmcad.Mechanism({**ONE, "x-joint": {"X": joint}})
+    assert [fault.key for fault in caught.value.faults] == [f"mechanism.x-joint.X.{key}"]
+
+
 def test_bars_are_not_as_long_as_the_base_all_over_the_window() -> None:
     with pytest.raises(ConfigError, match=r"x-joint.X.bars: a length must be positive in the whole window"):
         ptmcad.classify({"mechanism": ONE, "axes": {"F": [-1, 1], "b": [1, 3]}})
