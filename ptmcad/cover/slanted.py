@@ -26,7 +26,11 @@ from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_
 
 Integers = NDArray[np.int64]
 HALVINGS = 5
-"""Of a tube's interval: where it is drawn, there are so many rectangles in its place, as a power of two."""
+"""Of a tube's interval: there are so many rectangles in its place, as a power of two."""
+_DRAWN = 2**13
+"""Where it is drawn there are more, until they are narrower than this part of the window, so that long tubes look
+smooth in a zoomed view too."""
+_MOST_HALVINGS = 10
 _WIDTHS = (Fraction(1, 2), Fraction(1, 8), Fraction(1, 64), Fraction(1, 1024))
 """Of rectangles that are tried within a part of a frame, as parts of the frame's length."""
 
@@ -315,13 +319,25 @@ def staircase(patch: Patch, halvings: int) -> Iterator[Rectangle]:
                 yield (start, end, first, last) if patch.along == 0 else (first, last, start, end)
 
 
-def stepped(cover: Cover, halvings: int = HALVINGS) -> Cover:
-    """A cover of more, of rectangles alone: a staircase in place of each tube."""
-    steps = (piece for patch in cover.patches for piece in staircase(patch, halvings))
+def stepped(cover: Cover, halvings: int = HALVINGS, narrower: int = 1) -> Cover:
+    """A cover of more, of rectangles alone: a staircase in place of each tube.
+
+    Parameters
+    ----------
+    halvings : of a tube's interval, at least.
+    narrower : there are more until the steps are narrower than this part of the window, up to a limit.
+    """
+
+    def enough(patch: Patch) -> int:
+        low, high = tubes.ends(patch)
+        wanted = -(-(high - low) * narrower // cover.steps)
+        return max(halvings, min(_MOST_HALVINGS, (wanted - 1).bit_length()))
+
+    steps = (piece for patch in cover.patches for piece in staircase(patch, enough(patch)))
     return Cover(cover.steps, tuple(sorted({*cover.rectangles, *steps})))
 
 
-def shown(complement: Components, halvings: int = HALVINGS) -> Components:
+def shown(complement: Components) -> Components:
     """The same components with a subdivision in which rectangles cover the tubes, to draw them by.
 
     What these rectangles have of a component is in none of its leaves; a leaf's owner is still its component.
@@ -329,7 +345,7 @@ def shown(complement: Components, halvings: int = HALVINGS) -> Components:
     if complement.frames is None:
         return complement
     cover = complement.cover
-    tree = subdivide(rectangle_array(stepped(cover, halvings)), cover.steps)
+    tree = subdivide(rectangle_array(stepped(cover, narrower=_DRAWN)), cover.steps)
     free = np.flatnonzero(tree.state == FREE)
     bounds = tree.bounds[free]
     there = complement.subdivision.leaves_right_above(bounds[:, 0], bounds[:, 2])

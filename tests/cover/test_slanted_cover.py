@@ -147,6 +147,21 @@ def test_a_tube_from_side_to_side_parts_the_window_and_drawn_steps_cover_it() ->
         assert all(steps.locate(Fraction(x), v + d) is None for d in (-3, 0, 3))
 
 
+def test_a_long_tube_is_drawn_in_more_steps() -> None:
+    """Of two tubes with the same slope, one over half of the window, what is drawn is beyond them by about as much."""
+    half, quarter, short = 2**19, 2**18, 2**12
+    long = Patch((0, half, 0, half), 0, (Tube(5, (10, half - 10)),))
+    other = Patch((half + quarter, half + quarter + short, 0, short), 0, (Tube(5, (10, short - 10)),))
+    beyond = []
+    for patch in (long, other):
+        drawn = shown(components(Cover(STEPS, (), (patch,))))
+        free = drawn.subdivision.bounds[drawn.subdivision.state == FREE]
+        covered = STEPS**2 - sum((b - a) * (d - c) for a, b, c, d in free.tolist())
+        beyond.append(covered / (patch.frame[1] - patch.frame[0]) - 10)
+    assert beyond[1] < 0.05 * short
+    assert beyond[0] < 8 * beyond[1]  # with as many steps for each tube it would be 128 times as much
+
+
 @pytest.mark.parametrize(
     ("patch", "what"),
     [

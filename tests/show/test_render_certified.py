@@ -29,7 +29,7 @@ from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, UNDETERMINED, fi
 from ptmcad.show.render.coveroutline import TOLERANCE
 from ptmcad.show.render.layout import LEFT, MARGIN, SIDE, TITLE_LINE
 from ptmcad.show.render.legend import RIM
-from ptmcad.show.render.regionmap import figure_of
+from ptmcad.show.render.regionmap import _zoomed, figure_of
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.simplification import simplified
 from ptmcad.show.render.view import View
@@ -240,3 +240,18 @@ def test_a_damaged_certified_map_has_no_picture(tmp_path: Path, capsys: pytest.C
     message = capsys.readouterr().err
     assert "contradicts itself" in message and message.count("\n") == 1
     assert [path.name for path in tmp_path.iterdir()] == ["map.json"]
+
+
+@pytest.mark.parametrize(
+    ("area", "lines"),
+    [
+        ("", ("B: 3", "zoomed")),
+        ("0.002", ("B: 3", "area 0.002, zoomed")),
+        ("0.00000898 to 0.00001195", ("B: 3, zoomed", "area 0.00000898 to 0.00001195")),
+        ("0.00001046712345 to 0.00001046712351", ("B: 3, zoomed, area 0.00001046712345", "to 0.00001046712351")),
+    ],
+)
+def test_what_stands_over_a_zoomed_view_is_not_cut_off(area: str, lines: tuple[str, str]) -> None:
+    """With the digits of a map to 1e-6 it once went beyond the picture's edge."""
+    assert _zoomed("B: 3", area) == "\n".join(lines)
+    assert max(map(len, lines)) < 37

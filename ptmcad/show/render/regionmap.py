@@ -46,6 +46,8 @@ from ptmcad.show.style import DEFAULT, Place, Style
 from ptmcad.show.table import area_text, areas_are_known, count_text, region_area
 
 TITLE_COLUMNS, TITLE_LINES = 80, 3
+_ZOOMED_COLUMNS = 34
+"""Characters over a zoomed view, most of them digits: as many as there is room for."""
 
 
 def draw(
@@ -336,11 +338,22 @@ def _inset(
     if any(sliver.cell is not None for sliver in zoom.slivers):
         title = f"{', '.join(names)}\nunstable ones differ, zoomed"
     elif len(names) == 1:
-        area = f"area {region_area(result, number)}, " if areas_are_known(result) else ""
-        title = f"{names[0]}\n{area}zoomed"
+        title = _zoomed(names[0], region_area(result, number) if areas_are_known(result) else "")
     else:
-        title = textwrap.shorten(", ".join(names), 34, placeholder=" …") + "\nzoomed"
+        title = textwrap.shorten(", ".join(names), _ZOOMED_COLUMNS, placeholder=" …") + "\nzoomed"
     axes.set_title(title, fontsize=layout.texts.inset, loc="left", pad=3)
+
+
+def _zoomed(name: str, area: str) -> str:
+    """The two lines over the zoomed view of a region, as long as there is room for."""
+    if not area:
+        return f"{name}\nzoomed"
+    if len(f"area {area}, zoomed") <= _ZOOMED_COLUMNS:
+        return f"{name}\narea {area}, zoomed"
+    if len(f"area {area}") <= _ZOOMED_COLUMNS:
+        return f"{name}, zoomed\narea {area}"
+    low, _, high = area.partition(" to ")
+    return f"{name}, zoomed, area {low}\nto {high}"
 
 
 def _mark(
