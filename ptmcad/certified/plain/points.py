@@ -19,8 +19,9 @@ from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.distinct import FULL_TURN, distinct
 from ptmcad.certified.evaluation import Indices
+from ptmcad.certified.formula import Formula
 from ptmcad.certified.plain.bounds import Range, known_ranges
-from ptmcad.certified.plain.chart import chart, principal_minors
+from ptmcad.certified.plain.chart import Chart, chart, principal_minors
 from ptmcad.certified.plain.infinity import WITNESSES, patches
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS, Problem, problem_of
 from ptmcad.certified.points import BUDGET, MAX_OPEN_BOXES, MIN_BOX_WIDTHS, PRECISIONS, QUICK_BUDGET, PointCount, boxed
@@ -224,13 +225,13 @@ def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], No
     problem = problem_of(slice, most)
     found = patches(problem, slice.axes)
     at = chart(problem)
-    vanishing = ((), at.balances)
+    vanishing = (at.dependent, at.balances)
     unknowns = [at.equations[0].graph.variable(k) for k in problem.variables]
     inequalities, stability = (
         [c.value.formula(at.equations[0].graph, unknowns) for c in some]
         for some in (problem.inequalities, problem.stability)
     )
-    minima = principal_minors(at.hessian) if problem.is_gradient else stability
+    minima = _semidefinite(at) if problem.is_gradient else stability
     counter = PlainCounter(
         slice,
         problem,
@@ -244,6 +245,12 @@ def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], No
     )
     _check_conditions(counter)
     return counter
+
+
+def _semidefinite(at: Chart) -> list[Formula]:
+    """What is not negative at minima."""
+    whole = [at.determinant(at_equilibrium=True)] if len(at.equations) <= MAX_UNKNOWNS else []
+    return [*principal_minors(at.matrix_at_equilibrium()), *whole]
 
 
 def _check_conditions(counter: PlainCounter) -> None:
