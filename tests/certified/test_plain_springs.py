@@ -16,6 +16,7 @@ import ptmcad
 from ptmcad.certified.evaluation import program, run
 from ptmcad.certified.formula import Formula, Operation
 from ptmcad.certified.plain.chart import Chart, chart, principal_minors
+from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import Problem, problem_of
 from ptmcad.certified.plain.scaling import common_factor, common_factors
 from ptmcad.certified.tape import record
@@ -53,7 +54,7 @@ POINT = np.array([0.7, 1.5, 0.4, -1.1, 0.9, 0.0])
 def charts(record: dict[str, Any], short: int | None = None) -> tuple[Problem, Chart]:
     slice = slice_from_mapping(record)
     problem = problem_of(slice)
-    return problem, chart(problem, short, common_factors(problem, slice.axes))
+    return problem, chart(geometry(problem, slice.axes), short)
 
 
 def values(formulas: Sequence[Formula], at: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -92,7 +93,7 @@ def test_determinant_in_a_chart_is_that_times_the_length(mechanism: dict[str, An
         point = POINT.copy()
         point[phi] = atan2(y, x)
         length = hypot(x, y)
-        found = values([turned.determinant(), turned.aligned, turned.lengths[s], *turned.equations], point)
+        found = values([turned.determinant(), turned.aligned, turned.springs[s].extent, *turned.equations], point)
         assert found[0] == pytest.approx(np.linalg.det(matrix(direct, POINT)) * length, rel=1e-9)
         assert found[1:3] == pytest.approx([0, length], abs=1e-12)
         assert found[3:] == pytest.approx(values(direct.equations, POINT), rel=1e-9)
@@ -144,6 +145,51 @@ def _open(formulas: Sequence[Formula]) -> list[Formula]:
     return [made[f.number] for f in formulas]
 
 
+@pytest.mark.parametrize("mechanism", [PLAIN_PTM, THREE_BARS])
+def test_moment_on_bodies_that_turn_is_that_of_the_equations(mechanism: dict[str, Any]) -> None:
+    problem, at = charts(mechanism)
+    scales = values(at.scales, POINT)
+    slopes, hessian = values(at.equations, POINT) * scales, matrix(at, POINT) * scales[:, None]
+    (turned,) = at.turned
+    w = np.array(turned.weights)
+    moment, stiffness, factor = values([turned.moment, turned.stiffness, turned.factor], POINT)
+    assert moment * factor == pytest.approx(w @ slopes, rel=1e-9)
+    assert stiffness * factor == pytest.approx(w @ hessian @ w, rel=1e-9)
+    for s in range(len(problem.cones)):
+        _, charted = charts(mechanism, s)
+        x, y = values(charted.springs[s].vector, POINT)
+        point = POINT.copy()
+        point[2 + len(at.equations)] = atan2(y, x)
+        again = values([charted.turned[0].moment, charted.turned[0].stiffness, *charted.along], point)
+        assert again == pytest.approx([moment, stiffness, 0, 0], rel=1e-9, abs=1e-12)
+
+
+def test_bars_that_turn_by_one_angle_leave_the_base_only() -> None:
+    slice = slice_from_mapping(PLAIN_PTM)
+    (loaded,) = geometry(problem_of(slice), slice.axes).turns
+    assert loaded.weights == (1, -1) and loaded.factor == constant(1)
+    assert [len(f.terms) for _, e, _ in loaded.levers for f in e] == 3 * [0, 1]
+    unloaded = slice_from_mapping({**PLAIN_PTM, "parameters": {"L1": 1, "k": 100, "l0": "1/5"}})
+    (free,) = geometry(problem_of(unloaded), unloaded.axes).turns
+    assert free.factor == axis(0)
+
+
+def test_determinants_by_turning_and_levelled_hold_at_equilibria() -> None:
+    _, at = charts(PLAIN_PTM)
+    (by_turning,) = at.determinants_by_turning()
+    for point in equilibria(at, 4):
+        determinant = np.linalg.det(matrix(at, point))
+        lengths, (_, second) = values(at.lengths, point), values(at.scales, point)
+        found = values(_open([by_turning, at.levelled()]), point)
+        assert found == pytest.approx([determinant * second, determinant * lengths.prod()], rel=1e-4, abs=1e-4)
+
+
+def test_a_matrix_that_is_not_symmetric_has_no_determinant_by_turning() -> None:
+    mechanism = {**PLAIN_PTM["mechanism"], "moments": {"th1": "sin(th2)"}}
+    _, at = charts({**PLAIN_PTM, "mechanism": mechanism, "count": "total"})
+    assert at.turned and not list(at.determinants_by_turning())
+
+
 def test_no_equation_has_a_formula_in_it_that_holds_at_equilibria_only() -> None:
     _, at = charts(PLAIN_PTM)
     tape = record([[*at.equations, at.determinant(), *(f for row in at.hessian for f in row)]])
@@ -171,7 +217,7 @@ def test_a_spring_that_nothing_balances_tells_no_direction() -> None:
     })  # fmt: skip
     problem = problem_of(opposite)
     assert [cone.name for cone in problem.cones] == ["k"]
-    tape = record([[entry for row in chart(problem).matrix_at_equilibrium() for entry in row]])
+    tape = record([[entry for row in chart(geometry(problem)).matrix_at_equilibrium() for entry in row]])
     assert int(Operation.DIVIDE) not in tape.operations
 
 

@@ -14,17 +14,27 @@ the determinant to the first power (`ptmcad.certified.plain.minors`; Lemmas S1 t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from typing import NamedTuple
 
-from ptmcad.certified.formula import Formula, Graph
+from ptmcad.certified.formula import Formula, Graph, length
 from ptmcad.certified.parameters import expression_formula
+from ptmcad.certified.plain.geometry import Geometry
 from ptmcad.certified.plain.minors import Bent, bent, determinant
-from ptmcad.certified.plain.problem import FIRST, Problem
-from ptmcad.certified.plain.scaling import over
-from ptmcad.certified.plain.springs import Matrix, Spring, spring
-from ptmcad.text.expressions import Expression, constant
+from ptmcad.certified.plain.problem import FIRST
+from ptmcad.certified.plain.springs import Matrix, Spring
+from ptmcad.certified.plain.turning import Turn
+
+
+class Turned(NamedTuple):
+    """The moment on bodies that turn together, and its derivative along the direction w of the unknowns."""
+
+    weights: tuple[int, ...]
+    moment: Formula
+    stiffness: Formula
+    factor: Formula
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +55,8 @@ class Chart:
         be differentiated.
     scales : the factors g_i.
     short : number of the cone whose direction is a variable.
+    turned : bodies turned by one angle.
+    symmetric : whether the equations are, but for their factors, derivatives of one function.
     """
 
     equations: tuple[Formula, ...]
@@ -58,6 +70,8 @@ class Chart:
     there: tuple[Matrix, ...]
     scales: tuple[Formula, ...]
     short: int | None
+    turned: tuple[Turned, ...]
+    symmetric: bool
 
     @property
     def aligned(self) -> Formula:
@@ -65,6 +79,13 @@ class Chart:
         assert self.short is not None
         at = self.springs[self.short]
         return at.vector[0] * at.unit[1] - at.vector[1] * at.unit[0]
+
+    @property
+    def along(self) -> tuple[Formula, Formula]:
+        """d - |d| u of the spring in its chart, with |d| as a formula without u."""
+        assert self.short is not None
+        at, extent = self.springs[self.short], self.lengths[self.short]
+        return at.vector[0] - extent * at.unit[0], at.vector[1] - extent * at.unit[1]
 
     def _bends(self, products: Sequence[Matrix]) -> list[Bent]:
         return [Bent(s.pull * s.inverse, p, s) for s, p in zip(self.springs, products, strict=True)]
@@ -84,6 +105,21 @@ class Chart:
         unit = bends[self.short]._replace(factor=self.equations[0].graph.constant(1))
         return chosen.extent * whole - chosen.pull * bent(self.rigid, others, self.scales, by=unit)
 
+    def levelled(self) -> Formula:
+        """The determinant times the lengths of all springs, where the equations vanish: finite everywhere."""
+        bends = [Bent(at.pull, there, at) for at, there in zip(self.springs, self.there, strict=True)]
+        return bent(self.rigid, bends, self.scales, extents=[at.extent for at in self.springs])
+
+    def determinants_by_turning(self) -> Iterator[Formula]:
+        """Of two unknowns: the determinant by one of them and both turned, where the equations vanish."""
+        if len(self.equations) == 2 and self.symmetric:
+            there = self.matrix_at_equilibrium()
+            for weights, _, stiffness, factor in self.turned:
+                slip = there[0][0].graph.constant(0)
+                for w, entry in zip(weights, there[0], strict=True):
+                    slip = slip + w * entry
+                yield there[0][0] * (factor * stiffness) - self.scales[0] * slip.squared()
+
     def diagonal_times_length(self, s: int) -> tuple[Formula, ...]:
         """|d_s| times the Hessian's diagonal where the equations vanish, as far as spring s is in it."""
         bends, chosen = self._bends(self.there), self.springs[s]
@@ -93,26 +129,21 @@ class Chart:
         )
 
 
-def chart(problem: Problem, short: int | None = None, factors: Sequence[Expression] | None = None) -> Chart:
+def chart(exact: Geometry, short: int | None = None) -> Chart:
     """The formulas of a problem in a graph of their own.
 
     Parameters
     ----------
     short : number of the cone whose direction is a variable.
-    factors : positive common factors of the equations, as of `ptmcad.certified.plain.scaling.common_factors`.
     """
     graph = Graph()
-    unknowns = [graph.variable(k) for k in problem.variables]
+    unknowns = [graph.variable(k) for k in exact.problem.variables]
     size = range(len(unknowns))
-    factors = [constant(1)] * len(size) if factors is None else factors
-    divided = [over(f, g) for f, g in zip(problem.equations, factors, strict=True)]
-    smooth = [f.formula(graph, unknowns) for f in divided]
-    scales = tuple(expression_formula(graph, g) for g in factors)
+    smooth = [f.formula(graph, unknowns) for f in exact.equations]
+    scales = tuple(expression_formula(graph, g) for g in exact.factors)
     phi = None if short is None else graph.variable(FIRST + len(size))
-    springs = tuple(
-        spring(cone, graph, unknowns, factors, phi if s == short else None) for s, cone in enumerate(problem.cones)
-    )
-    rigid = [[f.derivative(j).formula(graph, unknowns) for j in size] for f in divided]
+    springs = tuple(s.spring(graph, unknowns, phi if k == short else None) for k, s in enumerate(exact.shapes))
+    rigid = [[f.formula(graph, unknowns) for f in row] for row in exact.slopes]
     for at in springs:
         for i in size:
             for j in size:
@@ -124,7 +155,7 @@ def chart(problem: Problem, short: int | None = None, factors: Sequence[Expressi
     return Chart(
         tuple(_without(smooth, springs)),
         _less(rigid, bends, scales),
-        tuple(at.extent for at in springs),
+        tuple(length(*at.vector) for at in springs),
         tuple(f for at, rest in zip(springs, rests, strict=True) for f in _directed(at, rest)),
         tuple(f for at, rest in zip(springs, rests, strict=True) for f in _balances(at, rest)),
         springs,
@@ -133,7 +164,14 @@ def chart(problem: Problem, short: int | None = None, factors: Sequence[Expressi
         tuple(at.products_at_equilibrium(rest) for at, rest in zip(springs, rests, strict=True)),
         scales,
         short,
+        tuple(_turned(turn, springs, unknowns) for turn in exact.turns),
+        exact.problem.is_gradient,
     )
+
+
+def _turned(turn: Turn, springs: Sequence[Spring], unknowns: Sequence[Formula]) -> Turned:
+    factor = expression_formula(unknowns[0].graph, turn.factor)
+    return Turned(turn.weights, turn.moment(springs, unknowns), turn.stiffness(springs, unknowns, factor), factor)
 
 
 def _less(rigid: Sequence[Sequence[Formula]], bends: Sequence[Bent], scales: Sequence[Formula]) -> Matrix:

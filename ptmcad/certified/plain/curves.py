@@ -17,13 +17,12 @@ from ptmcad.certified.curve import Curve
 from ptmcad.certified.formula import Formula
 from ptmcad.certified.plain.bounds import TURN, Range
 from ptmcad.certified.plain.chart import Chart, chart, determinant, principal_minors
+from ptmcad.certified.plain.geometry import Geometry, geometry
 from ptmcad.certified.plain.infinity import Patch, at_infinity, patches
 from ptmcad.certified.plain.problem import FIRST, Condition, Problem, problem_of
-from ptmcad.certified.plain.scaling import common_factors
 from ptmcad.certified.scales import typical_lengths, variable_weights
 from ptmcad.certified.system import system
 from ptmcad.question.slice import Count, Slice
-from ptmcad.text.expressions import Expression
 
 SHORT_SHARE = Fraction(1, 8)
 """A spring shorter than this part of its typical length is searched in its chart."""
@@ -37,7 +36,7 @@ class _Search:
 
     Attributes
     ----------
-    factors : of the equations, as of `common_factors`.
+    exact : the problem with common factors that are positive in the window.
     short : below this length a spring is searched in its chart.
     stable : whether only folds of minima are asked for.
     swallowed : whether solutions that springs without length swallow have curves of their own.
@@ -45,7 +44,7 @@ class _Search:
     """
 
     problem: Problem
-    factors: tuple[Expression, ...]
+    exact: Geometry
     ranges: tuple[Range, ...]
     weights: tuple[float, ...]
     short: tuple[Fraction, ...]
@@ -74,12 +73,12 @@ def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) ->
 
 def _of_patch(slice: Slice, count: Count, without: frozenset[str], patch: Patch) -> Iterator[Curve]:
     problem = patch.problem
-    factors = common_factors(problem, slice.axes)
-    at = chart(problem, None, factors)
+    exact = geometry(problem, slice.axes)
+    at = chart(exact)
     stable = problem.is_gradient and count is Count.STABLE and "folds-of-saddles" not in without
     search = _Search(
         problem,
-        factors,
+        exact,
         patch.ranges,
         variable_weights(slice, at.equations, patch.ranges),
         tuple(_rounded(SHORT_SHARE * x) for x in typical_lengths(slice, at.lengths, patch.ranges)),
@@ -148,6 +147,7 @@ def _fold(search: _Search, at: Chart) -> Curve:
     if search.stable:
         semidefinite = principal_minors(at.matrix_at_equilibrium())
         semidefinite += [f for s in range(len(at.springs)) for f in at.diagonal_times_length(s)]
+        semidefinite += [turned.stiffness for turned in at.turned]
     return Curve(
         _name(search),
         _reason(search),
@@ -168,9 +168,16 @@ def _fold(search: _Search, at: Chart) -> Curve:
 
 def _dependent(search: _Search, at: Chart) -> tuple[Sequence[Formula], Sequence[Formula]]:
     """What vanishes at folds besides the equations, cheap formulas first."""
-    if not search.dependent or not at.springs:
+    if not search.dependent:
         return (), ()
-    return at.dependent, (*at.balances, at.determinant(at_equilibrium=True))
+    moments = [turned.moment for turned in at.turned]
+    along = () if at.short is None else at.along
+    return (*moments, *at.dependent, *along), (
+        *at.balances,
+        *([at.determinant(at_equilibrium=True)] if at.springs else []),
+        *at.determinants_by_turning(),
+        *([at.levelled()] if at.springs and not search.stable else []),
+    )
 
 
 def _values(conditions: Sequence[Condition], at: Chart) -> list[Formula]:
@@ -201,8 +208,10 @@ def _boundaries(search: _Search, at: Chart) -> Iterator[Curve]:
 def _short_folds(search: _Search, at: Chart) -> Iterator[Curve]:
     """The same where one spring is short, in its chart; the other ones may have any length."""
     for s in _charted(search, at):
-        cone, at = search.problem.cones[s], chart(search.problem, s, search.factors)
-        semidefinite = at.diagonal_times_length(s) if search.stable else ()
+        cone, at = search.problem.cones[s], chart(search.exact, s)
+        semidefinite: list[Formula] = []
+        if search.stable:
+            semidefinite = [*at.diagonal_times_length(s), *(turned.stiffness for turned in at.turned)]
         yield Curve(
             f"{_name(search)}, spring {cone.name} short",
             f"{_reason(search)}; spring {cone.name} is at most {search.short[s]} long",
@@ -210,7 +219,7 @@ def _short_folds(search: _Search, at: Chart) -> Iterator[Curve]:
                 [at.aligned, *at.equations, at.determinant()],
                 (0, 1, *search.problem.variables, FIRST + len(search.problem.unknowns)),
                 _dependent(search, at),
-                [at.lengths[s], search.short[s] - at.lengths[s], *semidefinite],
+                [at.springs[s].extent, search.short[s] - at.lengths[s], *semidefinite],
             ),
             (*search.ranges, TURN),
             np.array([*search.weights, TURNING_WEIGHT]),
@@ -234,7 +243,7 @@ def _points_without_length(search: _Search, at: Chart) -> Iterator[Curve]:
 def _cones(search: _Search) -> Iterator[Curve]:
     """Equilibria that come to a configuration in which a spring with a free length has none."""
     for s, cone in enumerate(search.problem.cones):
-        at = chart(search.problem, s, search.factors)
+        at = chart(search.exact, s)
         graph = at.equations[0].graph
         unknowns = [graph.variable(k) for k in search.problem.variables]
         # a coordinate that is zero everywhere says nothing

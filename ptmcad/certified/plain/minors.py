@@ -33,7 +33,13 @@ def determinant(matrix: Matrix) -> Formula:
     return total
 
 
-def bent(matrix: Matrix, bends: Sequence[Bent], scales: Sequence[Formula], by: Bent | None = None) -> Formula:
+def bent(
+    matrix: Matrix,
+    bends: Sequence[Bent],
+    scales: Sequence[Formula],
+    by: Bent | None = None,
+    extents: Sequence[Formula] | None = None,
+) -> Formula:
     """det(M - sum of factor_s v_s (g v_s)^T), g being the scales.
 
     Springs that depend on one unknown are in M's diagonal. For the others it is the sum over sets S of springs of
@@ -46,12 +52,12 @@ def bent(matrix: Matrix, bends: Sequence[Bent], scales: Sequence[Formula], by: B
     """
     size = len(matrix)
     entries = [list(row) for row in matrix]
-    for bend in bends:
+    for bend in bends if extents is None else ():
         if len(bend.spring.active) == 1:
             (i,) = bend.spring.active
             entries[i][i] = entries[i][i] - bend.factor * (scales[i] * bend.products[i][i])
     rigid = tuple(map(tuple, entries))
-    shared = [bend for bend in bends if len(bend.spring.active) > 1]
+    shared = [bend for bend in bends if len(bend.spring.active) > 1 or extents is not None]
     total = matrix[0][0].graph.constant(0)
     orders = range(size + 1) if by is None else range(size)
     for order in orders:
@@ -60,6 +66,10 @@ def bent(matrix: Matrix, bends: Sequence[Bent], scales: Sequence[Formula], by: B
             factor = matrix[0][0].graph.constant(1)
             for bend in among:
                 factor = factor * bend.factor
+            if extents is not None:
+                for bend, extent in zip(bends, extents, strict=True):
+                    if bend not in chosen:
+                        factor = factor * extent
             part = factor * _complement(rigid, among, scales)
             total = total + part if order % 2 == 0 else total - part
     return total

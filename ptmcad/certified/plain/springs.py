@@ -12,6 +12,7 @@ the spring is short and its direction is not.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from ptmcad.certified.formula import Formula, Graph, direction, inverse_length, length, meet
@@ -23,17 +24,17 @@ from ptmcad.text.expressions import Expression
 
 Vector = tuple[Formula, Formula]
 Matrix = tuple[tuple[Formula, ...], ...]
+Pair = tuple[TrigonometricPolynomial, TrigonometricPolynomial]
 
 
 class Spring(NamedTuple):
-    """A spring in one configuration; slopes by the i-th unknown are over the i-th equation's factor.
+    """A spring in one configuration; the slopes a_i of d by the unknowns are over the equations' factors.
 
     Attributes
     ----------
     pull : stiffness times free length.
     vector, unit, extent : d, its direction u and |d|, which is d.u where the direction is a variable.
     inverse : 1/|d|.
-    slopes : a_i.
     active : the unknowns that d depends on.
     cosines, sines : u.a_i and u x a_i.
     bends : u.d^2d/dq_i dq_j, over the factor of i alone.
@@ -45,7 +46,6 @@ class Spring(NamedTuple):
     unit: Vector
     extent: Formula
     inverse: Formula
-    slopes: tuple[Vector, ...]
     active: tuple[int, ...]
     cosines: tuple[Formula, ...]
     sines: tuple[Formula, ...]
@@ -78,37 +78,63 @@ class Spring(NamedTuple):
         )
 
 
-def spring(
-    cone: Cone, graph: Graph, unknowns: Sequence[Formula], scales: Sequence[Expression], phi: Formula | None
-) -> Spring:
-    """The formulas of a spring.
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """What formulas of a spring are written of, exactly; by each unknown, over the factor of its equation.
 
-    Parameters
+    Attributes
     ----------
-    scales : positive factors of all slopes by each unknown.
-    phi : the angle of the spring's direction, where that is a variable of its own.
+    pull : stiffness times free length.
+    difference : d.
+    slopes, bends : of d by each unknown, and of these by each.
+    squares, crosses : scalar products of the slopes, and their cross products.
     """
 
-    def written(f: TrigonometricPolynomial) -> Formula:
-        return f.formula(graph, unknowns)
+    pull: Expression
+    difference: Pair
+    slopes: tuple[Pair, ...]
+    bends: tuple[tuple[Pair, ...], ...]
+    squares: tuple[tuple[TrigonometricPolynomial, ...], ...]
+    crosses: tuple[tuple[TrigonometricPolynomial, ...], ...]
 
-    size = range(len(unknowns))
-    first, second = cone.difference
-    dx, dy = written(first), written(second)
-    ux, uy = (direction(dx, dy), direction(dy, dx)) if phi is None else (phi.cos(), phi.sin())
-    slopes = [(over(first.derivative(i), scales[i]), over(second.derivative(i), scales[i])) for i in size]
-    vectors = tuple((written(a), written(b)) for a, b in slopes)
-    return Spring(
-        expression_formula(graph, cone.pull),
-        (dx, dy),
-        (ux, uy),
-        length(dx, dy) if phi is None else dx * ux + dy * uy,
-        inverse_length(dx, dy),
-        vectors,
-        tuple(i for i, (a, b) in enumerate(slopes) if a.terms or b.terms),
-        tuple(ux * a + uy * b for a, b in vectors),
-        tuple(ux * b - uy * a for a, b in vectors),
-        tuple(tuple(ux * written(a.derivative(j)) + uy * written(b.derivative(j)) for j in size) for a, b in slopes),
-        tuple(tuple(written(a * c + b * d) for c, d in slopes) for a, b in slopes),
-        tuple(tuple(written(a * d - b * c) for c, d in slopes) for a, b in slopes),
+    def spring(self, graph: Graph, unknowns: Sequence[Formula], phi: Formula | None) -> Spring:
+        """The formulas in a graph.
+
+        Parameters
+        ----------
+        phi : the angle of the spring's direction, where that is a variable of its own.
+        """
+
+        def written(f: TrigonometricPolynomial) -> Formula:
+            return f.formula(graph, unknowns)
+
+        dx, dy = (written(f) for f in self.difference)
+        ux, uy = (direction(dx, dy), direction(dy, dx)) if phi is None else (phi.cos(), phi.sin())
+        vectors = tuple((written(a), written(b)) for a, b in self.slopes)
+        return Spring(
+            expression_formula(graph, self.pull),
+            (dx, dy),
+            (ux, uy),
+            length(dx, dy) if phi is None else dx * ux + dy * uy,
+            inverse_length(dx, dy),
+            tuple(i for i, (a, b) in enumerate(self.slopes) if a.terms or b.terms),
+            tuple(ux * a + uy * b for a, b in vectors),
+            tuple(ux * b - uy * a for a, b in vectors),
+            tuple(tuple(ux * written(a) + uy * written(b) for a, b in row) for row in self.bends),
+            tuple(tuple(map(written, row)) for row in self.squares),
+            tuple(tuple(map(written, row)) for row in self.crosses),
+        )
+
+
+def shape(cone: Cone, factors: Sequence[Expression]) -> Shape:
+    """Of a spring, with the positive factors of the equations."""
+    x, y = cone.difference
+    slopes = tuple((over(x.derivative(i), g), over(y.derivative(i), g)) for i, g in enumerate(factors))
+    return Shape(
+        cone.pull,
+        cone.difference,
+        slopes,
+        tuple(tuple((a.derivative(j), b.derivative(j)) for j in range(len(factors))) for a, b in slopes),
+        tuple(tuple(a * c + b * d for c, d in slopes) for a, b in slopes),
+        tuple(tuple(a * d - b * c for c, d in slopes) for a, b in slopes),
     )
