@@ -42,8 +42,14 @@ def _plain(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
         if slice.has_free_lengths
         else "curves are enclosed, as the certified engine was asked for"
     )
-    variety = PlanStep("discriminant variety", False, reason)
-    return (variety, saving_step("folds-of-saddles", without)) if slice.count is Count.STABLE else (variety,)
+    steps = [PlanStep("discriminant variety", False, reason)]
+    if slice.count is Count.STABLE:
+        steps.append(saving_step("folds-of-saddles", without))
+        if slice.has_free_lengths:
+            steps.append(saving_step("cones-and-creases", without))
+    if slice.has_free_lengths:
+        steps.append(saving_step("dependent-equations", without))
+    return tuple(steps)
 
 
 def unloaded(slice: Slice) -> bool:

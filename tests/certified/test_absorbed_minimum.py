@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import cos, sin
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,9 +15,9 @@ import pytest
 pytest.importorskip("numba")
 
 import ptmcad
-from ptmcad.certified.points import point_counter
-from ptmcad.certified.ptm.curves import curves
+from ptmcad.certified.formulation import curves, point_counter
 from ptmcad.certified.search import search_curve
+from ptmcad.mechanism.ptm import RECORD
 from ptmcad.question.slice import Count, Slice
 
 FLAT_CONE = {
@@ -29,6 +30,17 @@ CREASE = {
     "axes": {"f": ["-3/2", "-1/2"], "g": ["1/2", "3/2"]},
 }
 """At th1 = 0 spring 2 has no length, whatever th2 is."""
+MECHANISMS = {
+    "refined": "ptm",
+    "plain": {key: value for key, value in RECORD.items() if key != "symmetries"} | {"name": "plain_ptm"},
+}
+by_all_formulas = pytest.mark.parametrize("formulas", list(MECHANISMS))
+
+
+def _slice(record: dict[str, Any], formulas: str) -> Slice:
+    return ptmcad.slice_from_mapping(
+        {"name": "absorbed", "mechanism": MECHANISMS[formulas], "count": "stable", **record}
+    )
 
 
 def enclosed(slice: Slice, points: list[tuple[float, float]], tiles: int = 4) -> list[bool]:
@@ -56,8 +68,9 @@ def stable(slice: Slice, x: Fraction, y: Fraction) -> int | None:
     return point_counter(slice).at(x, y, Count.STABLE).stable
 
 
-def test_a_minimum_vanishes_in_a_flat_cone_without_a_fold() -> None:
-    slice = ptmcad.slice_from_mapping(FLAT_CONE)
+@by_all_formulas
+def test_a_minimum_vanishes_in_a_flat_cone_without_a_fold(formulas: str) -> None:
+    slice = _slice(FLAT_CONE, formulas)
     assert stable(slice, Fraction(19, 100), Fraction(1, 5)) == 2
     assert stable(slice, Fraction(21, 100), Fraction(1, 5)) == 1
     line = [(t, t) for t in np.linspace(0.1, 0.3, 41)]
@@ -76,8 +89,9 @@ def crease_loads(th2: float, side: int) -> tuple[float, float]:
     return float(f3), float(f4)
 
 
-def test_minima_vanish_in_a_crease_without_a_fold() -> None:
-    slice = ptmcad.slice_from_mapping(CREASE)
+@by_all_formulas
+def test_minima_vanish_in_a_crease_without_a_fold(formulas: str) -> None:
+    slice = _slice(CREASE, formulas)
     curve = [crease_loads(th2, side) for th2 in np.linspace(0.65, 0.95, 41) for side in (1, -1)]
     f3, f4 = (Fraction(x).limit_denominator(1000) for x in crease_loads(0.8, 1))
     assert stable(slice, f3 - Fraction(1, 100), f4) != stable(slice, f3 + Fraction(1, 100), f4)

@@ -16,11 +16,9 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.certified.formulation import curves, point_counter
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain.bounds import ranges
-from ptmcad.certified.plain.chart import chart, extended_determinant
 from ptmcad.certified.plain.points import inertia, plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.trigonometric import Harmonics
-from ptmcad.certified.tape import record
 from ptmcad.errors import ConfigError, GeometryError
 from ptmcad.mechanism import Mechanism
 from ptmcad.mechanism.ptm import RECORD
@@ -200,40 +198,17 @@ def test_map_by_plain_formulas_agrees_with_the_one_by_refined_formulas() -> None
     assert stable[0] == stable[1]
 
 
-def test_extended_determinant_is_the_hessians_times_the_length() -> None:
-    from math import atan2, hypot
-
-    import numpy as np
-
-    from ptmcad.certified.evaluation import program, run
-
-    problem = problem_of(_slice(PLAIN_PTM))
-    direct = chart(problem)
-    (h11, h12), (_, h22) = direct.hessian
-    plain = record([[h11, h12, h22, *direct.equations]])
-    for s, cone in enumerate(problem.cones):
-        turned = chart(problem, s)
-        graph = turned.equations[0].graph
-        dx, dy = (d.formula(graph, [graph.variable(2), graph.variable(3)]) for d in cone.difference)
-        tape = record([[extended_determinant(turned, problem), *turned.equations, dx, dy, *turned.balances]])
-        point = np.array([0.7, 1.5, 0.4, -1.1, 0.0])
-
-        def values(written: Any, at: Any) -> list[float]:
-            low, high = np.empty((2, len(written)))
-            assert run(program(written), at, at, low, high, 0, len(written))
-            return [(low[k] + high[k]) / 2 for k in written.outputs[0]]
-
-        _, _, _, x, y, *_ = values(tape, point)
-        point[4] = atan2(y, x)
-        determinant, e1, e2, *_ = values(tape, point)
-        a, b, c, *equations = values(plain, point[:4])
-        assert abs(determinant) == pytest.approx(abs(a * c - b * b) * hypot(x, y), rel=1e-9)
-        assert [e1, e2] == pytest.approx(equations, rel=1e-9)
-
-
 def test_every_spring_with_a_free_length_has_a_chart_and_a_cone() -> None:
     names = [curve.name for curve in curves(_slice(PLAIN_PTM), Count.INDEX)]
     assert names == ["fold", *(f"fold, spring k{n} short" for n in (1, 2, 3)), *(f"cone k{n}" for n in (1, 2, 3))]
+
+
+def test_minima_need_the_chart_of_a_spring_that_depends_on_both_angles_alone() -> None:
+    fold = "fold of a stable equilibrium"
+    names = [curve.name for curve in curves(_slice(PLAIN_PTM), Count.STABLE)]
+    assert names == [fold, f"{fold}, spring k3 short"]
+    every = [curve.name for curve in curves(_slice(PLAIN_PTM), Count.STABLE, frozenset({"cones-and-creases"}))]
+    assert every == [fold, *(f"{fold}, spring k{n} short" for n in (1, 2, 3)), *(f"cone k{n}" for n in (1, 2, 3))]
 
 
 def test_harmonics_are_in_normal_form() -> None:

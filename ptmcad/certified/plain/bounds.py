@@ -16,6 +16,7 @@ import numpy as np
 from ptmcad.certified.evaluation import Floats, program, run
 from ptmcad.certified.formula import Formula, Graph, Operation
 from ptmcad.certified.plain.chart import chart
+from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.nested import eliminated, nested, scaled, sharp_squares, times
 from ptmcad.certified.plain.problem import FIRST, Problem
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
@@ -140,7 +141,7 @@ class _Search:
         The same polynomials are nested in several ways: none is the best one in all boxes.
         """
         problem = self.problem
-        at = chart(problem)
+        at = chart(geometry(problem))
         graph = at.equations[0].graph
         unknowns = [graph.variable(j) for j in problem.variables]
         others = [(j, True) for j, name in enumerate(problem.unknowns) if name in problem.reals and j != k]

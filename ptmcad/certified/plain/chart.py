@@ -6,19 +6,35 @@ has none, its direction stands for every unit vector, so that an equilibrium tha
 With u_s = d_s/|d_s| the equations are dV/dq_i - sum of K_s u_s . dd_s/dq_i, and the Hessian has poles |d_s| = 0. In the
 chart of spring s its direction is (cos phi, sin phi) with phi an unknown, and d_s x u = 0 an equation more. Then all is
 smooth at |d_s| = 0, and by Schur's complement the Jacobian of the larger system has the determinant -+ |d_s| det H.
+
+The i-th equation is taken over a factor g_i > 0 in the axes, so that the matrix is H with rows over these factors: M -
+sum of K_s/|d_s| v_s (g v_s)^T, v_s being the sines u_s x a_i of spring s, and M without a pole. So each spring enters
+the determinant to the first power (`ptmcad.certified.plain.minors`; Lemmas S1 to S3 of docs/soundness.md).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from typing import NamedTuple
 
-from ptmcad.certified.formula import Formula, Graph, direction, length
+from ptmcad.certified.formula import Formula, Graph, length
 from ptmcad.certified.parameters import expression_formula
-from ptmcad.certified.plain.problem import FIRST, Problem
+from ptmcad.certified.plain.geometry import Geometry
+from ptmcad.certified.plain.minors import Bent, bent, determinant
+from ptmcad.certified.plain.problem import FIRST
+from ptmcad.certified.plain.springs import Matrix, Spring
+from ptmcad.certified.plain.turning import Turn
 
-Matrix = tuple[tuple[Formula, ...], ...]
+
+class Turned(NamedTuple):
+    """The moment on bodies that turn together, and its derivative along the direction w of the unknowns."""
+
+    weights: tuple[int, ...]
+    moment: Formula
+    stiffness: Formula
+    factor: Formula
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,22 +43,93 @@ class Chart:
 
     Attributes
     ----------
-    equations : one for each unknown.
-    hessian : their derivatives by the unknowns, with phi fixed where there is one.
+    equations : one for each unknown, over its factor.
+    hessian : their derivatives by the unknowns.
     lengths : |d_s| of each cone.
-    balances : formulas that vanish at every equilibrium, smooth where one spring has no length, unlike the equations:
-        the equations solved for its unit vector u_s, which has the length 1.
-    turning : of the spring in its chart d_s x u, d_s . u and the derivatives of d_s x u by the unknowns; empty without.
+    dependent : formulas that vanish at every equilibrium, linear in the direction of a spring: the equations solved for
+        its unit vector u_s, each coordinate.
+    balances : the same, smooth where one spring has no length, unlike the equations: that u_s has the length 1.
+    springs : one for each cone.
+    rigid : the matrix M.
+    anywhere, there : the sines' products of each spring, everywhere and where the equations vanish; the latter never to
+        be differentiated.
+    scales : the factors g_i.
+    short : number of the cone whose direction is a variable.
+    turned : bodies turned by one angle.
+    symmetric : whether the equations are, but for their factors, derivatives of one function.
     """
 
     equations: tuple[Formula, ...]
     hessian: Matrix
     lengths: tuple[Formula, ...]
+    dependent: tuple[Formula, ...]
     balances: tuple[Formula, ...]
-    turning: tuple[Formula, ...]
+    springs: tuple[Spring, ...]
+    rigid: Matrix
+    anywhere: tuple[Matrix, ...]
+    there: tuple[Matrix, ...]
+    scales: tuple[Formula, ...]
+    short: int | None
+    turned: tuple[Turned, ...]
+    symmetric: bool
+
+    @property
+    def aligned(self) -> Formula:
+        """d x u of the spring in its chart."""
+        assert self.short is not None
+        at = self.springs[self.short]
+        return at.vector[0] * at.unit[1] - at.vector[1] * at.unit[0]
+
+    @property
+    def along(self) -> tuple[Formula, Formula]:
+        """d - |d| u of the spring in its chart, with |d| as a formula without u."""
+        assert self.short is not None
+        at, extent = self.springs[self.short], self.lengths[self.short]
+        return at.vector[0] - extent * at.unit[0], at.vector[1] - extent * at.unit[1]
+
+    def _bends(self, products: Sequence[Matrix]) -> list[Bent]:
+        return [Bent(s.pull * s.inverse, p, s) for s, p in zip(self.springs, products, strict=True)]
+
+    def matrix_at_equilibrium(self) -> Matrix:
+        """The Hessian where the equations vanish."""
+        return _less(self.rigid, self._bends(self.there), self.scales)
+
+    def determinant(self, *, at_equilibrium: bool = False) -> Formula:
+        """Of the Hessian; in its chart, times the length of the spring."""
+        bends = self._bends(self.there if at_equilibrium else self.anywhere)
+        if self.short is None:
+            return bent(self.rigid, bends, self.scales)
+        chosen = self.springs[self.short]
+        others = bends[: self.short] + bends[self.short + 1 :]
+        whole = bent(self.rigid, others, self.scales)
+        unit = bends[self.short]._replace(factor=self.equations[0].graph.constant(1))
+        return chosen.extent * whole - chosen.pull * bent(self.rigid, others, self.scales, by=unit)
+
+    def levelled(self) -> Formula:
+        """The determinant times the lengths of all springs, where the equations vanish: finite everywhere."""
+        bends = [Bent(at.pull, there, at) for at, there in zip(self.springs, self.there, strict=True)]
+        return bent(self.rigid, bends, self.scales, extents=[at.extent for at in self.springs])
+
+    def determinants_by_turning(self) -> Iterator[Formula]:
+        """Of two unknowns: the determinant by one of them and both turned, where the equations vanish."""
+        if len(self.equations) == 2 and self.symmetric:
+            there = self.matrix_at_equilibrium()
+            for weights, _, stiffness, factor in self.turned:
+                slip = there[0][0].graph.constant(0)
+                for w, entry in zip(weights, there[0], strict=True):
+                    slip = slip + w * entry
+                yield there[0][0] * (factor * stiffness) - self.scales[0] * slip.squared()
+
+    def diagonal_times_length(self, s: int) -> tuple[Formula, ...]:
+        """|d_s| times the Hessian's diagonal where the equations vanish, as far as spring s is in it."""
+        bends, chosen = self._bends(self.there), self.springs[s]
+        rest = _less(self.rigid, bends[:s] + bends[s + 1 :], self.scales)
+        return tuple(
+            chosen.extent * rest[i][i] - self.scales[i] * (chosen.pull * self.there[s][i][i]) for i in chosen.active
+        )
 
 
-def chart(problem: Problem, short: int | None = None) -> Chart:
+def chart(exact: Geometry, short: int | None = None) -> Chart:
     """The formulas of a problem in a graph of their own.
 
     Parameters
@@ -50,82 +137,79 @@ def chart(problem: Problem, short: int | None = None) -> Chart:
     short : number of the cone whose direction is a variable.
     """
     graph = Graph()
-    unknowns = [graph.variable(k) for k in problem.variables]
-    size = len(unknowns)
-    smooth = [f.formula(graph, unknowns) for f in problem.equations]
-    entries = [[f.derivative(j).formula(graph, unknowns) for j in range(size)] for f in problem.equations]
-    pulls = [expression_formula(graph, cone.pull) for cone in problem.cones]
-    vectors = [tuple(d.formula(graph, unknowns) for d in cone.difference) for cone in problem.cones]
-    slopes = [
-        [tuple(d.derivative(i).formula(graph, unknowns) for d in cone.difference) for i in range(size)]
-        for cone in problem.cones
-    ]
-    units = [(direction(dx, dy), direction(dy, dx)) for dx, dy in vectors]
-    turning: tuple[Formula, ...] = ()
-    if short is not None:
-        phi = graph.variable(FIRST + size)
-        ux, uy = units[short] = (phi.cos(), phi.sin())
-        dx, dy = vectors[short]
-        turning = (dx * uy - dy * ux, dx * ux + dy * uy, *(a * uy - b * ux for a, b in slopes[short]))
-    parts = [
-        [pull * (ux * a + uy * b) for a, b in slope] for pull, (ux, uy), slope in zip(pulls, units, slopes, strict=True)
-    ]
-    for i in range(size):
-        for part in parts:
-            for j in range(size):
-                entries[i][j] = entries[i][j] - graph.derivative(part[i], problem.variables[j])
-    balances = [
-        # the rest is put together without the spring: taken off again, its part would leave an interval's width behind
-        _balance(pulls[s], _without(smooth, parts[:s] + parts[s + 1 :]), slopes[s], pair)
-        for s in range(len(pulls))
-        for pair in combinations(range(size), 2)
-    ]
-    equations = _without(smooth, parts)
+    unknowns = [graph.variable(k) for k in exact.problem.variables]
+    size = range(len(unknowns))
+    smooth = [f.formula(graph, unknowns) for f in exact.equations]
+    scales = tuple(expression_formula(graph, g) for g in exact.factors)
+    phi = None if short is None else graph.variable(FIRST + len(size))
+    springs = tuple(s.spring(graph, unknowns, phi if k == short else None) for k, s in enumerate(exact.shapes))
+    rigid = [[f.formula(graph, unknowns) for f in row] for row in exact.slopes]
+    for at in springs:
+        for i in size:
+            for j in size:
+                rigid[i][j] = rigid[i][j] - at.pull * at.bends[i][j]
+    # a rest is put together without its spring: taken off again, its part would leave an interval's width behind
+    rests = [_without(smooth, [t for t in springs if t is not at]) for at in springs]
+    anywhere = tuple(at.products() for at in springs)
+    bends = [Bent(at.pull * at.inverse, p, at) for at, p in zip(springs, anywhere, strict=True)]
     return Chart(
-        tuple(equations),
-        tuple(map(tuple, entries)),
-        tuple(length(dx, dy) for dx, dy in vectors),
-        tuple(balances),
-        turning,
+        tuple(_without(smooth, springs)),
+        _less(rigid, bends, scales),
+        tuple(length(*at.vector) for at in springs),
+        tuple(f for at, rest in zip(springs, rests, strict=True) for f in _directed(at, rest)),
+        tuple(f for at, rest in zip(springs, rests, strict=True) for f in _balances(at, rest)),
+        springs,
+        tuple(map(tuple, rigid)),
+        anywhere,
+        tuple(at.products_at_equilibrium(rest) for at, rest in zip(springs, rests, strict=True)),
+        scales,
+        short,
+        tuple(_turned(turn, springs, unknowns) for turn in exact.turns),
+        exact.problem.is_gradient,
     )
 
 
-def _without(smooth: Sequence[Formula], parts: Sequence[Sequence[Formula]]) -> list[Formula]:
+def _turned(turn: Turn, springs: Sequence[Spring], unknowns: Sequence[Formula]) -> Turned:
+    factor = expression_formula(unknowns[0].graph, turn.factor)
+    return Turned(turn.weights, turn.moment(springs, unknowns), turn.stiffness(springs, unknowns, factor), factor)
+
+
+def _less(rigid: Sequence[Sequence[Formula]], bends: Sequence[Bent], scales: Sequence[Formula]) -> Matrix:
+    """The matrix M less the springs' parts."""
+    entries = [list(row) for row in rigid]
+    for bend in bends:
+        for i, row in enumerate(entries):
+            for j in range(len(row)):
+                row[j] = row[j] - bend.factor * (scales[j] * bend.products[i][j])
+    return tuple(map(tuple, entries))
+
+
+def _without(smooth: Sequence[Formula], springs: Sequence[Spring]) -> list[Formula]:
     """The smooth part of each equation less the springs' parts."""
     total = list(smooth)
-    for part in parts:
-        total = [whole - piece for whole, piece in zip(total, part, strict=True)]
+    for at in springs:
+        total = [whole - at.pull * cosine for whole, cosine in zip(total, at.cosines, strict=True)]
     return total
 
 
-def _balance(
-    pull: Formula, rest: Sequence[Formula], slopes: Sequence[Sequence[Formula]], pair: tuple[int, int]
-) -> Formula:
-    """|adj(A) r|^2 - (K det A)^2, with A the slopes of d by two unknowns and r = K A u the rest of their equations."""
-    i, j = pair
-    (ai, bi), (aj, bj) = slopes[i], slopes[j]
-    x, y = bj * rest[i] - bi * rest[j], ai * rest[j] - aj * rest[i]
-    return x.squared() + y.squared() - (pull * (ai * bj - aj * bi)).squared()
+def _directed(at: Spring, rest: Sequence[Formula]) -> list[Formula]:
+    """With r = K (u.a_i, u.a_j): |a_i|^2 r_j - a_i.a_j r_i = K (a_i x a_j)(a_i x u)."""
+    return [
+        at.squares[i][i] * rest[j] - at.squares[i][j] * rest[i] + at.pull * (at.crosses[i][j] * at.sines[i])
+        for pair in combinations(at.active, 2)
+        for i, j in (pair, pair[::-1])
+    ]
 
 
-def extended_determinant(at: Chart, problem: Problem) -> Formula:
-    """The determinant of the equations and of d x u by the unknowns and phi: det H times -+ |d|, and smooth."""
-    graph = at.equations[0].graph
-    phi = FIRST + len(problem.unknowns)
-    _, along, *turned = at.turning
-    rows = [(*row, graph.derivative(f, phi)) for row, f in zip(at.hessian, at.equations, strict=True)]
-    return determinant((*rows, (*turned, along)))
-
-
-def determinant(matrix: Matrix) -> Formula:
-    """By Laplace's expansion; for the few rows that there are."""
-    if len(matrix) == 1:
-        return matrix[0][0]
-    total = matrix[0][0].graph.constant(0)
-    for j, entry in enumerate(matrix[0]):
-        minor = determinant(tuple(row[:j] + row[j + 1 :] for row in matrix[1:]))
-        total = total + entry * minor if j % 2 == 0 else total - entry * minor
-    return total
+def _balances(at: Spring, rest: Sequence[Formula]) -> list[Formula]:
+    """Gram's determinant: |r_i a_j - r_j a_i|^2 = (K a_i x a_j)^2."""
+    return [
+        rest[i].squared() * at.squares[j][j]
+        + rest[j].squared() * at.squares[i][i]
+        - 2 * (rest[i] * rest[j] * at.squares[i][j])
+        - (at.pull * at.crosses[i][j]).squared()
+        for i, j in combinations(at.active, 2)
+    ]
 
 
 def principal_minors(hessian: Matrix) -> list[Formula]:
@@ -136,3 +220,6 @@ def principal_minors(hessian: Matrix) -> list[Formula]:
         for order in range(1, size)
         for chosen in combinations(range(size), order)
     ]
+
+
+__all__ = ["Chart", "Matrix", "chart", "determinant", "principal_minors"]

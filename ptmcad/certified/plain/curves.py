@@ -15,9 +15,9 @@ import numpy as np
 
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.formula import Formula
-from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.bounds import TURN, Range
-from ptmcad.certified.plain.chart import Chart, chart, determinant, extended_determinant, principal_minors
+from ptmcad.certified.plain.chart import Chart, chart, determinant, principal_minors
+from ptmcad.certified.plain.geometry import Geometry, geometry
 from ptmcad.certified.plain.infinity import Patch, at_infinity, patches
 from ptmcad.certified.plain.problem import FIRST, Condition, Problem, problem_of
 from ptmcad.certified.scales import typical_lengths, variable_weights
@@ -32,13 +32,25 @@ TURNING_WEIGHT = 0.25
 
 @dataclass(frozen=True, slots=True)
 class _Search:
-    """What all curves of a slice have in common."""
+    """What all curves of a slice have in common.
+
+    Attributes
+    ----------
+    exact : the problem with common factors that are positive in the window.
+    short : below this length a spring is searched in its chart.
+    stable : whether only folds of minima are asked for.
+    swallowed : whether solutions that springs without length swallow have curves of their own.
+    dependent : whether formulas that vanish at all solutions are used besides the equations.
+    """
 
     problem: Problem
+    exact: Geometry
     ranges: tuple[Range, ...]
     weights: tuple[float, ...]
     short: tuple[Fraction, ...]
     stable: bool
+    swallowed: bool
+    dependent: bool
     conditions: tuple[Condition, ...]
     where: str
 
@@ -61,13 +73,18 @@ def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) ->
 
 def _of_patch(slice: Slice, count: Count, without: frozenset[str], patch: Patch) -> Iterator[Curve]:
     problem = patch.problem
-    at = chart(problem)
+    exact = geometry(problem, slice.axes)
+    at = chart(exact)
+    stable = problem.is_gradient and count is Count.STABLE and "folds-of-saddles" not in without
     search = _Search(
         problem,
+        exact,
         patch.ranges,
         variable_weights(slice, at.equations, patch.ranges),
         tuple(_rounded(SHORT_SHARE * x) for x in typical_lengths(slice, at.lengths, patch.ranges)),
-        problem.is_gradient and count is Count.STABLE and "folds-of-saddles" not in without,
+        stable,
+        not stable or "cones-and-creases" in without,
+        "dependent-equations" not in without,
         problem.conditions(count),
         "".join(f", {problem.unknowns[k]} large" for k in patch.inverse),
     )
@@ -99,9 +116,19 @@ def _infinite(search: _Search, patch: Patch) -> Iterator[Curve]:
 
 def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
     """The folds, and the cones."""
+    if not search.swallowed:
+        # the folds' systems have the points at which a minimum is swallowed
+        return (_fold(search, at), *_short_folds(search, at))
     if len(search.problem.unknowns) == 1:
         return (_fold(search, at), *_points_without_length(search, at))
-    return (_fold(search, at), *_short_folds(search), *_cones(search))
+    return (_fold(search, at), *_short_folds(search, at), *_cones(search))
+
+
+def _charted(search: _Search, at: Chart) -> list[int]:
+    """The cones that have a chart: none with one unknown, and for minima those that depend on several."""
+    least = 1 if search.swallowed else 2
+    many = len(search.problem.unknowns) > 1
+    return [s for s, spring in enumerate(at.springs) if many and len(spring.active) >= least]
 
 
 def _rounded(value: Fraction) -> Fraction:
@@ -115,21 +142,41 @@ def _rounded(value: Fraction) -> Fraction:
 
 
 def _fold(search: _Search, at: Chart) -> Curve:
-    """Solutions with a singular Jacobian, every spring with a free length long where the short ones have a chart."""
-    charted = len(search.problem.unknowns) > 1
-    long = [extent - short for extent, short in zip(at.lengths, search.short, strict=True) if charted]
-    semidefinite: list[Formula] = principal_minors(at.hessian) if search.stable else []
+    """Solutions with a singular Jacobian, every spring long that has a chart where it is short."""
+    semidefinite: list[Formula] = []
+    if search.stable:
+        semidefinite = principal_minors(at.matrix_at_equilibrium())
+        semidefinite += [f for s in range(len(at.springs)) for f in at.diagonal_times_length(s)]
+        semidefinite += [turned.stiffness for turned in at.turned]
     return Curve(
         _name(search),
         _reason(search),
         system(
-            [*at.equations, determinant(at.hessian)],
+            [*at.equations, at.determinant()],
             (0, 1, *search.problem.variables),
-            ((), at.balances),
-            [*long, *semidefinite, *_values(search.conditions, at)],
+            _dependent(search, at),
+            [
+                *(at.lengths[s] - search.short[s] for s in _charted(search, at)),
+                *semidefinite,
+                *_values(search.conditions, at),
+            ],
         ),
         search.ranges,
         np.array(search.weights),
+    )
+
+
+def _dependent(search: _Search, at: Chart) -> tuple[Sequence[Formula], Sequence[Formula]]:
+    """What vanishes at folds besides the equations, cheap formulas first."""
+    if not search.dependent:
+        return (), ()
+    moments = [turned.moment for turned in at.turned]
+    along = () if at.short is None else at.along
+    return (*moments, *at.dependent, *along), (
+        *at.balances,
+        *([at.determinant(at_equilibrium=True)] if at.springs else []),
+        *at.determinants_by_turning(),
+        *([at.levelled()] if at.springs and not search.stable else []),
     )
 
 
@@ -158,23 +205,21 @@ def _boundaries(search: _Search, at: Chart) -> Iterator[Curve]:
         )
 
 
-def _short_folds(search: _Search) -> Iterator[Curve]:
+def _short_folds(search: _Search, at: Chart) -> Iterator[Curve]:
     """The same where one spring is short, in its chart; the other ones may have any length."""
-    for s, cone in enumerate(search.problem.cones):
-        at = chart(search.problem, s)
-        aligned, along, *turned = at.turning
-        semidefinite = []
-        if search.stable:  # |d| times the diagonal of the Hessian, whose last part is K (u x dd)^2 / |d|
-            pull = expression_formula(along.graph, cone.pull)
-            semidefinite = [along * at.hessian[i][i] - pull * slope.squared() for i, slope in enumerate(turned)]
+    for s in _charted(search, at):
+        cone, at = search.problem.cones[s], chart(search.exact, s)
+        semidefinite: list[Formula] = []
+        if search.stable:
+            semidefinite = [*at.diagonal_times_length(s), *(turned.stiffness for turned in at.turned)]
         yield Curve(
             f"{_name(search)}, spring {cone.name} short",
             f"{_reason(search)}; spring {cone.name} is at most {search.short[s]} long",
             system(
-                [aligned, *at.equations, extended_determinant(at, search.problem)],
+                [at.aligned, *at.equations, at.determinant()],
                 (0, 1, *search.problem.variables, FIRST + len(search.problem.unknowns)),
-                ((), at.balances),
-                [along, search.short[s] - at.lengths[s], *semidefinite],
+                _dependent(search, at),
+                [at.springs[s].extent, search.short[s] - at.lengths[s], *semidefinite],
             ),
             (*search.ranges, TURN),
             np.array([*search.weights, TURNING_WEIGHT]),
@@ -198,7 +243,7 @@ def _points_without_length(search: _Search, at: Chart) -> Iterator[Curve]:
 def _cones(search: _Search) -> Iterator[Curve]:
     """Equilibria that come to a configuration in which a spring with a free length has none."""
     for s, cone in enumerate(search.problem.cones):
-        at = chart(search.problem, s)
+        at = chart(search.exact, s)
         graph = at.equations[0].graph
         unknowns = [graph.variable(k) for k in search.problem.variables]
         # a coordinate that is zero everywhere says nothing

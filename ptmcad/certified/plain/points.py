@@ -18,9 +18,11 @@ from flint import arb, arb_mat, ctx
 from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.distinct import FULL_TURN, distinct
-from ptmcad.certified.evaluation import Indices
+from ptmcad.certified.evaluation import Indices, program, run
+from ptmcad.certified.formula import Formula
 from ptmcad.certified.plain.bounds import Range, known_ranges
-from ptmcad.certified.plain.chart import chart, principal_minors
+from ptmcad.certified.plain.chart import Chart, chart, principal_minors
+from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.infinity import WITNESSES, patches
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS, Problem, problem_of
 from ptmcad.certified.points import BUDGET, MAX_OPEN_BOXES, MIN_BOX_WIDTHS, PRECISIONS, QUICK_BUDGET, PointCount, boxed
@@ -90,7 +92,8 @@ class PlainCounter:
         only_minima, size = stable_only, len(self.problem.unknowns)
         solutions, index = (), [0] * (size + 1)
         for wide, box in counted:
-            negative = self._index(x, y, wide)
+            negative = self._index_in_floats(box)
+            negative = self._index(x, y, wide) if negative is None else negative
             if negative is None:
                 return PointCount()
             index[negative] += 1
@@ -192,6 +195,18 @@ class PlainCounter:
         ends = [(Fraction(float(box[k])), Fraction(float(box[k + len(box) // 2]))) for k in self.problem.variables]
         return (ball(x, x), ball(y, y), *(ball(low, high) for low, high in ends))
 
+    def _index_in_floats(self, narrow: Boxes) -> int | None:
+        """The number of negative eigenvalues all over a box; None where doubles do not tell."""
+        size, variables = len(self.problem.unknowns), len(narrow) // 2
+        low, high = np.empty((2, len(self.hessian)))
+        run(program(self.hessian), narrow[:variables], narrow[variables:], low, high, 0, len(self.hessian))
+        places = self.hessian.outputs[0]
+        if not np.isfinite(low[places]).all() or not np.isfinite(high[places]).all():
+            return None
+        with ctx.workprec(PRECISIONS[0]):
+            ends = ((Fraction(float(low[k])), Fraction(float(high[k]))) for k in places)
+            return inertia(arb_mat(size, size, [ball(least, most) for least, most in ends]))
+
     def _index(self, x: Fraction, y: Fraction, unique: Boxes) -> int | None:
         """The number of negative eigenvalues at a proved zero."""
         size = len(self.problem.unknowns)
@@ -223,14 +238,14 @@ def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], No
     """
     problem = problem_of(slice, most)
     found = patches(problem, slice.axes)
-    at = chart(problem)
-    vanishing = ((), at.balances)
+    at = chart(geometry(problem))
+    vanishing = (at.dependent, at.balances)
     unknowns = [at.equations[0].graph.variable(k) for k in problem.variables]
     inequalities, stability = (
         [c.value.formula(at.equations[0].graph, unknowns) for c in some]
         for some in (problem.inequalities, problem.stability)
     )
-    minima = principal_minors(at.hessian) if problem.is_gradient else stability
+    minima = _semidefinite(at) if problem.is_gradient else stability
     counter = PlainCounter(
         slice,
         problem,
@@ -244,6 +259,12 @@ def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], No
     )
     _check_conditions(counter)
     return counter
+
+
+def _semidefinite(at: Chart) -> list[Formula]:
+    """What is not negative at minima."""
+    whole = [at.determinant(at_equilibrium=True)] if len(at.equations) <= MAX_UNKNOWNS else []
+    return [*principal_minors(at.matrix_at_equilibrium()), *whole]
 
 
 def _check_conditions(counter: PlainCounter) -> None:

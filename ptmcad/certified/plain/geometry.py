@@ -1,0 +1,55 @@
+"""What all formulas of a problem are written of, exactly and once: factors, derivatives, springs, bodies that turn.
+
+Guarantee: everything is over the positive common factor of its equation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ptmcad.certified.plain.problem import Problem
+from ptmcad.certified.plain.scaling import common_factors, over
+from ptmcad.certified.plain.springs import Shape, shape
+from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
+from ptmcad.certified.plain.turning import Turn, turns
+from ptmcad.question.slice import Axis
+from ptmcad.text.expressions import Expression, constant
+
+
+@dataclass(frozen=True, slots=True)
+class Geometry:
+    """A problem with its factors.
+
+    Attributes
+    ----------
+    factors : of the equations, positive in the open window.
+    equations, slopes : the smooth parts over their factors, and their derivatives by the unknowns.
+    shapes : of the springs with a free length.
+    turns : directions in which bodies turn together.
+    """
+
+    problem: Problem
+    factors: tuple[Expression, ...]
+    equations: tuple[TrigonometricPolynomial, ...]
+    slopes: tuple[tuple[TrigonometricPolynomial, ...], ...]
+    shapes: tuple[Shape, ...]
+    turns: tuple[Turn, ...]
+
+
+def geometry(problem: Problem, axes: tuple[Axis, Axis] | None = None) -> Geometry:
+    """The same for all charts of a problem.
+
+    Parameters
+    ----------
+    axes : of the window in which factors are to be positive; without them all factors are 1, and nothing turns.
+    """
+    factors = (constant(1),) * len(problem.equations) if axes is None else common_factors(problem, axes)
+    equations = tuple(over(f, g) for f, g in zip(problem.equations, factors, strict=True))
+    return Geometry(
+        problem,
+        factors,
+        equations,
+        tuple(tuple(f.derivative(j) for j in range(len(factors))) for f in equations),
+        tuple(shape(cone, factors) for cone in problem.cones),
+        () if axes is None else turns(problem, axes),
+    )

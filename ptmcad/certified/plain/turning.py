@@ -1,0 +1,129 @@
+"""Several bodies turned by one angle: the moment on them all, which springs between them have no part in.
+
+Guarantee: the moment of a `Turn` vanishes at every equilibrium, and its stiffness is its derivative along w: the second
+derivative of the energy, up to a positive factor. (Lemma S4 of docs/soundness.md.)
+
+With d' = c J d + e along w, J being the turn by a right angle and c = -1, 0 or 1, a spring's length l has l' = u.e and
+l'' = c u x e + (u x e)^2/l + u.e'. Of a spring that turns as a whole e is zero, and of one from a body that turns to a
+fixed point it is as long as the way from there to the axis, however long the spring is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+
+from ptmcad.certified.formula import Formula
+from ptmcad.certified.plain.problem import Cone, Problem
+from ptmcad.certified.plain.scaling import common_factor, over
+from ptmcad.certified.plain.springs import Pair, Spring
+from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
+from ptmcad.question.slice import Axis
+from ptmcad.text.expressions import Expression
+
+MOST = 1
+"""Directions w that are used: those in which most terms drop out. More of them cost more than they discard."""
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """A direction w of unknowns that change together.
+
+    Attributes
+    ----------
+    weights : w.
+    slope : of the smooth part of the energy along w, over the factor.
+    bend : the slope's own, over the factor.
+    levers : for each cone c, e and e', the latter two over the factor.
+    factor : positive in the open window.
+    """
+
+    weights: tuple[int, ...]
+    slope: TrigonometricPolynomial
+    bend: TrigonometricPolynomial
+    levers: tuple[tuple[int, Pair, Pair], ...]
+    factor: Expression
+
+    def moment(self, springs: Sequence[Spring], unknowns: Sequence[Formula]) -> Formula:
+        """What vanishes at equilibria."""
+        total = self.slope.formula(unknowns[0].graph, unknowns)
+        for at, (_, e, _) in zip(springs, self.levers, strict=True):
+            (x, y), (ux, uy) = _written(e, unknowns), at.unit
+            total = total - at.pull * (ux * x + uy * y)
+        return total
+
+    def stiffness(self, springs: Sequence[Spring], unknowns: Sequence[Formula], factor: Formula) -> Formula:
+        """The second derivative along w."""
+        total = self.bend.formula(unknowns[0].graph, unknowns)
+        for at, (c, e, de) in zip(springs, self.levers, strict=True):
+            (x, y), (dx, dy), (ux, uy) = _written(e, unknowns), _written(de, unknowns), at.unit
+            across = ux * y - uy * x
+            total = total - at.pull * (c * across + factor * (at.inverse * across.squared()) + (ux * dx + uy * dy))
+        return total
+
+
+def _written(pair: Pair, unknowns: Sequence[Formula]) -> tuple[Formula, Formula]:
+    first, second = pair
+    return first.formula(unknowns[0].graph, unknowns), second.formula(unknowns[0].graph, unknowns)
+
+
+def turns(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Turn, ...]:
+    """The directions in which springs or terms drop out, the best ones first."""
+    found = []
+    for weights in product((0, 1, -1), repeat=len(problem.unknowns)):
+        lead = next((w for w in weights if w), 0)
+        angles = all(problem.unknowns[i] not in problem.reals for i, w in enumerate(weights) if w)
+        if lead > 0 and sum(map(abs, weights)) > 1 and angles:
+            gain = _gain(problem, weights)
+            if gain > 0:
+                found.append((gain, weights))
+    found.sort(key=lambda entry: -entry[0])
+    return tuple(_turn(problem, weights, axes) for _, weights in found[:MOST])
+
+
+def _gain(problem: Problem, weights: Sequence[int]) -> int:
+    """How many terms less there are than in the equations that the moment is put together of."""
+    before = sum(len(f.terms) for w, f in zip(weights, problem.equations, strict=True) if w)
+    after = len(_along(problem.equations, weights).terms)
+    for cone in problem.cones:
+        before += sum(len(d.derivative(i).terms) for i, w in enumerate(weights) if w for d in cone.difference)
+        after += sum(len(f.terms) for f in _lever(cone, weights)[1])
+    return before - after
+
+
+def _along(slopes: Sequence[TrigonometricPolynomial], weights: Sequence[int]) -> TrigonometricPolynomial:
+    total = TrigonometricPolynomial({})
+    for w, f in zip(weights, slopes, strict=True):
+        total = total + f if w > 0 else total - f if w < 0 else total
+    return total
+
+
+def _derivative(f: TrigonometricPolynomial, weights: Sequence[int]) -> TrigonometricPolynomial:
+    return _along([f.derivative(i) for i in range(len(weights))], weights)
+
+
+def _lever(cone: Cone, weights: Sequence[int]) -> tuple[int, Pair]:
+    """c and e with the fewest terms."""
+    x, y = cone.difference
+    dx, dy = (_derivative(f, weights) for f in (x, y))
+    choices: list[tuple[int, Pair]] = [
+        (c, (dx + y.scaled(Fraction(c)), dy - x.scaled(Fraction(c)))) for c in (0, 1, -1)
+    ]
+    return min(choices, key=lambda choice: sum(len(f.terms) for f in choice[1]))
+
+
+def _turn(problem: Problem, weights: tuple[int, ...], axes: tuple[Axis, Axis]) -> Turn:
+    slope = _along(problem.equations, weights)
+    levers = [_lever(cone, weights) for cone in problem.cones]
+    factor = common_factor([slope, *(f for _, e in levers for f in e)], axes)
+    divided = over(slope, factor)
+    ends = [(c, (over(e[0], factor), over(e[1], factor))) for c, e in levers]
+    return Turn(
+        weights,
+        divided,
+        _derivative(divided, weights),
+        tuple((c, e, (_derivative(e[0], weights), _derivative(e[1], weights))) for c, e in ends),
+        factor,
+    )
