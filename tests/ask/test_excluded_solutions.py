@@ -134,6 +134,7 @@ MANY_SIDES = [
 
 
 @pytest.mark.parametrize(("system", "solutions"), MANY_SIDES)
+@pytest.mark.slow_cases("system1-16")
 def test_check_answers_at_once_whatever_the_inequalities(system: dict[str, Any], solutions: int) -> None:
     """A basis with the inverse of the inequalities' product takes minutes of each."""
     assert check(slice_from({"system": system, "axes": {"a": [1, 3], "b": [1, 3]}})).complex_solutions == solutions
