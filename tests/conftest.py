@@ -99,7 +99,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
                 seen.setdefault(function, set()).add(case)
                 if (case in marker.args) == (name == "slow_cases"):
                     item.add_marker(pytest.mark.slow)
-    if not any("::" in argument for argument in config.args) and not config.getoption("lf"):  # all cases are here
+    if not any("::" in argument for argument in config.args) and not config.getoption("lf", False):  # all are here
         gone = {function: cases - seen[function] for function, cases in named.items() if cases - seen[function]}
         if gone:
             raise pytest.UsageError(f"a marker names cases that the test does not have: {gone}")

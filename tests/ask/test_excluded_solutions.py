@@ -158,6 +158,7 @@ def test_what_counts_is_taken_with_its_multiplicity() -> None:
     assert solutions_at(problem.system, values, saturated=True) == (3, 4)
 
 
+@pytest.mark.slow
 def test_check_does_not_count_where_a_basis_gets_large() -> None:
     """Four angles with dense equations: no basis is computed to its end, though the degrees are small."""
     terms = [f"{f}({x})" for x in "wxyz" for f in ("cos", "sin")]

@@ -250,6 +250,7 @@ def test_a_system_has_neither_energy_nor_springs(value: str, pose: str, message:
         cubic().field(value, pose, 3)
 
 
+@pytest.mark.usefixtures("coarse")
 def test_the_command_writes_pictures_and_numbers(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ["map", str(CONFIGS / "fig2.yaml"), "--value", "barrier", "--pose", "stable:2", "--pixels", "20x15"]
     assert run([*arguments, "--format", "png,svg,csv,npz", "--out", str(tmp_path), "--checks", "5"]) == 0
@@ -487,6 +488,7 @@ def test_a_picture_names_its_quantity_as_the_bar_beside_it(value: str, title: st
     assert texts == [*([nothing] if nothing else []), title]
 
 
+@pytest.mark.usefixtures("coarse")
 def test_a_pose_that_the_counts_exclude_is_refused_before_anything_is_drawn(
     tmp_path: Any, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -502,6 +504,7 @@ def test_a_pose_that_the_counts_exclude_is_refused_before_anything_is_drawn(
     assert [path.suffix for path in tmp_path.iterdir()].count(".png") == 1
 
 
+@pytest.mark.usefixtures("coarse")
 def test_a_quantitys_map_is_drawn_in_a_style_at_its_size(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
     result = tmp_path / "fig4.json"
     result.write_text(shipped("fig4").to_json(), encoding="utf-8")
