@@ -6,6 +6,8 @@ import gc
 import os
 import shutil
 import signal
+import subprocess
+import sys
 import tempfile
 from collections.abc import Generator, Iterator
 from fractions import Fraction
@@ -18,6 +20,8 @@ from hypothesis import HealthCheck, settings
 from support.browser import Browser, browser
 from support.examples import ALL, FAST, FEW, THOROUGH
 from support.maps import FOLDER, shipped
+
+ROOT = Path(__file__).resolve().parents[1]
 
 for _profile, _number in ((FAST, FEW), (THOROUGH, ALL)):
     settings.register_profile(
@@ -38,14 +42,67 @@ if hasattr(signal, "SIGHUP"):
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
+class ModulesWithExamples:
+    """Of the modules, doctests are looked for in those that have an example: no other one is even imported for them."""
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_collect_file(self, file_path: Path) -> Generator[None, Any, Any]:
+        found = yield
+        if file_path.suffix == ".py" and b">>>" not in file_path.read_bytes():
+            found = [node for node in found if not isinstance(node, DoctestModule)]
+        return found
+
+
 def pytest_configure(config: pytest.Config) -> None:
     gc.disable()  # until all is collected: nearly all that is made until then stays
+    # a conftest's own hooks see what lies below its folder, and most examples are in the package
+    config.pluginmanager.register(ModulesWithExamples(), "modules-with-examples")
     # the first process of a run; those that it starts find the folder in their environment
     if FOLDER not in os.environ and os.name == "posix":
         folder = tempfile.mkdtemp(prefix="ptmcad-maps-")
         os.environ[FOLDER] = folder
         config.add_cleanup(lambda: shutil.rmtree(folder, ignore_errors=True))
         config.add_cleanup(lambda: os.environ.pop(FOLDER, None))
+    whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS
+    if whole and not hasattr(config, "workerinput") and config.getoption("numprocesses", None):
+        compile_beside(config)
+
+
+def compile_beside(config: pytest.Config) -> None:
+    """Compile the certified engine while tests are collected: processes that come to it wait, and compile nothing.
+
+    For runs of the whole suite by several processes, each of which would otherwise compile at about the same time.
+    """
+    compiling = subprocess.Popen(
+        [sys.executable, "-c", "from ptmcad.certified.loading import load; load()"],
+        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=ROOT,
+    )  # fmt: skip
+
+    def end() -> None:
+        compiling.kill()
+        compiling.wait()
+
+    config.add_cleanup(end)
+
+
+@pytest.hookimpl(tryfirst=True)  # before those are left out that are not asked for
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Of a test with many cases, those that its marker names are the slow ones, or the only ones that are not."""
+    named: dict[str, set[str]] = {}
+    seen: dict[str, set[str]] = {}
+    for item in items:
+        for name in ("fast_cases", "slow_cases"):
+            marker = item.get_closest_marker(name)
+            if marker is not None and isinstance(item, pytest.Function):
+                function, case = item.nodeid.partition("[")[0], item.callspec.id
+                named[function] = set(marker.args)
+                seen.setdefault(function, set()).add(case)
+                if (case in marker.args) == (name == "slow_cases"):
+                    item.add_marker(pytest.mark.slow)
+    if not any("::" in argument for argument in config.args) and not config.getoption("lf", False):  # all are here
+        gone = {function: cases - seen[function] for function, cases in named.items() if cases - seen[function]}
+        if gone:
+            raise pytest.UsageError(f"a marker names cases that the test does not have: {gone}")
 
 
 def pytest_collection_finish() -> None:
@@ -57,6 +114,16 @@ def pytest_collection_finish() -> None:
     gc.enable()
 
 
+@pytest.fixture(scope="module", autouse=True)
+def compiled(request: pytest.FixtureRequest) -> None:
+    """Before tests that call compiled functions by themselves all are made ready, as the engine does it: in turn with
+    other processes, where a single function would be compiled beside them. To read them takes a fifth of a second."""
+    if request.path.parent.name == "certified":
+        from ptmcad.certified.loading import load
+
+        load()
+
+
 @pytest.fixture
 def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     """Curves of pictures to a fiftieth of the window, and branches at a third of the values: for tests of what else the
@@ -66,15 +133,6 @@ def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     fine = boundaries.chains
     monkeypatch.setattr(boundaries, "chains", lambda found, wanted: fine(found, max(wanted, Fraction(1, 50))))
     monkeypatch.setattr(branches, "SAMPLES", 8)
-
-
-@pytest.hookimpl(wrapper=True)
-def pytest_collect_file(file_path: Path) -> Generator[None, Any, Any]:
-    """Of the modules, doctests are looked for in those that have an example."""
-    found = yield
-    if file_path.suffix == ".py" and b">>>" not in file_path.read_bytes():
-        found = [node for node in found if not isinstance(node, DoctestModule)]
-    return found
 
 
 @pytest.fixture(scope="session", name="one")

@@ -44,6 +44,7 @@ HEAVY = (
 @pytest.mark.parametrize(
     ("left_out", "least"), [pytest.param((), (9, 7), marks=pytest.mark.slow, id="all"), (HEAVY, (6, 3))]
 )
+@pytest.mark.usefixtures("coarse")
 def test_commands_and_python_say_what_the_page_shows(
     left_out: tuple[str, ...], least: tuple[int, int],
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],

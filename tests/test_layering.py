@@ -13,9 +13,7 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 from typing import Any
 
-import grimp
 import pytest
-from importlinter.cli import lint_imports
 
 import ptmcad
 
@@ -26,6 +24,8 @@ FLINT_POLYNOMIALS = ("poly", "mpoly", "mpoly_ctx", "mpoly_vec", "series")
 
 
 def test_the_contracts_hold(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    from importlinter.cli import lint_imports
+
     monkeypatch.setattr(sys, "path", sys.path.copy())  # which it changes
     status = lint_imports(config_filename=str(ROOT / "pyproject.toml"), no_cache=True)
     assert status == 0, capsys.readouterr().out
@@ -33,6 +33,8 @@ def test_the_contracts_hold(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capt
 
 def test_no_circle_among_modules() -> None:
     """Not even one that an import inside of a function hides; a package's own `__init__` is a module like others."""
+    import grimp
+
     graph = grimp.build_graph("ptmcad", cache_dir=None, exclude_type_checking_imports=True)
     TopologicalSorter({m: graph.find_modules_directly_imported_by(m) for m in graph.modules}).prepare()
 

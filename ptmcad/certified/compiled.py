@@ -9,7 +9,10 @@ at those of the functions that it calls, so that after a correction of the arith
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -18,6 +21,9 @@ import numpy as np
 
 from ptmcad.errors import ConfigError
 from ptmcad.process.extras import NUMBA_MISSING
+
+if sys.platform != "win32":
+    import fcntl
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -54,6 +60,49 @@ def _folder() -> Path:
 
 
 _FOLDER = _folder()
+
+
+_PAUSE = 0.05
+_PATIENCE = 120.0
+"""Seconds for which a process waits until another one has compiled: more than all takes on a slow machine. It then
+compiles by itself, as the other may have been stopped without being ended."""
+
+
+@contextmanager
+def in_turn(part: str) -> Iterator[float]:
+    """While this lasts no other process compiles the part; yields the seconds of waiting for one that did.
+
+    Where files cannot be written or locked, each process compiles by itself, which is right as well, only slower.
+    """
+    if sys.platform == "win32":
+        yield 0.0
+        return
+    try:
+        _FOLDER.mkdir(parents=True, exist_ok=True)
+        descriptor = os.open(_FOLDER / f"{part}.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+    except OSError:  # numba has ways of its own where this folder may not be written
+        yield 0.0
+        return
+    try:
+        yield _waited(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _waited(descriptor: int) -> float:
+    """Lock the file, or give up; the seconds until then, 0 where nobody else had it."""
+    began, seconds = time.monotonic(), 0.0
+    while seconds < _PATIENCE:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            time.sleep(_PAUSE)
+            seconds = time.monotonic() - began
+        except OSError:  # a file system without locks
+            break
+        else:
+            break
+    return seconds
 
 
 ZERO, ONE = cast("int", np.int64(0)), cast("int", np.int64(1))

@@ -2,6 +2,7 @@
 
 Guarantee: after `load` nothing is compiled in this process any more, whatever the slice; so no compilation falls into
 the time that a limit allows. What slanted pieces alone need, half of all, is loaded where they may be wanted.
+Processes that begin together on a new machine compile once: one does, and the others wait for it.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from time import perf_counter
 import numpy as np
 from numba.core.event import Event, Listener, install_listener
 
-from ptmcad.certified.compiled import FUNCTIONS
+from ptmcad.certified.compiled import FUNCTIONS, in_turn
 from ptmcad.certified.distinct import distinct
 from ptmcad.certified.evaluation import program, run
 from ptmcad.certified.formula import Graph
@@ -54,17 +55,22 @@ def load(progress: Progress | None = None, options: Options | None = None) -> fl
 
     Returns
     -------
-    The seconds that compiling took now; 0 where all was read from disk, or had been loaded before.
+    The seconds that compiling took now, here or in a process that was waited for; 0 where all was read from disk, or
+    had been loaded before.
     """
     slanted = options is None or may_be_slanted(options)
     if slanted in _done or True in _done:
         return 0.0
     compiling = _Compiling(progress)
+    waited = 0.0
     with install_listener("numba:compile", compiling), _fewer_collections():
-        for _ in _functions(slanted):
-            pass
+        for name in ("upright", "slanted") if slanted else ("upright",):
+            with in_turn(name) as seconds:
+                waited += seconds
+                for _ in _functions(name == "slanted"):
+                    pass
     _done.append(slanted)
-    return compiling.seconds
+    return compiling.seconds + waited
 
 
 @contextmanager
@@ -105,12 +111,19 @@ class _Compiling(Listener):
 
 
 def _functions(slanted: bool) -> Iterator[None]:
-    """One by one all that Python calls, the fastest to compile first, so that there is soon something to report."""
+    """One by one all that Python calls, for slanted pieces or for all else.
+
+    The fastest to compile come first, so that there is soon something to report.
+    """
     weights = np.ones(2)
     square = np.array([[0.0, 0.0, 1.0, 1.0]])
+    line, point = _systems()
+    if slanted:
+        tubes(line.arguments(), equations_alone(line).arguments(), square, weights, (0, 0.0, 1.0), (2, 1e-3, 4))
+        yield
+        return
     distinct(square, square, 0)
     yield
-    line, point = _systems()
     low, high = np.empty((2, len(line.tape)))
     run(program(line.tape), square[0, :2], square[0, 2:], low, high, 0, len(line.tape))
     yield
@@ -124,9 +137,6 @@ def _functions(slanted: bool) -> Iterator[None]:
     yield
     isolate(point.arguments(), point.arguments(), square, (1e-3, 64, 4), weights)
     yield
-    if slanted:
-        tubes(line.arguments(), equations_alone(line).arguments(), square, weights, (0, 0.0, 1.0), (2, 1e-3, 4))
-        yield
 
 
 def _systems() -> tuple[System, System]:

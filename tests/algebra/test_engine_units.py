@@ -311,6 +311,7 @@ def test_determinants_of_many_rows_in_one_axis(axis: fmpz_mpoly, rank: int) -> N
 
 
 @pytest.mark.parametrize("name", ["forces", "mechanisms/two-bar-chain", "systems/orthogonal-3r"])
+@pytest.mark.fast_cases("systems/orthogonal-3r")
 def test_poles_by_characteristic_polynomials_are_those_by_power_traces(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -331,6 +332,7 @@ def test_poles_by_characteristic_polynomials_are_those_by_power_traces(
 
 
 @pytest.mark.parametrize("name", ["fig2", "fig3", "fig4", "fig5-text"])
+@pytest.mark.slow_cases("fig5-text")
 def test_hermite_determinant_has_every_critical_component(name: str) -> None:
     """REFERENCE: the numerator of the Hermite determinant has the curves as factors, with these multiplicities."""
     parameters, _ = slice_system(name)

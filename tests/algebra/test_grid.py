@@ -10,7 +10,6 @@ import pytest
 from flint import fmpz_mpoly
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.optimize import linear_sum_assignment
 from support.examples import examples
 
 from ptmcad.algebra import determinants, grid, pencils
@@ -78,6 +77,8 @@ def test_assignments_are_the_least(costs: list[list[int | None]]) -> None:
 
 
 def test_assignments_of_many_rows_are_those_of_scipy() -> None:
+    from scipy.optimize import linear_sum_assignment
+
     source = random.Random(7)
     for size in range(2, 40):
         costs = [[source.randint(-9, 40) for _ in range(size)] for _ in range(size)]

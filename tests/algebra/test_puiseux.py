@@ -72,6 +72,7 @@ def riemann(in_v: Sequence[fmpz_poly], low: fmpq, high: fmpq, number: int) -> tu
         (SIMPLE, 0, True),
     ],
 )
+@pytest.mark.fast_cases("rows10-0-True-irrational", "rows10-0-True-rational")
 def test_integrals_beside_a_singular_point(
     rows: Sequence[dict[int, int]], number: int, right: bool, t: fmpz_poly
 ) -> None:

@@ -35,6 +35,7 @@ SCHEMA = json.loads(
 
 @pytest.mark.parametrize("count", Count)
 @pytest.mark.parametrize("status", [Status.CERTIFIED, Status.PARTIAL])
+@pytest.mark.fast_cases("Status.PARTIAL-Count.TOTAL", "Status.PARTIAL-Count.INDEX")
 def test_a_certified_map_comes_back_from_its_document(count: Count, status: Status) -> None:
     result = certified_map(count, status)
     text = result.to_json()

@@ -31,6 +31,7 @@ def distance_along_fibre(points: np.ndarray, at: float, height: float) -> float:
     ("name", "tolerance"),
     [("fig2", "1/50"), ("fig3", "1/2000"), ("forces", "1/2000"), pytest.param("fig4", "1/50", marks=pytest.mark.slow)],
 )
+@pytest.mark.fast_cases("fig2-1/50", "forces-1/2000")
 def test_every_point_of_a_curve_is_as_near_as_is_said(name: str, tolerance: str) -> None:
     """Roots from SymPy at random abscissae: each is near one polyline of its component, and each polyline near one."""
     result, source = shipped(name), random.Random(name)
@@ -84,6 +85,7 @@ def test_polylines_have_all_chords_of_which_the_distance_is_proved(name: str, to
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n == "fig4" else n for n in SLICES])
+@pytest.mark.slow_cases("fig3")
 def test_regions_at_the_left_and_right_hand(name: str) -> None:
     """Over the middle of chords, twice the distance above and below, where no other curve is near."""
     result = shipped(name)

@@ -77,6 +77,7 @@ def _is_on(found: FamilyMap, point: tuple[Fraction, Fraction, Fraction], share: 
 
 
 @pytest.mark.parametrize("name", few(SHIPPED, "bowl", "cone", "swallowtail"))
+@pytest.mark.slow_cases("bowl")
 def test_every_vertex_lies_on_the_variety_at_its_members_height(name: str) -> None:
     found, mesh = maps(name), surface(name)
     heights = [float(value) for value in mesh.members]

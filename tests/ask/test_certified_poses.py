@@ -41,6 +41,7 @@ def solved(number: int) -> Poses:
 
 
 @pytest.mark.parametrize("number", range(len(POINTS)))
+@pytest.mark.fast_cases("1", "2")
 def test_poses_agree_with_the_energy_written_out_again(number: int) -> None:
     poses = solved(number)
     assert poses.status is Status.CERTIFIED
@@ -63,6 +64,7 @@ def test_poses_agree_with_the_energy_written_out_again(number: int) -> None:
 
 
 @pytest.mark.parametrize("number", range(len(POINTS)))
+@pytest.mark.fast_cases("1", "3")
 def test_document_and_table(number: int) -> None:
     poses = solved(number)
     text = poses.to_json()

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 
 import ptmcad
 from ptmcad.answer.arrangement import correspondence
@@ -129,6 +130,7 @@ def _within(known: Change, enclosure: Change) -> bool:
 
 
 @pytest.mark.parametrize("question", [of("u^2 - c + a^2 + b^2", -1, 3), of("u^3 - a*u + b + c*u^2", -4, 4), ASTROID])
+@pytest.mark.fast_cases("question0")
 def test_bisection_encloses_what_elimination_finds(question: dict[str, Any]) -> None:
     exact, enclosed = ptmcad.changes(question), sampled(question)
     agree(exact, enclosed)
@@ -141,7 +143,7 @@ def test_bisection_encloses_what_elimination_finds(question: dict[str, Any]) -> 
 small = st.integers(-3, 3)
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 @given(st.tuples(*[small] * 6), st.tuples(small, small, small))
 def test_random_quadrics(quadric: tuple[int, ...], plane: tuple[int, ...]) -> None:
     terms = ("a^2", "a*b", "b^2", "a", "b", "1")

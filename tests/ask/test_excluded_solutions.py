@@ -134,6 +134,7 @@ MANY_SIDES = [
 
 
 @pytest.mark.parametrize(("system", "solutions"), MANY_SIDES)
+@pytest.mark.slow_cases("system1-16")
 def test_check_answers_at_once_whatever_the_inequalities(system: dict[str, Any], solutions: int) -> None:
     """A basis with the inverse of the inequalities' product takes minutes of each."""
     assert check(slice_from({"system": system, "axes": {"a": [1, 3], "b": [1, 3]}})).complex_solutions == solutions
@@ -157,6 +158,7 @@ def test_what_counts_is_taken_with_its_multiplicity() -> None:
     assert solutions_at(problem.system, values, saturated=True) == (3, 4)
 
 
+@pytest.mark.slow
 def test_check_does_not_count_where_a_basis_gets_large() -> None:
     """Four angles with dense equations: no basis is computed to its end, though the degrees are small."""
     terms = [f"{f}({x})" for x in "wxyz" for f in ("cos", "sin")]

@@ -29,6 +29,7 @@ SHIPPED = [path.stem for path in EXACT]
 
 
 @pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.slow_cases("stiffness", "unequal-springs")
 def test_points_next_to_walls(name: str) -> None:
     """10^-40 below and above each wall of each stack: the cells below and above it."""
     result = shipped(name)
@@ -71,6 +72,7 @@ def test_outside_and_on_the_edge(rho: str, length: str) -> None:
 
 
 @pytest.mark.parametrize("name", few(SHIPPED, "fig2", "fig3", "forces", "rods"))
+@pytest.mark.slow_cases("fig3", "rods")
 def test_on_rational_critical_abscissae(name: str) -> None:
     """Critical abscissae and their neighbourhood off the variety get the oracle's counts."""
     result = shipped(name)
@@ -125,6 +127,7 @@ def test_values_are_exact_numbers() -> None:
 
 
 @pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.fast_cases("fig2", "fig3", "forces")
 def test_json_round_trip(name: str) -> None:
     result = shipped(name)
     for text in (result.to_json(), result.to_json(timings=False)):

@@ -103,6 +103,7 @@ def test_records_load_and_validate(path: Path) -> None:
 @pytest.mark.parametrize(
     "path", few(RECORDS, *(p for p in RECORDS if p.stem not in LINES_ONLY)), ids=lambda path: path.stem
 )
+@pytest.mark.slow_cases("four-bar", "platform-loop", "slider-crank", "two-dof-tensegrity", "kuramoto-4")
 def test_numbers_of_solutions(path: Path) -> None:
     """At the points of the record, by both methods; and complex ones."""
     slice, known = load(path), reference(path)
@@ -158,6 +159,7 @@ STATED = [path for path in MAPPED if {"polynomials", "terms"} & reference(path).
 @pytest.mark.parametrize(
     "path", few(STATED, *(path for path in STATED if path.stem != "kuramoto-4")), ids=lambda path: path.stem
 )
+@pytest.mark.slow_cases("four-bar", "two-dof-tensegrity", "stability-pair")
 def test_polynomials(path: Path) -> None:
     known = reference(path)
     problem = problem_of(load(path))

@@ -394,6 +394,12 @@ EXTREME = [
 
 
 @pytest.mark.parametrize("given_values", EXTREME, ids=str)
+@pytest.mark.slow_cases(
+    "{'rho': '1e-12', 'F3': '1e30', 'k': '1e12'}",
+    "{'rho': '1', 'L2': '1+1e-20', 'F3': '-1e-25'}",
+    "{'rho': '1e12', 'F3': -10, 'F4': -10}",
+    "{'F3': '1e30', 'F4': '-1e30+1', 'F3x': '1e-30'}",
+)
 def test_extreme_values_agree_with_the_oracle_and_newton(given_values: dict[str, object]) -> None:
     """Counts by Sturm sequences; digits by Newton's method from the poses themselves, which moves what is no zero."""
     parameters = point_from_mapping(given_values)

@@ -82,6 +82,7 @@ def formulas(graph: Graph) -> dict[str, list[Formula]]:
 
 
 @pytest.mark.parametrize("what", formulas(Graph()))
+@pytest.mark.fast_cases("squares", "sines")
 def test_values_lie_within_the_error_of_their_form(what: str) -> None:
     """For wide boxes and such as are hardly wider than the rounding; of z only an interval is known."""
     rng, tape = random.Random(what), record([formulas(Graph())[what]])
@@ -150,6 +151,7 @@ def plane_system(rng: random.Random, kind: str) -> tuple[System, Floats]:
 
 
 @pytest.mark.parametrize("kind", ["equations", "conditional", "nonnegative", "solved"])
+@pytest.mark.fast_cases("nonnegative", "equations")
 def test_rows_keep_every_solution(kind: str) -> None:
     """Of random systems, in boxes in which the solution is anywhere, on the edge too."""
     rng, kept, narrowed = random.Random(kind), 0, 0

@@ -230,6 +230,7 @@ def test_sine_and_cosine_against_arb_at_a_million_intervals(seed: int) -> None:
     [(nan, nan), (nan, 1.0), (0.0, nan), (-inf, inf), (0.0, inf), (-inf, 0.0), (1e300, 1e301), (60.0, 60.5), (-61, -60),
      (0.0, 6.284), (-LARGEST, LARGEST)],
 )  # fmt: skip
+@pytest.mark.slow_cases("-61--60")
 def test_nothing_is_claimed_of_angles_that_are_unknown_or_large(a: float, b: float) -> None:
     assert arithmetic.sine(a, b, 0) == arithmetic.sine(a, b, 1) == (-1, 1)
 

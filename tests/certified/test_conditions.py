@@ -84,6 +84,7 @@ def counts_of(name: str) -> tuple[str, ...]:
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.fast_cases("schloegl", "competition")
 def test_counts_at_random_points_are_those_of_the_exact_engine(name: str) -> None:
     rng, seen = random.Random(name), set[object]()
     for count in counts_of(name):
@@ -106,6 +107,7 @@ def test_counts_at_random_points_are_those_of_the_exact_engine(name: str) -> Non
     for j, count in enumerate(("total", "stable"))
     for k, name in enumerate(("schloegl", "selkov", "toggle", "double well"))
 ])  # fmt: skip
+@pytest.mark.slow_cases("selkov-total", "toggle-stable")
 def test_maps_agree_with_the_exact_engine(name: str, count: str) -> None:
     slice = slice_of(name, count=count)
     exact, certified = ptmcad.classify(slice), ptmcad.classify(slice, engine="certified", tolerance="1/40", jobs=1)
@@ -132,6 +134,7 @@ def test_a_sample_at_which_stability_changes_says_nothing_of_it() -> None:
 
 
 @pytest.mark.parametrize("name", ["schloegl", "toggle"])
+@pytest.mark.slow_cases("toggle")
 def test_where_all_are_counted_the_samples_say_which_are_stable(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -277,6 +280,7 @@ ONE_ANOTHER: list[tuple[list[str], dict[str, Any], tuple[float, ...]]] = [
 
 
 @pytest.mark.parametrize(("equations", "axes", "reach"), ONE_ANOTHER)
+@pytest.mark.fast_cases("equations0-axes0-reach0", "equations1-axes1-reach1")
 def test_unknowns_that_bound_one_another(equations: list[str], axes: dict[str, Any], reach: tuple[float, ...]) -> None:
     slice = small({"unknowns": PAIR, "equations": equations}, axes)
     found = ranges(problem_of(slice), slice.axes)
@@ -285,6 +289,7 @@ def test_unknowns_that_bound_one_another(equations: list[str], axes: dict[str, A
 
 
 @pytest.mark.parametrize("case", few(range(len(ONE_ANOTHER)), 0, 1))
+@pytest.mark.slow_cases("0")
 def test_maps_of_unknowns_that_bound_one_another(case: int) -> None:
     equations, axes, _ = ONE_ANOTHER[case]
     slice = small({"unknowns": PAIR, "equations": equations}, axes)
@@ -331,6 +336,7 @@ def test_a_solution_that_leaves_to_infinity_somewhere_in_the_closed_window(coeff
 
 
 @pytest.mark.parametrize("name", [n for n in SYSTEMS if n != "torus"])
+@pytest.mark.slow_cases("brusselator", "selkov", "toggle")
 def test_no_solution_that_counts_is_outside_of_the_ranges(name: str) -> None:
     """Solutions of the exact engine, at corners of the window and at random points."""
     slice = slice_of(name)

@@ -74,6 +74,7 @@ def random_boxes(rng: random.Random, number: int) -> Iterator[tuple[list[float],
 
 
 @pytest.mark.parametrize("name", SLICES)
+@pytest.mark.slow_cases("all different")
 def test_a_tape_encloses_all_its_nodes(name: str) -> None:
     """Every node, at corners and at random points of each box, in Arb with 200 bits."""
     rng = random.Random(3)

@@ -211,6 +211,7 @@ def is_kept(found: tuple[Curve, ...], point: Floats) -> bool:
 
 
 @pytest.mark.parametrize("kind", ["flat", "near flat"])
+@pytest.mark.slow_cases("flat")
 def test_the_search_keeps_known_folds(kind: str) -> None:
     slice = slice_of()
     found = curves(slice, Count.STABLE)
@@ -229,6 +230,7 @@ def test_on_a_slice_with_a_load_folds_would_be_lost(monkeypatch: pytest.MonkeyPa
     assert not all(is_kept(curves(slice, Count.STABLE), point) for point in points)
 
 
+@pytest.mark.slow
 def test_maps_with_and_without_the_mirror_do_not_contradict() -> None:
     slice = slice_from_mapping(
         {

@@ -76,6 +76,7 @@ def test_without_free_lengths_counts_are_those_of_the_exact_engine(at: tuple[str
 
 
 @pytest.mark.parametrize(("at", "number"), list(zip(POINTS, (4, 4, 7, 7), strict=True)))
+@pytest.mark.fast_cases("at2-7")
 def test_poses_balance_the_moments_and_none_is_missing(at: tuple[str, str], number: int) -> None:
     """Newton's method from a grid of starts finds the same ones."""
     a, force = map(Fraction, at)

@@ -78,6 +78,7 @@ def agree_with_exact(name: str, free: str | None, tolerance: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["fig4", "fig5-text"])
+@pytest.mark.slow_cases("fig5-text")
 def test_without_free_lengths_the_engines_agree(name: str) -> None:
     agree_with_exact(name, None, "1/100")
 

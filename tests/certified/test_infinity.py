@@ -110,6 +110,7 @@ CONDITIONED = (10, 14, 20, 36, 44, 62)
 
 
 @pytest.mark.parametrize("seed", few([*INFINITE, *CONDITIONED], 3, 22, 33, 46, *CONDITIONED))
+@pytest.mark.fast_cases("46", "20")
 def test_maps_of_random_systems_agree_with_the_exact_engine(seed: int) -> None:
     record = random_system(seed)
     slice = slice_from_mapping({"name": "small", **record})

@@ -89,6 +89,7 @@ def test_a_pole_on_the_window_s_edge(changes: dict[str, Any], at_least: int) -> 
 
 
 @pytest.mark.parametrize("free", ["(L2 - 1)^2/5", "(L2 - 1)^2*(rho - 9/10)^2", "(L2 - 1)^18"])
+@pytest.mark.fast_cases("(L2 - 1)^2/5")
 def test_a_spring_s_pull_that_vanishes_on_a_line(free: str) -> None:
     """There spring 3 has no free length, but it is present elsewhere, and so are its curves and its cone."""
     s = slice_of({"rho": ["4/5", 1], "L2": ["4/5", "6/5"]}, l0_3=free)

@@ -116,6 +116,7 @@ def test_the_finest_pieces_of_a_smooth_curve_are_as_thin_as_it_is_bent() -> None
 
 
 @pytest.mark.parametrize("area", few([1e-2, 1e-4, 1e-6, 2e-7], 1e-2, 1e-4, 1e-6))
+@pytest.mark.slow_cases("1e-06")
 def test_covers_of_strips_are_as_thin_as_was_asked(area: float) -> None:
     """The diagonal of the unit square, in 2^15 strips without thickness; 1/(2n) is the least area of n rectangles."""
     ends = np.linspace(0, 1, 2**15 + 1)

@@ -344,6 +344,10 @@ LINE = "system:\n  unknowns: {x: real}\n  equations: [%s]\n  stable: [%s]\naxes:
         ),
     ],
 )
+@pytest.mark.slow_cases(
+    "system:\\n  unknowns: {x: real}\\n  equations: [(x - a)^2]\\n  stable: [x]\\naxes: {a: [-2, 2]"
+    ", b: [-2, 2]}\\n-1: system: the slice lies inside the discriminant variety"
+)
 def test_what_an_engine_refuses_has_its_place_in_every_command(
     text: str, start: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -69,6 +69,7 @@ def test_pictures_are_written_beside_the_json(tmp_path: Path) -> None:
     [("rho=0", 3), ("L2=4/3,rho=2/5,F3=-320/3,F4=-60", 0)],
     ids=["infinitely-many", "degenerate"],
 )
+@pytest.mark.slow_cases("degenerate")
 def test_special_points_are_answers(at: str, status: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The exit status tells where there are no poses."""
     assert run(["solve", "--at", at, "--landscape", "--out", str(tmp_path)]) == status

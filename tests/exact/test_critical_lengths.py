@@ -30,6 +30,7 @@ def potential(rho: float, l1: float, l2: float, l0: float, f3: float, f4: float,
 
 
 @pytest.mark.parametrize("seed", [0, 1, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 3))])
+@pytest.mark.slow_cases("1")
 def test_equations_are_derivatives_of_the_potential(seed: int) -> None:
     """Difference quotients of U/k from the nodes' coordinates; each polynomial up to one positive factor."""
     random = Random(seed)

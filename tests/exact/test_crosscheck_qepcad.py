@@ -43,6 +43,7 @@ def cad(name: str) -> Decomposition:
 
 
 @pytest.mark.parametrize("name", slow_unless(SHIPPED, ("fig2", "fig3", "rods")))
+@pytest.mark.slow_cases("rods")
 def test_open_cad_is_that_of_qepcad(name: str) -> None:
     """Critical values, walls of every stack with their components, and the number of open cells.
 
@@ -164,6 +165,7 @@ def with_other_coefficient(result: RegionMap) -> RegionMap:
 
 @pytest.mark.parametrize("mutation", [without_component, with_other_coefficient])
 @pytest.mark.parametrize("name", ["fig2", "fig3"])
+@pytest.mark.slow_cases("fig3-without_component", "fig3-with_other_coefficient")
 def test_a_decomposition_of_other_curves_is_noticed(name: str, mutation: Callable[[RegionMap], RegionMap]) -> None:
     false = mutation(shipped(name))
     with pytest.raises(AssertionError):
@@ -179,6 +181,7 @@ def points(name: str) -> list[tuple[Fraction, Fraction]]:
 
 @needs_singular
 @pytest.mark.parametrize("name", few(SHIPPED, "fig2", "fig4", "forces", "rods"))
+@pytest.mark.slow_cases("fig4", "rods")
 def test_index_at_every_sample_by_singular_and_qepcad(name: str) -> None:
     """Exactly so many minima, saddles and maxima as stored; no cell is left out."""
     assert axes(name) == shipped(name).slice.axis_names
@@ -222,6 +225,7 @@ def sextic_counts(name: str, counts: list[tuple[int, int]]) -> list[bool]:
 
 
 @pytest.mark.parametrize("name", few(WITH_SEXTIC, "fig3", "fig4", "forces", "rods"))
+@pytest.mark.slow_cases("fig3", "fig4")
 def test_counts_at_every_sample_by_the_sextic(name: str) -> None:
     assert all(sextic_counts(name, [(cell.total or 0, cell.stable or 0) for cell in shipped(name).cells]))
 
@@ -290,6 +294,7 @@ def quick_tasks() -> list[object]:
 
 
 @pytest.mark.parametrize(("name", "task"), quick_tasks())
+@pytest.mark.slow_cases("rods-6 equilibria")
 def test_counting_formula_over_the_window(name: str, task: Task) -> None:
     check_over_the_window(shipped(name), task, counted_cells(name, task), other=swapped(name, task))
 

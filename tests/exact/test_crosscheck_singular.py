@@ -45,6 +45,7 @@ def differences_of_critical(name: str, components: tuple[Component, ...]) -> set
 
 
 @pytest.mark.parametrize("name", ALL)
+@pytest.mark.fast_cases("fig2", "fig3", "rods")
 def test_critical_components_are_the_curves_of_the_elimination_ideal(name: str, shipped) -> None:  # type: ignore[no-untyped-def]
     assert not differences_of_critical(name, shipped(name).components)
 

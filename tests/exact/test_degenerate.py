@@ -73,6 +73,7 @@ X = {"x": "real"}
          "only 4 of 8 solutions are different"),
     ],
 )  # fmt: skip
+@pytest.mark.slow_cases("system0-only 2 of 4 solutions are different", "system3-only 4 of 8 solutions are different")
 def test_a_slice_inside_the_variety_is_shown_at_a_point_where_nothing_else_degenerates(
     system: dict[str, Any], words: str
 ) -> None:

@@ -158,6 +158,7 @@ def fixed(values: dict[str, Fraction], *axes: str) -> dict[str, str]:
 
 @pytest.mark.parametrize("axes", [("rho", "L2"), exchanged("L2", "rho"), ("F3", "F4")], ids=",".join)
 @pytest.mark.parametrize("cusp", [pytest.param(c, marks=[pytest.mark.slow] * (c != SYMMETRIC)) for c in CUSPS])
+@pytest.mark.slow_cases("fig. 4 with F = -60-F3,F4")
 def test_a_cusp_of_the_fold_curve(cusp: str, axes: tuple[str, str]) -> None:
     """Two more equilibria, one of them a saddle, in a tongue that ends in the cusp."""
     values = CUSPS[cusp]

@@ -176,6 +176,11 @@ def test_areas_and_points_by_the_exact_engine(known: Known) -> None:
 
 
 @pytest.mark.parametrize("known", named(KNOWN))
+@pytest.mark.fast_cases(
+    "covalent modification [A. Goldbeter and D. Koshland, PNAS 78 (1981); one state between 0 a"
+    "nd 1, however steep the switch]",
+    "two oscillators [Y. Kuramoto (1975); locked where |w| < K]",
+)
 def test_areas_and_points_by_the_certified_engine(known: Known) -> None:
     pytest.importorskip("numba")
     result = ptmcad.classify(known.slice, engine="certified", tolerance=known.certified, jobs=1)
@@ -211,6 +216,7 @@ SHIPPED = Path(__file__).resolve().parents[2] / "configs" / "systems"
         pytest.param("orthogonal-3r", marks=pytest.mark.slow),
     ],
 )
+@pytest.mark.fast_cases("escape", "schloegl")
 def test_published_areas_of_shipped_systems_by_the_certified_engine(name: str) -> None:
     pytest.importorskip("numba")
     slice = ptmcad.load(SHIPPED / f"{name}.yaml")

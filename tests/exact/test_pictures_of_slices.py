@@ -18,6 +18,7 @@ SLICES = ("fig2", "fig4", "fig5-caption", "rods", "systems/kuramoto", "systems/c
 
 
 @pytest.mark.parametrize("name", SLICES)
+@pytest.mark.fast_cases("fig2", "rods")
 def test_regions_and_neighbours_are_those_of_the_map(name: str) -> None:
     slice = ptmcad.load(f"configs/{name}.yaml")
     result = ptmcad.classify(slice, areas=False)
@@ -30,6 +31,7 @@ def test_regions_and_neighbours_are_those_of_the_map(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", SLICES)
+@pytest.mark.fast_cases("fig2", "rods")
 def test_it_does_not_depend_on_the_base(name: str) -> None:
     slice = ptmcad.load(f"configs/{name}.yaml")
     first, second = (picture_of(slice, base=base) for base in (0, 1))
@@ -38,6 +40,7 @@ def test_it_does_not_depend_on_the_base(name: str) -> None:
 
 @pytest.mark.parametrize("name", SLICES)
 @pytest.mark.parametrize("base", [0, 1])
+@pytest.mark.fast_cases("0-fig2", "1-fig2")
 def test_sides_and_points_are_where_the_map_has_them(name: str, base: int) -> None:
     slice = ptmcad.load(f"configs/{name}.yaml")
     picture, result = picture_of(slice, base=base), ptmcad.classify(slice, areas=False)

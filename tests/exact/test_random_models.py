@@ -65,11 +65,13 @@ def tally(found: list[Found], counts: Counts) -> Counts:
 
 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow), 2, 3, 4, 5])
+@pytest.mark.fast_cases("2", "4")
 def test_random_systems_by_two_methods(seed: int) -> None:
     agree(random_system(seed), 2, seed, by_signature=True)
 
 
 @pytest.mark.parametrize("seed", [0, 1, pytest.param(2, marks=pytest.mark.slow)])
+@pytest.mark.slow_cases("1")
 def test_random_mechanisms_by_two_methods(seed: int) -> None:
     assert agree(random_mechanism(seed), 1, seed, by_signature=seed < 2)
 

@@ -101,6 +101,7 @@ FAST = ("fig2", "fig3", "fig4", "rods")
     [c if c[0] in FAST else pytest.param(*c, marks=pytest.mark.slow) for c in CUTS],
     ids=lambda v: v,
 )
+@pytest.mark.slow_cases("fig3-rho--19/2", "fig4-rho-3/2", "rods-L1-3/2")
 def test_the_ends_are_the_walls_of_the_map(name: str, along: str, value: str) -> None:
     """The same algebraic numbers: factors of the walls' polynomials on the line, and each wall that changes a count.
 
@@ -153,6 +154,7 @@ def real_parts(p: fmpz_poly) -> list[tuple[Fraction, int]]:
 
 
 @pytest.mark.parametrize("number", [3, 27, 58, 83, 118])
+@pytest.mark.fast_cases("83", "118")
 def test_random_slices_against_a_count_that_shares_no_code(number: int) -> None:
     draw = drawn(number)
     slice = ptmcad.slice_from_mapping(draw.record)

@@ -67,6 +67,14 @@ def record(name: str) -> Slice:
 
 @pytest.mark.parametrize("without", [*NAMES, ALL])
 @pytest.mark.parametrize("name", ["fig2", "fig3"])
+@pytest.mark.fast_cases(
+    "fig2-hermite-matrix",
+    "fig2-infinity",
+    "fig2-no-real-points",
+    "fig2-axis-order",
+    "fig2-even-powers",
+    "fig2-equal-counts",
+)
 def test_without_a_saving_the_map_says_the_same(name: str, without: str, shipped: Shipped) -> None:
     result = ptmcad.classify(record(name), without=[without])
     assert difference(shipped(name), result) == ""

@@ -27,6 +27,7 @@ CONFIGS = Path(__file__).resolve().parents[2] / "configs"
         ("mechanisms/four-bar", 12, Sizes((18, 18), 18, (1, 1))),
     ],
 )
+@pytest.mark.fast_cases("forces-6-known1", "systems/kuramoto-6-known2")
 def test_degrees_are_those_of_the_computed_curves(name: str, solutions: int, known: Sizes) -> None:
     """REFERENCE has these degrees, and `test_sizes_of_critical_curves` computes some of them."""
     assert sizes(problem_of(load(CONFIGS / f"{name}.yaml")), solutions, 60.0) == known

@@ -33,6 +33,7 @@ def _same_but_solutions(few: RegionMap, all_of_them: RegionMap) -> None:
 
 
 @pytest.mark.parametrize("name", CHECKED)
+@pytest.mark.fast_cases("fig2", "fig3")
 def test_sparing_counts_are_those_of_each_cell(name: str) -> None:
     few = region_map(load(CONFIGS / f"{name}.yaml"), SPARING)
     _same_but_solutions(few, shipped(name))

@@ -185,12 +185,24 @@ KNOWN: dict[str, tuple[list[fmpz_mpoly], Window, int]] = {
 
 @pytest.mark.parametrize("base", [0, 1])
 @pytest.mark.parametrize("name", KNOWN)
+@pytest.mark.slow_cases("rose and astroid-0", "rose and astroid-1", "nearly tangent circles-1")
 def test_number_of_pieces(name: str, base: int) -> None:
     polynomials, window, expected = KNOWN[name]
     assert decompose(polynomials, window, base).number == expected
 
 
 @pytest.mark.parametrize("name", KNOWN)
+@pytest.mark.slow_cases(
+    "circles tangent from outside",
+    "circles tangent from inside",
+    "circles tangent at an irrational point",
+    "circles that cross",
+    "rose with four petals",
+    "rose and astroid",
+    "vertical tangents of a circle",
+    "window of width 1e-30 around a node",
+    "nearly tangent circles",
+)
 def test_exchanging_the_coordinates(name: str) -> None:
     polynomials, (a, b, c, d), _ = KNOWN[name]
     one = decompose(polynomials, (a, b, c, d), 1)
@@ -378,6 +390,7 @@ def test_a_series_beside_a_cusp_is_tried_at_twice_the_precision(failures: int, m
         "hyperbola",
     ],
 )
+@pytest.mark.slow_cases("rose", "sheared rose", "sheared node")
 def test_mirror_images_of_walls_are_walls(
     p: fmpz_mpoly, window: Window, least: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -417,6 +430,7 @@ SYMMETRIC = {
     pytest.param(name, base, marks=pytest.mark.slow if base and name in SYMMETRIC else ())
     for name in AREAS for base in (0, 1)
 ])  # fmt: skip
+@pytest.mark.slow_cases("loop of a node-1", "petal of a rose-0", "lens-0")
 def test_area(name: str, base: int) -> None:
     for tolerance in ("1e-2", "1e-5"):
         check_area(name, base, Fraction(tolerance))

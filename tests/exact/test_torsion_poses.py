@@ -109,6 +109,7 @@ def recomputed(poses: Poses, pose: Pose, bits: int = 400) -> list[tuple[arb, arb
 
 @pytest.mark.parametrize("digits", [6, 40])
 @pytest.mark.parametrize("l0", ["0", "1/3"], ids=["exact", "certified"])
+@pytest.mark.slow_cases("certified-6", "certified-40")
 def test_every_digit_is_that_of_the_angles(l0: str, digits: int) -> None:
     poses = solve(model=described(CHAIN), l0=l0, W="1/7", digits=digits)
     assert poses.status is (Status.EXACT if l0 == "0" else Status.CERTIFIED)

@@ -133,6 +133,7 @@ def tasks(name: str, folder: Path = Path()) -> Tasks:
         ("fig4", {"F3": "-3"}),
     ],
 )
+@pytest.mark.slow_cases("families/equal-loads-values1")
 def test_maps_are_those_of_classify(name: str, values: dict[str, str]) -> None:
     task = tasks(name)
     alone = ptmcad.classify(task.panel.slice(task.panel.values(values)), areas=False)
@@ -145,6 +146,7 @@ def test_maps_are_those_of_classify(name: str, values: dict[str, str]) -> None:
 
 
 @pytest.mark.parametrize("values", [{"F": "-16.5"}, {"F": "-1/3", "k": "80"}])
+@pytest.mark.slow_cases("values1")
 def test_the_record_and_the_commands_make_the_figure(
     values: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -47,7 +47,7 @@ def test_more_cases(kind: str, tmp_path: Path) -> None:
 
 
 @given(st.binary(max_size=300) | st.text(max_size=300).map(lambda text: text.encode("utf-8", "surrogatepass")))
-@settings(max_examples=examples(200))
+@settings(max_examples=examples(100))
 def test_any_bytes_are_a_record_or_a_refusal(data: bytes) -> None:
     """Hypothesis shrinks what it finds."""
     assert targets.run("record", data) in ("accepted", "refused")

@@ -829,6 +829,7 @@ def classified(folder: Path, *options: str, formats: str = "json", **popen: Any)
 
 @linux
 @pytest.mark.parametrize("left", [0, 4096], ids=["from the start", "while writing"])
+@pytest.mark.slow_cases("while writing")
 def test_a_full_disk(full_disk: Path, left: int) -> None:
     fill(full_disk, left)
     status, errors = classified(full_disk)

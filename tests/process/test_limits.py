@@ -43,6 +43,7 @@ def limited(which: int, soft: int, hard: int | None = None) -> Callable[[], None
 
 
 @pytest.mark.parametrize(("which", "option"), [(resource.RLIMIT_AS, "-v"), (resource.RLIMIT_DATA, "-d")])
+@pytest.mark.slow_cases("2--d")
 def test_the_limit_that_was_reached_is_named(tmp_path: Path, which: int, option: str) -> None:
     """The caller's own, though the program has one too."""
     work = "def engine(progress, partial):\n    time.sleep(0.4)\n    bytes(1 << 30)\n"
@@ -62,6 +63,9 @@ def test_the_limit_that_was_reached_is_named(tmp_path: Path, which: int, option:
         ("os.kill(os.getpid(), signal.SIGSEGV)", "SIGSEGV"),
         ("raise SystemError('error return without exception set')", "SystemError: error return without exception set"),
     ],
+)
+@pytest.mark.slow_cases(
+    "raise SystemError('error return without exception set')-SystemError: error return without exception set"
 )
 def test_a_crash_with_little_memory_left(tmp_path: Path, end: str, how: str) -> None:
     """No library said that it was for lack of memory, so the message says how it ended, and the result is kept."""

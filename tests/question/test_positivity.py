@@ -125,6 +125,21 @@ def test_poles(text: str, found: bool) -> None:
 
 @pytest.mark.parametrize("need", Need)
 @pytest.mark.parametrize("kind", DIPS)
+@pytest.mark.slow_cases(
+    "middle-Need.POSITIVE",
+    "middle-Need.NO_POLE",
+    "diagonal-Need.POSITIVE",
+    "diagonal-Need.NO_POLE",
+    "edge-Need.POSITIVE",
+    "edge-Need.NO_POLE",
+    "upper edge-Need.POSITIVE",
+    "degree 20-Need.POSITIVE",
+    "degree 20-Need.NO_POLE",
+    "degree 8 in both-Need.POSITIVE",
+    "degree 8 in both-Need.NO_POLE",
+    "irrational-Need.POSITIVE",
+    "irrational-Need.NO_POLE",
+)
 def test_a_thin_dip_is_found_and_a_near_miss_is_proved(kind: str, need: Need) -> None:
     """Each hypothesis broken narrowly: looking at some points, or at no degree over 12, took these for positive."""
     dip, fine = thin_dip(kind)
@@ -162,6 +177,7 @@ def test_what_is_too_much_work_is_undecided_and_never_proved(monkeypatch: pytest
         pytest.param("(rho^2 - 2)^2*(F^2 + 1) + (F^2 - 1/3)^2*(rho + 1)", (2, 2), (2, Q(1, 3)), id="with weights"),
     ],
 )
+@pytest.mark.slow_cases("a quintic over a cubic, of order 4", "with weights")
 def test_a_zero_at_a_point_with_algebraic_coordinates_is_found(
     text: str, x: tuple[int, Q], y: tuple[int, Q] | None
 ) -> None:
@@ -268,6 +284,7 @@ def dips_and_squares(seed: int, degree: int) -> None:
 
 
 @pytest.mark.parametrize("seed", few(range(8), 0, 1, 2))
+@pytest.mark.slow_cases("2")
 def test_random_dips_are_found_and_random_sums_of_squares_proved(seed: int) -> None:
     dips_and_squares(seed, 4)
 

@@ -177,6 +177,7 @@ def test_shipped_results_validate(path: Path, shipped: Callable[..., RegionMap])
 
 
 @pytest.mark.parametrize("name", ["systems/cubic", "systems/schloegl", "mechanisms/two-bar-chain"])
+@pytest.mark.slow_cases("mechanisms/two-bar-chain")
 def test_results_of_other_models_validate_and_hold_their_records_description(
     name: str, shipped: Callable[..., RegionMap]
 ) -> None:

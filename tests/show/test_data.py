@@ -9,7 +9,6 @@ from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pytest
 from support.certified_map import certified_map
 from support.maps import shipped
@@ -21,10 +20,12 @@ from ptmcad.show import data
 
 
 def test_regions_and_cells_as_frames() -> None:
+    from pandas import isna
+
     result = shipped("fig4")
     regions, cells = result.to_dataframe(), result.to_dataframe("cells")
     assert list(regions.stable) == [r.stable for r in result.regions]
-    assert [("" if pd.isna(t) else t) for t in regions.total] == [
+    assert [("" if isna(t) else t) for t in regions.total] == [
         "" if r.total is None else r.total for r in result.regions
     ]
     for row, region in zip(regions.itertuples(), result.regions, strict=True):

@@ -360,6 +360,7 @@ def test_the_system_is_that_of_the_paper() -> None:
 
 
 @pytest.mark.parametrize("format", FORMATS)
+@pytest.mark.fast_cases("msolve", "latex")
 def test_command_prints_or_writes_the_same(
     format: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

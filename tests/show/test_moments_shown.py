@@ -95,6 +95,7 @@ def test_what_is_drawn_is_level_at_the_equilibria(record: dict[str, Any]) -> Non
 
 
 @pytest.mark.parametrize("record", [ANGLE, TWO, MIXED, FREE, WAVE])
+@pytest.mark.fast_cases("record0", "record4")
 def test_a_landscape_says_what_it_is_of(record: dict[str, Any]) -> None:
     figure = draw_landscape(solved(record, M="1/2", F="1/3"))
     title = words(figure).replace("\n", " ")

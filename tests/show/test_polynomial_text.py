@@ -105,6 +105,7 @@ def read_back(text: str, names: tuple[str, str], style: Style) -> PlanePolynomia
 
 @pytest.mark.parametrize("style", Style)
 @given(polynomial=POLYNOMIALS.filter(lambda p: bool(p.terms)))
+@pytest.mark.slow_cases("Style.TEXT", "Style.SYMPY", "Style.MATHEMATICA")
 def test_what_is_written_is_the_polynomial(style: Style, polynomial: PlanePolynomial) -> None:
     assert read_back(polynomial_text(polynomial, NAMES, style), NAMES, style) == polynomial
 

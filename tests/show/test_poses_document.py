@@ -143,6 +143,7 @@ def test_the_schema_is_valid_and_names_the_format() -> None:
 
 
 @pytest.mark.parametrize("point", POINTS, ids=str)
+@pytest.mark.fast_cases("{'L2': '4/3', 'rho': '2/5', 'F3': '-320/3', 'F4': -60}", "{'rho': 0}")
 def test_poses_validate_and_are_read_back_equal(point: dict[str, Any]) -> None:
     poses = solve(**point)
     text = poses.to_json()

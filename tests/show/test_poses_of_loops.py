@@ -72,6 +72,7 @@ def test_a_mirror_image_has_the_same_energy() -> None:
 
 
 @pytest.mark.parametrize("name", ["slider-crank", "x-joint", "platform-loop"])
+@pytest.mark.slow_cases("x-joint")
 def test_poses_are_stored_shown_and_drawn(name: str) -> None:
     from ptmcad.show.render.poses import draw_poses
 

@@ -106,6 +106,7 @@ def area(polygon: np.ndarray) -> float:
 
 
 @pytest.mark.parametrize(("name", "count"), MAPS)
+@pytest.mark.slow_cases("fig4-index", "forces-total")
 def test_polygons_have_the_certified_areas(name: str, count: str) -> None:
     result = classified(name, count)
     whole = outline(result)
@@ -193,6 +194,7 @@ def test_no_sliver_where_all_is_seen(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("name", "x_end"), [("fig3", "0.004"), ("fig4", "0.004")])
+@pytest.mark.slow_cases("fig4-0.004")
 def test_the_sliver_has_an_arrow_and_an_inset(name: str, x_end: str, tmp_path: Path) -> None:
     result = classified(name, "index")
     thin = [n for n, r in enumerate(result.regions) if r.index == (1, 3, 2)]
@@ -208,6 +210,7 @@ def test_the_sliver_has_an_arrow_and_an_inset(name: str, x_end: str, tmp_path: P
 
 @pytest.mark.parametrize("exponent", [3, 7, 15, 30, 100])
 @pytest.mark.parametrize("base", [0, 1])
+@pytest.mark.fast_cases("0-3", "0-7", "1-3", "1-7")
 def test_slanting_slivers_of_any_thinness_are_shown(exponent: int, base: int) -> None:
     result = bands([Fraction(1, 4), Fraction(1, 4) + Fraction(1, 10**exponent)], base=base)
     whole = outline(result)
@@ -260,6 +263,7 @@ def test_labels_of_crowded_tips_are_apart() -> None:
 @pytest.mark.parametrize(
     ("name", "count", "dpi"), [(*m, 100) for m in MAPS] + [pytest.param("fig4", "index", 300, marks=pytest.mark.slow)]
 )
+@pytest.mark.fast_cases("fig2-stable-100", "forces-total-100")
 def test_every_colour_is_in_the_picture(name: str, count: str, dpi: int, tmp_path: Path) -> None:
     result = classified(name, count)
     draw(result, tmp_path / "map.png", dpi=dpi)
@@ -300,6 +304,7 @@ def test_no_seams_between_the_cells_of_a_region(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("dpi", [72, 150, 300])
+@pytest.mark.slow_cases("300")
 def test_png_has_the_size_that_dpi_tells(dpi: int, tmp_path: Path) -> None:
     draw(classified("fig2", "stable"), tmp_path / "map.png", dpi=dpi)
     data = (tmp_path / "map.png").read_bytes()
@@ -342,6 +347,7 @@ def test_the_same_bytes_in_another_process_without_pyplot(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize(("name", "count"), MAPS)
+@pytest.mark.fast_cases("fig2-stable", "forces-total")
 def test_svg_is_described_small_and_named(name: str, count: str, tmp_path: Path) -> None:
     result = classified(name, count)
     text = svg(result, tmp_path)
@@ -406,6 +412,15 @@ def test_another_format_is_refused(tmp_path: Path) -> None:
         ),
         pytest.param(bands([Fraction(k, 40) for k in range(1, 20)], counts=list(range(20))), id="many counts"),
     ],
+)
+@pytest.mark.slow_cases(
+    "corner to corner-png",
+    "special characters-png",
+    "long names-svg",
+    "long title-png",
+    "1e-20 and 1e20-png",
+    "beyond floats-png",
+    "many counts-png",
 )
 def test_degenerate_maps_are_drawn(result: RegionMap, suffix: str, tmp_path: Path) -> None:
     draw(result, tmp_path / f"map.{suffix}", samples=True)

@@ -63,6 +63,7 @@ def test_what_is_undetermined_looks_like_no_count() -> None:
     pytest.param(crossing(7), 100, id="100-crossing"),
     pytest.param(crossing(7), 300, id="300-crossing", marks=pytest.mark.slow),
 ])  # fmt: skip
+@pytest.mark.slow_cases("100-crossing")
 def test_a_picture_shows_counts_where_they_are_and_grey_elsewhere(result: RegionMap, dpi: int, tmp_path: Path) -> None:
     image = map_pixels(result, tmp_path, dpi)
     n = len(image)
@@ -82,6 +83,7 @@ def test_a_picture_shows_counts_where_they_are_and_grey_elsewhere(result: Region
 
 @pytest.mark.parametrize("dpi", [100, 150, pytest.param(300, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("width", [1e-5, 1e-4, 1e-3])
+@pytest.mark.fast_cases("0.0001-100", "0.001-100")
 def test_a_narrow_tube_is_seen_as_a_hairline(dpi: int, width: float, tmp_path: Path) -> None:
     """Some pixel across it is clearly darker, and no more of them than a line of the rim's width touches."""
     row = map_pixels(tube(0.4, 0.4 + width), tmp_path, dpi)[int(SIDE * dpi) // 2]
@@ -92,6 +94,7 @@ def test_a_narrow_tube_is_seen_as_a_hairline(dpi: int, width: float, tmp_path: P
 
 
 @pytest.mark.parametrize("dpi", [100, 300])
+@pytest.mark.slow_cases("300")
 def test_a_wide_strip_is_as_wide_as_it_is(dpi: int, tmp_path: Path) -> None:
     image = map_pixels(tube(0.25, 0.5), tmp_path, dpi)
     grey = np.abs(image[len(image) // 2] - np.array(to_rgb(UNDETERMINED.face))).max(axis=1) < 0.02
@@ -116,6 +119,7 @@ def test_admissible_counts_have_colours_and_a_legend() -> None:
 
 
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+@pytest.mark.fast_cases("svg")
 def test_the_same_map_gives_the_same_bytes(suffix: str, tmp_path: Path) -> None:
     for name in ("first", "second"):
         draw(crossing(6), tmp_path / f"{name}.{suffix}")

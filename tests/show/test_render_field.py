@@ -101,6 +101,7 @@ def test_edges_are_chains_that_meet_where_three_branches_do() -> None:
 
 
 @pytest.mark.parametrize("preset", few(["ieee", "poster"], "ieee"))
+@pytest.mark.usefixtures("coarse")
 def test_a_quantitys_map_has_all_text_on_the_page_and_none_too_small(preset: str) -> None:
     result = shipped("fig4")
     field = result.field("energy", "pose:3", 20)

@@ -12,7 +12,6 @@ from support.maps import shipped
 from test_render import bands
 
 from ptmcad.show.render import draw
-from ptmcad.show.render.pgf import escaped
 from ptmcad.show.render.printing import save
 from ptmcad.show.style import styled
 
@@ -66,6 +65,8 @@ def test_pgf_needs_no_tex(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     ],
 )
 def test_what_ptmcad_writes_is_set_by_plain_latex(text: str, tex: str) -> None:
+    from ptmcad.show.render.pgf import escaped
+
     assert escaped(text) == tex
 
 

@@ -83,6 +83,7 @@ def text_of(name: str) -> str:
 
 
 @pytest.mark.parametrize("name", INCHES)
+@pytest.mark.slow_cases("exact-elsevier", "hostile", "with-poses")
 def test_a_picture_can_be_read_without_tex(name: str) -> None:
     text = text_of(name)
     commands = "\n".join(line for line in text.splitlines() if not line.startswith("%"))
@@ -110,6 +111,7 @@ def typeset(folder: Path, body: str) -> tuple[list[float], str]:
 
 @needs_latex
 @pytest.mark.parametrize("name", INCHES)
+@pytest.mark.fast_cases("hostile")
 def test_latex_sets_a_picture_at_its_size(name: str, tmp_path: Path) -> None:
     (tmp_path / "map.pgf").write_text(text_of(name), encoding="utf-8")
     sides, log = typeset(tmp_path, r"\input{map.pgf}")

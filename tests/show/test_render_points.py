@@ -49,6 +49,7 @@ def around(texts: tuple[str, ...], style: Style) -> Figure:
     pytest.param(texts, size, marks=() if (len(texts), size) in ((1, None), (len(AT), "13x7in")) else pytest.mark.slow)
     for texts in (AT[:1], AT[:2], AT) for size in (None, "13x7in")
 ])  # fmt: skip
+@pytest.mark.slow_cases("texts5-13x7in")
 def test_poses_stand_beside_the_map_each_led_to_its_point(texts: tuple[str, ...], size: str | None) -> None:
     made = around(texts, styled(size=size))
     if size is not None:

@@ -69,6 +69,7 @@ def identifiers(figure: Figure, start: str) -> list[str]:
 
 
 @CASES
+@pytest.mark.fast_cases("flat, springs of no length", "fold")
 def test_every_pose_has_a_panel_with_all_its_parts(name: str) -> None:
     found, figure = poses(name), picture(draw_poses, name)
     assert len(figure.axes) == len(found.equilibria) >= 4 or found.status is Status.ON_VARIETY
@@ -121,6 +122,7 @@ def test_nodes_are_where_the_angles_put_them(name: str) -> None:
 
 
 @CASES
+@pytest.mark.slow_cases("paper, fig. 3", "paper, fig. 4", "all loads", "rho = 1e-12")
 def test_labels_are_clear_of_all_strokes_and_of_each_other(name: str) -> None:
     labels_are_clear(poses(name))
 
@@ -219,6 +221,7 @@ def test_a_stroke_meets_a_box_where_one_of_its_points_does(ends: tuple[float, ..
 
 
 @CASES
+@pytest.mark.fast_cases("flat, springs of no length", "lengths of 1e400")
 def test_every_equilibrium_is_marked_and_numbered_once(name: str) -> None:
     found, figure = poses(name), picture(draw_landscape, name)
     n = len(found.equilibria)
@@ -290,6 +293,7 @@ def classified(name: str, count: str) -> ptmcad.RegionMap:
 
 
 @pytest.mark.parametrize(("name", "count", "panels"), [("fig4", "stable", 2), ("fig3", "index", 2)])
+@pytest.mark.slow_cases("fig4-stable-2")
 def test_the_figure_has_the_map_and_the_stable_poses(name: str, count: str, panels: int) -> None:
     result = classified(name, count)
     figure = draw_figure(result, poses(f"paper, fig. {name[-1]}"))
@@ -322,6 +326,7 @@ def boxes_of(figure: Figure) -> list[matplotlib.transforms.Bbox]:
 
 @pytest.mark.parametrize("draw", DRAWN)
 @CASES
+@pytest.mark.fast_cases("paper, fig. 4-draw_landscape", "lengths 1e9 apart, loads 1e30-draw_landscape")
 def test_texts_do_not_overlap_and_are_on_the_page(name: str, draw: Callable[[Poses], Figure]) -> None:
     figure = picture(draw, name)
     boxes = boxes_of(figure)
@@ -332,6 +337,7 @@ def test_texts_do_not_overlap_and_are_on_the_page(name: str, draw: Callable[[Pos
 
 
 @pytest.mark.parametrize(("name", "count"), [("fig4", "stable"), ("fig3", "index")])
+@pytest.mark.slow_cases("fig3-index")
 def test_texts_of_the_figure_do_not_overlap(name: str, count: str) -> None:
     boxes = boxes_of(draw_figure(classified(name, count), poses(f"paper, fig. {name[-1]}")))
     assert not [1 for a, b in combinations(boxes, 2) if a.overlaps(b)]

@@ -73,6 +73,9 @@ def texts(made: Figure) -> list[Text]:
 
 
 @pytest.mark.parametrize(("legend", "preset", "name"), PAGES)
+@pytest.mark.slow_cases(
+    "None-ieee-fig2", "None-ieee-slivers", "None-beamer-slivers", "below-ieee-slivers", "below-elsevier-index"
+)
 def test_everything_is_on_the_page_apart_and_legible(legend: str | None, preset: str, name: str) -> None:
     style = styled(preset, legend=legend)
     if legend == "below" and style.size is not None:
@@ -96,6 +99,7 @@ def test_everything_is_on_the_page_apart_and_legible(legend: str | None, preset:
 
 
 @pytest.mark.parametrize(("text", "inches"), [("3.5x2.6in", (3.5, 2.6)), ("90x70mm", (90 / 25.4, 70 / 25.4))])
+@pytest.mark.slow_cases("3.5x2.6in-inches0")
 def test_the_picture_has_the_size_that_is_asked_for(text: str, inches: tuple[float, float], tmp_path: Path) -> None:
     draw(shipped("fig2"), tmp_path / "map.png", dpi=200, style=styled(size=text))
     rows, columns = imread(tmp_path / "map.png").shape[:2]

@@ -62,6 +62,7 @@ class Elements(HTMLParser):
 
 
 @pytest.mark.parametrize("name", PAPER)
+@pytest.mark.fast_cases("fig2", "fig3")
 def test_every_cell_is_on_the_map_and_in_the_data(shipped: Shipped, name: str) -> None:
     result = shipped(name)
     text = page(result)

@@ -181,6 +181,7 @@ def test_the_keyboard_does_all_of_it(view: Callable[..., Browser]) -> None:
 
 
 @pytest.mark.parametrize(("axes", "base"), [("rho,L2", 0), ("L2,rho", 1)])
+@pytest.mark.slow_cases("L2,rho-1")
 def test_the_arrows_follow_the_map(one: Browser, tmp_path: Path, axes: str, base: int) -> None:
     """Also where the stacks stand over the vertical axis: up is up; and samples are drawn within their cells."""
     result = ptmcad.classify(ptmcad.slice_from_options(CONFIGS / "fig4.yaml", slice=axes))
@@ -307,6 +308,7 @@ def strips() -> RegionMap:
 
 @pytest.mark.parametrize("width", [320, 390, 1200])
 @pytest.mark.parametrize("name", ["fig5-text", "stiffness", "views of thin regions"])
+@pytest.mark.fast_cases("views of thin regions-320", "views of thin regions-390", "views of thin regions-1200")
 def test_numbers_and_names_stand_beside_each_other(one: Browser, tmp_path: Path, name: str, width: int) -> None:
     """Within the picture, also where there are many digits and the type is large."""
     result = strips() if name.startswith("views") else computed(name)
@@ -385,6 +387,7 @@ def test_the_policy_stops_what_is_not_the_pages_own(view: Callable[..., Browser]
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=() if name in ("fig4", "fig5-text") else pytest.mark.slow) for name in PAPER]
 )
+@pytest.mark.slow_cases("fig5-text")
 def test_it_opens_within_a_second_and_is_small(view: Callable[..., Browser], name: str) -> None:
     """The least of three: the machine may be doing something else."""
     assert len(page(computed(name)).encode()) < 300_000

@@ -72,6 +72,7 @@ def placed(polygon: np.ndarray) -> list[tuple[float, float]]:
 
 
 @pytest.mark.parametrize("result", [circle(6), crossing(6), cusp(9)], ids=["circle", "crossing", "cusp"])
+@pytest.mark.slow_cases("cusp")
 def test_the_cells_of_a_page_are_those_of_the_map(result: RegionMap) -> None:
     """Every corner of the map's own outline is as near to what is drawn as `SLACK` says; and it is drawn once."""
     text = page(result)

@@ -101,6 +101,9 @@ def folded(name: str) -> RegionMap:
 
 
 @pytest.mark.parametrize("name", FOLDED, ids=lambda name: f"{name} [known by construction]")
+@pytest.mark.fast_cases(
+    "fold 1 [known by construction]", "fold 2 [known by construction]", "grid 1 [known by construction]"
+)
 def test_the_engine_finds_the_regions_of_folds(name: str) -> None:
     result = folded(name)
     check_structure(result)
@@ -376,7 +379,10 @@ def without_clock(report: dict[str, Any]) -> Any:
 
 @pytest.fixture(scope="module")
 def report() -> dict[str, Any]:
-    return run.scaling([small()], 2, 5)
+    """Of children that are not warmed up: nothing here asks how long they took."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(run, "touch", lambda certified: None)
+        return run.scaling([small()], 2, 5)
 
 
 @pytest.mark.slow
@@ -399,7 +405,8 @@ def test_a_report_says_what_it_was_made_with(report: dict[str, Any]) -> None:
     assert {"seconds", "counts"} <= family["fits"].keys()
 
 
-def test_a_size_that_fails_is_given_up_with_its_reason() -> None:
+def test_a_size_that_fails_is_given_up_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run, "touch", lambda certified: None)
     wrong = replace(small(), measure=families._exact(lambda n, seed: folds.fold(n), lambda n: 4 if n > 2 else n + 3))
     (family,) = run.scaling([wrong], 1)["families"]
     assert {r["size"] for r in family["runs"]} == {1, 2}

@@ -55,6 +55,26 @@ def judged(name: str) -> Verdict:
 
 
 @pytest.mark.parametrize("case", MARKED)
+@pytest.mark.slow_cases(
+    "node-left-1e-30",
+    "free-length-1e-12",
+    "free-length-1e-9",
+    "free-length-1e-6",
+    "free-length-1e1",
+    "free-length-1e2",
+    "free-length-1e3",
+    "free-length-units-1e-12",
+    "free-length-units-1e12",
+    "free-length-forces-1e-12",
+    "map-units-force-1e-12",
+    "map-unloaded-length-1e-9",
+    "window-line-1e-20",
+    "window-beside-fold-1e-20",
+    "line-units-length-1e-9",
+    "line-units-length-1e9",
+    "line-symmetry-1e-30",
+    "line-digits-40",
+)
 def test_ptmcad_is_right(case: Case) -> None:
     verdict = judged(case.name)
     assert verdict.right, verdict.remarks

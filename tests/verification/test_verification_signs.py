@@ -44,6 +44,16 @@ def agree(expression: Expression, need: Need) -> bool:
 
 @pytest.mark.parametrize("need", Need)
 @pytest.mark.parametrize("kind", DIPS)
+@pytest.mark.slow_cases(
+    "diagonal-Need.POSITIVE",
+    "diagonal-Need.NO_POLE",
+    "degree 20-Need.NOT_NEGATIVE",
+    "degree 20-Need.NO_POLE",
+    "degree 8 in both-Need.POSITIVE",
+    "degree 8 in both-Need.NO_POLE",
+    "irrational-Need.POSITIVE",
+    "irrational-Need.NO_POLE",
+)
 def test_narrow_dips(kind: str, need: Need) -> None:
     for p in thin_dip(kind):
         e = 1 / p if need is Need.NO_POLE else p
@@ -64,6 +74,7 @@ def test_known_signs(text: str, strict: bool, expected: Sign) -> None:
 
 
 @pytest.mark.parametrize("seed", range(12))
+@pytest.mark.slow_cases("2", "3", "11")
 def test_random_functions_have_the_sign_that_the_engine_decides(seed: int) -> None:
     rng = random.Random(seed)
     p = random_square(rng, 4)

@@ -117,6 +117,7 @@ def known(shipped: Shipped, name: str, exponents: Sequence[int], constant: Fract
 
 
 @pytest.mark.parametrize("name", FAMILIES)
+@pytest.mark.fast_cases("parallel", "one line")
 def test_exponents_are_those_of_the_construction(name: str, shipped: Shipped) -> None:
     dice = Random(name)
     for seed in range(60):

@@ -42,6 +42,7 @@ def stored_shipped(shipped: Callable[..., RegionMap], name: str) -> RegionMap:
     *(pytest.param(name, "1e-4", marks=pytest.mark.slow) for name in LARGE),
     pytest.param("stiffness", "1/10", marks=pytest.mark.slow),  # its narrow areas take longer than all else of it
 ])  # fmt: skip
+@pytest.mark.fast_cases("fig2-1e-4", "fig3-1e-4")
 def test_shipped_results_are_accepted(name: str, tolerance: str, shipped: Callable[..., RegionMap]) -> None:
     report = ptmcad.verify(stored(shipped(name, area_tolerance=tolerance) if tolerance != "1e-4" else shipped(name)))
     assert report.ok, report.violation
@@ -61,6 +62,28 @@ def test_shipped_results_are_accepted(name: str, tolerance: str, shipped: Callab
             for n, k in (("fig3", 10), ("rods", 6), ("fig4", 4), ("fig5-text", 4))
         ),
     ],
+)
+@pytest.mark.slow_cases(
+    "fig2-3-count",
+    "fig2-3-dropped_component",
+    "fig2-3-changed_component",
+    "fig2-3-critical_kind",
+    "fig2-3-base_axis",
+    "fig2-3-window",
+    "fig2-3-box_shrunk",
+    "fig2-3-box_dropped_and_counts",
+    "fig2-3-solutions_of_another_cell",
+    "fig2-3-origin",
+    "fig2-3-component_invented",
+    "fig2-3-any_kind",
+    "fig2-3-left_out_reason",
+    "fig2-3-smooth_line_at_infinity",
+    "fig3-1-morse_index",
+    "fig3-1-wall_component",
+    "fig3-1-box_moved",
+    "fig3-1-box_blown_up",
+    "fig3-1-area_too_narrow",
+    "fig3-1-partial_with_false_areas",
 )
 def test_false_alterations_are_rejected(
     name: str, seeds: int, mutation: mutations.Mutation, shipped: Callable[..., RegionMap]

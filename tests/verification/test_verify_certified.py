@@ -212,6 +212,16 @@ def with_text(r: RegionMap, name: str, text: str) -> RegionMap:
 
 
 @pytest.mark.parametrize("name", FALSE)
+@pytest.mark.slow_cases(
+    "one stable equilibrium less",
+    "a solution removed",
+    "a solution twice",
+    "a solution's signs",
+    "a solution's center",
+    "a solution's box too small",
+    "a solution's box too large",
+    "a solution's radius zero",
+)
 def test_a_false_map_is_rejected(name: str, stable: RegionMap) -> None:
     change, by = FALSE[name]
     report = ptmcad.verify(change(stable), boxes=0)
@@ -259,6 +269,7 @@ def consistent(r: RegionMap, cover: Cover, cells: tuple[Cell, ...]) -> RegionMap
 
 
 @pytest.mark.parametrize("steps", [1, 2, 2**24])
+@pytest.mark.fast_cases("16777216")
 def test_random_points_find_that_a_curve_was_left_out(steps: int, stable: RegionMap) -> None:
     """All else agrees: only the points and boxes in the free area can tell, however coarse the lattice is."""
     false = consistent(stable, Cover(steps, ()), stable.cells[:1])
@@ -318,6 +329,7 @@ def creased() -> RegionMap:
 
 
 @pytest.mark.parametrize("steps", [1, 2, 16, 2**24])
+@pytest.mark.fast_cases("16")
 def test_a_map_on_a_crease(steps: int, creased: RegionMap) -> None:
     """Neither of two minima beside a crease is lost; and a lattice of one step, with no rectangles, is one."""
     true = replace(creased, cover=Cover(steps, ()))
@@ -536,6 +548,7 @@ def values(rho: str, l1: str, l2: str, l0: str, f3: str, f4: str) -> dict[str, F
 
 
 @pytest.mark.parametrize("name", KNOWN)
+@pytest.mark.slow_cases("REFERENCE: 26, 8 stable")
 def test_known_counts(name: str) -> None:
     *text, index = KNOWN[name]
     point = values(*text)

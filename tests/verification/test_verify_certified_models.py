@@ -157,6 +157,7 @@ def map_of(name: str) -> RegionMap:
 
 
 @pytest.mark.parametrize("name", few(RECORDS, *RECORDS.keys() - {"chain", "oscillators", "well"}))
+@pytest.mark.fast_cases("truss", "pendulum", "cubic", "half of a well")
 def test_a_true_map_is_accepted(name: str) -> None:
     """As its file says it; nothing is left undecided, and the report says what was not tried."""
     report = ptmcad.verify(map_of(name), boxes=2)
@@ -352,6 +353,38 @@ FOR_SLOW = {(kind, "chain") for kind in ALL} - {("more solutions", "chain")}
 @pytest.mark.parametrize(("kind", "name"), [
     pytest.param(*case, marks=pytest.mark.slow if case in FOR_SLOW else ()) for case in product(ALL, RECORDS)
 ])  # fmt: skip
+@pytest.mark.slow_cases(
+    "more solutions-slider-crank",
+    "more solutions-well",
+    "more solutions-oscillators",
+    "fewer solutions-slider-crank",
+    "fewer solutions-well",
+    "fewer solutions-oscillators",
+    "fewer solutions-switch",
+    "counts of another cell-slider-crank",
+    "a solution too few-slider-crank",
+    "a solution too few-well",
+    "a solution too few-oscillators",
+    "a solution twice-slider-crank",
+    "a solution twice-well",
+    "a solution twice-oscillators",
+    "a box beside the solution-slider-crank",
+    "a box beside the solution-well",
+    "a box beside the solution-oscillators",
+    "a box too large-slider-crank",
+    "a box too large-well",
+    "a box too large-oscillators",
+    "a box too large-switch",
+    "a box without width-slider-crank",
+    "a box without width-well",
+    "a box without width-oscillators",
+    "a box of more unknowns-slider-crank",
+    "a box of more unknowns-well",
+    "a box of more unknowns-oscillators",
+    "signs-slider-crank",
+    "signs-well",
+    "signs-oscillators",
+)
 def test_a_false_map_is_rejected(kind: str, name: str) -> None:
     change, by = ALL[kind]
     if name == "cubic" and kind == "signs":
@@ -366,6 +399,7 @@ def test_a_map_of_something_else_is_rejected(kind: str) -> None:
 
 
 @pytest.mark.parametrize("name", RECORDS)
+@pytest.mark.slow_cases("chain", "slider-crank", "well", "oscillators")
 def test_random_points_find_that_curves_were_left_out(name: str) -> None:
     """All else agrees with a map that has one cell and no rectangles."""
     false = certified.covered(replace(map_of(name), cells=map_of(name).cells[:1]), ())
@@ -442,6 +476,7 @@ def test_the_paper_s_mechanism_counted_in_two_ways(seed: int) -> None:
 
 
 @pytest.mark.parametrize("name", ["cubic", "well", "oscillators"])
+@pytest.mark.slow_cases("oscillators")
 def test_counts_are_those_of_the_exact_engine(name: str) -> None:
     slice = ptmcad.slice_from_mapping({"name": "small", **RECORDS[name]})
     rng = random.Random(name)

@@ -39,6 +39,7 @@ def map_of(found: FamilyMap, value: Fraction) -> RegionMap:
 
 
 @pytest.mark.parametrize("name", ["loads", "bowl", "lines"])
+@pytest.mark.slow_cases("loads")
 def test_surfaces_cut_at_a_value_are_the_curves_of_the_member(name: str) -> None:
     found = family(name)
     assert found.surfaces

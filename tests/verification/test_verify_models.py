@@ -189,6 +189,18 @@ def map_of(name: str) -> RegionMap:
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow if n in LARGE else ()) for n in RECORDS])
+@pytest.mark.fast_cases(
+    "pendulum",
+    "torque",
+    "chain",
+    "constant moment",
+    "system 0",
+    "system 2",
+    "system 8",
+    "mechanism 0",
+    "mechanism 3",
+    "mechanism 9",
+)
 def test_true_maps_are_accepted(name: str) -> None:
     report = ptmcad.verify(map_of(name))
     assert report.ok, report.violation

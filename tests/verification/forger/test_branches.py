@@ -458,6 +458,7 @@ def test_the_narrowest_bounds_that_are_tried(monkeypatch: pytest.MonkeyPatch) ->
         (check_plan, "7"),  # a random slice whose base is the second axis
     ],
 )
+@pytest.mark.fast_cases("check1-fig3+sign-curve+no-areas", "check_plan-7")
 def test_what_was_kept_is_no_fault(check: Check, name: str) -> None:
     """A curve of the Hermite matrix alone is auxiliary, curves without points are used, where that was asked for."""
     r = the(name)

@@ -109,6 +109,7 @@ admissible = partial(made, "springs", "admissible")
 
 
 @pytest.mark.parametrize("make", [springs, total, equal, pitchfork, admissible])
+@pytest.mark.fast_cases("make0", "make4")
 def test_the_maps_are_true(make: Callable[[], RegionMap]) -> None:
     report = ptmcad.verify(make(), boxes=1)
     assert report.ok, report.violation
