@@ -3,7 +3,8 @@
 Guarantee: the formulas are those of the potential wherever every spring with a free length has a length. Where a spring
 has none, its direction stands for every unit vector, so that an equilibrium that comes from nearby is not lost.
 
-With u_s = d_s/|d_s| the equations are dV/dq_i - sum of K_s u_s . dd_s/dq_i, and the Hessian has poles |d_s| = 0. In the
+With u_s = d_s/|d_s| the equations are dV/dq_i - sum of K_s u_s . dd_s/dq_i, with closed loops T . grad V - sum of
+K_s u_s . (T . grad) d_s beside those that close the loops, and the Hessian, or Jacobian, has poles |d_s| = 0. In the
 chart of spring s its direction is (cos phi, sin phi) with phi an unknown, and d_s x u = 0 an equation more. Then all is
 smooth at |d_s| = 0, and by Schur's complement the Jacobian of the larger system has the determinant -+ |d_s| det H.
 """
@@ -28,7 +29,8 @@ class Chart:
     Attributes
     ----------
     equations : one for each unknown.
-    hessian : their derivatives by the unknowns, with phi fixed where there is one.
+    hessian : their derivatives by the unknowns, with phi fixed where there is one; no Hessian but a Jacobian where they
+        are not those of a potential.
     lengths : |d_s| of each cone.
     balances : formulas that vanish at every equilibrium, smooth where one spring has no length, unlike the equations:
         the equations solved for its unit vector u_s, which has the length 1.
@@ -60,6 +62,7 @@ def chart(problem: Problem, short: int | None = None) -> Chart:
         [tuple(d.derivative(i).formula(graph, unknowns) for d in cone.difference) for i in range(size)]
         for cone in problem.cones
     ]
+    weights = [[tuple(w.formula(graph, unknowns) for w in pair) for pair in cone.weights] for cone in problem.cones]
     units = [(direction(dx, dy), direction(dy, dx)) for dx, dy in vectors]
     turning: tuple[Formula, ...] = ()
     if short is not None:
@@ -68,7 +71,8 @@ def chart(problem: Problem, short: int | None = None) -> Chart:
         dx, dy = vectors[short]
         turning = (dx * uy - dy * ux, dx * ux + dy * uy, *(a * uy - b * ux for a, b in slopes[short]))
     parts = [
-        [pull * (ux * a + uy * b) for a, b in slope] for pull, (ux, uy), slope in zip(pulls, units, slopes, strict=True)
+        [pull * (ux * a + uy * b) for a, b in pairs]
+        for pull, (ux, uy), pairs in zip(pulls, units, weights, strict=True)
     ]
     for i in range(size):
         for part in parts:
@@ -76,9 +80,9 @@ def chart(problem: Problem, short: int | None = None) -> Chart:
                 entries[i][j] = entries[i][j] - graph.derivative(part[i], problem.variables[j])
     balances = [
         # the rest is put together without the spring: taken off again, its part would leave an interval's width behind
-        _balance(pulls[s], _without(smooth, parts[:s] + parts[s + 1 :]), slopes[s], pair)
+        _balance(pulls[s], _without(smooth, parts[:s] + parts[s + 1 :]), weights[s], pair)
         for s in range(len(pulls))
-        for pair in combinations(range(size), 2)
+        for pair in (() if problem.closing else combinations(range(size), 2))
     ]
     equations = _without(smooth, parts)
     return Chart(

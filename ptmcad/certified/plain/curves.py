@@ -101,6 +101,8 @@ def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
     """The folds, and the cones."""
     if len(search.problem.unknowns) == 1:
         return (_fold(search, at), *_points_without_length(search, at))
+    if search.problem.closing:
+        return (_fold(search, at), *_short_folds(search), *_points_without_length(search, at))
     return (_fold(search, at), *_short_folds(search), *_cones(search))
 
 
@@ -182,14 +184,16 @@ def _short_folds(search: _Search) -> Iterator[Curve]:
 
 
 def _points_without_length(search: _Search, at: Chart) -> Iterator[Curve]:
-    """The same as `_cones` for one unknown, where two equations d = 0 leave curves and need no direction."""
-    (unknown,) = (at.equations[0].graph.variable(k) for k in search.problem.variables)
+    """The same as `_cones` where configurations are a curve: two equations d = 0 leave curves and need no direction."""
+    graph = at.equations[0].graph
+    unknowns = [graph.variable(k) for k in search.problem.variables]
+    closed, others = at.equations[: search.problem.closing], at.equations[search.problem.closing :]
     for cone in search.problem.cones:
-        vanishing = [d.formula(unknown.graph, [unknown]) for d in cone.difference]
+        vanishing = [f for f in (d.formula(graph, unknowns) for d in cone.difference) if f.value != 0]
         yield Curve(
             f"cone {cone.name}",
             f"an equilibrium is swallowed where spring {cone.name} has no length",
-            system([f for f in vanishing if f.value != 0], (0, 1, FIRST), ((), at.equations)),
+            system([*closed, *vanishing], (0, 1, *search.problem.variables), ((), others)),
             search.ranges,
             np.array(search.weights),
         )
@@ -223,4 +227,6 @@ def _name(search: _Search) -> str:
 def _reason(search: _Search) -> str:
     if search.stable:
         return "a minimum meets a saddle: det H = 0 with no negative principal minor"
+    if search.problem.closing:
+        return "equilibria meet, or a loop folds flat: the Jacobian is singular"
     return "equilibria meet: det H = 0" if search.problem.is_gradient else "solutions meet: the Jacobian is singular"

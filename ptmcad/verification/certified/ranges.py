@@ -119,15 +119,16 @@ class _Bounds:
 
         rows = [row(waves) for waves in form.equations]
         springs = [
-            [(_value(c.pull, values), row(c.slopes[k][0]), row(c.slopes[k][1])) for c in form.cones]
+            [(_value(c.pull, values), row(c.weights[k][0]), row(c.weights[k][1])) for c in form.cones]
             for k in range(form.size)
         ]
         self.equations = list(map(_Equation, rows, springs))
-        if not form.cones:
+        rigid = rows[: len(form.rigid)]
+        if rigid:
             more = [row(waves) for waves in form.multiples]
             if with_products:
-                more += [_times(f, k) for f in rows for k in range(form.size) if not form.is_circle[k]]
-            self.equations += [_Equation(f) for f in (*more, *_combined([*rows, *more]))]
+                more += [_times(f, k) for f in rigid for k in range(form.size) if not form.is_circle[k]]
+            self.equations += [_Equation(f) for f in (*more, *_combined([*rigid, *more]))]
         self.is_smooth = not form.cones
         self.inequalities = [row(waves) for waves in form.inequalities]
         unit = [(((0,) * form.size, tuple(int(j == k) for j in range(form.size)), 0), k) for k in range(form.size)]
