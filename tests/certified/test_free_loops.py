@@ -200,11 +200,53 @@ def test_a_slider_in_any_order_of_the_unknowns(unknowns: dict[str, str]) -> None
     for x, y in random_points(slice, 2)[:4]:
         poses = ptmcad.solve(record, W=x, M=y)
         assert (len(poses.equilibria), poses.stable) == crank_counts(float(x), float(y))
+    # as many minima as maxima are along a closed curve: which pose is stable is told by energies
+    ordered = sorted(ptmcad.solve(record, W="1/3", M=0).equilibria, key=lambda pose: pose.known_energy.center)
+    assert ordered[0].stable is True
+    assert ordered[-1].stable is False
     stable = ptmcad.classify(slice, tolerance="1/50")
     assert stable.undetermined < Fraction(1, 50)
     for x, y in random_points(slice, 4)[:40]:
         cell = stable.locate(W=x, M=y).cell
         assert cell is None or stable.cells[cell].stable == crank_counts(float(x), float(y))[1]
+
+
+LADDER: dict[str, Any] = {
+    "name": "ladder",
+    "mechanism": {
+        "name": "ladder",
+        "parameters": {"F": {"kind": "force"}, "G": {"kind": "force"}},
+        "unknowns": {"x": "length", "y": "length"},
+        "points": {"A": [2, 0], "P": ["x", 0], "Q": ["4/5*y", "3/5*y"]},
+        "closing": [{"between": ["P", "Q"], "length": 1}],
+        "springs": [{"between": ["A", "Q"], "k": 1, "free": "3/2"}],
+        "loads": {"P": ["F", 0], "Q": [0, "G"]},
+    },
+    "axes": {"F": [-2, 2], "G": [-2, 2]},
+    "count": "total",
+}
+"""A bar between two sliders on oblique guides; no unknown is an angle."""
+
+
+def test_sliders_that_bound_one_another() -> None:
+    """Only the loop does: x^2 + y^2 - 8/5 x y = 1; in the checker, too."""
+    m = ptmcad.classify(ptmcad.slice_from_mapping(LADDER), tolerance="1/50")
+    turn = np.linspace(-np.pi, np.pi, 20001)
+    y = np.sin(turn) / 0.6
+    x = np.cos(turn) + 0.8 * y
+    tried = 0
+    for f, g in random_points(m.slice, 8)[:60]:
+        energy = (np.hypot(0.8 * y - 2, 0.6 * y) - 1.5) ** 2 / 2 - float(f) * x - float(g) * 0.6 * y
+        rising = np.diff(energy) > 0
+        cell = m.locate(F=f, G=g).cell
+        if cell is not None:
+            tried += 1
+            assert m.cells[cell].total == int((rising != np.roll(rising, 1)).sum())
+    assert tried > 40
+    report = ptmcad.verify(m, boxes=2)
+    assert report.ok, report.table()
+    told = {check.name: check for check in report.checks}
+    assert told["counts and solutions"].passed, told["counts and solutions"].detail
 
 
 def test_what_is_not_computed_is_refused() -> None:
