@@ -21,13 +21,17 @@ from support.shipped_records import OTHER_FREE
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.ask.bands import certified_widths
+from ptmcad.ask.fields.field import field_of, request_of
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.formula import Formula
+from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain import curves as plain_curves
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count
+from ptmcad.show.report.tape import tape
 
 pytest.importorskip("numba")
 
@@ -166,6 +170,29 @@ def test_a_relaxed_spring_is_told() -> None:
     assert len(relaxed) == poses.stable == 4
     assert all(pose.energy is not None and pose.energy.exact == 0 and pose.stable for pose in relaxed)
     assert len(poses.equilibria) == 8
+
+
+def test_intervals_along_a_line() -> None:
+    """With stable counts; and an operation range is where most poses are stable, as without free lengths."""
+    slice = slice_of("four-bar-free")
+    found = certified_intervals(slice, "F", {"G": "18/5"}, 10)
+    assert len(found.intervals) == 3
+    for interval in found.intervals:
+        p = values_at(slice, interval.sample, Fraction(18, 5))
+        assert (interval.total, interval.stable) == counts_along(p, energy_of(p))
+    widths = certified_widths(slice, "F", rows=3, digits=6)
+    assert widths.working == 3
+    with pytest.raises(ConfigError, match="not followed where springs have free lengths"):
+        ptmcad.pose_paths(slice, "F", {"G": "18/5"}, "1")
+
+
+def test_a_map_of_an_angle_is_that_of_the_poses() -> None:
+    """Followed in floating point with the springs' roots, and compared with proved poses."""
+    result = map_of("four-bar-free", "stable", "1/500")
+    field = field_of(result, request_of(result.slice, "th1", "stable:1"), 6, checks=12)
+    assert field.checked == 12
+    assert field.difference < 1e-9
+    assert tape(result) is None, "the report's page has no roots of loops, and follows nothing"
 
 
 CRANK: dict[str, Any] = yaml.safe_load(
