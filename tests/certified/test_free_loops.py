@@ -172,6 +172,62 @@ def test_a_relaxed_spring_is_told() -> None:
     assert len(poses.equilibria) == 8
 
 
+LOOSE: dict[str, tuple[str, float, float]] = {
+    "L1": ("length", 0.5, 1.5), "L2": ("length", 0.5, 1.5), "L3": ("length", 0.5, 2), "b": ("length", 1, 3),
+    "k1": ("stiffness", 0.5, 2), "k2": ("stiffness", 0.2, 2), "F": ("force", -2, 2), "G": ("force", -2, 2),
+    "x": ("number", -1, 3), "y": ("number", -2, 2), "l1": ("free length", 0, 1.5), "l2": ("free length", 0, 1.5),
+}  # fmt: skip
+"""Kinds and ranges of what a random four-bar is made of: C = (x, y) holds the second crank's end."""
+
+
+def random_slice(seed: int) -> ptmcad.Slice:
+    rng = random.Random(seed)
+
+    def between(low: float, high: float) -> str:
+        return str(Fraction(rng.uniform(low, high)).limit_denominator(30))
+
+    axes: dict[str, list[str]] = {}
+    for name in rng.sample(sorted(LOOSE), 2):
+        _, low, high = LOOSE[name]
+        middle = rng.uniform(low, high)
+        axes[name] = [between(low, middle), between(middle + 0.1, high + 0.2)]
+    mechanism = FOUR_BAR["mechanism"] | {
+        "parameters": {n: {"default": 1} | ({} if k == "number" else {"kind": k}) for n, (k, *_) in LOOSE.items()},
+        "points": FOUR_BAR["mechanism"]["points"] | {"C": ["x", "y"]},
+        "springs": [
+            {"between": ["C", "Q"], "k": "k1", "free": "l1"}, {"between": ["B0", "P"], "k": "k2", "free": "l2"},
+        ],
+    }  # fmt: skip
+    values = {name: between(low, high) for name, (_, low, high) in LOOSE.items() if name not in axes}
+    record = {"name": "loose", "mechanism": mechanism, "parameters": values, "axes": axes}
+    return ptmcad.slice_from_mapping(record | {"count": rng.choice(["total", "stable"])})
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(16))
+def test_random_four_bars(seed: int) -> None:
+    slice = random_slice(seed)
+    m = ptmcad.classify(slice, tolerance="1/50", timeout=120)
+    decided = 0
+    for x, y in random_points(slice, seed)[:POINTS]:
+        cell = m.locate(**dict(zip(slice.axis_names, (x, y), strict=True))).cell
+        if cell is None:
+            continue
+        decided += 1
+        p = values_at(slice, x, y)
+
+        def energy(px: Numbers, py: Numbers, qx: Numbers, qy: Numbers, p: dict[str, float] = p) -> Numbers:
+            first = np.hypot(qx - p["x"], qy - p["y"]) - p["l1"]
+            second = np.hypot(px - p["b"], py) - p["l2"]
+            work: Numbers = (p["k1"] * first**2 + p["k2"] * second**2) / 2 - p["F"] * py - p["G"] * qy
+            return work
+
+        total, stable = counts_along(p, energy, 20001)
+        said = m.cells[cell]
+        assert (said.total, said.stable) == ((None, stable) if slice.count is Count.STABLE else (total, None)), (x, y)
+    assert decided > 0.9 * POINTS
+
+
 def test_intervals_along_a_line() -> None:
     """With stable counts; and an operation range is where most poses are stable, as without free lengths."""
     slice = slice_of("four-bar-free")

@@ -252,6 +252,14 @@ def with_bars_longer(r: RegionMap) -> RegionMap:
     return with_model(r, mechanism=replace(r.slice.model.mechanism, closing=bars))
 
 
+def with_soft_spring(r: RegionMap) -> RegionMap:
+    """The first spring of a loop with a negative stiffness, and no free length."""
+    mechanism = r.slice.model.mechanism
+    first, *others = mechanism.springs
+    soft = first._replace(stiffness=Chain(first.stiffness, (Step("-", Number(Fraction(3))),)), free=Number(Fraction(0)))
+    return with_model(r, mechanism=replace(mechanism, springs=(soft, *others)))
+
+
 def with_relations(r: RegionMap, *relations: str) -> RegionMap:
     return replace(r, system=replace(r.system, relations=relations))
 
@@ -311,6 +319,7 @@ SOME: dict[str, tuple[str, Callable[[RegionMap], RegionMap], str]] = {
     "a spring in the potential": ("truss", lambda r: with_potential(r, "- l0)^2", "- 2*l0)^2"), "equations"),
     "another free length in a loop": ("loop", lambda r: with_parameter(r, "l0", Fraction(1, 10)), "counts and sol"),
     "a spring of a loop": ("loop", lambda r: with_potential(r, "- l0)^2", "- 2*l0)^2"), "equations"),
+    "a soft spring of a loop": ("loop", with_soft_spring, "signs of parameters"),
     "longer bars": ("loop", with_bars_longer, "equations"),
     "another relation": ("loop", lambda r: with_relations(r, r.system.relations[0] + " + 1"), "equations"),
     "no relation": ("loop", with_relations, "equations"),
