@@ -196,7 +196,7 @@ class CertifiedInterval:
     """An open interval, its ends' enclosures (exact at the window's edge), and the counts on it.
 
     ``total`` is None when nothing could be decided at ``sample``; ``index`` is, too, where there is no potential, and
-    ``cones``, but for the paper's mechanism.
+    ``cones``, but for the paper's mechanism. ``stable`` is None where nothing says what is stable.
     """
 
     low: Enclosure
@@ -205,11 +205,12 @@ class CertifiedInterval:
     cones: int | None
     sample: Fraction
     total: int | None
+    stable: int | None = None
 
     @property
     def working(self) -> int | None:
         """The number by which an operation range is found, as that of `Counts`; None where nothing is decided."""
-        return self.total if self.index is None else self.index[0]
+        return self.total if self.stable is None else self.stable
 
 
 @dataclass(frozen=True, slots=True)

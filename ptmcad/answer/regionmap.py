@@ -66,7 +66,8 @@ class System:
     ----------
     unknowns : cosine and sine of each angle, in this order, then the real unknowns; the boxes of `Solution` are in
         these coordinates.
-    relations : polynomials that vanish on the circles.
+    relations : polynomials that vanish on the circles; of a certified map those that vanish where closed loops are
+        closed, if springs have free lengths: solutions are the potential's critical points among such configurations.
     potential : energy, in units of force times length; empty where equations are given.
     gradient : the equations, whose common zeros are meant: of a potential its derivatives by the unknowns.
     hessian : their derivatives by the unknowns.

@@ -1,7 +1,7 @@
 """Operation ranges over the other axis of a slice whose springs have free lengths, by the certified engine.
 
 With free lengths there may be more than two stable equilibria, on small parts of a window: an operation range is where
-there are at least two (of a system at least one).
+there are at least two, and of closed loops as many as there are anywhere in the rows.
 
 Guarantee: of each row the ends are enclosed, and two neighbouring intervals are one range only where both are
 operation ranges. What could not be decided in a row is said there. Nothing is claimed between two rows.
@@ -16,6 +16,7 @@ from ptmcad.answer.intervals import CertifiedInterval
 from ptmcad.answer.widths import CertifiedRange, CertifiedRow, CertifiedWidths
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.errors import HypothesisError
+from ptmcad.mechanism import ClosedMechanism
 from ptmcad.options import Progress
 from ptmcad.question.slice import Slice
 
@@ -43,6 +44,10 @@ def certified_widths(
         if progress is not None:
             progress("rows", k, rows)
     working = operation_number(slice.model, ())
+    if isinstance(
+        slice.model, ClosedMechanism
+    ):  # as without free lengths: a loop is stable somewhere nearly everywhere
+        working = max((i.working or 0 for _, row, _ in found for i in row), default=working) or working
     table = tuple(
         CertifiedRow(value, _ranges(row, working), any(i.working is None for i in row), remark)
         for value, row, remark in found

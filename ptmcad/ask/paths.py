@@ -33,7 +33,7 @@ from ptmcad.ask.fields.track import Track, followed
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.landing import landing, line_of, merger
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism import ClosedMechanism, Mechanism
 from ptmcad.options import Progress
 from ptmcad.question.doubles import within_doubles
 from ptmcad.question.line import varying_axis
@@ -56,9 +56,15 @@ def joined_paths(
 ) -> PosePaths:  # fmt: skip
     """Follow stable poses along a line on which springs have free lengths.
 
-    Parameters and errors are those of `ptmcad.exact.ranges.path.pose_paths`; ``progress`` is called as
-    progress("paths: pose", done, total).
+    Parameters and errors are those of `ptmcad.exact.ranges.path.pose_paths`, and closed loops are refused; ``progress``
+    is called as progress("paths: pose", done, total).
     """
+    if isinstance(slice.model, ClosedMechanism):
+        raise ConfigError(
+            "poses of closed loops are not followed where springs have free lengths: leave --path out, and solve tells "
+            "the poses at single points",
+            key="--path",
+        )
     varying, other, value = varying_axis(slice, along, at)
     axis = slice.axes[varying]
     begin = number_for("--path", start)

@@ -12,7 +12,7 @@ from ptmcad.answer.poses import DIGITS, MAX_DIGITS, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.manyangles import poses_by_search, work_by_msolve, work_for
 from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
-from ptmcad.mechanism import Mechanism, Model, ptm
+from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, ptm
 from ptmcad.process.memory import check_room, loading
 from ptmcad.question.config import point_from, point_from_mapping, units_of
 from ptmcad.question.slice import Slice, have_free_lengths
@@ -79,11 +79,15 @@ def poses_at(model: Model, parameters: Mapping[str, Fraction], digits: int) -> P
     ConfigError
         For springs with a free length in a mechanism that the certified engine does not take.
     """
-    if isinstance(model, Mechanism) and needs_intervals(model, parameters):
+    if needs_intervals(model, parameters):
+        assert isinstance(model, Mechanism | ClosedMechanism)  # no other has springs
         with loading("the certified engine"):
+            from ptmcad.certified.plain.loops import loop_poses
             from ptmcad.certified.plain.poses import plain_poses
             from ptmcad.certified.poses import certified_poses
         check_room("the certified engine")
+        if isinstance(model, ClosedMechanism):
+            return loop_poses(model, parameters, digits)
         return certified_poses(parameters, digits) if model == ptm() else plain_poses(model, parameters, digits)
     from ptmcad.exact.poses import exact_poses
 

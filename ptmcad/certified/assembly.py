@@ -71,7 +71,7 @@ class Assembler:
         return RegionMap(
             slice=self.slice,
             status=status,
-            system=system_text(self.slice.model),
+            system=system_text(self.slice.model, self.slice.has_free_lengths),
             cells=tuple(cells),
             regions=tuple(regions),
             plan=self.plan,

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.intervals import CertifiedChange, CertifiedInterval, CertifiedIntervals
 from ptmcad.process.memory import check_room, loading
@@ -16,6 +16,10 @@ from ptmcad.question.domain import prove
 from ptmcad.question.line import restricted, varying_axis
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import Enclosure
+
+if TYPE_CHECKING:
+    from ptmcad.certified.line import Stretch
+    from ptmcad.certified.points import PointCount
 
 
 def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits: int) -> CertifiedIntervals:
@@ -49,19 +53,24 @@ def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits:
     def end(place: Fraction) -> Enclosure:
         return ends.get(place, Enclosure(place, place))
 
+    def interval(s: Stretch) -> CertifiedInterval:
+        total, stable = _numbers(slice, s.counts)
+        return CertifiedInterval(end(s.low), end(s.high), s.counts.index, s.counts.cones, s.sample, total, stable)
+
     return CertifiedIntervals(
         slice.axes[varying],
         {other: value},
-        tuple(
-            CertifiedInterval(
-                end(s.low),
-                end(s.high),
-                s.counts.index,
-                s.counts.cones,
-                s.sample,
-                s.counts.total if s.counts.index is None else sum(s.counts.index),
-            )
-            for s in found.stretches
-        ),
+        tuple(map(interval, found.stretches)),
         tuple(CertifiedChange(Enclosure(g.low, g.high), g.names, g.proved) for g in found.gaps),
     )
+
+
+def _numbers(slice: Slice, counts: PointCount) -> tuple[int | None, int | None]:
+    """All equilibria and the stable ones; nothing where it is known what is stable, but not of each of them."""
+    if counts.index is not None:
+        return sum(counts.index), counts.index[0]
+    if counts.total is None or not slice.model.tells_stability:
+        return counts.total, None
+    if not all(solution.signs for solution in counts.solutions):
+        return None, None
+    return counts.total, sum(not solution.signs.strip("+") for solution in counts.solutions)

@@ -19,6 +19,10 @@ from ptmcad.question.slice import Slice
 
 SAMPLES = 200
 _SEED = 1
+SHORT_SHARE = Fraction(1, 8)
+"""A spring shorter than this part of its typical length is searched in its chart."""
+TURNING_WEIGHT = 0.25
+"""Of a spring's direction, which follows from the unknowns, in the choice which variable to bisect."""
 _FULL_TURN = (-np.pi, np.pi)
 
 
@@ -62,6 +66,23 @@ def typical_lengths(
         return ()
     medians = np.median(_samples(slice, list(lengths), ranges), axis=0)
     return tuple(Fraction(float(m)) if np.isfinite(m) and m > 0 else Fraction(1) for m in medians)
+
+
+def short_lengths(
+    slice: Slice, lengths: Sequence[Formula], ranges: Sequence[tuple[float, float]]
+) -> tuple[Fraction, ...]:
+    """Below these, powers of two, springs are searched in their charts."""
+    return tuple(_rounded(SHORT_SHARE * x) for x in typical_lengths(slice, lengths, ranges))
+
+
+def _rounded(value: Fraction) -> Fraction:
+    """A power of two near a positive number; any would do."""
+    result = Fraction(1)
+    while result > value:
+        result /= 2
+    while 2 * result < value:
+        result *= 2
+    return result
 
 
 def _samples(slice: Slice, formulas: list[Formula], ranges: Sequence[tuple[float, float]]) -> NDArray[np.float64]:

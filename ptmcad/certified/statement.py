@@ -12,25 +12,33 @@ from fractions import Fraction
 from ptmcad.answer.regionmap import PlanStep, System
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.plan import beforehand
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
 from ptmcad.mechanism import System as ParametricSystem
 from ptmcad.mechanism.work import split_moments
 from ptmcad.question.slice import Slice
 from ptmcad.text.tree import Chain, Negative, Number, Step, Tree, to_text
 
 
-def system_text(model: Model) -> System:
+def system_text(model: Model, has_free_lengths: bool = False) -> System:
     """The potential, of a mechanism with square roots; gradient and Hessian are its derivatives by the unknowns.
 
     The work of constant moments is in it, so that it has another value after each turn; where a moment depends on
-    another unknown, moments are stated beside it. Of a system without a potential the equations. What is positive at
-    solutions is there as the record says it.
+    another unknown, moments are stated beside it. Of closed loops with free lengths the potential, and as relations
+    what is zero where each loop is closed. Of a system without a potential, and of loops without free lengths, the
+    equations. What is positive at solutions is there as the record says it.
     """
+    if isinstance(model, ClosedMechanism) and has_free_lengths:
+        relations = tuple(map(to_text, model.equations[:-1]))
+        return replace(_of_mechanism(model.mechanism), relations=relations)
     if isinstance(model, ParametricSystem):
         potential = "" if model.potential is None else to_text(model.potential)
         texts = [tuple(map(to_text, trees)) for trees in (model.equations, model.inequalities, model.stability)]
         return System(tuple(model.unknowns), (), potential, texts[0], (), *texts[1:])
     assert isinstance(model, Mechanism)
+    return _of_mechanism(model)
+
+
+def _of_mechanism(model: Mechanism) -> System:
     if model.has_potential:
         return System(tuple(model.unknowns), (), _energy(model), (), ())
     moments = {moment.unknown: to_text(moment.value) for moment in model.moments}

@@ -12,7 +12,8 @@ from ptmcad.text.tree import Tree
 
 @dataclass(frozen=True)
 class ClosedMechanism(System):
-    """A mechanism with closed loops, or with X-joints, as the equations of its equilibria.
+    """A mechanism with closed loops, or with X-joints, as the equations of its equilibria; without its springs' free
+    lengths, as `without_free_lengths` has none of their parameters.
 
     Its conditions for stability hold together where a symmetric matrix is positive definite, and the last one is the
     determinant of that matrix, times what is positive: so off its zeros no other one matters where it changes its sign.

@@ -225,7 +225,7 @@ class Model:
 
     @cached_property
     def without_free_lengths(self) -> tuple[str, ...]:
-        """The other variables: those of the polynomial energy of springs without free lengths."""
+        """The other variables: those of the polynomial energy, or equations, of springs without free lengths."""
         return tuple(name for name in self.variables if self.kind(name) is not Kind.FREE_LENGTH)
 
     @cached_property

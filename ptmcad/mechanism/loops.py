@@ -10,6 +10,10 @@ where that is zero the second derivative T . grad E: which is the determinant of
 an equilibrium is a zero of g and E, simple where the determinant is not zero, and stable where it is positive. Where T
 vanishes E does, and the determinant: such places are on the curves at which solutions meet.
 
+A spring with a free length takes K |d| off the energy, K its stiffness times that length and d between its ends, which
+takes K (T . grad) |d| off E: a root, so that it is in no tree. The equations here are those without it, which exact
+algebra solves where no spring has a free length; `ptmcad.certified.plain.problem` takes it off.
+
 Source: elementary (Lagrange's condition in one dimension); no multiplier is among the unknowns. Where more degrees of
 freedom are left there is no such vector, and `ptmcad.mechanism.multipliers` has the equations.
 """
@@ -51,10 +55,13 @@ def check_loops(mechanism: Mechanism, faults: Faults) -> None:
                 f"degree of freedom, not {free}",
                 key="moments",
             )
-    for n, spring in enumerate(mechanism.springs, 1):
+    for n, spring in enumerate(mechanism.springs if free > 1 else (), 1):
         with faults:
             if not (isinstance(spring.free, Number) and spring.free.value == 0):
-                raise ConfigError("free lengths are not computed in closed loops yet", key=f"springs.{n}.free")
+                raise ConfigError(
+                    f"free lengths in closed loops are computed where these leave one degree of freedom, not {free}",
+                    key=f"springs.{n}.free",
+                )
     with faults:
         if mechanism.symmetries:
             raise ConfigError("symmetries are not used in closed loops: leave them out", key="symmetries")

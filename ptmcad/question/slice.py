@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import Any, TypeVar
 
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism import Mechanism, Model, mechanism_in
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.work import split_moments
 from ptmcad.text.expressions import Expression, constant
@@ -149,10 +149,11 @@ def merged(values: Mapping[str, _Value], model: Model) -> dict[str, _Value]:
 
 def have_free_lengths(model: Model, parameters: Mapping[str, Expression]) -> bool:
     """Whether some spring has a free length that is not zero everywhere; a parameter that is missing is zero."""
-    if not isinstance(model, Mechanism):
+    mechanism = mechanism_in(model)
+    if mechanism is None:
         return False
     known = _Expressions(parameters)
-    return any(bool(evaluate(spring.free, known).numerator) for spring in model.springs)
+    return any(bool(evaluate(spring.free, known).numerator) for spring in mechanism.springs)
 
 
 def moved(model: Model, parameters: Mapping[str, Expression]) -> tuple[str, ...]:

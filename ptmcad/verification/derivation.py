@@ -30,7 +30,7 @@ NOT_NEGATIVE = MECHANISM.nonnegative
 
 def parameters_of(model: Model) -> tuple[str, ...]:
     """The parameters of a model's polynomials: no free lengths of springs, which would bring in roots."""
-    return model.without_free_lengths if isinstance(model, Mechanism) else model.variables
+    return model.without_free_lengths if isinstance(model, Mechanism | ClosedMechanism) else model.variables
 
 
 def shorthands_of(model: Model) -> tuple[str, ...]:
@@ -159,16 +159,34 @@ def formulas(configuration: Configuration, model: Model) -> Formulas:
     )
 
 
-def _with_loops(configuration: Configuration, model: ClosedMechanism) -> Formulas:
-    """Of a mechanism with closed loops, from the mechanism itself."""
+def _moving(configuration: Configuration, model: ClosedMechanism) -> Configuration:
+    """The same with derivatives by the unknowns, angles first."""
     size = len(model.unknowns)
     values = {name: loops.constant(value, size) for name, value in configuration.parameters.items()}
     for k, name in enumerate(model.reals, len(model.angles)):
         values[name] = loops.line(k, configuration.parameters[name], size)
     circles = {a: loops.circle(k, *configuration.circles[a], size) for k, a in enumerate(model.angles)}
+    return Configuration(values, circles)
+
+
+def along_loops(configuration: Configuration, model: ClosedMechanism) -> list[tuple[Any, Any]]:
+    """Of each spring's vector the derivative along closed loops with one degree of freedom left."""
+    moving, nothing = _moving(configuration, model), loops.constant(fmpq(0), len(model.unknowns))
+    points = moving.points(model.mechanism)
+    kept = loops.distances(model.mechanism, points, moving.value)
+    found = []
+    for spring in model.mechanism.springs:
+        vector = [points[spring.end][i] - points[spring.start][i] + nothing for i in (0, 1)]
+        across, up = loops.turned(kept, vector)
+        found.append((across, up))
+    return found
+
+
+def _with_loops(configuration: Configuration, model: ClosedMechanism) -> Formulas:
+    """Of a mechanism with closed loops, from the mechanism itself."""
+    size, moving = len(model.unknowns), _moving(configuration, model)
     if model.mechanism.xjoints:
-        return _with_xjoints(Configuration(values, circles), model)
-    moving = Configuration(values, circles)
+        return _with_xjoints(moving, model)
     if model.multipliers:
         return _stationary(moving, model)
     found = loops.conditions(

@@ -106,11 +106,7 @@ def conditions(
     length : the value of a tree.
     moments : generalised forces on the unknowns; none where the description has none.
     """
-    kept = []
-    for closing in mechanism.closing:
-        across, up = (points[closing.end][i] - points[closing.start][i] for i in (0, 1))
-        far = length(closing.length)
-        kept.append(across * across + up * up - far * far)
+    kept = distances(mechanism, points, length)
     count = range(len(energy.slopes))
     rows = [[g.slopes[k] for k in count] for g in kept]
     last = [energy.slopes[k] - (moments[k].value if moments else fmpq(0)) for k in count]
@@ -122,6 +118,22 @@ def conditions(
             total = total + _determinant([*rows[:n], [g.bends[k, j] for k in count], *rows[n + 1 :], last])
         slopes.append(total)
     return Conditions((*(g.value for g in kept), _determinant([*rows, last])), _determinant([*rows, slopes]))
+
+
+def distances(mechanism: Mechanism, points: Mapping[str, tuple[Any, Any]], length: Callable[[Any], Any]) -> list[Any]:
+    """What each closing bar keeps zero: the squared distance of its ends less the square of its length."""
+    kept = []
+    for closing in mechanism.closing:
+        across, up = (points[closing.end][i] - points[closing.start][i] for i in (0, 1))
+        far = length(closing.length)
+        kept.append(across * across + up * up - far * far)
+    return kept
+
+
+def turned(kept: Sequence[Second], values: Sequence[Second]) -> list[Any]:
+    """The derivatives of some functions along the loops, of which E is the energy's: with it they are linear."""
+    rows = [list(g.slopes) for g in kept]
+    return [_determinant([*rows, list(value.slopes)]) for value in values]
 
 
 def _determinant(rows: Sequence[Sequence[Any]]) -> Any:

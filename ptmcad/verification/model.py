@@ -16,7 +16,7 @@ from typing import Any
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz, fmpz_mpoly
 
 from ptmcad.answer.regionmap import System
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
 from ptmcad.text.numerals import fraction_of
 from ptmcad.verification.claims import PLANE, Claims
 from ptmcad.verification.derivation import Configuration, coordinates_of, formulas, has_index, parameters_of
@@ -216,12 +216,13 @@ def _pairs(system: System, true: _Polynomials) -> Iterator[tuple[str, str, fmpq_
 
 def _check_free_lengths(claims: Claims, ring: _Ring) -> None:
     """No spring has a free length on the slice; of one that is no parameter there it is zero."""
-    if not isinstance(claims.model, Mechanism):
+    model = claims.model.mechanism if isinstance(claims.model, ClosedMechanism) else claims.model
+    if not isinstance(model, Mechanism):
         return
     known = ring.configuration()
-    zero = {name: ring.context.constant(0) for name in claims.model.free_lengths}
+    zero = {name: ring.context.constant(0) for name in model.free_lengths}
     within = Configuration({**known.parameters, **zero}, {})
-    for spring in claims.model.springs:
+    for spring in model.springs:
         free = ring.context.constant(0) + within.value(spring.free)
         if any(not numerator.is_zero() for numerator, _ in _on_slice(claims, ring, free).values()):
             raise Violation(f"the spring {spring.name} has a free length, so that the map is of another mechanism")

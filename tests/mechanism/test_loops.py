@@ -232,7 +232,6 @@ def test_a_map_is_stored_with_its_mechanism_and_verified(
     [
         ({"closing": [*FOUR_BAR["closing"], {"between": ["A0", "Q"], "length": 1}]}, "closing", "no degree of freedom"),
         ({"symmetries": [{"th1": "-th1", "th2": "-th2", "F": "-F", "G": "-G"}]}, "symmetries", "leave them out"),
-        ({"springs": [{"between": ["A0", "Q"], "k": 1, "free": 1}]}, "springs.1.free", "free lengths"),
         ({"closing": [{"between": ["P", "Q"]}]}, "closing.1.length", "is missing"),
         ({"closing": [{"between": ["P", "R"], "length": 1}]}, "closing.1.between", "no point"),
         ({"closing": [{"between": ["P", "Q"], "length": "cos(th1)"}]}, "closing.1.length", "th1"),

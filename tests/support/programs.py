@@ -117,6 +117,61 @@ def real_solutions(variables: Sequence[str], equations: Sequence[str]) -> int:
     return number
 
 
+def real_boxes(variables: Sequence[str], equations: Sequence[str]) -> list[tuple[tuple[Fraction, Fraction], ...]]:
+    """The boxes around the real solutions that msolve isolates, an interval for each variable.
+
+    Raises
+    ------
+    ProgramError
+        As `real_solutions` does.
+    """
+    output = "".join(_msolve(f"{','.join(variables)}\n0\n" + ",\n".join(equations) + "\n").split())
+    if output == "[-1]:":
+        return []
+    sides = [
+        (_dyadic(low), _dyadic(high)) for low, high in (side[1:-1].split(",") for side in _BOX_SIDE.findall(output))
+    ]
+    number, rest = divmod(len(sides), len(variables))
+    if not output.startswith("[0,[1,") or rest:
+        raise ProgramError(f"msolve does not answer: {output[:300]!r}")
+    return [tuple(sides[k * len(variables) : (k + 1) * len(variables)]) for k in range(number)]
+
+
+def _dyadic(text: str) -> Fraction:
+    """A number as msolve writes it, such as ``-3/2^5``."""
+    above, _, below = text.partition("/")
+    base, _, exponent = below.partition("^")
+    return Fraction(int(above), int(base or 1) ** int(exponent or 1))
+
+
+def standard_monomials(equations: Sequence[str], variables: Sequence[str]) -> int:
+    """How many monomials no leading one of msolve's basis divides: the number of complex solutions, with multiplicity.
+
+    Raises
+    ------
+    ProgramError
+        When it does not answer.
+    """
+    text = f"{','.join(variables)}\n0\n" + ",\n".join(equations) + "\n"
+    found = re.search(r"^\[(.*)\]:", _msolve(text, "-g", "1"), re.MULTILINE | re.DOTALL)
+    if found is None:
+        raise ProgramError("msolve does not answer with leading monomials")
+    leading = [next(iter(monomials(m, variables))) for m in found.group(1).split(",")]
+    start = (0,) * len(variables)
+    known, waiting = {start}, [start]
+    while waiting:
+        one = waiting.pop()
+        for k in range(len(variables)):
+            more = (*one[:k], one[k] + 1, *one[k + 1 :])
+            divided = any(all(a >= b for a, b in zip(more, m, strict=True)) for m in leading)
+            if not divided and more not in known:
+                known.add(more)
+                waiting.append(more)
+        if len(known) > 10_000:
+            raise ProgramError("there may be infinitely many solutions")
+    return len(known)
+
+
 def eliminated(text: str, unknowns: int) -> list[str]:
     """The generators that msolve finds for an ideal cut with the polynomials in all but the first variables.
 

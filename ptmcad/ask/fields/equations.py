@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ptmcad.ask.fields.jets import Floats, Jet, cos_sin, unknowns
-from ptmcad.mechanism import Mechanism, Model, System
+from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, System
 from ptmcad.mechanism.energy import points_in, with_springs
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.work import split_moments
@@ -88,9 +88,11 @@ def state_at(model: Model, values: Mapping[str, Any], at: Floats) -> State:
     )
     # the ring's protocol asks for more than arrays' types tell
     evaluated: Any = ring
-    if isinstance(model, Mechanism):
-        with np.errstate(divide="ignore", invalid="ignore"):  # a spring without length has no direction: nan
+    with np.errstate(divide="ignore", invalid="ignore"):  # a spring without length has no direction: nan
+        if isinstance(model, Mechanism):
             return _mechanism(model, evaluated, at)
+        if isinstance(model, ClosedMechanism) and model.tangent and _has_free_lengths(model, evaluated):
+            return _along_loops(model, evaluated, at)
     assert isinstance(model, System)
     conditions = tuple(_jet(evaluate(tree, evaluated), at).value for tree in model.inequalities)
     stability = tuple(_jet(evaluate(tree, evaluated), at).value for tree in model.stability)
@@ -133,6 +135,25 @@ def _mechanism(model: Mechanism, ring: Any, at: Floats) -> State:
     places = {name: (x.value, y.value) for name, (x, y) in points.items()}
     potential = energy.value if model.has_potential else None
     return State(residuals, jacobian, potential, points=places, lengths=tuple(lengths), forces=tuple(forces), work=work)
+
+
+def _has_free_lengths(model: ClosedMechanism, ring: Any) -> bool:
+    return any(np.any(evaluate(spring.free, ring)) for spring in model.mechanism.springs)
+
+
+def _along_loops(model: ClosedMechanism, ring: Any, at: Floats) -> State:
+    """With one degree of freedom left: the loops' equations and the energy's slope along them, T . grad U."""
+    energy = _mechanism(model.mechanism, ring, at)
+    closed = [_jet(evaluate(tree, ring), at) for tree in model.equations[:-1]]
+    tangent = [_jet(evaluate(tree, ring), at) for tree in model.tangent]
+    slope = np.sum([t.value * force for t, force in zip(tangent, energy.residuals, strict=True)], axis=0)
+    bent = np.sum(
+        [t.gradient * f + t.value * row for t, f, row in zip(tangent, energy.residuals, energy.jacobian, strict=True)],
+        axis=0,
+    )
+    residuals = np.stack([*(g.value for g in closed), slope])
+    jacobian = np.stack([*(g.gradient for g in closed), bent])
+    return State(residuals, jacobian, None, (), (determinant(jacobian),))
 
 
 def _jet(value: Any, at: Floats) -> Jet:

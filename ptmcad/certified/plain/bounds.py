@@ -17,6 +17,7 @@ from ptmcad.certified.evaluation import Floats, program, run
 from ptmcad.certified.formula import Formula, Graph, Operation
 from ptmcad.certified.plain.chart import chart
 from ptmcad.certified.plain.geometry import geometry
+from ptmcad.certified.plain.loopchart import loop_chart
 from ptmcad.certified.plain.nested import eliminated, nested, scaled, sharp_squares, times
 from ptmcad.certified.plain.problem import FIRST, Problem
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
@@ -57,7 +58,7 @@ def known_ranges(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Range, ...]
     window = [(enclosing_floats(axis.low)[0], enclosing_floats(axis.high)[1]) for axis in axes]
     found: tuple[Range, ...] = ()
     # more polynomials cost more time, and are seldom needed
-    for with_products in (False, True) if len(problem.unknowns) > 1 and not problem.cones else (False,):
+    for with_products in (False, True) if len(problem.unknowns) > 1 and _rigid(problem) else (False,):
         found = _Search(problem, window, _vanishing(problem, with_products)).ranges()
         if all(isfinite(sum(bounds)) for bounds in found):
             break
@@ -81,14 +82,17 @@ def refusal(problem: Problem, found: Sequence[Range]) -> ConfigError:
 
 
 def _vanishing(problem: Problem, with_products: bool) -> list[TrigonometricPolynomial]:
-    """Polynomials that are zero at every solution; none for problems with cones, whose equations are none."""
-    if problem.cones:
-        return []
-    known = [*problem.equations, *problem.multiples]
+    """Polynomials that are zero at every solution."""
+    known = [*_rigid(problem), *problem.multiples]
     if with_products:
         reals = [k for k, name in enumerate(problem.unknowns) if name in problem.reals]
-        known += [times(f, k) for f in problem.equations for k in reals]
+        known += [times(f, k) for f in _rigid(problem) for k in reals]
     return [*known, *eliminated(known)]
+
+
+def _rigid(problem: Problem) -> Sequence[TrigonometricPolynomial]:
+    """The equations that are polynomials: with cones those that close loops."""
+    return problem.equations[: problem.closing] if problem.cones else problem.equations
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +145,7 @@ class _Search:
         The same polynomials are nested in several ways: none is the best one in all boxes.
         """
         problem = self.problem
-        at = chart(geometry(problem))
+        at = loop_chart(problem) if problem.closing else chart(geometry(problem))
         graph = at.equations[0].graph
         unknowns = [graph.variable(j) for j in problem.variables]
         others = [(j, True) for j, name in enumerate(problem.unknowns) if name in problem.reals and j != k]
@@ -175,7 +179,7 @@ class _Search:
 
         Several weights w are tried, equal ones first.
         """
-        if self.problem.cones:
+        if not self.vanishing:
             return None
         for weights in sorted(product(range(1, MAX_WEIGHT + 1), repeat=len(chosen)), key=lambda w: (max(w), sum(w))):
             if gcd(*weights) == 1:

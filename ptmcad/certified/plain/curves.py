@@ -19,15 +19,11 @@ from ptmcad.certified.plain.bounds import TURN, Range
 from ptmcad.certified.plain.chart import Chart, chart, determinant, principal_minors
 from ptmcad.certified.plain.geometry import Geometry, geometry
 from ptmcad.certified.plain.infinity import Patch, at_infinity, patches
+from ptmcad.certified.plain.loopcurves import curves_of_loops
 from ptmcad.certified.plain.problem import FIRST, Condition, Problem, problem_of
-from ptmcad.certified.scales import typical_lengths, variable_weights
+from ptmcad.certified.scales import TURNING_WEIGHT, short_lengths, variable_weights
 from ptmcad.certified.system import system
 from ptmcad.question.slice import Count, Slice
-
-SHORT_SHARE = Fraction(1, 8)
-"""A spring shorter than this part of its typical length is searched in its chart."""
-TURNING_WEIGHT = 0.25
-"""Of phi, which follows from the unknowns, in the choice which variable to bisect."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +69,9 @@ def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) ->
 
 def _of_patch(slice: Slice, count: Count, without: frozenset[str], patch: Patch) -> Iterator[Curve]:
     problem = patch.problem
+    if problem.closing:
+        yield from curves_of_loops(slice, patch)
+        return
     exact = geometry(problem, slice.axes)
     at = chart(exact)
     stable = problem.is_gradient and count is Count.STABLE and "folds-of-saddles" not in without
@@ -81,7 +80,7 @@ def _of_patch(slice: Slice, count: Count, without: frozenset[str], patch: Patch)
         exact,
         patch.ranges,
         variable_weights(slice, at.equations, patch.ranges),
-        tuple(_rounded(SHORT_SHARE * x) for x in typical_lengths(slice, at.lengths, patch.ranges)),
+        short_lengths(slice, at.lengths, patch.ranges),
         stable,
         not stable or "cones-and-creases" in without,
         "dependent-equations" not in without,
@@ -129,16 +128,6 @@ def _charted(search: _Search, at: Chart) -> list[int]:
     least = 1 if search.swallowed else 2
     many = len(search.problem.unknowns) > 1
     return [s for s, spring in enumerate(at.springs) if many and len(spring.active) >= least]
-
-
-def _rounded(value: Fraction) -> Fraction:
-    """A power of two near a positive number; any would do."""
-    result = Fraction(1)
-    while result > value:
-        result /= 2
-    while 2 * result < value:
-        result *= 2
-    return result
 
 
 def _fold(search: _Search, at: Chart) -> Curve:

@@ -24,6 +24,7 @@ from ptmcad.certified.plain.bounds import Range, known_ranges
 from ptmcad.certified.plain.chart import Chart, chart, principal_minors
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.infinity import WITNESSES, patches
+from ptmcad.certified.plain.loopchart import LoopChart, loop_chart
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS, Problem, problem_of
 from ptmcad.certified.points import BUDGET, MAX_OPEN_BOXES, MIN_BOX_WIDTHS, PRECISIONS, QUICK_BUDGET, PointCount, boxed
 from ptmcad.certified.search import Boxes, Found, isolate
@@ -47,7 +48,8 @@ class PlainCounter:
     all, stable : the systems that a search prunes with, for all solutions that count and for the stable ones.
     equations : the equations alone.
     hessian : a tape of one stage with the Hessian's entries row by row.
-    conditions : a tape of one stage with the inequalities, then the conditions for stability.
+    conditions : a tape of one stage with the inequalities, then the conditions for stability; with closed loops that is
+        the Jacobian's determinant.
     pause : called between the parts of a long search; what it raises ends that.
     """
 
@@ -78,13 +80,11 @@ class PlainCounter:
             return PointCount()
         if not self.problem.is_gradient:
             # where all are counted, which of them are stable is known here only: it may change within the cell
+            held = "+" * (self._asked(count) - len(self.problem.inequalities))
             solutions = tuple(
-                boxed(
-                    wide, box, "+" * len(self.problem.stability) if stable_only else self._stability(x, y, wide),
-                    self.problem.variables,
-                )
+                boxed(wide, box, held if stable_only else self._stability(x, y, wide), self.problem.variables)
                 for wide, box in counted
-            )  # fmt: skip
+            )
             number = len(solutions)
             if stable_only:
                 return PointCount(stable=number, solutions=solutions, decided=True)
@@ -112,7 +112,7 @@ class PlainCounter:
         self, x: Fraction, y: Fraction, zeros: tuple[Boxes, Boxes], count: Count
     ) -> list[tuple[Boxes, Boxes]] | None:
         """The proved zeros at which all conditions are positive; None when that is not decided of some."""
-        asked = self.conditions.outputs[0][: len(self.problem.conditions(count))]
+        asked = self.conditions.outputs[0][: self._asked(count)]
         found = []
         for unique, narrow in zip(*zeros, strict=True):
             counts = self._holds(x, y, unique, asked)
@@ -121,6 +121,10 @@ class PlainCounter:
             if counts:
                 found.append((unique, narrow))
         return found
+
+    def _asked(self, count: Count) -> int:
+        """How many of the conditions hold at what is counted, from the first one on."""
+        return len(self.problem.inequalities if count is not Count.STABLE else self.conditions.outputs[0])
 
     def _stability(self, x: Fraction, y: Fraction, unique: Boxes) -> str:
         """The signs of the conditions for stability at a proved zero; empty where there are none, or one is open."""
@@ -238,14 +242,16 @@ def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], No
     """
     problem = problem_of(slice, most)
     found = patches(problem, slice.axes)
-    at = chart(geometry(problem))
+    at = loop_chart(problem) if problem.closing else chart(geometry(problem))
     vanishing = (at.dependent, at.balances)
     unknowns = [at.equations[0].graph.variable(k) for k in problem.variables]
     inequalities, stability = (
         [c.value.formula(at.equations[0].graph, unknowns) for c in some]
         for some in (problem.inequalities, problem.stability)
     )
-    minima = _semidefinite(at) if problem.is_gradient else stability
+    if isinstance(at, LoopChart):
+        stability = [at.determinant()]
+    minima = _semidefinite(at) if isinstance(at, Chart) and problem.is_gradient else stability
     counter = PlainCounter(
         slice,
         problem,

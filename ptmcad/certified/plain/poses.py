@@ -6,7 +6,7 @@ such as a number that is zero without being a constant, makes the whole answer U
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from flint import acb_mat, arb, arb_mat, ctx
@@ -60,7 +60,7 @@ def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits
     counts = counter.at(Fraction(0), Fraction(0), Count.INDEX)
     if not counts.decided:
         return Poses(mechanism, parameters, (), Status.UNDECIDED, digits, 0, NOT_TOLD)
-    written, poses, most = _tape(mechanism, parameters), [], 0
+    written, poses, most = tape_of(mechanism, parameters), [], 0
     for solution in counts.solutions:
         pose, bits = _pose(mechanism, parameters, written, counter, solution, digits)
         most = max(most, bits)
@@ -85,7 +85,7 @@ def point_slice(model: Model, parameters: Mapping[str, Fraction]) -> Slice:
     return Slice("point", model, (Axis("x", *unit), Axis("y", *unit)), constants, Count.INDEX)
 
 
-def _tape(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> tuple[Tape, tuple[str, ...]]:
+def tape_of(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> tuple[Tape, tuple[str, ...]]:
     """Everything asked of a pose as a tape, and the names of its outputs; the Hessian's entries come row by row.
 
     Without a potential there is neither an energy nor a Hessian.
@@ -119,7 +119,7 @@ def _pose(
     digits: int,
 ) -> tuple[Pose | str, int]:
     """The pose with all numbers settled, and the bits that this took; a sentence that says which number is not."""
-    tape, names = written
+    tape, _ = written
     last = f"eigenvalue {len(mechanism.unknowns) - 1}"
     bits, found = 64 + 4 * digits, dict[str, Enclosure]()
     turns: dict[str, int] = {}
@@ -139,23 +139,11 @@ def _pose(
                 found |= rational_numbers(mechanism, parameters, rational, surds)
         with ctx.workprec(bits):
             values = run_arb(tape, box, bits)
-            numbers = {name: values[int(place)] for name, place in zip(names, tape.outputs[0], strict=True)}
-            for angle in mechanism.angles:
-                radians = arb.atan2(numbers[f"sin {angle}"], numbers[f"cos {angle}"])
-                if angle in turns:
-                    radians = arb.pi() * turns[angle] / 2
-                numbers |= {angle: radians, f"degrees {angle}": radians * 180 / arb.pi()}
-            for n in range(len(mechanism.torsion)):
-                numbers |= _deflection(found, n, numbers.pop(f"torsion cos {n}"), numbers.pop(f"torsion sin {n}"))
+            numbers = numbers_of(mechanism, written, values, turns, found)
             size = len(mechanism.unknowns) if mechanism.has_potential else 0
             entries = arb_mat(size, size, [values[int(place)] for place in tape.outputs[1]])
             numbers |= {f"eigenvalue {n}": value for n, value in enumerate(_eigenvalues(entries))}
-            constants = {n: tape.constants.get(int(k)) for n, k in zip(names, tape.outputs[0], strict=True)}
-            for name in numbers.keys() - found.keys():
-                exact = constants.get(name)
-                settled = told(numbers[name], digits, attempt) if exact is None else Enclosure(exact, exact)
-                if settled is not None:
-                    found[name] = settled
+            settle(found, numbers, written, digits, attempt)
         if attempt == 1:
             relaxed = Relaxed(
                 tuple(n for n in range(len(mechanism.springs)) if f"force {n}" not in found),
@@ -169,6 +157,51 @@ def _pose(
             return assembled(mechanism, parameters, found, index), bits
         bits *= 2
     return not_settled(mechanism, found, numbers.keys() - found.keys()), bits // 2
+
+
+def numbers_of(
+    mechanism: Mechanism,
+    written: tuple[Tape, tuple[str, ...]],
+    values: Sequence[arb],
+    turns: Mapping[str, int],
+    found: Mapping[str, Enclosure],
+) -> dict[str, arb]:
+    """The numbers of a pose by name, with its angles and deflections in radians and degrees.
+
+    Parameters
+    ----------
+    written : as `tape_of` has it.
+    values : on that tape.
+    turns : angles that are known to be so many quarter turns.
+    found : has a deflection's cosine or sine, where it is known to be zero.
+    """
+    tape, names = written
+    numbers = {name: values[int(place)] for name, place in zip(names, tape.outputs[0], strict=True)}
+    for angle in mechanism.angles:
+        radians = arb.atan2(numbers[f"sin {angle}"], numbers[f"cos {angle}"])
+        if angle in turns:
+            radians = arb.pi() * turns[angle] / 2
+        numbers |= {angle: radians, f"degrees {angle}": radians * 180 / arb.pi()}
+    for n in range(len(mechanism.torsion)):
+        numbers |= _deflection(found, n, numbers.pop(f"torsion cos {n}"), numbers.pop(f"torsion sin {n}"))
+    return numbers
+
+
+def settle(
+    found: dict[str, Enclosure],
+    numbers: Mapping[str, arb],
+    written: tuple[Tape, tuple[str, ...]],
+    digits: int,
+    attempt: int,
+) -> None:
+    """Add to what is found the numbers that are exact on the tape, and those whose balls settle the digits."""
+    tape, names = written
+    constants = {n: tape.constants.get(int(k)) for n, k in zip(names, tape.outputs[0], strict=True)}
+    for name in numbers.keys() - found.keys():
+        exact = constants.get(name)
+        settled = told(numbers[name], digits, attempt) if exact is None else Enclosure(exact, exact)
+        if settled is not None:
+            found[name] = settled
 
 
 def _deflection(found: Mapping[str, Enclosure], number: int, cosine: arb, sine: arb) -> dict[str, arb]:

@@ -9,17 +9,18 @@ apart has the energy k |d|^2/2 - k l0 |d| + k l0^2/2, so that K = k l0.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
 from fractions import Fraction
+from itertools import combinations
 
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
 from ptmcad.errors import ConfigError, GeometryError
-from ptmcad.mechanism import Kind, Mechanism, System
+from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, System
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.work import split_moments
 from ptmcad.question.domain import fault, unproved
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.numerals import text_of
 from ptmcad.text.tree import Tree, to_text
@@ -40,13 +41,23 @@ _USED = frozenset(
 """What a description may have: nothing else may go unnoticed into a proof."""
 
 
+Vector = tuple[TrigonometricPolynomial, TrigonometricPolynomial]
+
+
 @dataclass(frozen=True, slots=True)
 class Cone:
-    """A spring with a free length: its name, K, and the difference d of its ends' coordinates."""
+    """A spring with a free length: its name, K, and the difference d of its ends' coordinates.
+
+    Attributes
+    ----------
+    weights : one vector w_i for each equation, from which it takes K u . w_i, u = d/|d|: the derivatives of d by the
+        unknowns; with closed loops that along them, in the last equation, and zero in the others.
+    """
 
     name: str
     pull: Expression
-    difference: tuple[TrigonometricPolynomial, TrigonometricPolynomial]
+    difference: Vector
+    weights: tuple[Vector, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +82,10 @@ class Problem:
     inequalities : a solution counts where all are positive.
     stability : without a potential, it is stable where all of these are, too.
     multiples : of the equations, which vanish at solutions as well.
+    closing : so many of the first equations say that loops are closed, and no spring is in them; the last one is the
+        energy's slope along the curve of configurations that is left. A solution is stable where the determinant of the
+        Jacobian is positive, which then is not among ``stability``. 0 without springs of free lengths, and without
+        loops.
     """
 
     unknowns: tuple[str, ...]
@@ -81,9 +96,15 @@ class Problem:
     inequalities: tuple[Condition, ...] = ()
     stability: tuple[Condition, ...] = ()
     multiples: tuple[TrigonometricPolynomial, ...] = ()
+    closing: int = 0
+
+    @property
+    def moves_along_a_curve(self) -> bool:
+        """Whether configurations, or those in which loops are closed, are a curve."""
+        return self.closing > 0 or len(self.unknowns) == 1
 
     def conditions(self, count: Count) -> tuple[Condition, ...]:
-        """What is positive at all solutions that are counted, and at no others."""
+        """What is positive at all solutions that are counted, and at no others, but for a determinant."""
         return self.inequalities + (self.stability if count is Count.STABLE else ())
 
     @property
@@ -120,20 +141,49 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
         if key not in _IRRELEVANT | _SAID_IN_EQUATIONS | _USED and getattr(model, key):
             raise ConfigError(f"the certified engine does not take {key}, and {model.name} has some", key=key)
     ring = Harmonics(tuple(model.unknowns), model.reals, slice.parameters)
+    if isinstance(model, ClosedMechanism) and slice.has_free_lengths:
+        return _of_loops(model, ring, slice.axes)
     if isinstance(model, System):
         return _of_system(model, ring)
     assert isinstance(model, Mechanism)
-    smooth, cones = _energy(model, ring)
-    for cone in cones:
-        asked = f"stiffness times free length of spring {cone.name}", Kind.FREE_LENGTH, cone.pull, slice.axes
-        if problem := fault(*asked) or unproved(*asked):
-            number = next(n for n, spring in enumerate(model.springs, 1) if spring.name == cone.name)
-            raise GeometryError(problem, part=f"springs.{number}")
-    equations = list(_gradient(smooth, ring))
+    cones = tuple(_cones(model, ring))
+    _check_pulls(model, cones, slice.axes)
+    equations = list(_gradient(_energy(model, ring), ring))
     for unknown, tree in split_moments(model).steady:
         k = ring.unknowns.index(unknown)
         equations[k] = equations[k] - evaluate(tree, ring)
     return Problem(ring.unknowns, ring.reals, tuple(equations), cones, model.has_potential)
+
+
+def _check_pulls(mechanism: Mechanism, cones: Sequence[Cone], axes: tuple[Axis, Axis]) -> None:
+    for cone in cones:
+        asked = f"stiffness times free length of spring {cone.name}", Kind.FREE_LENGTH, cone.pull, axes
+        if problem := fault(*asked) or unproved(*asked):
+            number = next(n for n, spring in enumerate(mechanism.springs, 1) if spring.name == cone.name)
+            raise GeometryError(problem, part=f"springs.{number}")
+
+
+def _of_loops(model: ClosedMechanism, ring: Harmonics, axes: tuple[Axis, Axis]) -> Problem:
+    """Of closed loops with one degree of freedom left: where K |d| is taken off the energy, K u . w is taken off its
+    slope along the loops, w being the derivative of d along them."""
+    places = [ring.unknowns.index(name) for name in (*model.angles, *model.reals)]
+    # where unknowns are in another order the Jacobian's determinant may have the other sign: so has the slope then
+    sign = Fraction(-1 if sum(a > b for a, b in combinations(places, 2)) % 2 else 1)
+    tangent = [evaluate(tree, ring).scaled(sign) for tree in model.tangent]
+    nothing = ring.constant(Fraction(0))
+
+    def along(f: TrigonometricPolynomial) -> TrigonometricPolynomial:
+        slopes = (t * f.derivative(k) for t, k in zip(tangent, places, strict=True))
+        return sum(slopes, start=nothing)
+
+    bars = len(model.equations) - 1
+    cones = tuple(
+        replace(cone, weights=(*[(nothing, nothing)] * bars, (along(cone.difference[0]), along(cone.difference[1]))))
+        for cone in _cones(model.mechanism, ring)
+    )
+    _check_pulls(model.mechanism, cones, axes)
+    *closed, slope = (evaluate(tree, ring) for tree in model.equations)
+    return Problem(ring.unknowns, ring.reals, (*closed, slope.scaled(sign)), cones, False, closing=bars)
 
 
 def _of_system(system: System, ring: Harmonics) -> Problem:
@@ -186,23 +236,33 @@ def _gradient(energy: TrigonometricPolynomial, ring: Harmonics) -> tuple[Trigono
     return tuple(energy.derivative(k) for k in range(len(ring.unknowns)))
 
 
-def _energy(mechanism: Mechanism, ring: Harmonics) -> tuple[TrigonometricPolynomial, tuple[Cone, ...]]:
-    points = {name: (evaluate(x, ring), evaluate(y, ring)) for name, (x, y) in mechanism.points.items()}
-    smooth, cones = ring.constant(Fraction(0)), []
+def _points(mechanism: Mechanism, ring: Harmonics) -> dict[str, Vector]:
+    return {name: (evaluate(x, ring), evaluate(y, ring)) for name, (x, y) in mechanism.points.items()}
+
+
+def _cones(mechanism: Mechanism, ring: Harmonics) -> Iterator[Cone]:
+    """The springs with a free length, as parts of the energy's derivatives by the unknowns."""
+    points = _points(mechanism, ring)
     for spring in mechanism.springs:
-        (x0, y0), (x1, y1) = points[spring.start], points[spring.end]
-        k, free = evaluate(spring.stiffness, ring), evaluate(spring.free, ring)
-        dx, dy = x1 - x0, y1 - y0
-        smooth = smooth + (k * (dx * dx + dy * dy)).scaled(Fraction(1, 2))
-        pull = constant_of(k * free)
+        dx, dy = (b - a for a, b in zip(points[spring.start], points[spring.end], strict=True))
+        pull = constant_of(evaluate(spring.stiffness, ring) * evaluate(spring.free, ring))
         if pull.numerator and (dx.terms or dy.terms):
-            cones.append(Cone(spring.name, pull, (dx, dy)))
+            slopes = tuple((dx.derivative(k), dy.derivative(k)) for k in range(len(ring.unknowns)))
+            yield Cone(spring.name, pull, (dx, dy), slopes)
+
+
+def _energy(mechanism: Mechanism, ring: Harmonics) -> TrigonometricPolynomial:
+    """Without what springs with a free length take off it."""
+    points, smooth = _points(mechanism, ring), ring.constant(Fraction(0))
+    for spring in mechanism.springs:
+        dx, dy = (b - a for a, b in zip(points[spring.start], points[spring.end], strict=True))
+        smooth = smooth + (evaluate(spring.stiffness, ring) * (dx * dx + dy * dy)).scaled(Fraction(1, 2))
     for tree in (*(torsion.energy for torsion in mechanism.torsion), *split_moments(mechanism).energies):
         smooth = smooth + evaluate(tree, ring)
     for load in mechanism.loads:
         for force, coordinate in zip((load.x, load.y), points[load.point], strict=True):
             smooth = smooth - evaluate(force, ring) * coordinate
-    return smooth, tuple(cones)
+    return smooth
 
 
 def constant_of(value: TrigonometricPolynomial) -> Expression:

@@ -119,7 +119,12 @@ def system_from(model: Model) -> ParametricSystem:
 
 def elements_of(model: System, trees: Iterable[Tree]) -> tuple[TrigonometricPolynomial, ...]:
     """Trees in a system's parameters and unknowns as elements of its ring, reduced."""
-    return _elements(TrigonometricRing(model.variables, model.angles, model.reals), trees)
+    return _elements(TrigonometricRing(_parameters_of(model), model.angles, model.reals), trees)
+
+
+def _parameters_of(model: System) -> tuple[str, ...]:
+    """Those of a system's ring; the equations of closed loops have no free lengths."""
+    return model.without_free_lengths if isinstance(model, ClosedMechanism) else model.variables
 
 
 def _elements(ring: TrigonometricRing, trees: Iterable[Tree]) -> tuple[TrigonometricPolynomial, ...]:
@@ -127,13 +132,14 @@ def _elements(ring: TrigonometricRing, trees: Iterable[Tree]) -> tuple[Trigonome
 
 
 def _equations_of(model: System) -> ParametricSystem:
-    ring = TrigonometricRing(model.variables, model.angles, model.reals)
+    parameters = _parameters_of(model)
+    ring = TrigonometricRing(parameters, model.angles, model.reals)
     elements = partial(_elements, ring)
 
     asked: dict[str, Any] = {
         "inequalities": elements(model.inequalities),
-        "positive": model.positive,
-        "nonnegative": model.nonnegative,
+        "positive": tuple(name for name in model.positive if name in parameters),
+        "nonnegative": tuple(name for name in model.nonnegative if name in parameters),
     }
     if model.potential is not None:
         (potential,) = elements([model.potential])

@@ -250,9 +250,10 @@ def _check_count(record: Record, resolved: Mapping[str, Expression]) -> None:
             )
     if count is Count.INDEX and not model.has_potential:
         problem = "solutions of equations have no index, which is that of a potential's Hessian: count total"
-    if count is Count.ADMISSIBLE and isinstance(model, System):
-        what = "a mechanism with closed loops" if isinstance(model, ClosedMechanism) else "a system"
-        problem = f"{what} has no springs whose lengths would be admissible: count stable or total"
+    if count is Count.ADMISSIBLE and isinstance(model, ClosedMechanism):
+        problem = "admissible equilibria are not counted in a mechanism with closed loops: count stable or total"
+    elif count is Count.ADMISSIBLE and isinstance(model, System):
+        problem = "a system has no springs whose lengths would be admissible: count stable or total"
     elif count is Count.ADMISSIBLE and not have_free_lengths(model, resolved):
         problem = f"{NOTHING_ADMISSIBLE}: choose stable"
     if problem:

@@ -20,10 +20,14 @@ def table(found: CertifiedIntervals, digits: int) -> str:
     fixed = ", ".join(f"{n} = {shortest_text(v)}" for n, v in found.at.items())
     peaks = any(i.cones is not None for i in found.intervals)  # of the paper's mechanism only
     only_totals = all(i.index is None for i in found.intervals) and any(i.total is not None for i in found.intervals)
-    told = [] if only_totals else ["stable", "min-saddle-max" if peaks else "index", *["peaks"] * peaks]
+    told = ["stable", "min-saddle-max" if peaks else "index", *["peaks"] * peaks]
+    if only_totals:
+        told = ["stable"] if any(i.stable is not None for i in found.intervals) else []
     rows = [["from", "to", "total", *told, "sample"]]
     for i in found.intervals:
         counts = ["undecided" if i.total is None else str(i.total), *[""] * len(told)]
+        if i.stable is not None:
+            counts[1] = str(i.stable)
         if i.index is not None:
             counts = [str(sum(i.index)), str(i.index[0]), "-".join(map(str, i.index)), *[str(i.cones)] * peaks]
         rows.append([_text(i.low, digits, up=True), _text(i.high, digits), *counts, shortest_text(i.sample)])

@@ -62,7 +62,7 @@ def enclosed_data(found: CertifiedIntervals, digits: int) -> dict[str, Any]:
                 "low": place_data(i.low, digits),
                 "high": place_data(i.high, digits),
                 "total": i.total,
-                "stable": None if i.index is None else i.index[0],
+                "stable": i.stable,
                 "index": None if i.index is None else list(i.index),
                 "peaks": i.cones,
                 "sample": text_of(i.sample),

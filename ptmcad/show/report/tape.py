@@ -14,7 +14,7 @@ from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import kind_name
-from ptmcad.mechanism import Mechanism, Model, System
+from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, System
 from ptmcad.mechanism.energy import points_in, with_springs
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.work import split_moments
@@ -83,10 +83,13 @@ class _Node:
 def tape(result: RegionMap) -> dict[str, Any] | None:
     """What the script needs to follow solutions over the map; None where nothing can be followed.
 
-    That is where no cell has solutions, a parameter has no value or a number is too large for doubles.
+    That is where no cell has solutions, a parameter has no value or a number is too large for doubles; and with free
+    lengths in closed loops, whose roots are in no equation of the description.
     """
     slice = result.slice
     model = slice.model
+    if isinstance(model, ClosedMechanism) and slice.has_free_lengths:
+        return None
     if not any(cell.solutions for cell in result.cells) or not _fits(slice):
         return None
     names = tuple(name for name in model.variables if name in slice.parameters)

@@ -4,14 +4,15 @@ Guarantee: every ball contains the exact value at each configuration and for all
 spring with a free length may have no length, its direction is any unit vector, and nothing is said of the Jacobian.
 
 The potential is V - sum of K |d|. With u = d/|d|, slopes g_i of d by the unknowns, second derivatives g_ij, and
-c_i = u x g_i, a spring's part of the equations is -K u.g_i and of the Hessian -K (c_i c_j/|d| + u.g_ij).
+c_i = u x g_i, a spring's part of the equations is -K u.g_i and of the Hessian -K (c_i c_j/|d| + u.g_ij). With closed
+loops other vectors w_i are in the place of the g_i: of the equations -K u.w_i, and -K ((u x w_i) c_j/|d| + u.w_ij).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import combinations
-from math import prod
+from math import inf, prod
 from typing import NamedTuple
 
 from flint import arb, arb_mat
@@ -32,7 +33,8 @@ class Spring(NamedTuple):
     number : of the cone.
     length : |d|.
     slopes : g_i.
-    part : K u.g_i.
+    weights : w_i, which are the g_i but with closed loops.
+    part : K u.w_i.
     bends : K times an upper bound of |g_ii|.
     is_short : whether it may have no length.
     """
@@ -41,6 +43,7 @@ class Spring(NamedTuple):
     pull: arb
     length: arb
     slopes: tuple[Vector, ...]
+    weights: tuple[Vector, ...]
     part: tuple[arb, ...]
     bends: tuple[arb, ...]
     is_short: bool
@@ -69,14 +72,14 @@ class Jet(NamedTuple):
     def balances(self, s: Spring) -> list[arb]:
         """Numbers that are zero at every solution, whatever the direction of a spring.
 
-        With r_i what the equations are without it, a solution has r_i = K u.g_i for a unit vector u; for two unknowns
-        adj(A) r = K det(A) u, A having the rows g_i and g_j.
+        With r_i what the equations are without it, a solution has r_i = K u.w_i for a unit vector u; for two unknowns
+        adj(A) r = K det(A) u, A having the rows w_i and w_j.
         """
         others = [other for other in self.springs if other.number != s.number]
         rest = [value - sum((o.part[k] for o in others), arb(0)) for k, value in enumerate(self.smooth)]
         found = []
         for i, j in combinations(range(len(rest)), 2):
-            (ai, bi), (aj, bj) = s.slopes[i], s.slopes[j]
+            (ai, bi), (aj, bj) = s.weights[i], s.weights[j]
             x, y = bj * rest[i] - bi * rest[j], ai * rest[j] - aj * rest[i]
             found.append(square(x) + square(y) - square(s.pull * (ai * bj - aj * bi)))
         return found
@@ -108,9 +111,17 @@ class Field:
     ----------
     values : a ball for each parameter; no pull of a spring is negative.
     conditions : of the form's inequalities and conditions for stability those that are asked for.
+    with_determinant : whether that of the Jacobian is a further condition, with its columns as `Form.closing` has them.
     """
 
-    def __init__(self, form: Form, values: Mapping[str, arb], conditions: Sequence[Waves] = ()):
+    def __init__(
+        self,
+        form: Form,
+        values: Mapping[str, arb],
+        conditions: Sequence[Waves] = (),
+        with_determinant: bool = False,
+    ):
+        self._with_determinant = with_determinant
         self.form, self.values, self._conditions = form, dict(values), len(conditions)
         self.cones: list[tuple[int, Cone, arb]] = []
         for number, cone in enumerate(form.cones):
@@ -119,7 +130,7 @@ class Field:
                 self.cones.append((number, cone, pull))
         rows: list[Waves] = [*form.equations, *form.jacobian]
         for _, cone, _ in self.cones:
-            for pair in (cone.vector, *cone.slopes, *cone.bends):
+            for pair in (cone.vector, *cone.slopes, *(cone.weights if form.closing else ()), *cone.bends):
                 rows += pair
         rows += conditions
         found = sorted({(turned, raised) for row in rows for turned, raised, _ in row})
@@ -158,12 +169,18 @@ class Field:
         smooth, place = rows[:n], n + n * n
         values, jacobian = list(smooth), [rows[n + n * i : n + n * i + n] for i in range(n)]
         springs = []
+        length = 2 + (4 if self.form.closing else 2) * n + 2 * n * n
         for number, _, pull in self.cones:
-            new = _spring(number, pull, rows[place : place + 2 + 2 * n + 2 * n * n], jacobian)
+            new = _spring(number, pull, rows[place : place + length], jacobian)
             values = [value - part for value, part in zip(values, new.part, strict=True)]
             springs.append(new)
-            place += 2 + 2 * n + 2 * n * n
-        return Jet(values, jacobian, smooth, tuple(springs), rows[len(rows) - self._conditions :])
+            place += length
+        conditions = rows[len(rows) - self._conditions :]
+        if self._with_determinant:
+            known = not any(s.is_short for s in springs)
+            ordered = [[row[k] for k in self.form.closing] for row in jacobian]
+            conditions = [*conditions, determinant(ordered) if known else arb(0, inf)]
+        return Jet(values, jacobian, smooth, tuple(springs), conditions)
 
 
 def _spring(number: int, pull: arb, rows: list[arb], jacobian: Matrix) -> Spring:
@@ -171,25 +188,40 @@ def _spring(number: int, pull: arb, rows: list[arb], jacobian: Matrix) -> Spring
     n = len(jacobian)
     a, b = rows[:2]
     slopes = tuple((rows[2 + 2 * i], rows[3 + 2 * i]) for i in range(n))
-    bends = rows[2 + 2 * n :]
+    bends = rows[len(rows) - 2 * n * n :]
+    is_gradient = len(rows) == 2 + 2 * n + 2 * n * n
+    weights = slopes if is_gradient else tuple((rows[2 * (n + i) + 2], rows[2 * (n + i) + 3]) for i in range(n))
     q = square(a) + square(b)
     outer = tuple(pull * size(*bends[2 * i * (n + 1) : 2 * i * (n + 1) + 2]) for i in range(n))
     if not q > 0:
         reach = (square(a).upper() + square(b).upper()).sqrt()
-        part = tuple(pull * _ANY * size(*g) for g in slopes)
-        return Spring(number, pull, reach, slopes, part, outer, True)
+        part = tuple(pull * _ANY * size(*w) for w in weights)
+        return Spring(number, pull, reach, slopes, weights, part, outer, True)
     inverse = q.rsqrt()
     u, v = unit(a * inverse), unit(b * inverse)
     cross = [u * gy - v * gx for gx, gy in slopes]
+    lean = cross if is_gradient else [u * wy - v * wx for wx, wy in weights]
     for i in range(n):
-        for j in range(i, n):
+        for j in range(i if is_gradient else 0, n):
             across, up = bends[2 * (i * n + j)], bends[2 * (i * n + j) + 1]
-            turning = square(cross[i]) if i == j else cross[i] * cross[j]
+            turning = square(cross[i]) if is_gradient and i == j else lean[i] * cross[j]
             entry = pull * (turning * inverse + u * across + v * up)
             jacobian[i][j] = jacobian[i][j] - entry
-            if i != j:
+            if is_gradient and i != j:
                 jacobian[j][i] = jacobian[j][i] - entry
-    return Spring(number, pull, q.sqrt(), slopes, tuple(pull * (u * x + v * y) for x, y in slopes), outer, False)
+    part = tuple(pull * (u * x + v * y) for x, y in weights)
+    return Spring(number, pull, q.sqrt(), slopes, weights, part, outer, False)
+
+
+def determinant(matrix: Matrix) -> arb:
+    """Along the first row; of the few rows that there are."""
+    if len(matrix) == 1:
+        return matrix[0][0]
+    terms = (
+        entry * (-1) ** k * determinant([[*row[:k], *row[k + 1 :]] for row in matrix[1:]])
+        for k, entry in enumerate(matrix[0])
+    )
+    return sum(terms, arb(0))
 
 
 _ZERO, _ONE = arb(0), arb(1)

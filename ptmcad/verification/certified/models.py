@@ -25,7 +25,7 @@ from ptmcad.verification.certified.parameters import exact, over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import Spent, zeros
 from ptmcad.verification.certified.vectors import evaluated
-from ptmcad.verification.certified.waves import Form, Waves
+from ptmcad.verification.certified.waves import Form
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
 
@@ -55,11 +55,11 @@ class ModelCounting:
         for bits in PRECISIONS:
             with ctx.workprec(bits):
                 try:
-                    field = _field_at(self.form, values, _conditions(self.form, count))
+                    field = _field_at(self.form, values, count)
                     all_found, _ = zeros(field, _only_minima(self.form, count), [_start(field)], self._budget)
                     found = _counted(field, all_found, count)
-                    if count is Count.TOTAL and self.form.stability:
-                        found = _with_signs(_field_at(self.form, values, self.form.stability), found)
+                    if count is Count.TOTAL and self.form.conditions_for_stability:
+                        found = _with_signs(_field_at(self.form, values, Count.STABLE), self.form, found)
                 except Spent:
                     raise  # more digits would not make them fewer
                 except Unproved as unproved:
@@ -98,7 +98,7 @@ class ModelCounting:
         values = {name: arb(0) for name in slice.model.free_lengths} | values
         if not all(evaluated(cone.pull, values) >= 0 for cone in self.form.cones):
             raise Unproved("a stiffness times a free length may be negative")
-        field = Field(self.form, values, _conditions(self.form, slice.count))
+        field = _field(self.form, values, slice.count)
         # boxes much smaller than the box of parameters are excluded no better than larger ones
         smallest = max(float(max(x.rad(), y.rad())) / 256, 2.0**-32)
         minima = _only_minima(self.form, slice.count)
@@ -115,9 +115,12 @@ def _only_minima(form: Form, count: Count) -> bool:
     return form.is_gradient and count in MINIMA
 
 
-def _conditions(form: Form, count: Count) -> tuple[Waves, ...]:
-    """What is positive at the solutions that are counted, and at no others."""
-    return form.inequalities + (form.stability if count is Count.STABLE else ())
+def _field(form: Form, values: Mapping[str, arb], count: Count | None) -> Field:
+    """The equations with what is positive at the solutions that are counted, and at no others, if a count is given."""
+    if count is None:
+        return Field(form, values)
+    stable = count is Count.STABLE
+    return Field(form, values, form.inequalities + (form.stability if stable else ()), stable and bool(form.closing))
 
 
 def _counted(field: Field, found: Sequence[Zero], count: Count) -> list[Zero]:
@@ -136,16 +139,17 @@ def _counted(field: Field, found: Sequence[Zero], count: Count) -> list[Zero]:
         if not all(c > 0 for c in conditions):
             where = ", ".join(f"{x:.6g}" for x in zero.center)
             raise Unproved(f"a condition may be zero at the solution near ({where})")
-        signs = zero.signs if field.form.is_gradient or count is not Count.STABLE else "+" * len(field.form.stability)
+        of_equations = not field.form.is_gradient and count is Count.STABLE
+        signs = "+" * field.form.conditions_for_stability if of_equations else zero.signs
         kept.append(replace(zero, signs=signs))
     return kept
 
 
-def _with_signs(field: Field, found: Sequence[Zero]) -> list[Zero]:
-    """The solutions with the signs of the field's conditions; empty where one is not certain."""
+def _with_signs(field: Field, form: Form, found: Sequence[Zero]) -> list[Zero]:
+    """The solutions with the signs of the conditions for stability; empty where one is not certain."""
     kept = []
     for zero in found:
-        conditions = field(zero.within).conditions
+        conditions = field(zero.within).conditions[len(form.inequalities) :]
         certain = all(c > 0 or c < 0 for c in conditions)
         kept.append(replace(zero, signs="".join("+" if c > 0 else "-" for c in conditions) if certain else ""))
     return kept
@@ -175,8 +179,8 @@ def _values_at(claims: Claims, form: Form, x: Fraction, y: Fraction) -> dict[str
     return values
 
 
-def _field_at(form: Form, values: Mapping[str, Fraction], conditions: Sequence[Waves] = ()) -> Field:
-    return Field(form, {name: exact(value) for name, value in values.items()}, conditions)
+def _field_at(form: Form, values: Mapping[str, Fraction], count: Count | None = None) -> Field:
+    return _field(form, {name: exact(value) for name, value in values.items()}, count)
 
 
 def _start(field: Field) -> Box:

@@ -11,7 +11,7 @@ from fractions import Fraction
 from flint import arb
 
 from ptmcad.errors import ExpressionError
-from ptmcad.mechanism import Kind, Mechanism
+from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.parsing import parse
@@ -68,7 +68,8 @@ def check_domain(claims: Claims) -> str:
 
 def _undecided_parts(slice: Slice, window: Window) -> list[str]:
     """The stiffnesses and free lengths written in springs of which it could not be decided that they make sense."""
-    model, undecided = slice.model, []
+    undecided: list[str] = []
+    model = slice.model.mechanism if isinstance(slice.model, ClosedMechanism) else slice.model
     if not isinstance(model, Mechanism):
         return []
     known = {name: 0 * axis(0) for name in model.free_lengths} | dict(slice.parameters)

@@ -115,7 +115,7 @@ def _check_signs(claims: CertifiedClaims, true: str, said: str, k: int) -> None:
     if claims.result.slice.count is Count.TOTAL and not claims.model.has_potential:
         if not said:
             return  # of solutions that are all counted nothing need be said
-        if not true and len(said) == len(claims.result.system.stability):
+        if not true and len(said) == form_of(claims.model).conditions_for_stability:
             raise Unproved(f"a condition for stability may be zero at the solution {k}")
     if true != said:
         if not claims.model.has_potential:

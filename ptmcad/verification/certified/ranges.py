@@ -119,16 +119,17 @@ class _Bounds:
 
         rows = [row(waves) for waves in form.equations]
         springs = [
-            [(_value(c.pull, values), row(c.slopes[k][0]), row(c.slopes[k][1])) for c in form.cones]
+            [(_value(c.pull, values), row(c.weights[k][0]), row(c.weights[k][1])) for c in form.cones]
             for k in range(form.size)
         ]
         self.equations = list(map(_Equation, rows, springs))
-        if not form.cones:
+        rigid = rows[: len(form.rigid)]
+        if rigid:
             more = [row(waves) for waves in form.multiples]
             if with_products:
-                more += [_times(f, k) for f in rows for k in range(form.size) if not form.is_circle[k]]
-            self.equations += [_Equation(f) for f in (*more, *_combined([*rows, *more]))]
-        self.is_smooth = not form.cones
+                more += [_times(f, k) for f in rigid for k in range(form.size) if not form.is_circle[k]]
+            self.equations += [_Equation(f) for f in (*more, *_combined([*rigid, *more]))]
+        self.has_polynomials = bool(rigid)
         self.inequalities = [row(waves) for waves in form.inequalities]
         unit = [(((0,) * form.size, tuple(int(j == k) for j in range(form.size)), 0), k) for k in range(form.size)]
         self.positive = {k for key, k in unit for f in self.inequalities if f.keys() == {key} and f[key] > 0}
@@ -161,7 +162,7 @@ class _Bounds:
 
     def together(self, chosen: Sequence[int]) -> dict[int, float] | None:
         """Bounds of some unknowns that bound one another."""
-        if not self.is_smooth:
+        if not self.has_polynomials:
             return None
         for weights in sorted(product(range(1, MAX_WEIGHT + 1), repeat=len(chosen)), key=lambda w: (max(w), sum(w))):
             of = dict(zip(chosen, weights, strict=True))

@@ -19,12 +19,14 @@ from typing import Any
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz
 
 from ptmcad.answer.regionmap import System
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
 from ptmcad.text.tree import names_of
 from ptmcad.verification.certified.decimals import in_quotients
 from ptmcad.verification.certified.refutation import differs_somewhere
+from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import MECHANISM, Configuration, formulas, work
+from ptmcad.verification.loops import distances
 from ptmcad.verification.report import Unchecked, Violation
 
 _MAX_TEXT = 5_000
@@ -49,9 +51,14 @@ def check_potential(claims: Claims) -> str:
     unknowns = tuple(model.unknowns)
     if system.unknowns != unknowns:
         raise Violation(f"the unknowns are {system.unknowns}, not {unknowns}")
+    bars = 0
+    if isinstance(model, ClosedMechanism) and form_of(model).closing and claims.result.slice.has_free_lengths:
+        bars, model = len(model.mechanism.closing), model.mechanism
     of_mechanism = isinstance(model, Mechanism)
-    if system.relations or system.hessian or ((model.has_potential or of_mechanism) and system.gradient):
-        raise Violation("a certified map has no relations, and its gradient and Hessian follow from the potential")
+    if len(system.relations) != bars:
+        raise Violation(f"there are {bars} loops that are closed, and {len(system.relations)} relations")
+    if system.hessian or ((model.has_potential or of_mechanism) and system.gradient):
+        raise Violation("a certified map's gradient and Hessian follow from the potential")
     if system.moments and (model.has_potential or not of_mechanism):
         raise Violation("moments are stated beside the potential where one depends on another unknown only")
     text = _Text(model)
@@ -65,6 +72,10 @@ def check_potential(claims: Claims) -> str:
             raise Violation(f"there are {len(equations)} equations and no potential")
         pairs = [(f"equation {k}", t, e) for k, (t, e) in enumerate(zip(system.gradient, equations, strict=True))]
     pairs += _conditions(text, system)
+    if bars:
+        assert isinstance(model, Mechanism)
+        kept = distances(model, text.configuration.points(model), text.configuration.value)
+        pairs += [(f"relation {k}", t, r) for k, (t, r) in enumerate(zip(system.relations, kept, strict=True))]
     unchecked = [reason for what, stored, true in pairs if (reason := _compared(text, what, stored, true))]
     if unchecked:
         return Unchecked(unchecked[0])

@@ -6,15 +6,15 @@ products of one wave, a cosine or a sine of a sum of whole multiples of angles, 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
 from ptmcad.verification.certified.vectors import Terms
-from ptmcad.verification.derivation import Configuration, formulas, has_index
+from ptmcad.verification.derivation import Configuration, along_loops, formulas, has_index
 
 Multi = tuple[int, ...]
 """For each unknown the multiple of an angle, or the power of a real unknown."""
@@ -33,13 +33,17 @@ class Cone(NamedTuple):
     name : of the spring.
     pull : K, the stiffness times the free length.
     vector : between the spring's ends.
-    slopes, bends : first derivatives of both by the unknowns, and the second ones row by row.
+    slopes : first derivatives of both by the unknowns.
+    weights : for each equation the vector whose product with the spring's direction, times K, it lacks: the slopes, but
+        with closed loops the derivative along them in the last equation, and nothing in the others.
+    bends : the weights' derivatives by the unknowns, row by row.
     """
 
     name: str
     pull: Terms
     vector: tuple[Waves, Waves]
     slopes: tuple[tuple[Waves, Waves], ...]
+    weights: tuple[tuple[Waves, Waves], ...]
     bends: tuple[tuple[Waves, Waves], ...]
 
 
@@ -54,6 +58,9 @@ class Form(NamedTuple):
         real unknowns that are not zero where a solution counts.
     inequalities, stability : positive at solutions that count, and at stable ones.
     multiples : of the equations, before they were divided.
+    closing : with closed loops and cones the numbers of the unknowns, angles first: the first equations say that the
+        loops are closed, no cone is in them, and a solution is stable where the determinant of the Jacobian, its
+        columns in this order, is positive; there is no other condition for stability then. Empty otherwise.
     """
 
     unknowns: tuple[str, ...]
@@ -65,6 +72,17 @@ class Form(NamedTuple):
     inequalities: tuple[Waves, ...] = ()
     stability: tuple[Waves, ...] = ()
     multiples: tuple[Waves, ...] = ()
+    closing: tuple[int, ...] = ()
+
+    @property
+    def conditions_for_stability(self) -> int:
+        """How many there are."""
+        return 1 if self.closing else len(self.stability)
+
+    @property
+    def rigid(self) -> tuple[Waves, ...]:
+        """The equations in which no cone is."""
+        return self.equations[:-1] if self.closing else () if self.cones else self.equations
 
     @property
     def size(self) -> int:
@@ -169,14 +187,31 @@ def form_of(model: Model) -> Form:
         order = model.angles + model.reals
         equations = [_less(_by(potential, k), ring.waves(given.moment(order.index(unknowns[k])))) for k in everything]
     jacobian = [_by(e, k) for e in equations for k in everything]
+    cones: tuple[Cone, ...] = ()
+    closing: tuple[int, ...] = ()
+    if isinstance(model, Mechanism):
+        cones = tuple(_cones(ring, model))
+    elif isinstance(model, ClosedMechanism) and not (model.multipliers or model.mechanism.xjoints):
+        along = [[ring.waves(f) for f in pair] for pair in along_loops(ring.configuration, model)]
+        cones = tuple(_cones(ring, model.mechanism, along))
+        closing = tuple(unknowns.index(name) for name in model.angles + model.reals) if cones else ()
+    if closing:
+        stability = []  # the determinant of the whole Jacobian
+
+    def kept(some: Iterable[_Polynomials]) -> tuple[Waves, ...]:
+        return tuple(_kept(f, ring.parameters) for f in some)
+
     return Form(
         unknowns,
         tuple(name in model.angles for name in unknowns),
         has_index(model),
-        tuple(_kept(e, ring.parameters) for e in equations),
-        tuple(_kept(e, ring.parameters) for e in jacobian),
-        tuple(_cones(ring, model)) if isinstance(model, Mechanism) else (),
-        *(tuple(_kept(f, ring.parameters) for f in some) for some in (inequalities, stability, multiples)),
+        kept(equations),
+        kept(jacobian),
+        cones,
+        kept(inequalities),
+        kept(stability),
+        kept(multiples),
+        closing,
     )
 
 
@@ -194,14 +229,22 @@ def _divided(f: _Polynomials, inequalities: Iterable[_Polynomials]) -> _Polynomi
     return found
 
 
-def _cones(ring: _Ring, mechanism: Mechanism) -> Iterable[Cone]:
+def _cones(ring: _Ring, mechanism: Mechanism, along: Sequence[list[_Polynomials]] = ()) -> Iterable[Cone]:
+    """The springs with a free length.
+
+    Parameters
+    ----------
+    along : of each spring the derivative of its vector along closed loops, where there are any.
+    """
     points = ring.configuration.points(mechanism)
     everything = range(len(ring.unknowns))
-    for spring in mechanism.springs:
+    for n, spring in enumerate(mechanism.springs):
         pull = ring.configuration.value(spring.stiffness) * ring.configuration.value(spring.free)
         vector = [ring.waves(points[spring.end][i] - points[spring.start][i]) for i in (0, 1)]
         slopes = [[_by(d, k) for d in vector] for k in everything]
-        bends = [[_by(d, j) for d in slope] for slope in slopes for j in everything]
+        nothing: list[_Polynomials] = [{}, {}]
+        weights = [*[nothing] * (len(ring.unknowns) - 1), along[n]] if along else slopes
+        bends = [[_by(d, j) for d in weight] for weight in weights for j in everything]
         strength = _kept(ring.waves(pull), ring.parameters)
         if not strength or not any(d for slope in slopes for d in slope):
             continue
@@ -211,7 +254,7 @@ def _cones(ring: _Ring, mechanism: Mechanism) -> Iterable[Cone]:
             return across, up
 
         ((_, terms),) = strength.items()
-        yield Cone(spring.name, terms, pair(vector), tuple(map(pair, slopes)), tuple(map(pair, bends)))
+        yield Cone(spring.name, terms, pair(vector), *(tuple(map(pair, some)) for some in (slopes, weights, bends)))
 
 
 def _kept(f: _Polynomials, parameters: tuple[str, ...]) -> Waves:

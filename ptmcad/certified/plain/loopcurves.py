@@ -1,0 +1,60 @@
+"""The curves of a slice at which counts of a mechanism with closed loops and springs of free lengths change.
+
+Guarantee: as that of `ptmcad.certified.plain.curves`: folds, places where a loop folds flat, and equilibria that a
+spring's cone swallows (Theorem 5 of docs/soundness.md).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ptmcad.certified.curve import Curve
+from ptmcad.certified.plain.bounds import TURN
+from ptmcad.certified.plain.infinity import Patch
+from ptmcad.certified.plain.loopchart import loop_chart
+from ptmcad.certified.plain.problem import FIRST
+from ptmcad.certified.scales import TURNING_WEIGHT, short_lengths, variable_weights
+from ptmcad.certified.system import system
+from ptmcad.question.slice import Slice
+
+_REASON = "equilibria meet, or a loop folds flat: the Jacobian is singular"
+
+
+def curves_of_loops(slice: Slice, patch: Patch) -> Iterator[Curve]:
+    """The folds, every spring with a free length long; the same with one short, in its chart; and the cones."""
+    problem, ranges, at = patch.problem, patch.ranges, loop_chart(patch.problem)
+    variables = 0, 1, *problem.variables
+    weights = variable_weights(slice, at.equations, ranges)
+    shorts = short_lengths(slice, at.lengths, ranges)
+    long = [extent - short for extent, short in zip(at.lengths, shorts, strict=True)]
+    fold = system([*at.equations, at.determinant()], variables, ((), ()), long)
+    yield Curve("fold", _REASON, fold, ranges, np.array(weights))
+    for s, (cone, short) in enumerate(zip(problem.cones, shorts, strict=True)):
+        turned = loop_chart(problem, s)
+        aligned, along, *_ = turned.turning
+        yield Curve(
+            f"fold, spring {cone.name} short",
+            f"{_REASON}; spring {cone.name} is at most {short} long",
+            system(
+                [aligned, *turned.equations, turned.extended_determinant()],
+                (*variables, FIRST + len(problem.unknowns)),
+                ((), ()),
+                [along, short - turned.lengths[s]],
+            ),
+            (*ranges, TURN),
+            np.array([*weights, TURNING_WEIGHT]),
+        )
+    graph = at.equations[0].graph
+    unknowns = [graph.variable(k) for k in problem.variables]
+    for cone in problem.cones:
+        # configurations are a curve: two equations d = 0 leave curves in the window and need no direction
+        vanishing = [f for f in (d.formula(graph, unknowns) for d in cone.difference) if f.value != 0]
+        yield Curve(
+            f"cone {cone.name}",
+            f"an equilibrium is swallowed where spring {cone.name} has no length",
+            system([*at.equations[: problem.closing], *vanishing], variables, ((), at.equations[problem.closing :])),
+            ranges,
+            np.array(weights),
+        )
