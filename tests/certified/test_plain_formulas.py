@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
 import pytest
 from flint import arb, arb_mat
 from support.records import TRUSS
@@ -19,6 +20,7 @@ from ptmcad.certified.plain.bounds import ranges
 from ptmcad.certified.plain.points import inertia, plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.trigonometric import Harmonics
+from ptmcad.certified.search import search_curve
 from ptmcad.errors import ConfigError, GeometryError
 from ptmcad.mechanism import Mechanism
 from ptmcad.mechanism.ptm import RECORD
@@ -182,6 +184,27 @@ def test_plain_and_refined_formulas_count_the_same_equilibria_of_the_papers_mech
         assert (first.total, first.stable, first.index) == (second.total, second.stable, second.index), (x, y)
         stable = counters[0].at(Fraction(x), Fraction(y), Count.STABLE)
         assert stable.decided and stable.stable == first.stable
+
+
+def _boxes(slice: Slice, area: float) -> int:
+    """How many boxes the curves of a slice take until each box that is left projects to that share of the window."""
+    total = 0
+    window = np.array([[*(float(axis.low) for axis in slice.axes), *(float(axis.high) for axis in slice.axes)]])
+    share = area * float((window[0, 2] - window[0, 0]) * (window[0, 3] - window[0, 1]))
+    for curve in curves(slice, slice.count):
+        found = search_curve(curve.system.arguments(), curve.start(window), share, 10**6, curve.importance())
+        assert not len(found.waiting)
+        total += found.used
+    return total
+
+
+@pytest.mark.parametrize(("count", "factor"), [("stable", 1.2), ("index", 1.6)])
+def test_plain_formulas_take_hardly_more_boxes_than_the_refined_ones(count: str, factor: float) -> None:
+    plain, refined = (
+        _boxes(_slice(PLAIN_PTM, mechanism=mechanism, count=count), 4.0**-3)
+        for mechanism in (PLAIN_PTM["mechanism"], "ptm")
+    )
+    assert plain < factor * refined
 
 
 @pytest.mark.slow
