@@ -55,10 +55,10 @@ def check_potential(claims: Claims) -> str:
     if isinstance(model, ClosedMechanism) and form_of(model).closing and claims.result.slice.has_free_lengths:
         bars, model = len(model.mechanism.closing), model.mechanism
     of_mechanism = isinstance(model, Mechanism)
-    if len(system.relations) != bars:
+    if bars and len(system.relations) != bars:
         raise Violation(f"there are {bars} loops that are closed, and {len(system.relations)} relations")
-    if system.hessian or ((model.has_potential or of_mechanism) and system.gradient):
-        raise Violation("a certified map's gradient and Hessian follow from the potential")
+    if (system.relations and not bars) or system.hessian or ((model.has_potential or of_mechanism) and system.gradient):
+        raise Violation("a certified map has no relations, and its gradient and Hessian follow from the potential")
     if system.moments and (model.has_potential or not of_mechanism):
         raise Violation("moments are stated beside the potential where one depends on another unknown only")
     text = _Text(model)
