@@ -49,8 +49,9 @@ _SINCE_VARIETY: tuple[CheckOf, ...] = (
 
 
 def verify(
-    result: RegionMap, seed: int | None = None, boxes: int | None = None, progress: Progress | None = None
-) -> VerifyReport:
+    result: RegionMap, seed: int | None = None, boxes: int | None = None, progress: Progress | None = None,
+    effort: int | None = None,
+) -> VerifyReport:  # fmt: skip
     """Check a result without the code that made it.
 
     Parameters
@@ -59,6 +60,8 @@ def verify(
         certified map; drawn from a hash of the claims when None, so that nobody can fit claims to the points.
     boxes : number of random boxes of a certified map, `ptmcad.verification.certified.checks.BOXES` when None.
     progress : called as progress(what, done, total), with numbers that never fall.
+    effort : how much of a certified map's free area is to be proved free of critical curves: 0 none of it, each number
+        more four times as many boxes, 10 all; `ptmcad.verification.exclusion.check.EFFORT` when None.
 
     Guarantee
     ---------
@@ -71,7 +74,7 @@ def verify(
     """
     expect(result, RegionMap, "result", A_MAP)
     if result.cover is not None or result.status is Status.CERTIFIED:
-        return verify_certified(result, seed, boxes, progress)
+        return verify_certified(result, seed, boxes, progress, effort)
     steps = checks_of(result, seed)
     missing: set[str] = set()
     if result.status is Status.PARTIAL:

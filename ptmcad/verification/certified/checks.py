@@ -14,19 +14,19 @@ from ptmcad.verification.certified.points import check_points
 from ptmcad.verification.certified.sampling import check_boxes
 from ptmcad.verification.certified.structure import CertifiedClaims, check_components, check_form, check_regions
 from ptmcad.verification.certified.system import check_potential
+from ptmcad.verification.exclusion.check import EFFORT, check_free_area
 from ptmcad.verification.parameters import check_text
 from ptmcad.verification.report import Check, Headway, VerifyReport, Violation, checked
 
 BOXES = 40
 NOT_CHECKED = (
-    ("the whole free area", "only points and boxes in it: a proof of all of it costs more than the map"),
     ("plan", "what it says of curves and unknowns is no claim about the regions"),
     ("provenance", "name, title, reference, versions, precision, timings: no claims about the regions"),
 )
 
 
 def verify_certified(
-    result: RegionMap, seed: int | None, boxes: int | None, progress: Progress | None = None
+    result: RegionMap, seed: int | None, boxes: int | None, progress: Progress | None = None, effort: int | None = None
 ) -> VerifyReport:
     """Check a map with a cover; see `ptmcad.verification.verify`."""
     claims = CertifiedClaims(result)
@@ -44,6 +44,8 @@ def verify_certified(
         ("counts and solutions", "Krawczyk's test and exclusion in balls", partial(check_points, report=within)),
         ("random boxes", "Krawczyk's test over boxes of parameters",
          partial(check_boxes, seed=drawn, number=number, report=within)),
+        ("free area", "exclusion of critical points in boxes",
+         partial(check_free_area, effort=EFFORT if effort is None else effort, report=within)),
     )  # fmt: skip
     checks = checked(claims, steps, headway=headway)
     checks += [Check(name, "", None, reason) for name, reason in NOT_CHECKED]
