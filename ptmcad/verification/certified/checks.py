@@ -14,7 +14,6 @@ from ptmcad.verification.certified.points import check_points
 from ptmcad.verification.certified.sampling import check_boxes
 from ptmcad.verification.certified.structure import CertifiedClaims, check_components, check_form, check_regions
 from ptmcad.verification.certified.system import check_potential
-from ptmcad.verification.exclusion.check import EFFORT, check_free_area
 from ptmcad.verification.parameters import check_text
 from ptmcad.verification.report import Check, Headway, VerifyReport, Violation, checked
 
@@ -25,8 +24,12 @@ NOT_CHECKED = (
 )
 
 
+FreeArea = Callable[[CertifiedClaims, Callable[[int, int], None]], str]
+"""What proves a share of the free area, and tells how far it is."""
+
+
 def verify_certified(
-    result: RegionMap, seed: int | None, boxes: int | None, progress: Progress | None = None, effort: int | None = None
+    result: RegionMap, seed: int | None, boxes: int | None, free_area: FreeArea, progress: Progress | None = None
 ) -> VerifyReport:
     """Check a map with a cover; see `ptmcad.verification.verify`."""
     claims = CertifiedClaims(result)
@@ -44,8 +47,7 @@ def verify_certified(
         ("counts and solutions", "Krawczyk's test and exclusion in balls", partial(check_points, report=within)),
         ("random boxes", "Krawczyk's test over boxes of parameters",
          partial(check_boxes, seed=drawn, number=number, report=within)),
-        ("free area", "exclusion of critical points in boxes",
-         partial(check_free_area, effort=EFFORT if effort is None else effort, report=within)),
+        ("the whole free area", "exclusion of critical points", lambda of: free_area(of, within)),
     )  # fmt: skip
     checks = checked(claims, steps, headway=headway)
     checks += [Check(name, "", None, reason) for name, reason in NOT_CHECKED]

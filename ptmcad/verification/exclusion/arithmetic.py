@@ -20,7 +20,6 @@ from ptmcad.verification.exclusion.formulas import (
     COSINE,
     DIRECTION,
     DIVIDE,
-    INVERSE_LENGTH,
     LENGTH,
     MULTIPLY,
     SINE,

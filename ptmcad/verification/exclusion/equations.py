@@ -80,7 +80,9 @@ class Equations:
 
     def _turned(self, rows: Sequence[Waves]) -> list[Waves]:
         """Divided by the factors."""
-        return [_without(_combined(vector, rows), names) for vector, names in zip(self.basis, self._common, strict=True)]
+        return [
+            _without(_combined(vector, rows), names) for vector, names in zip(self.basis, self._common, strict=True)
+        ]
 
     def _turned_twice(self, rows: Sequence[Waves]) -> list[Waves]:
         """Divided by the factors of the first unknowns."""
@@ -255,7 +257,7 @@ class Equations:
 
     def reach(self, k: int) -> Fraction:
         """About the largest length of a spring: the sum of the factors of its vector in the middle of the window."""
-        cone = [c for c in self.form.cones if c.name == self.springs[k].name][0]
+        cone = next(c for c in self.form.cones if c.name == self.springs[k].name)
         at = [(a.low + a.high) / 2 for a in self.claims.result.slice.axes]
         values = {name: Fraction(0) for name in self.claims.model.free_lengths}
         try:

@@ -1,4 +1,4 @@
-"""Affine forms of formulas over a box, in compiled code: a value in the middle, a slope for each variable, and an error.
+"""Affine forms of formulas over a box, in compiled code: a value in the middle, slopes by the variables, and an error.
 
 Guarantee: over a box with the middle m and half widths r, a value at the point m + r e, with each |e_j| at most 1, is
 within ``error`` of center + sum of slopes_j e_j, and it lies in [low, high]. An error that is infinite claims nothing.
@@ -8,7 +8,6 @@ operands are from their centers; rounding adds 2^-49 of all numbers that were ad
 (J. Stolfi and L. H. de Figueiredo, Self-Validated Numerical Methods and Applications, 1997, chapter 3.)
 """
 
-# ruff: noqa: PLW3301
 from __future__ import annotations
 
 from math import cos, inf, sin, sqrt
@@ -28,7 +27,6 @@ from ptmcad.verification.exclusion.formulas import (
     MULTIPLY,
     SINE,
     SQUARE,
-    SUBTRACT,
     VARIABLE,
 )
 
@@ -53,7 +51,7 @@ def evaluate(tape: Any, box: Any, forms: Any, start: int, end: int) -> None:
         code, i, j, f = tape.code[n], tape.first[n], tape.second[n], forms[n]
         for k in range(nv):
             f[k] = 0.0
-        if code == CONSTANT or code == VARIABLE:
+        if code <= VARIABLE:
             a, b = (tape.low[n], tape.high[n]) if code == CONSTANT else (box[i, 0], box[i, 1])
             f[c], f[e], f[low], f[high] = 0.5 * (a + b), 0.0, a, b
             wide = max(b - f[c], f[c] - a) * (1 + 2.0**-50)
@@ -122,7 +120,7 @@ def radius(f: Any, nv: int) -> float:
 def _binary(code: int, f: Any, p: Any, q: Any, nv: int) -> None:
     """Sum, difference and product."""
     c, e = nv, nv + 1
-    if code == ADD or code == SUBTRACT:
+    if code != MULTIPLY:
         sign = 1.0 if code == ADD else -1.0
         for k in range(nv):
             f[k] = p[k] + sign * q[k]
@@ -158,6 +156,9 @@ def _unary(code: int, f: Any, p: Any, nv: int) -> None:
     if code == SQUARE:
         _linear(f, p, nv, at * at, 2 * at, 0.0, 2 * half)
         f[nv + 1] += _ROUNDING * (at * at + 2 * abs(at) * r)
+        return
+    if not p[nv + 2] <= at <= p[nv + 3]:  # what is between has to be in the interval
+        _flat(f, nv)
         return
     # the second derivative is the function itself with the other sign, and [low, high] has all its values
     a, b = f[nv + 2], f[nv + 3]

@@ -23,7 +23,6 @@ class Tape(NamedTuple):
     ----------
     code, first, second : of each value the operation and the numbers of its operands (of a variable its own number).
     low, high : enclosures of constants.
-    used : of each value the variables that it depends on, as bits.
     """
 
     code: Any
@@ -31,7 +30,6 @@ class Tape(NamedTuple):
     second: Any
     low: Any
     high: Any
-    used: Any
 
 
 class Formulas:
@@ -166,18 +164,17 @@ class Formulas:
         early = self._needed(first)
         order = [*sorted(early), *sorted(self._needed(wanted) - early)]
         place = {n: k for k, n in enumerate(order)}
-        low, high, used, rows = [], [], list[int](), []
+        low, high, rows = [], [], []
         for n in place:
-            code, a, b = self._rows[n]
-            if code > VARIABLE:
+            operation, a, b = self._rows[n]
+            if operation > VARIABLE:
                 a, b = place[a], place[b]
-            rows.append((code, a, b))
+            rows.append((operation, a, b))
             below, above = enclosing(self._numbers.get(n, Fraction(0)))
             low.append(below)
             high.append(above)
-            used.append(0 if code == CONSTANT else 1 << a if code == VARIABLE else used[a] | used[b])
-        columns = [np.array([row[k] for row in rows], dtype=np.int64) for k in range(3)]
-        tape = Tape(*columns, np.array(low), np.array(high), np.array(used, dtype=np.int64))
+        code, first_of, second = (np.array([row[k] for row in rows], dtype=np.int64) for k in range(3))
+        tape = Tape(code, first_of, second, np.array(low), np.array(high))
         return tape, len(early), [place[n] for n in (*first, *wanted)]
 
     def _needed(self, wanted: Sequence[int]) -> set[int]:

@@ -6,7 +6,6 @@ and within a part a piece has all points whose v less the line lies between two 
 to hold that of the strip. Frames' sides are whole numbers, so cutting is exact.
 """
 
-# ruff: noqa: PLW3301
 from __future__ import annotations
 
 from math import inf
@@ -15,13 +14,14 @@ from typing import Any
 import numpy as np
 
 from ptmcad.verification.exclusion.compiled import compiled
-from ptmcad.verification.exclusion.pieces import SLACK
+from ptmcad.verification.exclusion.pieces import MOST_CONTROLS, SLACK
 
 MOST_PIECES = 96
 """Of the pieces that a strip may meet: with more nothing is decided."""
 MOST_PARTS = 96
 _BINS_AT_ONCE = 64
-_MOST_CONTROLS = 64
+_OUTSIDE = 0.01
+"""By how much of its interval a polynomial may be continued."""
 _LEAST_SHARE = 0.02
 """Of a strip's length: a part that is shorter is not halved."""
 
@@ -139,7 +139,7 @@ def _part(pieces: Any, along: int, near: Any, number: int, strip: Any, part: Any
         if straight or (pieces.along[n] != along and _between(pieces, n, least, most, a, b)):
             return True
         if pieces.along[n] == along:
-            p, q = _shares(f[2 * along], f[2 * along + 1], a, b)
+            p, q = _shares(pieces.spans[n], a, b)
             low[m], high[m] = -inf, inf
             if pieces.lower[n, 1]:
                 low[m] = _off(pieces.controls, pieces.lower[n], p, q, line_a, line_b, 1) + slack
@@ -154,24 +154,23 @@ def _part(pieces: Any, along: int, near: Any, number: int, strip: Any, part: Any
         for m in range(number):
             if low[m] <= at < high[m]:
                 at, moved = high[m], True
-    return at >= end
+    return bool(at >= end)
 
 
 @compiled
 def _between(pieces: Any, n: int, a: float, b: float, least: float, most: float) -> bool:
     """Whether a piece has all of a rectangle, [a, b] along its own axis, between its polynomials."""
-    f, axis = pieces.frames[n], pieces.along[n]
     slack = SLACK * pieces.steps
-    p, q = _shares(f[2 * axis], f[2 * axis + 1], a, b)
+    p, q = _shares(pieces.spans[n], a, b)
     if pieces.lower[n, 1] and _off(pieces.controls, pieces.lower[n], p, q, least, least, 1) > -slack:
         return False
     return not (pieces.upper[n, 1] and _off(pieces.controls, pieces.upper[n], p, q, most, most, -1) < slack)
 
 
 @compiled
-def _shares(low: float, high: float, a: float, b: float) -> Any:
-    """Where a and b are between a frame's sides."""
-    return max(0.0, (a - low) / (high - low)), min(1.0, (b - low) / (high - low))
+def _shares(span: Any, a: float, b: float) -> Any:
+    """Where a and b are, as shares of an interval; a little outside of it where the frame was made wider."""
+    return (a - span[0]) / (span[1] - span[0]), (b - span[0]) / (span[1] - span[0])
 
 
 @compiled
@@ -181,13 +180,15 @@ def _off(controls: Any, bound: Any, p: float, q: float, line_a: float, line_b: f
     By de Casteljau's rule it has controls for this part; the line's own are evenly spaced between its ends.
     """
     start, number = bound[0], bound[1]
-    c = np.empty(_MOST_CONTROLS)
+    if not (-_OUTSIDE <= p < 1 and q <= 1 + _OUTSIDE):
+        return sign * inf
+    c = np.empty(MOST_CONTROLS)
     for k in range(number):
         c[k] = controls[start + k]
     for level in range(1, number):
         for k in range(number - level):
             c[k] = (1 - p) * c[k] + p * c[k + 1]
-    share = min(1.0, (q - p) / (1 - p)) if p < 1 else 0.0
+    share = (q - p) / (1 - p) if p < 1 else 0.0
     for level in range(1, number):
         for k in range(number - 1, level - 1, -1):
             c[k] = (1 - share) * c[k - 1] + share * c[k]

@@ -21,6 +21,18 @@ Bound = tuple[int, tuple[int, ...]] | None
 SLACK = 2.0**-44
 """Share of the window's lattice by which bounds are narrower than they are: far more than what is lost in rounding."""
 MOST_BINS = 512
+MOST_CONTROLS = 64
+"""Of a polynomial: pieces with more hold nothing."""
+
+
+class Row(NamedTuple):
+    """A piece: its frame, its polynomials and their axis, and by how much the frame is wider than their interval."""
+
+    frame: Rectangle
+    along: int = 0
+    lower: Bound = None
+    upper: Bound = None
+    wider: int = 0
 
 
 class Pieces(NamedTuple):
@@ -29,6 +41,7 @@ class Pieces(NamedTuple):
     Attributes
     ----------
     frames : (pieces, 4), left, right, bottom and top in lattice steps.
+    spans : (pieces, 2), the interval that the controls belong to.
     along : the axis over which the polynomials are.
     lower, upper : place and number of controls of each bound; none at all where there is no bound.
     controls : all controls, with what is added.
@@ -37,6 +50,7 @@ class Pieces(NamedTuple):
 
     steps: float
     frames: Any
+    spans: Any
     along: Any
     lower: Any
     upper: Any
@@ -46,15 +60,24 @@ class Pieces(NamedTuple):
     members: Any
 
 
-def pieces_of(claims: CertifiedClaims) -> Pieces:
-    """The pieces of a map's cover, and the components that have no cell."""
+def pieces_of(claims: CertifiedClaims, wider: int = 0) -> Pieces:
+    """The pieces of a map's cover, and the components that have no cell.
+
+    Parameters
+    ----------
+    wider : lattice steps by which tubes and their frames are made wider on all sides; what this adds is not proved.
+    """
     cover = claims.result.cover
     assert cover is not None
-    rows: list[tuple[Rectangle, int, Bound, Bound]] = [(r, 0, None, None) for r in cover.rectangles]
+    rows: list[Row] = [Row(r) for r in cover.rectangles]
     for patch in cover.patches:
+        left, right, bottom, top = patch.frame
+        frame = left - wider, right + wider, bottom - wider, top + wider
         rows += [
-            (patch.frame, patch.along, (-t.half, t.controls), (t.half, t.controls)) for t in patch.tubes
-        ]  # fmt: skip
+            Row(frame, patch.along, (-t.half - wider, t.controls), (t.half + wider, t.controls), wider)
+            for t in patch.tubes
+            if len(t.controls) <= MOST_CONTROLS
+        ]
     cells, found = claims.cell_of, claims.sweep
     if isinstance(found, SlantedSweep):
         rows += _open_in_strips(found, cells) + _open_in_frames(found, cells)
@@ -63,31 +86,43 @@ def pieces_of(claims: CertifiedClaims) -> Pieces:
     return _in_arrays(rows, cover.steps)
 
 
-def _gaps(found: Sweep, cells: dict[int, int]) -> list[tuple[Rectangle, int, Bound, Bound]]:
+def widened(claims: CertifiedClaims, wider: int) -> float:
+    """At most this share of the window is added to tubes by making them wider."""
+    cover = claims.result.cover
+    assert cover is not None
+    total = 0
+    for patch in cover.patches:
+        length = patch.frame[2 * patch.along + 1] - patch.frame[2 * patch.along]
+        for t in patch.tubes:
+            total += 2 * (t.half + wider) * (length + 2 * wider) - 2 * t.half * length
+    return total / cover.steps**2 * (1 + 1e-9)
+
+
+def _gaps(found: Sweep, cells: dict[int, int]) -> list[Row]:
     return [
-        ((left, right, low, high), 0, None, None)
+        Row((left, right, low, high))
         for (low, high), row in zip(pairwise(found.lines), found.gaps, strict=True)
         for left, right, n in row
         if n not in cells
     ]
 
 
-def _open_in_strips(found: SlantedSweep, cells: dict[int, int]) -> list[tuple[Rectangle, int, Bound, Bound]]:
+def _open_in_strips(found: SlantedSweep, cells: dict[int, int]) -> list[Row]:
     return [
-        ((item.left, item.right, low, high), 0, None, None)
+        Row((item.left, item.right, low, high))
         for (low, high), row in zip(pairwise(found.lines), found.rows, strict=True)
         for item in row
         if item.frame < 0 and item.free and found.component_of[item.node] not in cells
     ]
 
 
-def _open_in_frames(found: SlantedSweep, cells: dict[int, int]) -> list[tuple[Rectangle, int, Bound, Bound]]:
+def _open_in_frames(found: SlantedSweep, cells: dict[int, int]) -> list[Row]:
     rows = []
     for frame, first in zip(found.frames, found.first_part, strict=True):
         patch = frame.patch
         for k in range(len(patch.tubes) + 1):
-            if found.component_of[first + k] not in cells:
-                rows.append((patch.frame, patch.along, *_between(patch, k)))
+            if found.component_of[first + k] not in cells and len(patch.tubes[0].controls) <= MOST_CONTROLS:
+                rows.append(Row(patch.frame, patch.along, *_between(patch, k)))
     return rows
 
 
@@ -100,13 +135,14 @@ def _between(patch: Patch, k: int) -> tuple[Bound, Bound]:
     )
 
 
-def _in_arrays(rows: list[tuple[Rectangle, int, Bound, Bound]], steps: int) -> Pieces:
-    frames = np.array([row[0] for row in rows], dtype=np.float64).reshape(-1, 4)
+def _in_arrays(rows: list[Row], steps: int) -> Pieces:
+    frames = np.array([row.frame for row in rows], dtype=np.float64).reshape(-1, 4)
+    spans = np.array([_span(row) for row in rows], dtype=np.float64).reshape(-1, 2)
+    along = np.array([row.along for row in rows], dtype=np.int64)
     controls: list[int] = []
     bounds = np.zeros((2, len(rows), 2), dtype=np.int64)
     for n, row in enumerate(rows):
-        for side in (0, 1):
-            bound = row[2 + side]
+        for side, bound in enumerate((row.lower, row.upper)):
             if bound is not None:
                 bounds[side, n] = len(controls), len(bound[1])
                 controls += [c + bound[0] for c in bound[1]]
@@ -120,7 +156,20 @@ def _in_arrays(rows: list[tuple[Rectangle, int, Bound, Bound]], steps: int) -> P
                 held[i * bins + j].append(n)
     starts = np.cumsum([0, *map(len, held)]).astype(np.int64)
     members = np.array([n for some in held for n in some], dtype=np.int64)
-    along = np.array([row[1] for row in rows], dtype=np.int64)
     return Pieces(
-        float(steps), frames, along, bounds[0], bounds[1], np.array(controls, dtype=np.float64), bins, starts, members
+        float(steps),
+        frames,
+        spans,
+        along,
+        bounds[0],
+        bounds[1],
+        np.array(controls, dtype=np.float64),
+        bins,
+        starts,
+        members,
     )
+
+
+def _span(row: Row) -> tuple[int, int]:
+    """The interval of a piece's polynomials."""
+    return row.frame[2 * row.along] + row.wider, row.frame[2 * row.along + 1] - row.wider

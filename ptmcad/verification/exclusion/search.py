@@ -6,7 +6,6 @@ leaves an interval for the variable that it is solved for (Hansen and Sengupta);
 around what is left; and whether they hold the strip that the row of one axis leaves next to the other axis.
 """
 
-# ruff: noqa: PLW3301
 from __future__ import annotations
 
 from typing import Any
@@ -96,7 +95,7 @@ def _look_at(system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: An
 @compiled
 def _excluded(which: Any, forms: Any, nv: int, above: bool) -> bool:
     """Whether a formula that is zero at critical points is not; or one that is not negative there, is (``above``)."""
-    for n in which:
+    for n in which:  # noqa: SIM110
         if forms[n, nv + 3] < 0 or (not above and forms[n, nv + 2] > 0):
             return True
     return False

@@ -101,8 +101,7 @@ class _Systems:
         stable = self.form.stability if self.count is Count.STABLE else ()
         self.conditions: list[Waves] = [*self.form.inequalities, *stable]
         self.positive = [self.model.waves(c) for c in self.conditions]
-        if self.count is Count.ADMISSIBLE:
-            self.positive += self._excesses()
+        self.excesses = self._excesses() if self.count is Count.ADMISSIBLE else []
 
     def all(self) -> Iterator[System]:
         """All of them."""
@@ -127,11 +126,14 @@ class _Systems:
         for k in springs if charted else ():
             yield self._short_folds(k)
             yield self._cone(k)
-        for k, c in enumerate(self.positive):
+        # with admissible ones all minima are counted, so that folds ask for no excess
+        for k, c in enumerate([*self.positive, *self.excesses]):
             if k < len(self.conditions) and not any(any(key[0]) or any(key[1]) for key in self.conditions[k]):
                 yield self._system(f"boundary {k}", [c], [], [], unknowns=0)
             else:
-                yield self._system(f"boundary {k}", [*equations, c], others, [n for n in signs if n != c])
+                yield self._system(
+                    f"boundary {k}", [*equations, c], others, [n for n in [*signs, *self.excesses] if n != c]
+                )
 
     def _minors(self, rows: Sequence[Sequence[int]]) -> list[int]:
         """The principal minors but the determinant; none is negative where the Hessian is positive semidefinite."""
