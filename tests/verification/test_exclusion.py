@@ -109,6 +109,7 @@ def test_a_dropped_rectangle_is_found(name: str) -> None:
     assert sum(text.startswith("found") for text in found) >= 4
 
 
+@pytest.mark.slow
 def test_a_dropped_slanted_piece_is_found() -> None:
     stored = a_map("zeeman", 1e-5)
     assert stored.cover is not None
