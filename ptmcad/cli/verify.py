@@ -29,8 +29,11 @@ if TYPE_CHECKING:
               help="Seed of the random points and of the random boxes.  [default: a hash of the claims]")  # fmt: skip
 @click.option("--boxes", type=click.IntRange(0, 100_000), metavar="N",
               help="Random boxes of the free area of a certified map.  [default: 40]")  # fmt: skip
+@click.option("--effort", type=click.IntRange(0, 10), metavar="N",
+              help="How much of a certified map's free area is to be proved free of critical curves: 0 nothing, each "
+                   "number more four times the work, 10 all of it.  [default: 1]")  # fmt: skip
 @limit_options
-def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits) -> int:
+def command(*, result: Path, seed: int | None, boxes: int | None, effort: int | None, limits: Limits) -> int:
     """Check RESULT, a JSON file of `ptmcad classify` or `design`, without the code that made it.
 
     Of a family each member is checked, and the changes between them by further members, each classified alone and over
@@ -45,7 +48,8 @@ def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits
     """
     with held(limits):
         if is_design(result):
-            report_idle([Idle("boxes", True, "the boxes of a design are all checked")] if boxes is not None else [])
+            report_idle([Idle("boxes", boxes is not None, "the boxes of a design are all checked"),
+                         Idle("effort", effort is not None, "the boxes of a design are all checked")])  # fmt: skip
             from ptmcad.verification import verify_design
 
             with ProgressBar() as progress:
@@ -53,9 +57,9 @@ def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits
             return _told(report)
         if is_family(result):
             family = read_family_file(result, whole=False)
-            status = int(max(each_member(family, lambda member: _verified(member, seed, boxes))))
+            status = int(max(each_member(family, lambda member: _verified(member, seed, boxes, effort))))
             return max(status, _verified_family(family, seed))
-        return _verified(read_result(result, whole=False), seed, boxes)
+        return _verified(read_result(result, whole=False), seed, boxes, effort)
 
 
 def _verified_family(family: FamilyMap, seed: int | None) -> int:
@@ -80,13 +84,13 @@ def _verified_family(family: FamilyMap, seed: int | None) -> int:
     return _told(VerifyReport(tuple(checks)))
 
 
-def _verified(stored: RegionMap, seed: int | None, boxes: int | None) -> int:
+def _verified(stored: RegionMap, seed: int | None, boxes: int | None, effort: int | None) -> int:
     """The exit status for a map, after what was checked has been printed."""
-    report_idle([Idle("boxes", stored.cover is None, "an exact map is checked whole")])
+    report_idle([Idle(name, stored.cover is None, "an exact map is checked whole") for name in ("boxes", "effort")])
     from ptmcad.verification import verify
 
     with ProgressBar() as progress:
-        report = verify(stored, seed=seed, boxes=boxes, progress=progress)
+        report = verify(stored, seed=seed, boxes=boxes, progress=progress, effort=effort)
     return _told(report)
 
 

@@ -16,6 +16,7 @@ from ptmcad.verification.certified.checks import verify_certified
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
+from ptmcad.verification.exclusion.check import EFFORT, check_free_area
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.model import check_system
 from ptmcad.verification.parameters import check_boundary, check_text
@@ -49,8 +50,9 @@ _SINCE_VARIETY: tuple[CheckOf, ...] = (
 
 
 def verify(
-    result: RegionMap, seed: int | None = None, boxes: int | None = None, progress: Progress | None = None
-) -> VerifyReport:
+    result: RegionMap, seed: int | None = None, boxes: int | None = None, progress: Progress | None = None,
+    effort: int | None = None,
+) -> VerifyReport:  # fmt: skip
     """Check a result without the code that made it.
 
     Parameters
@@ -59,6 +61,8 @@ def verify(
         certified map; drawn from a hash of the claims when None, so that nobody can fit claims to the points.
     boxes : number of random boxes of a certified map, `ptmcad.verification.certified.checks.BOXES` when None.
     progress : called as progress(what, done, total), with numbers that never fall.
+    effort : how much of a certified map's free area is to be proved free of critical curves: 0 none of it, each number
+        more four times as many boxes, 10 all; `ptmcad.verification.exclusion.check.EFFORT` when None.
 
     Guarantee
     ---------
@@ -71,7 +75,8 @@ def verify(
     """
     expect(result, RegionMap, "result", A_MAP)
     if result.cover is not None or result.status is Status.CERTIFIED:
-        return verify_certified(result, seed, boxes, progress)
+        free_area = partial(check_free_area, EFFORT if effort is None else effort)
+        return verify_certified(result, seed, boxes, free_area, progress)
     steps = checks_of(result, seed)
     missing: set[str] = set()
     if result.status is Status.PARTIAL:

@@ -234,6 +234,8 @@ def square(x: arb) -> arb:
 
 def power(x: arb, exponent: int) -> arb:
     """A power; an even one of a ball with both signs is not negative."""
+    if exponent == 0:
+        return _ONE
     if exponent % 2 == 0 and x.contains(0):
         return _ZERO.union(_product(x.abs_upper(), exponent))
     if x.rad() == 0:

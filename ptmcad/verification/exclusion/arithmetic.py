@@ -1,0 +1,135 @@
+"""Intervals of doubles in compiled code, rounded outward.
+
+Guarantee: intervals hold the exact values. An operation on doubles is rounded to nearest, so that its error is at most
+2^-53 of the result or 2^-1075, and each end is moved outward by 2^-52 of it and 1e-300. What is not finite, or beyond
+1e150, becomes the whole line, which nothing is ever concluded from. The sine and the cosine of a double are taken from
+the C library, with an error of at most 2^-50.
+"""
+
+# ruff: noqa: PLW3301
+from __future__ import annotations
+
+from math import cos, hypot, inf, sin
+from typing import Any
+
+import numpy as np
+
+from ptmcad.verification.exclusion.compiled import compiled, inlined
+from ptmcad.verification.exclusion.formulas import (
+    ADD,
+    COSINE,
+    DIRECTION,
+    DIVIDE,
+    LENGTH,
+    MULTIPLY,
+    SINE,
+    SQUARE,
+    SUBTRACT,
+)
+
+_LARGE = 1e150
+_PART, _LEAST = 2.0**-52, 1e-300
+_TURN = 6.283185307179586
+_SINE_ERROR = 2.0**-50
+
+
+@inlined
+def outward(a: float, b: float) -> Any:
+    """The interval from a to b, a little wider; the whole line where it is not finite."""
+    low, high = a - (abs(a) * _PART + _LEAST), b + (abs(b) * _PART + _LEAST)
+    if not (low > -_LARGE and high < _LARGE):
+        low, high = -inf, inf
+    return low, high
+
+
+@compiled
+def times(a: float, b: float, c: float, d: float) -> Any:
+    """[a, b] [c, d]"""
+    if a == -inf or c == -inf:
+        return -inf, inf
+    p, q, r, s = a * c, a * d, b * c, b * d
+    return outward(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)))
+
+
+@compiled
+def square(a: float, b: float) -> Any:
+    """The squares of what is in [a, b]."""
+    if a == -inf:
+        return -inf, inf
+    p, q = a * a, b * b
+    low, high = outward(0.0 if a <= 0.0 <= b else min(p, q), max(p, q))
+    return max(low, 0.0) if low > -inf else low, high
+
+
+@compiled
+def over(a: float, b: float, c: float, d: float) -> Any:
+    """[a, b]/[c, d]; the whole line where the divisor may be zero."""
+    if a == -inf or c == -inf or c <= 0.0 <= d:
+        return -inf, inf
+    p, q, r, s = a / c, a / d, b / c, b / d
+    return outward(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)))
+
+
+@compiled
+def wave(a: float, b: float, top: float) -> Any:
+    """The cosine's values on [a, b] (top 0) or the sine's (top pi/2): the function is 1 at top and at whole turns."""
+    if not (b - a < _TURN and abs(a) < 1e3):
+        return -1.0, 1.0
+    p, q = (cos(a), cos(b)) if top == 0.0 else (sin(a), sin(b))
+    low, high = min(p, q) - _SINE_ERROR, max(p, q) + _SINE_ERROR
+    # a multiple of a turn, plus top or plus top and a half turn, that may be in the interval
+    if np.floor((b + 1e-9 - top) / _TURN) >= np.ceil((a - 1e-9 - top) / _TURN):
+        high = 1.0
+    if np.floor((b + 1e-9 - top) / _TURN - 0.5) >= np.ceil((a - 1e-9 - top) / _TURN - 0.5):
+        low = -1.0
+    return max(low, -1.0), min(high, 1.0)
+
+
+@compiled
+def reach(a: float, b: float, c: float, d: float) -> Any:
+    """The least and the largest length of a vector in [a, b] x [c, d]."""
+    across = 0.0 if a <= 0.0 <= b else min(abs(a), abs(b))
+    up = 0.0 if c <= 0.0 <= d else min(abs(c), abs(d))
+    low, high = hypot(across, up), hypot(max(abs(a), abs(b)), max(abs(c), abs(d)))
+    # the C library's hypot is wrong by one unit in the last place at most
+    return low * (1 - 2.0**-50), high * (1 + 2.0**-50) + _LEAST
+
+
+@compiled
+def direction(a: float, b: float, c: float, d: float) -> Any:
+    """The first coordinate of the unit vectors along what is in [a, b] x [c, d]."""
+    if a == -inf or c == -inf or (a <= 0.0 <= b and c <= 0.0 <= d):
+        return -1.0, 1.0
+    least, most = 0.0 if c <= 0.0 <= d else min(abs(c), abs(d)), max(abs(c), abs(d))
+    # x/|(x, y)| grows with x; it grows with |y| where x is negative, and falls where it is positive
+    low, high = a / hypot(a, most if a >= 0.0 else least), b / hypot(b, least if b >= 0.0 else most)
+    if not (low >= -2.0 and high <= 2.0):
+        return -1.0, 1.0
+    return max(low - 2.0**-49, -1.0), min(high + 2.0**-49, 1.0)
+
+
+@compiled
+def operation(code: int, a: float, b: float, c: float, d: float) -> Any:
+    """One operation on [a, b], or on [a, b] and [c, d]."""
+    if code == ADD:
+        return outward(a + c, b + d)
+    if code == SUBTRACT:
+        return outward(a - d, b - c)
+    if code == MULTIPLY:
+        return times(a, b, c, d)
+    if code == SQUARE:
+        return square(a, b)
+    if code == DIVIDE:
+        return over(a, b, c, d)
+    if code == COSINE:
+        return wave(a, b, 0.0)
+    if code == SINE:
+        return wave(a, b, _TURN / 4)
+    if code == DIRECTION:
+        return direction(a, b, c, d)
+    if a == -inf or c == -inf:
+        return -inf, inf
+    low, high = reach(a, b, c, d)
+    if code == LENGTH:
+        return outward(low, high)
+    return over(1.0, 1.0, low, high)

@@ -1,0 +1,159 @@
+"""The check of the free area: how much of it is proved free of critical curves, and where that could not be done.
+
+Guarantee: of the free area, which is what the map's cells are, at least the share that is told has no critical point
+over it. A violation is a point of a cell with other counts than the cell's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from fractions import Fraction
+from typing import Any
+
+from ptmcad.text.numerals import text_of
+from ptmcad.verification.certified.counted import differs, stored
+from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.points import counting_of
+from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.report import Unchecked, Violation
+
+EFFORT, MOST_EFFORT = 2, 10
+BOXES_AT_FIRST, GROWTH = 10_000, 4
+"""Boxes of the first effort, and how many times more each further one has; the last one has no limit."""
+SMALLEST = 2.0**-20
+"""Share of the window: boxes over less are not halved ..."""
+FINER = 2.0**-28
+"""... but for those that are left then, in a further search of some boxes more."""
+BESIDE_AT_FIRST, BESIDE = 8, 2
+"""A strip of 2^-(8 + 2 effort) of the window is left out on each side of a slanted piece. Such a piece is much thinner
+than what first derivatives say of a curve, which is bent."""
+_FINER_BOXES = 20_000
+_PLACES = 12
+_STEPS_AWAY = (4, 64)
+_SQUARES = 1024
+"""Of the window's width: boxes that are left in one square are one place."""
+NUMBA_NEEDED = "compiled code is needed for it: install numba (ptmcad[certified])"
+
+
+def check_free_area(
+    effort: int, claims: CertifiedClaims, report: Callable[[int, int], None] = lambda _done, _total: None
+) -> str:
+    """Exclude critical points over the free area; what share of it is proved, and where nothing was.
+
+    Parameters
+    ----------
+    effort : from 0, nothing, to `MOST_EFFORT`, all.
+    """
+    if not claims.result.cells:
+        return "there are no cells"
+    if effort <= 0:
+        return Unchecked("not asked for (effort 0)")
+    try:
+        from ptmcad.verification.exclusion.pieces import pieces_of, widened
+        from ptmcad.verification.exclusion.running import search, share_over
+        from ptmcad.verification.exclusion.systems import systems_of
+    except ImportError:
+        return Unchecked(NUMBA_NEEDED)
+    try:
+        systems = systems_of(claims)
+    except Unproved as reason:
+        return Unchecked(str(reason))
+    wider = claims.sweep.steps >> (BESIDE_AT_FIRST + BESIDE * effort)
+    pieces, left, looked = pieces_of(claims, wider), [], 0
+    beside = widened(claims, wider)
+    budget = BOXES_AT_FIRST * GROWTH ** (effort - 1) // len(systems) if effort < MOST_EFFORT else 2**62
+    for k, system in enumerate(systems):
+
+        def told(share: float, k: int = k) -> None:
+            report(int(1000 * (k + share)), 1000 * len(systems))
+
+        rest = search(system, pieces, system.start[None], budget, SMALLEST, told)
+        looked += rest.looked
+        if len(rest.stuck):
+            _refute(claims, rest.stuck)
+            finer = search(system, pieces, rest.stuck, _FINER_BOXES, FINER)
+            _refute(claims, finer.stuck)
+            left += [finer.open, finer.stuck]
+            looked += finer.looked
+        left.append(rest.open)
+    places = [boxes for boxes in left if len(boxes)]
+    text = f"{looked} boxes, effort {effort}"
+    if not places and not beside:
+        return f"100 % of the free area is proved free of critical curves; {text}"
+    free = sum(claims.sweep.areas[component] for component in claims.cell_of) - claims.slack
+    share = 1 - (share_over(places, pieces) + beside) * claims.sweep.steps**2 / float(max(free, 1))
+    text = f"{_percent(share)} % of the free area is proved free of critical curves; {text}"
+    if beside:
+        text += f"; not beside slanted pieces, on {beside:.1e} of the window"
+    if places:
+        largest = max(places, key=lambda boxes: float((boxes[:, 0, 1] - boxes[:, 0, 0]).max()))
+        where = _where(claims, *_middle(largest[(largest[:, 0, 1] - largest[:, 0, 0]).argmax()]))
+        text += f"; not, among others, around {where}"
+    return Unchecked(text)
+
+
+def _percent(share: float) -> str:
+    """Rounded down, with so many digits that it is not 100."""
+    share = max(0.0, share)
+    for digits in range(1, 13):
+        scale = 10**digits
+        floor = int(share * 100 * scale) / scale
+        if 100 - floor > 2 / scale or floor == 0:
+            return f"{floor:.{digits}f}"
+    return "99.999999999"
+
+
+def _where(claims: CertifiedClaims, u: Fraction, v: Fraction) -> str:
+    x, y = claims.off_lattice(u, v)
+    one, two = claims.result.slice.axis_names
+    return f"{one}={float(x):.9g}, {two}={float(y):.9g}"
+
+
+def _middle(box: Any) -> tuple[Fraction, Fraction]:
+    return Fraction(float(box[0].mean())), Fraction(float(box[1].mean()))
+
+
+def _refute(claims: CertifiedClaims, boxes: Any) -> None:
+    """Look at the counts on all sides of places at which critical points could not be excluded.
+
+    Raises
+    ------
+    Violation
+        With a point whose counts are not those of its cell.
+    """
+    for u, v, width in _places(boxes, claims.sweep.steps):
+        for steps in _STEPS_AWAY:
+            away = steps * width
+            for du, dv in ((away, 0), (-away, 0), (0, away), (0, -away)):
+                _check_at(claims, u + du, v + dv)
+
+
+def _places(boxes: Any, steps: int) -> Iterator[tuple[Fraction, Fraction, Fraction]]:
+    """Boxes in the midst of some of the squares that have most of them: a point, and the box's width."""
+    squares: dict[tuple[int, int], list[Any]] = {}
+    for box in boxes:
+        u, v = (int(box[k].mean() * _SQUARES / steps) for k in (0, 1))
+        squares.setdefault((u, v), []).append(box)
+    for some in sorted(squares.values(), key=len, reverse=True)[:_PLACES]:
+        box = sorted(some, key=lambda b: (b[0, 0], b[1, 0]))[len(some) // 2]
+        width = max(box[0, 1] - box[0, 0], box[1, 1] - box[1, 0], steps * FINER)
+        yield (*_middle(box), Fraction(float(width)))
+
+
+def _check_at(claims: CertifiedClaims, u: Fraction, v: Fraction) -> None:
+    """The counts at a point are those of its cell, if it is in one and they can be proved."""
+    if not (0 < u < claims.sweep.steps and 0 < v < claims.sweep.steps):
+        return
+    component = claims.sweep.locate(u, v)
+    if component is None or component not in claims.cell_of:
+        return
+    number = claims.cell_of[component]
+    cell, (x, y) = claims.result.cells[number], claims.off_lattice(u, v)
+    try:
+        there = counting_of(claims).at(claims, x, y)
+    except Unproved:
+        return
+    if differs(cell, there.counts):
+        one, two = claims.result.slice.axis_names
+        raise Violation(f"at {one}={text_of(x)}, {two}={text_of(y)} in cell {number}, which is said to have "
+                        f"{stored(cell)}, there are {there.counts}; a critical curve was found there")  # fmt: skip

@@ -1,0 +1,308 @@
+"""The equations of a map's model as formulas over the window and the unknowns, from the description's normal form.
+
+Guarantee: exact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+from itertools import combinations, product
+from typing import NamedTuple
+
+from ptmcad.errors import ExpressionError
+from ptmcad.text.expressions import Expression
+from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.certified.vectors import Terms, evaluated
+from ptmcad.verification.certified.waves import Cone, Form, Key, Waves, form_of
+from ptmcad.verification.exclusion.formulas import Formulas
+
+Pair = tuple[int, int]
+
+
+class Spring(NamedTuple):
+    """A spring with a free length: its pull, its vector, and the vector's derivatives.
+
+    Attributes
+    ----------
+    slopes, bends : divided by the equations' factors, the second ones by that of the first unknown.
+    """
+
+    pull: int
+    vector: Pair
+    slopes: tuple[Pair, ...]
+    bends: tuple[Pair, ...]
+    name: str
+
+
+class Equations:
+    """A form's formulas over the window and the unknowns."""
+
+    def __init__(self, claims: CertifiedClaims):
+        self.form = form_of(claims.model)
+        self.claims, self.list = claims, Formulas()
+        cover = claims.result.cover
+        assert cover is not None
+        f = self.list
+        axes = [
+            f.add(f.number(a.low), f.multiply(f.variable(k), f.number((a.high - a.low) / cover.steps)))
+            for k, a in enumerate(claims.result.slice.axes)
+        ]
+        self.axes = axes
+        self.parameters = {n: f.number(0) for n in claims.model.free_lengths}
+        self.parameters |= {n: self._expression(e, axes) for n, e in claims.result.slice.parameters.items()}
+        self.unknowns = [f.variable(k + 2) for k in range(self.form.size)]
+        self.turn_to([[int(i == j) for j in range(self.form.size)] for i in range(self.form.size)])
+
+    def turn_to(self, basis: Sequence[Sequence[int]]) -> None:
+        """Write all that follows in another basis of the unknowns' directions, by rows.
+
+        Equations and slopes are those along its vectors; what cancels between waves is gone before it is evaluated.
+        """
+        form, n, f = self.form, self.form.size, self.list
+        self.basis = basis
+        # a bar that is short makes its own equation small, and all that is next to it: nothing is lost by dividing
+        self._common = [self._in_all(i) for i in range(n)]
+        self.factors = [f.product(self.parameters[name] for name in names) for names in self._common]
+        self.springs = [s for s in map(self._spring, form.cones) if f.constant(s.pull) != 0]
+        self.smooth = [self.waves(row) for row in self._turned(form.equations)]
+        entries = [self.waves(row) for row in self._turned_twice(form.jacobian)]
+        self.jacobian = [entries[n * i : n * i + n] for i in range(n)]
+
+    def _in_all(self, i: int) -> tuple[str, ...]:
+        """The positive parameters that are in every term of an equation and of the springs' slopes next to it."""
+        rows = [_combined(self.basis[i], self.form.equations)]
+        for cone in self.form.cones:
+            rows += [_combined(self.basis[i], [slope[k] for slope in cone.slopes]) for k in (0, 1)]
+        found = [set(names) for row in rows for terms in row.values() for _, _, names in terms]
+        common = set.intersection(*found) if found else set()
+        return tuple(sorted(common & set(self.claims.model.positive)))
+
+    def _turned(self, rows: Sequence[Waves]) -> list[Waves]:
+        """Divided by the factors."""
+        return [
+            _without(_combined(vector, rows), names) for vector, names in zip(self.basis, self._common, strict=True)
+        ]
+
+    def _turned_twice(self, rows: Sequence[Waves]) -> list[Waves]:
+        """Divided by the factors of the first unknowns."""
+        n = self.form.size
+        flat = [rows[n * i + j] for i in range(n) for j in range(n)]
+        return [
+            _without(_combined([a * b for a in one for b in two], flat), names)
+            for one, names in zip(self.basis, self._common, strict=True) for two in self.basis
+        ]  # fmt: skip
+
+    def _expression(self, e: Expression, axes: Sequence[int]) -> int:
+        f = self.list
+
+        def polynomial(terms: Iterable[tuple[int, int, Fraction]]) -> int:
+            return f.sum(
+                f.multiply(f.number(c), f.multiply(f.power(axes[0], i), f.power(axes[1], j))) for i, j, c in terms
+            )
+
+        return f.divide(polynomial(e.numerator), polynomial(e.denominator))
+
+    def terms(self, terms: Terms) -> int:
+        """A polynomial in the parameters."""
+        f = self.list
+        return f.sum(
+            f.multiply(f.number(Fraction(p, q)), f.product(self.parameters[name] for name in names))
+            for p, q, names in terms
+        )
+
+    def waves(self, row: Waves) -> int:
+        """A sum of waves."""
+        f, total = self.list, self.list.number(0)
+        for (turned, raised, sine), terms in row.items():
+            part = self.terms(terms)
+            for x, exponent in zip(self.unknowns, raised, strict=True):
+                part = f.multiply(part, f.power(x, exponent))
+            if any(turned):
+                angle = f.sum(f.multiply(f.number(t), x) for t, x in zip(turned, self.unknowns, strict=True))
+                part = f.multiply(part, f.sine(angle) if sine else f.cosine(angle))
+            total = f.add(total, part)
+        return total
+
+    def _spring(self, cone: Cone) -> Spring:
+        slopes = [self._turned([slope[k] for slope in cone.slopes]) for k in (0, 1)]
+        bends = [self._turned_twice([bend[k] for bend in cone.bends]) for k in (0, 1)]
+        across, up = ([self.waves(row) for row in some] for some in slopes)
+        bent_across, bent_up = ([self.waves(row) for row in some] for some in bends)
+        return Spring(
+            self.terms(cone.pull), (self.waves(cone.vector[0]), self.waves(cone.vector[1])),
+            tuple(zip(across, up, strict=True)), tuple(zip(bent_across, bent_up, strict=True)), cone.name,
+        )  # fmt: skip
+
+    def equations(self, directions: Mapping[int, Pair]) -> list[int]:
+        """The equations, with the directions of the springs."""
+        f = self.list
+        return [
+            f.subtract(
+                smooth,
+                f.sum(f.multiply(s.pull, f.dot(directions[k], s.slopes[i])) for k, s in enumerate(self.springs)),
+            )
+            for i, smooth in enumerate(self.smooth)
+        ]
+
+    def hessian(self, directions: Mapping[int, Pair], without: int | None = None) -> list[list[int]]:
+        """The equations' Jacobian, rows divided by the factors; of one spring only what has not its inverse length."""
+        f, n = self.list, self.form.size
+        rows = [list(row) for row in self.jacobian]
+        for k, s in enumerate(self.springs):
+            u = directions[k]
+            turning = [f.cross(u, g) for g in s.slopes]
+            for i in range(n):
+                for j in range(n):
+                    part = f.dot(u, s.bends[i * n + j])
+                    if k != without:
+                        inverse = f.inverse_length(*s.vector)
+                        whole = f.multiply(turning[j], self.factors[j])
+                        part = f.add(part, f.multiply(f.multiply(turning[i], whole), inverse))
+                    rows[i][j] = f.subtract(rows[i][j], f.multiply(s.pull, part))
+        return rows
+
+    def _rest(self, k: int) -> list[list[int]]:
+        """The Jacobian without all of one spring."""
+        f, n, s, u = self.list, self.form.size, self.springs[k], self.list.direction(*self.springs[k].vector)
+        rows = self.hessian(self.directions(), without=k)
+        return [
+            [f.add(rows[i][j], f.multiply(s.pull, f.dot(u, s.bends[i * n + j]))) for j in range(n)] for i in range(n)
+        ]
+
+    def directions(self) -> dict[int, Pair]:
+        """Those of all springs, from their vectors."""
+        return {k: self.list.direction(*s.vector) for k, s in enumerate(self.springs)}
+
+    def without(self, k: int) -> list[int]:
+        """The equations without the part of one spring, which is what balances it."""
+        f, directions = self.list, self.directions()
+        others = [(m, s) for m, s in enumerate(self.springs) if m != k]
+        return [
+            f.subtract(smooth, f.sum(f.multiply(s.pull, f.dot(directions[m], s.slopes[i])) for m, s in others))
+            for i, smooth in enumerate(self.smooth)
+        ]
+
+    def directed(self, k: int) -> list[int]:
+        """What is zero at equilibria and has the direction of a spring only next to det A: adj(A) r - K det(A) u."""
+        f, s, rest = self.list, self.springs[k], self.without(k)
+        u, found = self.directions()[k], []
+        for i, j in combinations(range(self.form.size), 2):
+            (ai, bi), (aj, bj) = s.slopes[i], s.slopes[j]
+            z = f.multiply(s.pull, f.cross((ai, bi), (aj, bj)))
+            x = f.subtract(f.multiply(bj, rest[i]), f.multiply(bi, rest[j]))
+            y = f.subtract(f.multiply(ai, rest[j]), f.multiply(aj, rest[i]))
+            found += [f.subtract(x, f.multiply(z, u[0])), f.subtract(y, f.multiply(z, u[1]))]
+        return found
+
+    def balances(self, k: int) -> list[int]:
+        """What is zero at equilibria whatever the direction of a spring: |adj(A) r|^2 - (K det A)^2."""
+        f, s, rest = self.list, self.springs[k], self.without(k)
+        found = []
+        for i, j in combinations(range(self.form.size), 2):
+            (ai, bi), (aj, bj) = s.slopes[i], s.slopes[j]
+            x = f.subtract(f.multiply(bj, rest[i]), f.multiply(bi, rest[j]))
+            y = f.subtract(f.multiply(ai, rest[j]), f.multiply(aj, rest[i]))
+            z = f.multiply(s.pull, f.cross((ai, bi), (aj, bj)))
+            found.append(f.subtract(f.add(f.power(x, 2), f.power(y, 2)), f.power(z, 2)))
+        return found
+
+    def outweighs(self, k: int, i: int) -> int:
+        """(K |g|)^2 - r^2 for the i-th unknown: not negative where a spring without length balances the rest."""
+        f, s = self.list, self.springs[k]
+        return f.subtract(f.multiply(f.power(s.pull, 2), f.dot(s.slopes[i], s.slopes[i])),
+                          f.power(self.without(k)[i], 2))  # fmt: skip
+
+    def balanced(self, k: int) -> tuple[int, list[int]]:
+        """The determinant, and |d| times the diagonal, of the Hessian as they are at equilibria.
+
+        There K u.g_i = r_i, so that (u x g_i)(u x g_j) = g_i.g_j - r_i r_j/K^2, with nothing of the direction.
+        """
+        f, s, n = self.list, self.springs[k], self.form.size
+        cosines = [f.divide(r, s.pull) for r in self.without(k)]
+        rows = self.hessian(self.directions(), without=k)
+        length = f.length(*s.vector)
+
+        def turning(i: int, j: int) -> int:
+            product = f.subtract(f.dot(s.slopes[i], s.slopes[j]), f.multiply(cosines[i], cosines[j]))
+            return f.multiply(f.multiply(s.pull, self.factors[j]), product)
+
+        diagonal = [f.subtract(f.multiply(length, rows[i][i]), turning(i, i)) for i in range(n)]
+        total = f.multiply(length, f.determinant(rows)) if n > 1 else f.multiply(length, rows[0][0])
+        for i in range(n):
+            for j in range(n):
+                minor = [[x for c, x in enumerate(row) if c != j] for r, row in enumerate(rows) if r != i]
+                part = f.multiply(turning(i, j), f.determinant(minor) if minor else f.number(1))
+                total = f.add(total, part) if (i + j) % 2 else f.subtract(total, part)
+        return f.multiply(total, f.inverse_length(*s.vector)), diagonal
+
+    def bend(self, k: int) -> int:
+        """|d| times a bound of the Hessian's trace from above, wherever one spring has a length and others have one.
+
+        The trace is that of the rest, plus K sum |g_ii| at most, less K/|d| times the sum of (u x g_i)^2. The least of
+        that sum over all unit vectors u is the smaller eigenvalue of the sum of the g_i g_i^T, at least its determinant
+        over its trace.
+        """
+        f, s, n = self.list, self.springs[k], self.form.size
+        length = f.length(*s.vector)
+        slopes = [(f.multiply(c, g[0]), f.multiply(c, g[1])) for c, g in zip(self.factors, s.slopes, strict=True)]
+        gram = f.sum(f.power(f.cross(g, h), 2) for g, h in combinations(slopes, 2))
+        size = f.sum(f.dot(g, g) for g in slopes)
+        rows = self._rest(k)
+        trace = f.sum(
+            f.multiply(c, f.add(rows[i][i], f.multiply(s.pull, f.length(*s.bends[i * n + i]))))
+            for i, c in enumerate(self.factors)
+        )
+        return f.subtract(f.multiply(length, trace), f.divide(f.multiply(s.pull, gram), size))
+
+    def reach(self, k: int) -> Fraction:
+        """About the largest length of a spring: the sum of the factors of its vector in the middle of the window."""
+        cone = next(c for c in self.form.cones if c.name == self.springs[k].name)
+        at = [(a.low + a.high) / 2 for a in self.claims.result.slice.axes]
+        values = {name: Fraction(0) for name in self.claims.model.free_lengths}
+        try:
+            values |= {n: e.evaluate(*at) for n, e in self.claims.result.slice.parameters.items()}
+        except ExpressionError:
+            return Fraction(1)
+        factors = (evaluated(terms, values) for row in cone.vector for terms in row.values())
+        return sum(map(abs, factors), Fraction(0)) or Fraction(1)
+
+
+def _combined(factors: Sequence[int], rows: Sequence[Waves]) -> Waves:
+    """A sum of whole multiples of waves; terms with the same parameters are put together."""
+    found: dict[Key, dict[tuple[str, ...], Fraction]] = {}
+    for factor, row in zip(factors, rows, strict=True):
+        for key, terms in row.items() if factor else ():
+            there = found.setdefault(key, {})
+            for p, q, names in terms:
+                there[names] = there.get(names, Fraction(0)) + factor * Fraction(p, q)
+    written = {
+        key: tuple((c.numerator, c.denominator, names) for names, c in terms.items() if c)
+        for key, terms in found.items()
+    }  # fmt: skip
+    return {key: terms for key, terms in written.items() if terms}
+
+
+def _without(row: Waves, names: Sequence[str]) -> Waves:
+    """A row of which all terms have these parameters, divided by them."""
+
+    def rest(of: tuple[str, ...]) -> tuple[str, ...]:
+        kept = list(of)
+        for name in names:
+            kept.remove(name)
+        return tuple(kept)
+
+    return {key: tuple((p, q, rest(of)) for p, q, of in terms) for key, terms in row.items()}
+
+
+def bases(form: Form) -> list[list[list[int]]]:
+    """Further bases, in which two unknowns turn together: those that make the equations shorter."""
+    n, found = form.size, []
+    for (i, j), sign in product(combinations(range(n), 2), (1, -1)):
+        vector = [0] * n
+        vector[i], vector[j] = 1, sign
+        rows = [form.equations, *([s[k] for s in cone.slopes] for cone in form.cones for k in (0, 1))]
+        before = sum(len(row[i]) + len(row[j]) for row in rows)
+        if sum(len(_combined(vector, row)) for row in rows) < before - len(rows) // 2:
+            found.append([vector if k == j else [int(k == m) for m in range(n)] for k in range(n)])
+    return found

@@ -1,0 +1,175 @@
+"""What need not be free of critical curves, as pieces of the window: rectangles, tubes, and components without a cell.
+
+Guarantee: what is said to be held by the pieces is so; bounds are rounded by `SLACK`. A piece is what of a closed
+rectangle lies between the graphs of two polynomials, or between one and a side.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ptmcad.cover.rectangles import Patch, Rectangle
+from ptmcad.verification.certified.slanted import SlantedSweep
+from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.certified.sweep import Sweep
+
+Bound = tuple[int, tuple[int, ...]] | None
+"""A polynomial by its controls, and what is added to them."""
+SLACK = 2.0**-44
+"""Share of the window's lattice by which bounds are narrower than they are: far more than what is lost in rounding."""
+MOST_BINS = 512
+MOST_CONTROLS = 64
+"""Of a polynomial: pieces with more hold nothing."""
+
+
+class Row(NamedTuple):
+    """A piece: its frame, its polynomials and their axis, and by how much the frame is wider than their interval."""
+
+    frame: Rectangle
+    along: int = 0
+    lower: Bound = None
+    upper: Bound = None
+    wider: int = 0
+
+
+class Pieces(NamedTuple):
+    """Pieces in arrays, and where they are.
+
+    Attributes
+    ----------
+    frames : (pieces, 4), left, right, bottom and top in lattice steps.
+    spans : (pieces, 2), the interval that the controls belong to.
+    along : the axis over which the polynomials are.
+    lower, upper : place and number of controls of each bound; none at all where there is no bound.
+    controls : all controls, with what is added.
+    bins : the window is a grid of so many squares a side; starts and members: the pieces that meet each.
+    """
+
+    steps: float
+    frames: Any
+    spans: Any
+    along: Any
+    lower: Any
+    upper: Any
+    controls: Any
+    bins: int
+    starts: Any
+    members: Any
+
+
+def pieces_of(claims: CertifiedClaims, wider: int = 0) -> Pieces:
+    """The pieces of a map's cover, and the components that have no cell.
+
+    Parameters
+    ----------
+    wider : lattice steps by which tubes and their frames are made wider on all sides; what this adds is not proved.
+    """
+    cover = claims.result.cover
+    assert cover is not None
+    rows: list[Row] = [Row(r) for r in cover.rectangles]
+    for patch in cover.patches:
+        left, right, bottom, top = patch.frame
+        frame = left - wider, right + wider, bottom - wider, top + wider
+        rows += [
+            Row(frame, patch.along, (-t.half - wider, t.controls), (t.half + wider, t.controls), wider)
+            for t in patch.tubes
+            if len(t.controls) <= MOST_CONTROLS
+        ]
+    cells, found = claims.cell_of, claims.sweep
+    if isinstance(found, SlantedSweep):
+        rows += _open_in_strips(found, cells) + _open_in_frames(found, cells)
+    else:
+        rows += _gaps(found, cells)
+    return _in_arrays(rows, cover.steps)
+
+
+def widened(claims: CertifiedClaims, wider: int) -> float:
+    """At most this share of the window is added to tubes by making them wider."""
+    cover = claims.result.cover
+    assert cover is not None
+    total = 0
+    for patch in cover.patches:
+        length = patch.frame[2 * patch.along + 1] - patch.frame[2 * patch.along]
+        for t in patch.tubes:
+            total += 2 * (t.half + wider) * (length + 2 * wider) - 2 * t.half * length
+    return total / cover.steps**2 * (1 + 1e-9)
+
+
+def _gaps(found: Sweep, cells: dict[int, int]) -> list[Row]:
+    return [
+        Row((left, right, low, high))
+        for (low, high), row in zip(pairwise(found.lines), found.gaps, strict=True)
+        for left, right, n in row
+        if n not in cells
+    ]
+
+
+def _open_in_strips(found: SlantedSweep, cells: dict[int, int]) -> list[Row]:
+    return [
+        Row((item.left, item.right, low, high))
+        for (low, high), row in zip(pairwise(found.lines), found.rows, strict=True)
+        for item in row
+        if item.frame < 0 and item.free and found.component_of[item.node] not in cells
+    ]
+
+
+def _open_in_frames(found: SlantedSweep, cells: dict[int, int]) -> list[Row]:
+    rows = []
+    for frame, first in zip(found.frames, found.first_part, strict=True):
+        patch = frame.patch
+        for k in range(len(patch.tubes) + 1):
+            if found.component_of[first + k] not in cells and len(patch.tubes[0].controls) <= MOST_CONTROLS:
+                rows.append(Row(patch.frame, patch.along, *_between(patch, k)))
+    return rows
+
+
+def _between(patch: Patch, k: int) -> tuple[Bound, Bound]:
+    """What bounds the part of a frame that has so many tubes below it, together with the tubes beside it."""
+    below, above = patch.tubes[k - 1 : k], patch.tubes[k : k + 1]
+    return (
+        (-below[0].half, below[0].controls) if k else None,
+        (above[0].half, above[0].controls) if above else None,
+    )
+
+
+def _in_arrays(rows: list[Row], steps: int) -> Pieces:
+    frames = np.array([row.frame for row in rows], dtype=np.float64).reshape(-1, 4)
+    spans = np.array([_span(row) for row in rows], dtype=np.float64).reshape(-1, 2)
+    along = np.array([row.along for row in rows], dtype=np.int64)
+    controls: list[int] = []
+    bounds = np.zeros((2, len(rows), 2), dtype=np.int64)
+    for n, row in enumerate(rows):
+        for side, bound in enumerate((row.lower, row.upper)):
+            if bound is not None:
+                bounds[side, n] = len(controls), len(bound[1])
+                controls += [c + bound[0] for c in bound[1]]
+    bins = int(min(max(1, len(rows) ** 0.5), MOST_BINS, steps))
+    low = np.floor(frames[:, ::2] * (bins / steps) - 1e-6).clip(0, bins - 1).astype(np.int64)
+    high = np.floor(frames[:, 1::2] * (bins / steps) + 1e-6).clip(0, bins - 1).astype(np.int64)
+    held: list[list[int]] = [[] for _ in range(bins * bins)]
+    for n, ((i0, j0), (i1, j1)) in enumerate(zip(low.tolist(), high.tolist(), strict=True)):
+        for i in range(i0, i1 + 1):
+            for j in range(j0, j1 + 1):
+                held[i * bins + j].append(n)
+    starts = np.cumsum([0, *map(len, held)]).astype(np.int64)
+    members = np.array([n for some in held for n in some], dtype=np.int64)
+    return Pieces(
+        float(steps),
+        frames,
+        spans,
+        along,
+        bounds[0],
+        bounds[1],
+        np.array(controls, dtype=np.float64),
+        bins,
+        starts,
+        members,
+    )
+
+
+def _span(row: Row) -> tuple[int, int]:
+    """The interval of a piece's polynomials."""
+    return row.frame[2 * row.along] + row.wider, row.frame[2 * row.along + 1] - row.wider

@@ -1,0 +1,244 @@
+"""Boxes of the window and of configurations: which of them have no critical point outside of the pieces. Compiled.
+
+Guarantee: a box that is called `GONE` has none. What is tried, in this order: the formulas' values; the mean value
+theorem; the linearised equations, multiplied by a matrix that solves them in the middle of the box, of which each
+leaves an interval for the variable that it is solved for (Hansen and Sengupta); whether the pieces hold the rectangle
+around what is left; and whether they hold the strip that the row of one axis leaves next to the other axis.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ptmcad.verification.exclusion.compiled import compiled
+from ptmcad.verification.exclusion.forms import evaluate
+from ptmcad.verification.exclusion.holding import holds
+
+GONE, HALVED, STUCK = range(3)
+"""Of a box: it has no critical point outside of the pieces; its halves are to be looked at; it is as small as is asked
+for."""
+_ROUNDS = 3
+_WORTHWHILE = 0.75
+"""Another round is made where a side of the box became smaller than this share of it."""
+_LARGEST = 1e100
+_ROUNDING = 2.0**-49
+_WIDTH_WEIGHT = 0.6
+"""How much a side's width counts, against what the equations change along it, when it is chosen what is halved."""
+_FLAT = 2.0**-60
+"""Share of the window: a rectangle that is flatter, as those that are drawn to the window's edge, is not halved."""
+_LEAST_RATIO = 0.5
+"""Of a slope to the error of its row: rows with less are not solved."""
+_LEAST_SHARE = 0.1
+"""Of a slope in all that a row has: variables with less are not narrowed by it."""
+
+
+@compiled
+def look(system: Any, tape: Any, pieces: Any, boxes: Any, outcome: Any, rest: Any) -> None:
+    """Treat boxes one by one.
+
+    Parameters
+    ----------
+    system : `ptmcad.verification.exclusion.systems.Compiled`.
+    boxes : (number, variables, 2), made smaller; outcome : (number,), as above.
+    rest : (number, variables, 2), the second halves of those that are `HALVED`; `boxes` has the first ones.
+    """
+    nv = boxes.shape[1]
+    forms = np.empty((len(tape.code), nv + 4))
+    number = len(system.zero) + len(system.not_negative)
+    rows, solved_for = np.empty((number, nv + 2)), np.empty(number, dtype=np.int64)
+    for n in range(len(boxes)):
+        box = boxes[n]
+        outcome[n] = _look_at(system, tape, pieces, box, forms, rows, solved_for)
+        if outcome[n] == HALVED:
+            k = _widest(system, forms, box)
+            half = 0.5 * (box[k, 0] + box[k, 1])
+            if k < 0 or not (box[k, 0] < half < box[k, 1]):
+                outcome[n] = STUCK
+                continue
+            for j in range(nv):
+                rest[n, j, 0], rest[n, j, 1] = box[j, 0], box[j, 1]
+            rest[n, k, 0] = half
+            box[k, 1] = half
+
+
+@compiled
+def _look_at(system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: Any, solved_for: Any) -> int:
+    """What becomes of one box."""
+    nv = box.shape[0]
+    before = np.empty((nv, 2))
+    for _ in range(_ROUNDS):
+        evaluate(tape, box, forms, 0, system.first)
+        if _excluded(system.zero[: system.early], forms, nv, False):
+            return GONE
+        evaluate(tape, box, forms, system.first, len(tape.code))
+        if _excluded(system.zero, forms, nv, False) or _excluded(system.not_negative, forms, nv, True):
+            return GONE
+        for j in range(nv):
+            before[j, 0], before[j, 1] = box[j, 0], box[j, 1]
+        number = _eliminated(system, forms, nv, rows, solved_for)
+        gained = _narrowed(system, number, box, before, rows, solved_for)
+        if gained < 0:
+            return GONE
+        if gained > _WORTHWHILE:
+            break
+    if _rectangle_held(pieces, box):
+        return GONE
+    for row in range(len(system.zero)):
+        if 0 <= solved_for[row] < 2 and _strip_held(pieces, box, before, rows[row], solved_for[row]):
+            return GONE
+    one, two = (box[0, 1] - box[0, 0]) / pieces.steps, (box[1, 1] - box[1, 0]) / pieces.steps
+    return STUCK if max(one, two) < system.smallest or min(one, two) < _FLAT else HALVED
+
+
+@compiled
+def _excluded(which: Any, forms: Any, nv: int, above: bool) -> bool:
+    """Whether a formula that is zero at critical points is not; or one that is not negative there, is (``above``)."""
+    for n in which:  # noqa: SIM110
+        if forms[n, nv + 3] < 0 or (not above and forms[n, nv + 2] > 0):
+            return True
+    return False
+
+
+@compiled
+def _eliminated(system: Any, forms: Any, nv: int, rows: Any, solved_for: Any) -> int:
+    """Gauss and Jordan's elimination of the affine forms: of those that are zero first, of all others with them.
+
+    At a critical point a form is zero for some error, and so is any combination of forms for some combination of the
+    errors. The next row is the one with the largest slope as a share of its error. Rounding is added to errors.
+
+    Returns
+    -------
+    The number of rows. Row k is solved for ``solved_for[k]``, -1 for none.
+    """
+    zeros, number = len(system.zero), len(system.zero) + len(system.not_negative)
+    for i in range(number):
+        n = system.zero[i] if i < zeros else system.not_negative[i - zeros]
+        solved_for[i] = -1
+        for j in range(nv + 2):
+            rows[i, j] = forms[n, j]
+    for _ in range(nv - 1):
+        row, column, best = -1, -1, _LEAST_RATIO
+        for i in range(zeros):
+            if solved_for[i] < 0 and rows[i, nv + 1] < _LARGEST:
+                for j in range(nv):
+                    ratio = abs(rows[i, j]) / (rows[i, nv + 1] + 1e-100)
+                    if ratio > best:
+                        row, column, best = i, j, ratio
+        if row < 0:
+            break
+        solved_for[row] = column
+        for i in range(number):
+            if i != row and rows[i, column] != 0.0 and rows[i, nv + 1] < _LARGEST:
+                factor, size = rows[i, column] / rows[row, column], 0.0
+                for j in range(nv + 1):
+                    part = factor * rows[row, j]
+                    size += abs(part) + abs(rows[i, j])
+                    rows[i, j] -= part
+                rows[i, nv + 1] += abs(factor) * rows[row, nv + 1]
+                rows[i, nv + 1] = rows[i, nv + 1] * (1 + _ROUNDING) + size * _ROUNDING
+    return number
+
+
+@compiled
+def _narrowed(system: Any, number: int, box: Any, before: Any, rows: Any, solved_for: Any) -> float:
+    """The largest share to which a row has made a side smaller; -1 where nothing is left."""
+    nv, zeros = box.shape[0], len(system.zero)
+    low, high = np.full(nv, -1.0), np.full(nv, 1.0)
+    for k in range(number):
+        if not rows[k, nv + 1] < _LARGEST:
+            continue
+        total = rows[k, nv + 1]
+        for j in range(nv):
+            total += abs(rows[k, j])
+        total = total * (1 + _ROUNDING) + _ROUNDING * abs(rows[k, nv])
+        if rows[k, nv] + total < 0 or (k < zeros and rows[k, nv] - total > 0):
+            return -1.0
+        for j in range(nv):
+            slope = rows[k, j]
+            # what the others can do at most; where this variable alone can do as much, nothing is gained
+            rest = total - abs(slope)
+            if not abs(slope) > _LEAST_SHARE * total:
+                continue
+            center, reach = -rows[k, nv] / slope, rest / abs(slope) * (1 + _ROUNDING)
+            reach += _ROUNDING * (1 + abs(center))
+            if k < zeros or slope > 0:
+                low[j] = max(low[j], center - reach)
+            if k < zeros or slope < 0:
+                high[j] = min(high[j], center + reach)
+    gained = 1.0
+    for j in range(nv):
+        if low[j] > high[j]:
+            return -1.0
+        if high[j] - low[j] < 2.0:
+            at, half = 0.5 * (before[j, 0] + before[j, 1]), 0.5 * (before[j, 1] - before[j, 0])
+            lost = _ROUNDING * (abs(at) + half)
+            box[j, 0] = max(before[j, 0], at + half * low[j] - lost)
+            box[j, 1] = min(before[j, 1], at + half * high[j] + lost)
+            gained = min(gained, 0.5 * (high[j] - low[j]))
+            if box[j, 0] > box[j, 1]:
+                return -1.0
+    return gained
+
+
+@compiled
+def _rectangle_held(pieces: Any, box: Any) -> bool:
+    strip = np.empty(9)
+    strip[0], strip[1], strip[2], strip[3], strip[4] = box[0, 0], box[0, 1], box[0, 0], box[1, 0], 0.0
+    strip[5], strip[6], strip[7], strip[8] = 0.0, box[1, 1] - box[1, 0], box[1, 0], box[1, 1]
+    return bool(holds(pieces, 0, strip))
+
+
+@compiled
+def _strip_held(pieces: Any, box: Any, before: Any, row: Any, v: int) -> bool:
+    """Whether the pieces hold the strip over one axis that a row, solved for the other one, leaves."""
+    nv, u = box.shape[0], 1 - v
+    pivot, reach = row[v], row[nv + 1]
+    for j in range(2, nv):
+        reach += abs(row[j])
+    at_u, half_u = 0.5 * (before[u, 0] + before[u, 1]), 0.5 * (before[u, 1] - before[u, 0])
+    at_v, half_v = 0.5 * (before[v, 0] + before[v, 1]), 0.5 * (before[v, 1] - before[v, 0])
+    if not (half_u > 0 and abs(pivot) > 0):
+        return False
+    slope = -row[u] / pivot * (half_v / half_u)
+    reach = reach / abs(pivot) * half_v * (1 + 8 * _ROUNDING) + 8 * _ROUNDING * half_v
+    middle = at_v - row[nv] / pivot * half_v
+    if not (reach < half_v and abs(slope) < _LARGEST):
+        return False
+    strip = np.empty(9)
+    strip[0], strip[1], strip[2], strip[3], strip[4] = box[u, 0], box[u, 1], at_u, middle, slope
+    strip[5], strip[6], strip[7], strip[8] = -reach, reach, box[v, 0], box[v, 1]
+    return bool(holds(pieces, u, strip))
+
+
+@compiled
+def _widest(system: Any, forms: Any, box: Any) -> int:
+    """The variable whose side changes the equations most, as a share; -1 where no side can be halved."""
+    nv, m = box.shape[0], len(system.measured)
+    shares = np.zeros(nv)
+    for n in system.measured:
+        total = forms[n, nv + 1]
+        for j in range(nv):
+            total += abs(forms[n, j])
+        if 0 < total < _LARGEST:
+            for j in range(nv):
+                shares[j] += abs(forms[n, j]) / total
+    best, most = -1, 0.0
+    for j in range(nv):
+        share = (1 - _WIDTH_WEIGHT) * shares[j] / m + _WIDTH_WEIGHT * (box[j, 1] - box[j, 0]) / system.units[j]
+        if share > most:
+            best, most = j, share
+    return best
+
+
+@compiled
+def spread(boxes: Any, steps: float, grid: Any) -> None:
+    """Add up in a grid of squares the areas of boxes' rectangles, as shares of the square."""
+    side = grid.shape[0]
+    scale = side / steps
+    for n in range(len(boxes)):
+        a, b, c, d = boxes[n, 0, 0] * scale, boxes[n, 0, 1] * scale, boxes[n, 1, 0] * scale, boxes[n, 1, 1] * scale
+        for i in range(int(max(a, 0.0)), int(min(b, side - 1.0)) + 1):
+            for j in range(int(max(c, 0.0)), int(min(d, side - 1.0)) + 1):
+                grid[i, j] += max(0.0, min(b, i + 1.0) - max(a, i)) * max(0.0, min(d, j + 1.0) - max(c, j))

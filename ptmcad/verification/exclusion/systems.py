@@ -1,0 +1,221 @@
+"""The critical points of a map's question as solutions of systems of equations, from the description's normal form.
+
+Guarantee: let p be a point of the window near which the counts of the map are not constant. Then p is the projection of
+a solution of one of the systems, in the box of its start (docs/verify.md, "Why an excluded area is free").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations
+from math import pi
+from typing import Any, NamedTuple
+
+import numpy as np
+from flint import arb
+
+from ptmcad.question.slice import Count
+from ptmcad.verification.certified.counted import MINIMA
+from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.parameters import exact, over
+from ptmcad.verification.certified.ranges import half_widths
+from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.certified.vectors import SPRINGS
+from ptmcad.verification.certified.waves import Waves
+from ptmcad.verification.derivation import MECHANISM
+from ptmcad.verification.exclusion.equations import Equations, Pair, bases
+from ptmcad.verification.exclusion.formulas import Tape
+
+SHORT_SHARE = 16
+"""A spring is short, for total counts, if its length is less than this part of the sum of its vector's factors."""
+
+
+class Compiled(NamedTuple):
+    """What is zero at critical points, and what is not negative there, by the numbers of values of a tape.
+
+    Attributes
+    ----------
+    early : how many of ``zero`` are known after the first operations, ``first`` many.
+    measured : those by which it is chosen what is halved.
+    units : of each variable a length that is large.
+    smallest : share of the window; boxes of less are not halved.
+    """
+
+    zero: Any
+    not_negative: Any
+    measured: Any
+    early: int
+    first: int
+    units: Any
+    smallest: float
+
+
+@dataclass(frozen=True, slots=True)
+class System:
+    """A system in lattice steps of both axes and in its unknowns.
+
+    Attributes
+    ----------
+    early, first : as above; start : (variables, 2), a box that has all solutions over the window.
+    """
+
+    name: str
+    tape: Tape
+    zero: tuple[int, ...]
+    not_negative: tuple[int, ...]
+    early: int
+    first: int
+    start: Any
+
+    def compiled(self, smallest: float) -> Compiled:
+        """In arrays."""
+        zero, not_negative = (np.array(some, dtype=np.int64) for some in (self.zero, self.not_negative))
+        units = self.start[:, 1] - self.start[:, 0]
+        measured = zero[: len(self.start) - 1]
+        return Compiled(zero, not_negative, measured, self.early, self.first, units, smallest)
+
+
+_ANGLE = (-pi - 1e-6, pi + 1e-6)
+
+
+def systems_of(claims: CertifiedClaims) -> list[System]:
+    """All systems of a map.
+
+    Raises
+    ------
+    Unproved
+        When real unknowns have no bound over the window that can be proved, or where the systems are not known.
+    """
+    return list(_Systems(claims).all())
+
+
+class _Systems:
+    """The systems of one map, and what they have in common."""
+
+    def __init__(self, claims: CertifiedClaims):
+        self.claims, self.model = claims, Equations(claims)
+        self.count, self.form = claims.result.slice.count, self.model.form
+        self.minima = self.form.is_gradient and self.count in MINIMA
+        stable = self.form.stability if self.count is Count.STABLE else ()
+        self.conditions: list[Waves] = [*self.form.inequalities, *stable]
+        self.positive = [self.model.waves(c) for c in self.conditions]
+        self.excesses = self._excesses() if self.count is Count.ADMISSIBLE else []
+
+    def all(self) -> Iterator[System]:
+        """All of them."""
+        m, f, springs = self.model, self.model.list, range(len(self.model.springs))
+        charted = not self.minima and self.form.size > 1
+        plain = [[int(i == j) for j in range(self.form.size)] for i in range(self.form.size)]
+        at_solutions, degenerate, signs = list[int](), list[int](), [*self.positive]
+        for basis in (*bases(self.form), plain):
+            m.turn_to(basis)
+            equations, rows = m.equations(m.directions()), m.hessian(m.directions())
+            balanced = [m.balanced(k) for k in springs]
+            determinant = f.determinant(rows)
+            at_solutions += [*equations, *(e for k in springs for e in (*m.balances(k), *m.directed(k)))]
+            degenerate += [determinant, *(d for d, _ in balanced)]
+            if self.minima:
+                signs += [*self._minors(rows), *(entry for _, diagonal in balanced for entry in diagonal)]
+                signs += [m.bend(k) for k in springs] if self.form.size > 1 else []
+        long = [f.subtract(f.length(*m.springs[k].vector), self._short(k)) for k in springs] if charted else []
+        others = [e for e in dict.fromkeys(at_solutions) if e not in equations]
+        last = [d for d in dict.fromkeys(degenerate) if d != determinant]
+        yield self._system("folds", equations, [determinant, *others, *last], [*dict.fromkeys(signs), *long])
+        for k in springs if charted else ():
+            yield self._short_folds(k)
+            yield self._cone(k)
+        # with admissible ones all minima are counted, so that folds ask for no excess
+        for k, c in enumerate([*self.positive, *self.excesses]):
+            if k < len(self.conditions) and not any(any(key[0]) or any(key[1]) for key in self.conditions[k]):
+                yield self._system(f"boundary {k}", [c], [], [], unknowns=0)
+            else:
+                yield self._system(
+                    f"boundary {k}", [*equations, c], others, [n for n in [*signs, *self.excesses] if n != c]
+                )
+
+    def _minors(self, rows: Sequence[Sequence[int]]) -> list[int]:
+        """The principal minors but the determinant; none is negative where the Hessian is positive semidefinite."""
+        n, f = len(rows), self.model.list
+        chosen = [c for size in range(1, max(n, 2)) for c in combinations(range(n), size)]
+        return [f.determinant([[rows[i][j] for j in c] for i in c]) for c in chosen] if n > 1 else []
+
+    def _short(self, k: int) -> int:
+        return self.model.list.number(Fraction(float(self.model.reach(k) / SHORT_SHARE)))
+
+    def _short_folds(self, k: int) -> System:
+        """Folds at which one spring is short, with its direction as one more unknown: |d| det H is a polynomial.
+
+        |d| det (M - K/|d| v v^T) = |d| det M + K det of M with v as one more row and column.
+        """
+        m, f, n = self.model, self.model.list, self.form.size
+        s, angle = m.springs[k], self.model.list.variable(n + 2)
+        u: Pair = f.cosine(angle), f.sine(angle)
+        directions = m.directions() | {k: u}
+        rows = m.hessian(directions, without=k)
+        length, turning = f.dot(s.vector, u), [f.cross(u, g) for g in s.slopes]
+        whole = [f.multiply(c, v) for c, v in zip(m.factors, turning, strict=True)]
+        bordered = [[*row, v] for row, v in zip(rows, turning, strict=True)] + [[*whole, f.number(0)]]
+        determinant = f.add(f.multiply(length, f.determinant(rows)), f.multiply(s.pull, f.determinant(bordered)))
+        equations = [*m.equations(directions), f.cross(s.vector, u)]
+        short = f.subtract(self._short(k), f.length(*s.vector))
+        return self._system(
+            f"folds with {s.name} short", equations, [determinant, *m.balances(k)], [*self.positive, length, short],
+            unknowns=n + 1,
+        )  # fmt: skip
+
+    def _cone(self, k: int) -> System:
+        """Configurations in which one spring has no length, and some direction of it balances the other forces."""
+        m, f, n = self.model, self.model.list, self.form.size
+        s, name = m.springs[k], f"cones of {m.springs[k].name}"
+        if n > 2:
+            angle = f.variable(n + 2)
+            equations = m.equations(m.directions() | {k: (f.cosine(angle), f.sine(angle))})
+            return self._system(name, [*s.vector, *equations], m.balances(k), self.positive, unknowns=n + 1)
+        fixed = [i for i, g in enumerate(s.slopes) if f.constant(g[0]) == 0 == f.constant(g[1])]
+        if fixed:
+            i = fixed[0]
+            signs = [*self.positive, m.outweighs(k, 1 - i)]
+            return self._system(name, s.vector, [m.without(k)[i]], signs)
+        return self._system(name, s.vector, m.balances(k), self.positive)
+
+    def _excesses(self) -> list[int]:
+        """By how much the springs are longer than their free lengths."""
+        m, f = self.model, self.model.list
+        assert self.claims.model == MECHANISM
+        if len(m.springs) != len(SPRINGS):
+            raise Unproved("a free length is zero all over the window, where springs without length are asked for")
+        free = [m.terms(s.free) for s in SPRINGS]
+        names = [s.name for s in MECHANISM.springs]
+        return [f.subtract(f.length(*s.vector), free[names.index(s.name)]) for s in m.springs]
+
+    def _system(
+        self, name: str, first: Sequence[int], zero: Sequence[int], not_negative: Sequence[int],
+        unknowns: int | None = None,
+    ) -> System:  # fmt: skip
+        """A system, of whose formulas that are zero the first ones are evaluated before all others."""
+        cover = self.claims.result.cover
+        assert cover is not None
+        tape, early, places = self.model.list.tape(first, [*zero, *not_negative])
+        count = len(first) + len(zero)
+        ranges = [(0.0, float(cover.steps))] * 2
+        number = self.form.size if unknowns is None else unknowns
+        if number:
+            ranges += [(-half, half) for half in self._halves] + [_ANGLE] * (number - self.form.size)
+        return System(
+            name, tape, tuple(places[:count]), tuple(places[count:]), len(first), early, np.array(ranges)
+        )  # fmt: skip
+
+    @property
+    def _halves(self) -> tuple[float, ...]:
+        if all(self.form.is_circle):
+            return (_ANGLE[1],) * self.form.size
+        slice = self.claims.result.slice
+        x, y = (exact(a.low).union(exact(a.high)) for a in slice.axes)
+        values = {n: arb(0) for n in slice.model.free_lengths}
+        values |= {n: over(e, x, y) for n, e in slice.parameters.items()}
+        return half_widths(self.form, values)
+
+
+__all__ = ["Compiled", "System", "systems_of"]

@@ -1,0 +1,203 @@
+"""The free area that is proved free of critical curves: nothing true is excluded, no dropped piece passes."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+import pytest
+from support.maps import once_per_run
+from support.records import TRUSS
+
+import ptmcad
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.report import Unchecked, Violation
+
+pytest.importorskip("numba")
+
+import numpy as np
+
+from ptmcad.verification.exclusion import check
+from ptmcad.verification.exclusion.check import MOST_EFFORT, check_free_area
+from ptmcad.verification.exclusion.forms import evaluate
+from ptmcad.verification.exclusion.formulas import Formulas
+from ptmcad.verification.exclusion.holding import holds
+from ptmcad.verification.exclusion.pieces import pieces_of
+
+ZEEMAN: dict[str, Any] = {
+    "mechanism": {
+        "name": "zeeman",
+        "parameters": {
+            "l0": {"kind": "free length", "default": 1},
+            "k": {"kind": "stiffness", "default": 1},
+            "X": {"kind": "force"},
+            "Y": {"kind": "force"},
+        },
+        "unknowns": {"th": "angle"},
+        "points": {"B": ["cos(th)", "sin(th)"], "A": [-3, 0], "P": ["X", "Y"]},
+        "springs": [{"between": ["A", "B"], "k": "k", "free": "l0"}, {"between": ["B", "P"], "k": "k", "free": "l0"}],
+    },
+    "axes": {"X": ["3/2", 5], "Y": [-2, 2]},
+    "count": "total",
+}
+RECORDS = {"zeeman": ZEEMAN, "truss": TRUSS}
+
+
+@cache
+def a_map(name: str, tolerance: float = 3e-3) -> RegionMap:
+    def made() -> RegionMap:
+        return ptmcad.classify(RECORDS[name], engine="certified", tolerance=str(tolerance))
+
+    return once_per_run(f"exclusion-{name}-{tolerance}", made)
+
+
+def without(stored: RegionMap, number: int) -> RegionMap:
+    """A map without one of its pieces."""
+    cover = stored.cover
+    assert cover is not None
+    rectangles, patches = list(cover.rectangles), list(cover.patches)
+    if number < len(rectangles):
+        del rectangles[number]
+    else:
+        del patches[number - len(rectangles)]
+    return replace(stored, cover=replace(cover, rectangles=tuple(rectangles), patches=tuple(patches)))
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_all_of_a_true_map_is_proved(name: str) -> None:
+    assert check_free_area(MOST_EFFORT, CertifiedClaims(a_map(name))).startswith("100 % of the free area")
+
+
+def test_more_effort_proves_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(check, "BOXES_AT_FIRST", 2_500)
+    claims = CertifiedClaims(a_map("truss"))
+    assert isinstance(check_free_area(0, claims), Unchecked)
+    found = [check_free_area(effort, claims) for effort in (1, 2)]
+    shares = [Fraction(text.split(" %", maxsplit=1)[0]) for text in found]
+    assert isinstance(found[0], Unchecked)
+    assert 50 < shares[0] < shares[1] == 100
+
+
+def with_one_cell(stored: RegionMap) -> RegionMap:
+    """A map that knows of its largest cell only, so that no two samples can be found to be joined."""
+    cell = min(stored.cells, key=lambda c: c.level)
+    return replace(stored, cells=(replace(cell, region=0),))
+
+
+def outcomes(stored: RegionMap, tries: int, effort: int = MOST_EFFORT) -> Iterator[str]:
+    """What is found without single pieces, which are chosen at random."""
+    cover = stored.cover
+    assert cover is not None
+    rng = random.Random(20)
+    for number in rng.sample(range(len(cover.rectangles) + len(cover.patches)), tries):
+        try:
+            yield check_free_area(effort, CertifiedClaims(without(with_one_cell(stored), number)))
+        except Violation as violation:
+            yield f"found: {violation}"
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_a_dropped_rectangle_is_found(name: str) -> None:
+    # one that others hold, or that no curve meets, is no loss
+    found = list(outcomes(a_map(name), 6))
+    assert all(text.startswith(("found: at", "100 %")) for text in found)
+    assert sum(text.startswith("found") for text in found) >= 4
+
+
+@pytest.mark.slow
+def test_a_dropped_slanted_piece_is_found() -> None:
+    stored = a_map("zeeman", 1e-5)
+    assert stored.cover is not None
+    assert len(stored.cover.patches) > 50
+    assert sum(text.startswith("found: at") for text in outcomes(stored, 8, 6)) >= 5
+
+
+def test_a_piece_of_a_billionth_of_the_window_is_found() -> None:
+    stored = with_one_cell(a_map("zeeman", 1e-5))
+    assert stored.cover is not None
+    areas = [
+        2 * t.half * (p.frame[1 + 2 * p.along] - p.frame[2 * p.along]) for p in stored.cover.patches for t in p.tubes
+    ]
+    smallest = sorted(range(len(areas)), key=lambda k: areas[k])[len(areas) // 3]
+    assert areas[smallest] < stored.cover.steps**2 * 1e-9
+    with pytest.raises(Violation, match="critical curve"):
+        check_free_area(8, CertifiedClaims(without(stored, len(stored.cover.rectangles) + smallest)))
+
+
+OPERATIONS = ("add", "subtract", "multiply", "divide", "cosine", "sine", "inverse_length", "length", "direction")
+
+
+def some_formula(f: Formulas, rng: random.Random) -> int:
+    """A formula of some operations, each of the last values."""
+    values = [f.variable(0), f.variable(1), f.variable(2), f.number(Fraction(rng.randint(-9, 9), 7))]
+    for _ in range(rng.randint(2, 12)):
+        name = rng.choice(OPERATIONS)
+        a, b = rng.choice(values), rng.choice(values[-4:])
+        if name in ("cosine", "sine"):
+            values.append(getattr(f, name)(a))
+        elif name == "direction":
+            values.append(f.direction(a, b)[0])
+        elif name != "divide" or f.constant(b) != 0:
+            values.append(getattr(f, name)(a, b))
+    return values[-1]
+
+
+def test_affine_forms_hold_the_values() -> None:
+    rng, checked = random.Random(7), 0
+    for _ in range(400):
+        f = Formulas()
+        tape, _, (place,) = f.tape([], [some_formula(f, rng)])
+        at = np.array([rng.uniform(-2, 2) for _ in range(3)])
+        half = np.array([10 ** rng.uniform(-9, 0) for _ in range(3)])
+        forms = np.empty((len(tape.code), 7))
+        evaluate(tape, np.stack([at - half, at + half], axis=1), forms, 0, len(tape.code))
+        wide = forms[place].copy()
+        if not wide[4] < np.inf:
+            continue
+        for _ in range(10):
+            e = np.array([rng.choice((-1, 1, rng.uniform(-1, 1))) for _ in range(3)])
+            point = at + half * e
+            evaluate(tape, np.stack([point, point], axis=1), forms, 0, len(tape.code))
+            low, high = forms[place, 5:]
+            if not high - low < 1e-6:
+                continue
+            value, lost = (low + high) / 2, (high - low) + 1e-13 * (1 + abs(low))
+            assert wide[5] - lost <= value <= wide[6] + lost
+            assert abs(value - wide[3] - wide[:3] @ e) <= wide[4] + lost
+            checked += 1
+    assert checked > 1000
+
+
+def test_what_is_held_lies_in_the_cover() -> None:
+    """Strips that are said to be held have no point outside, by the sweep, which is exact."""
+    for name, tolerance in (("zeeman", 3e-3), ("zeeman", 1e-5)):
+        claims = CertifiedClaims(a_map(name, tolerance))
+        pieces, rng, held, steps = pieces_of(claims), random.Random(1), 0, claims.sweep.steps
+        for _ in range(20_000):
+            along, n = rng.randrange(2), rng.randrange(len(pieces.frames))
+            f, size = pieces.frames[n], 10 ** rng.uniform(-4, 0.3)
+            a = rng.uniform(f[2 * along], f[2 * along + 1])
+            b = min(a + size * (f[2 * along + 1] - f[2 * along]), steps)
+            middle = rng.uniform(f[2 - 2 * along], f[3 - 2 * along])
+            slope, half = rng.gauss(0, 1), 10 ** rng.uniform(-3, 0) * size * (f[3 - 2 * along] - f[2 - 2 * along])
+            ends = [middle, middle + slope * (b - a)]
+            low, high = max(0.0, min(ends) - half), min(float(steps), max(ends) + half)
+            if not (
+                a < b
+                and low < high
+                and holds(pieces, along, np.array([a, b, a, middle, slope, -half, half, low, high]))
+            ):
+                continue
+            held += 1
+            u = rng.uniform(a, b)
+            v = middle + slope * (u - a) + rng.choice((-1, 1, rng.uniform(-1, 1))) * half
+            place = (Fraction(u), Fraction(v)) if along == 0 else (Fraction(v), Fraction(u))
+            if low <= v <= high and all(0 < x < steps for x in place):
+                component = claims.sweep.locate(*place)
+                assert component is None or component not in claims.cell_of
+        assert held > 100
