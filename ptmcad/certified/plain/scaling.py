@@ -10,18 +10,13 @@ derivatives too, and no box along the edge could be discarded.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from fractions import Fraction
-from functools import reduce
 
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
-
+from ptmcad.certified.plain.divisors import common_divisor, quotient
 from ptmcad.certified.plain.problem import Problem
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.question.positivity import PROVED, Need, decide
 from ptmcad.question.slice import Axis
-from ptmcad.text.expressions import Expression, Term, constant
-
-_PLANE = fmpq_mpoly_ctx.get(("x", "y"), Ordering.lex)
+from ptmcad.text.expressions import Expression, constant
 
 
 def common_factors(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Expression, ...]:
@@ -35,9 +30,8 @@ def common_factors(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Expressio
 def common_factor(polynomials: Iterable[TrigonometricPolynomial], axes: tuple[Axis, Axis]) -> Expression:
     """A positive polynomial in the axes that divides all coefficients' numerators; 1 in case of doubt."""
     coefficients = [c for f in polynomials for pair in f.terms.values() for c in pair if c.numerator]
-    found = reduce(lambda f, g: f.gcd(g), (_polynomial(c.numerator) for c in coefficients), _PLANE.constant(0))
-    factor = Expression(_terms(found))
-    if not found or factor.is_constant:
+    factor = Expression(common_divisor(c.numerator for c in coefficients))
+    if not factor.numerator or factor.is_constant:
         return constant(1)
     for candidate in (factor, -factor):
         if decide(candidate, axes, Need.POSITIVE) == PROVED:
@@ -49,20 +43,10 @@ def over(f: TrigonometricPolynomial, factor: Expression) -> TrigonometricPolynom
     """The polynomial over a factor of its coefficients' numerators."""
     if factor == constant(1):
         return f
-    divisor = _polynomial(factor.numerator)
-    return TrigonometricPolynomial({key: (_over(a, divisor), _over(b, divisor)) for key, (a, b) in f.terms.items()})
+    return TrigonometricPolynomial({key: (_over(a, factor), _over(b, factor)) for key, (a, b) in f.terms.items()})
 
 
-def _over(coefficient: Expression, divisor: fmpq_mpoly) -> Expression:
+def _over(coefficient: Expression, factor: Expression) -> Expression:
     if not coefficient.numerator:
         return coefficient
-    return Expression(_terms(_polynomial(coefficient.numerator) / divisor), coefficient.denominator)
-
-
-def _polynomial(terms: tuple[Term, ...]) -> fmpq_mpoly:
-    return _PLANE.from_dict({(i, j): fmpq(c.numerator, c.denominator) for i, j, c in terms})
-
-
-def _terms(polynomial: fmpq_mpoly) -> tuple[Term, ...]:
-    found = polynomial.to_dict().items()
-    return tuple((int(i), int(j), Fraction(int(c.p), int(c.q))) for (i, j), c in sorted(found))
+    return Expression(quotient(coefficient.numerator, factor.numerator), coefficient.denominator)

@@ -1,0 +1,42 @@
+"""Common divisors of polynomials in the two axes, as `expressions` has them.
+
+Guarantee: exact, in Q[x, y]. They are FLINT's, whose types stay in here: the certified engine uses nothing of
+`algebra`, which has more of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from fractions import Fraction
+from functools import reduce
+
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+
+from ptmcad.text.expressions import Term
+
+_PLANE = fmpq_mpoly_ctx.get(("x", "y"), Ordering.lex)
+
+
+def common_divisor(polynomials: Iterable[tuple[Term, ...]]) -> tuple[Term, ...]:
+    """The greatest one, unique but for a constant; none, the zero polynomial, of polynomials that are all zero."""
+    return _terms(reduce(lambda f, g: f.gcd(g), map(_polynomial, polynomials), _PLANE.constant(0)))
+
+
+def quotient(polynomial: tuple[Term, ...], divisor: tuple[Term, ...]) -> tuple[Term, ...]:
+    """By a divisor.
+
+    Raises
+    ------
+    DomainError
+        Of FLINT, when it is none.
+    """
+    return _terms(_polynomial(polynomial) / _polynomial(divisor))
+
+
+def _polynomial(terms: tuple[Term, ...]) -> fmpq_mpoly:
+    return _PLANE.from_dict({(i, j): fmpq(c.numerator, c.denominator) for i, j, c in terms})
+
+
+def _terms(polynomial: fmpq_mpoly) -> tuple[Term, ...]:
+    found = polynomial.to_dict().items()
+    return tuple((int(i), int(j), Fraction(int(c.p), int(c.q))) for (i, j), c in sorted(found))
