@@ -68,14 +68,24 @@ def pytest_configure(config: pytest.Config) -> None:
         compile_beside(config)
 
 
+_COMPILE = """
+from ptmcad.certified.loading import load
+load()
+import ptmcad
+from support.records import TRUSS
+ptmcad.verify(ptmcad.classify(TRUSS, engine="certified", tolerance="1/10"), boxes=0)
+"""
+
+
 def compile_beside(config: pytest.Config) -> None:
-    """Compile the certified engine while tests are collected: processes that come to it wait, and compile nothing.
+    """Compile the certified engine while tests are collected: processes that come to it wait, and compile nothing. Then
+    what searches the free area of its maps, which is wanted later.
 
     For runs of the whole suite by several processes, each of which would otherwise compile at about the same time.
     """
     compiling = subprocess.Popen(
-        [sys.executable, "-c", "from ptmcad.certified.loading import load; load()"],
-        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=ROOT,
+        [sys.executable, "-c", _COMPILE],
+        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=ROOT / "tests",
     )  # fmt: skip
 
     def end() -> None:

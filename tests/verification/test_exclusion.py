@@ -102,6 +102,7 @@ def outcomes(stored: RegionMap, tries: int, effort: int = MOST_EFFORT) -> Iterat
 
 
 @pytest.mark.parametrize("name", RECORDS)
+@pytest.mark.slow_cases("zeeman")
 def test_a_dropped_rectangle_is_found(name: str) -> None:
     # one that others hold, or that no curve meets, is no loss
     found = list(outcomes(a_map(name), 6))
@@ -117,6 +118,7 @@ def test_a_dropped_slanted_piece_is_found() -> None:
     assert sum(text.startswith("found: at") for text in outcomes(stored, 8, 6)) >= 5
 
 
+@pytest.mark.slow
 def test_a_piece_of_a_billionth_of_the_window_is_found() -> None:
     stored = with_one_cell(a_map("zeeman", 1e-5))
     assert stored.cover is not None
