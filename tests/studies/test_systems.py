@@ -104,7 +104,7 @@ def test_an_answer_of_an_earlier_round_does_not_count(tmp_path: Path) -> None:
 
 # ------------------------------------------------------------------------------------------------- answers, as recorded
 
-SINGULAR = "4*a^3-27*b^2\na+1\n-- the script was read to its end --\n"
+SINGULAR = "4*v1^3-27*v2^2\nv1+1\n-- the script was read to its end --\n"
 MSOLVE = """#Reduced Groebner basis data
 #---
 #length of basis:      1 element
@@ -143,7 +143,7 @@ Quitting the QEPCAD system... Bye!
 
 
 def test_recorded_answers_are_read() -> None:
-    assert programs.singular_curves(told(SINGULAR)) == ["4*a^3-27*b^2", "a+1"]
+    assert programs.singular_curves(told(SINGULAR)) == ["4*v1^3-27*v2^2", "v1+1"]
     assert programs.msolve_curves(MSOLVE) == ["4*a^3-27*b^2"]
     assert programs.qepcad_samples(told(QEPCAD)) == [("-1", "1/2")]
     assert agreement.real_solutions("[0, [1,\n[[[-6 / 2^3, -5 / 2^3]], [[0, 0]]]\n]]:\n", "x\n0\nx^2+x\n") == 2
@@ -181,11 +181,20 @@ def test_msolve_without_an_answer(answer: str) -> None:
         agreement.real_solutions(answer, "x,y\n0\nx*y-y\n")
 
 
-def test_singular_gets_the_system_of_msolve() -> None:
-    script = programs.singular_script(CUBIC.system, CUBIC.unknowns)
-    assert "ring r = 0, (x,a,b), dp;\n" in script
-    assert "ideal i = -x*a+x^3+b,3*x^2-a;\n" in script
-    assert "eliminate(std(i), x);" in script
+def test_singular_gets_the_system_of_msolve_in_names_of_its_own() -> None:
+    """A variable may be called as something else is in Singular, as the axis r of orthogonal-3r."""
+    script = programs.singular_script("x,ring,b\n0\n-x*ring+x^3+b,\n3*x^2-ring\n", 1)
+    assert "ring r = 0, (v0,v1,v2), dp;\n" in script
+    assert "ideal i = -v0*v1+v0^3+v2,3*v0^2-v1;\n" in script
+    assert "eliminate(std(i), v0);" in script
+
+
+def test_singular_answers_in_these_names(tmp_path: Path) -> None:
+    answer = tmp_path / "cubic.json"
+    answer.write_text(ptmcad.classify(CONFIGS / "systems" / "cubic.yaml").to_json(), encoding="utf-8")
+    found = agreement.checks(CUBIC, answer, Answers(singular=["4*v1^3-27*v2^2"]))
+    assert found == {Tool.SINGULAR.value: (True, "the critical curve")}
+    assert agreement.checks(CUBIC, answer, Answers(singular=["4*v2^3-27*v1^2"]))[Tool.SINGULAR.value].agrees is False
 
 
 # ------------------------------------------------------------------------------------------------------ the comparisons
@@ -252,7 +261,7 @@ def test_without_a_map_the_points_are_compared_with_each_other() -> None:
 def test_an_answer_that_cannot_be_read_does_not_agree(tmp_path: Path) -> None:
     answer = tmp_path / "cubic.json"
     answer.write_text(ptmcad.classify(CONFIGS / "systems" / "cubic.yaml").to_json(), encoding="utf-8")
-    found = agreement.checks(CUBIC, answer, Answers(singular=["4a3-27b2"]))
+    found = agreement.checks(CUBIC, answer, Answers(singular=["4v13-27v22"]))
     assert found[Tool.SINGULAR.value].agrees is False
 
 

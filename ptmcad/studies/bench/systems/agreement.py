@@ -49,7 +49,8 @@ def _curve(asked: Question, result: RegionMap | None, given: Answers) -> Check |
 def _singular(asked: Question, result: RegionMap | None, given: Answers) -> Check | None:
     if result is None or given.singular is None:
         return None
-    return same_curves(result, curves(given.singular, asked.variables, factors=True))
+    axes = f"v{asked.unknowns}", f"v{asked.unknowns + 1}"
+    return same_curves(result, curves(given.singular, axes, factors=True))
 
 
 def _qepcad(_: Question, result: RegionMap | None, given: Answers) -> Check | None:

@@ -85,7 +85,7 @@ def measure(records: Sequence[Path], plan: Plan, date: str = "") -> Record:
     there = programs.found()
     found: Record = {"format": FORMAT, **made_with()}
     found["versions"] |= programs.versions(there)
-    found |= {"date": date, **plan._asdict(), "floor": round(run(("true",)).peak_mebibytes, 1)}
+    found |= {"date": date, **plan._asdict()}
     # a fresh process, not a copy of this one, which would be measured with each program
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as other, tempfile.TemporaryDirectory() as folder:
         _refuse_same_names(records, other)
@@ -100,6 +100,8 @@ def measure(records: Sequence[Path], plan: Plan, date: str = "") -> Record:
             if system.answer is None:  # it needs no second attempt
                 runs[n, Tool.MAP] = [first]
         _take_turns(systems, runs, plan)
+        # this process has its largest size by now
+        found["floor"] = round(run(("true",)).peak_mebibytes, 1)
         found["rows"] = [
             _row(system, {tool: runs[n, tool] for tool in Tool if (n, tool) in runs}, plan, other)
             for n, system in enumerate(systems)

@@ -128,13 +128,16 @@ def gcad(question: Path, target: Path) -> tuple[str, ...]:
 def singular_script(system: str, unknowns: int) -> str:
     """The factors of the elimination ideal's common divisor, one on a line, for msolve's text of the system.
 
-    A basis in the cheap order comes first: it saves most of the time.
+    A basis in the cheap order comes first: it saves most of the time. The variables are called v0, v1 and so on, in
+    their order, because an axis may have the name of something else in Singular.
     """
     variables, _, *polynomials = system.splitlines()
-    names = variables.split(",")
-    return f"""ring r = 0, ({variables}), dp;
+    numbered = {name: f"v{n}" for n, name in enumerate(variables.split(","))}
+    ideal = re.sub(r"[^\W\d]\w*", lambda name: numbered[name[0]], "".join(polynomials))
+    names = list(numbered.values())
+    return f"""ring r = 0, ({",".join(names)}), dp;
 short = 0;
-ideal i = {"".join(polynomials)};
+ideal i = {ideal};
 ideal e = eliminate(std(i), {"*".join(names[:unknowns])});
 poly common = 0;
 for (int n = 1; n <= size(e); n++) {{ common = gcd(common, e[n]); }}

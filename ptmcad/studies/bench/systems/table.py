@@ -51,13 +51,15 @@ gives; neighbours, regions and areas. Its bases over Q are lifted from bases mod
 
 **Singular** is asked for the critical curve and its factors, over Q and without primes. It leaves the same as msolve,
 and the strategy too: without a basis in degree reverse lexicographic order before the elimination, [it takes far
-longer](../crosschecks.md#the-variety). Its libraries for real roots were not measured.
+longer](../crosschecks.md#the-variety). The inverse in the system is dear: without it stiffness takes a tenth of the
+time, but such an elimination may have further lines, over which a bar has no length. Its libraries for real roots
+were not measured.
 
 **QEPCAD** is asked for the open cells of the window with a rational sample in each. It leaves the curves, which are
 the work of the programs before it; the order of the axes; a bound on its memory, which has to be set before it starts
-(here 20 million cells of its own); the counts at its samples; which cells are neighbours, and areas. It counts as
-well when the unknowns are first reduced to one by hand: [error against run time](error-time.md) has that for the
-paper's slices.
+(here 20 million of its memory cells, so that the peak says little); the counts at its samples; which cells are
+neighbours, and areas. It counts as well when the unknowns are first reduced to one by hand: [error against run
+time](error-time.md) has that for the paper's slices.
 
 **gcad** is asked for the same cells, as strict inequalities in pure Python. It leaves the curves, the order of the
 axes, samples (a cell is a list of bounds by roots of polynomials), counts, neighbours and areas.
