@@ -11,7 +11,7 @@ PAPER := fig3 fig4 fig5-caption fig5-text
 # where this is set, each of the hundreds of processes that the tests start would compile all sources again
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help demo test test-slow test-oldest fuzz check bench ablation scaling stress docs free-maps clean distclean
+.PHONY: help demo test test-slow test-oldest fuzz check bench ablation systems scaling stress docs free-maps clean distclean
 
 help:
 	@echo "make demo       the map of the paper's fig. 4, as out/fig4.png and out/fig4.svg"
@@ -22,6 +22,7 @@ help:
 	@echo "make check      ruff, its formatter, what may import what, and mypy in strict mode, on the tests less so"
 	@echo "make bench      error, run time and memory on every slice in configs/, into docs/benchmarks/: ten minutes"
 	@echo "make ablation   what each saving is worth, into docs/benchmarks/: nine minutes"
+	@echo "make systems    twelve systems beside msolve, Singular, QEPCAD and gcad, into docs/benchmarks/: a quarter of an hour"
 	@echo "make scaling    how time and memory grow, into docs/benchmarks/: three minutes"
 	@echo "make stress     stiff and extreme cases against double precision, into docs/benchmarks/: some minutes"
 	@echo "make docs       the manual, as out/docs/html/index.html, and the pictures of fig. 4, into docs/img/"
@@ -109,6 +110,9 @@ bench: $(VENV)/.installed-bench
 
 ablation: $(VENV)/.installed
 	$(BIN)/python -m ptmcad.studies.bench.ablation --out docs/benchmarks
+
+systems: $(VENV)/.installed
+	$(BIN)/python -m ptmcad.studies.bench.systems --out docs/benchmarks
 
 scaling: $(VENV)/.installed-bench
 	$(BIN)/python -m ptmcad.studies.bench.scaling --out docs/benchmarks

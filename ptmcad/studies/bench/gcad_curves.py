@@ -18,8 +18,8 @@ from typing import Any
 import sympy
 
 
-def cells(question: dict[str, Any]) -> int:
-    """The number of cells over the window, the first of the question's axes being decomposed first."""
+def cells(question: dict[str, Any]) -> dict[str, int]:
+    """The number of cells over the window, in stacks over the question's base: all, and once they are merged."""
     import gcad  # an optional package
 
     symbols = sympy.symbols("x y")
@@ -32,7 +32,8 @@ def cells(question: dict[str, Any]) -> int:
         for relation in (s - sympy.Rational(low) > 0, sympy.Rational(high) - s > 0)
     ]
     order = list(symbols) if question["base"] == 0 else list(symbols)[::-1]
-    return sum(len(gcad.merge(gcad.GCAD([*window, side], order))) for side in (product > 0, product < 0))
+    sides = [gcad.GCAD([*window, side], order) for side in (product > 0, product < 0)]
+    return {"open": sum(map(len, sides)), "cells": sum(len(gcad.merge(side)) for side in sides)}
 
 
 def main(arguments: list[str]) -> None:
@@ -41,7 +42,7 @@ def main(arguments: list[str]) -> None:
     start = perf_counter()
     found = cells(question)
     seconds = perf_counter() - start
-    Path(arguments[2]).write_text(json.dumps({"cells": found}), encoding="utf-8")
+    Path(arguments[2]).write_text(json.dumps(found), encoding="utf-8")
     print(json.dumps({"computing": seconds}))
 
 
