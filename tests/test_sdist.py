@@ -62,6 +62,7 @@ build_meta.build_wheel({str(folder)!r}, settings)
     return folder / "unpacked"
 
 
+@pytest.mark.slow
 def test_a_wheel_has_the_records(wheel: Path) -> None:
     shipped = {path.relative_to(ROOT).as_posix() for path in (ROOT / "configs").rglob("*.yaml")}
     packed = {path.relative_to(wheel / "ptmcad").as_posix() for path in (wheel / "ptmcad" / "configs").rglob("*.yaml")}

@@ -312,6 +312,7 @@ LADDER: dict[str, Any] = {
 """A bar between two sliders on oblique guides; no unknown is an angle."""
 
 
+@pytest.mark.slow
 def test_sliders_that_bound_one_another() -> None:
     """Only the loop does: x^2 + y^2 - 8/5 x y = 1; in the checker, too."""
     m = ptmcad.classify(ptmcad.slice_from_mapping(LADDER), tolerance="1/50")

@@ -209,10 +209,11 @@ def test_two_derivations_are_equal(mechanism: dict[str, Any]) -> None:
     ("mechanism", "axes", "counts"),
     [
         (SLIDER_CRANK, {"W": [-2, 2], "M": [-2, 2]}, {1, 2, 3}),
-        pytest.param(FOUR_BAR, {"F": [0, 1], "G": [0, 1]}, {2, 3}, marks=pytest.mark.slow),
+        pytest.param(FOUR_BAR, {"F": [0, 1], "G": [0, 1]}, {2, 3}),
     ],
     ids=["slider_crank", "four_bar"],
 )
+@pytest.mark.slow
 def test_a_map_is_stored_with_its_mechanism_and_verified(
     mechanism: dict[str, Any], axes: dict[str, Any], counts: set[int]
 ) -> None:

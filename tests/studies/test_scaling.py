@@ -415,6 +415,7 @@ def test_a_size_that_fails_is_given_up_with_its_reason(monkeypatch: pytest.Monke
     assert "has no figures" in to_markdown({**run.scaling([], 1), "families": [family]})
 
 
+@pytest.mark.slow
 def test_the_page_shows_every_place_and_every_fit(report: dict[str, Any]) -> None:
     page = to_markdown(report)
     (family,) = report["families"]

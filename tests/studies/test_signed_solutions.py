@@ -55,6 +55,7 @@ def test_simple_roots_are_accounted_for() -> None:
     assert sum(s.equilibrium for s in found.solutions) == 6
 
 
+@pytest.mark.slow
 def test_solutions_satisfy_the_equations() -> None:
     """Residuals in floating point, with lengths of the stated signs."""
     rho, length1, length2, free, f3, f4 = (float(Fraction(x)) for x in PAPER)
