@@ -10,7 +10,6 @@ from dataclasses import replace
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism.closed import ClosedMechanism, mechanism_in
 from ptmcad.mechanism.description import Kind, Mechanism, Model, Parameter, Support, System
-from ptmcad.mechanism.loops import without_loops
 from ptmcad.mechanism.ptm import ptm
 from ptmcad.mechanism.record import described, read_mechanism
 from ptmcad.mechanism.systems import described_system, read_system
@@ -51,6 +50,21 @@ def mechanism_of(name: str) -> Mechanism:
 def built_in() -> tuple[str, ...]:
     """The names of the mechanisms that `mechanism_of` has."""
     return tuple(_BUILT_IN)
+
+
+def without_loops(model: Mechanism) -> Model:
+    """The mechanism itself, or with closed loops or X-joints the equations of its equilibria.
+
+    Raises
+    ------
+    ConfigError
+        When these may have too many terms.
+    """
+    if not (model.closing or model.xjoints):
+        return model
+    from ptmcad.mechanism.loops import equations_of_loops  # with all that only loops need
+
+    return equations_of_loops(model)
 
 
 def recognised(found: Mechanism) -> Mechanism:

@@ -10,7 +10,7 @@ from ptmcad.mechanism.description import Mechanism, Model, System
 from ptmcad.text.tree import Tree
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # equal where the systems are: nothing more is compared
 class ClosedMechanism(System):
     """A mechanism with closed loops, or with X-joints, as the equations of its equilibria; without its springs' free
     lengths, as `without_free_lengths` has none of their parameters.

@@ -35,7 +35,6 @@ from ptmcad.mechanism.sizes import check_sizes
 from ptmcad.mechanism.work import split_moments
 from ptmcad.text.tree import Number, Power, Tree
 
-CLOSING_KEYS = ("between", "length")
 _TWO: Tree = Number(Fraction(2))
 _HALF: Tree = Number(Fraction(1, 2))
 
@@ -84,8 +83,8 @@ def check_closing(mechanism: Mechanism, faults: Faults) -> None:
                 )
 
 
-def without_loops(model: Mechanism, faults: Faults | None = None) -> Model:
-    """The mechanism itself, or with closed loops or X-joints the equations of its equilibria.
+def equations_of_loops(model: Mechanism) -> Model:
+    """The equations of the equilibria of a mechanism with closed loops or X-joints.
 
     Raises
     ------
@@ -94,8 +93,6 @@ def without_loops(model: Mechanism, faults: Faults | None = None) -> Model:
     """
     if model.xjoints:
         return without_xjoints(model)
-    if not model.closing:
-        return model
     conditions = [_condition(model, closing) for closing in model.closing]
     names = (*model.angles, *model.reals)
     forces = _forces(model, names)

@@ -13,10 +13,8 @@ from typing import Any
 from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
 from ptmcad.mechanism.angles import angle_name
 from ptmcad.mechanism.bodies import add_bodies
-from ptmcad.mechanism.crossed import check_crossed
 from ptmcad.mechanism.description import Closing, Load, Mechanism, Moment, Spring, Support, TorsionSpring
 from ptmcad.mechanism.evaluate import value_at
-from ptmcad.mechanism.loops import CLOSING_KEYS, check_closing, check_loops
 from ptmcad.mechanism.parts import check_numbers
 from ptmcad.mechanism.proofs import check_bars, check_springs, check_symmetries, check_unknowns
 from ptmcad.mechanism.reading import (
@@ -39,7 +37,6 @@ from ptmcad.mechanism.reading import (
 from ptmcad.mechanism.sizes import check_sizes
 from ptmcad.mechanism.work import split_moments
 from ptmcad.mechanism.xjoint import XJoint
-from ptmcad.mechanism.xjoints import add_xjoints, second_angles
 from ptmcad.text.syntax import did_you_mean, parse
 from ptmcad.text.tree import Name, Negative, Number, Tree
 
@@ -49,6 +46,7 @@ KEYS = (
 )  # fmt: skip
 SPRING_KEYS = ("between", "k", "free")
 TORSION_KEYS = ("angle", "k", "rest", "at")
+CLOSING_KEYS = ("between", "length")
 DEFAULT_NAME = "mechanism"
 NAMED_RESTS = {
     "0": (1, 0), "pi/2": (0, 1), "pi": (-1, 0), "-pi": (-1, 0), "-pi/2": (0, -1), "3*pi/2": (0, -1),
@@ -99,12 +97,17 @@ def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = Fal
                 raise ConfigError("is missing", key=key)
     with faults:
         unknowns = unknowns_of(record["unknowns"], parameters, faults) if "unknowns" in record else {}
-    second = second_angles(record.get("x-joint"))
+    second: tuple[str, ...] = ()
+    if "x-joint" in record:
+        from ptmcad.mechanism.xjoints import add_xjoints, second_angles
+
+        second = second_angles(record["x-joint"])
     parts = _Parts(record, Reader(parameters, unknowns, faulty_entries(faults, "unknowns"), second), faults)
     points = parts.points()
     xjoints: tuple[XJoint, ...] = ()
-    with faults:
-        xjoints = add_xjoints(record.get("x-joint", {}), parts.reader, points, {**parameters, **unknowns}, faults)
+    if "x-joint" in record:
+        with faults:
+            xjoints = add_xjoints(record["x-joint"], parts.reader, points, {**parameters, **unknowns}, faults)
     bodies = {}
     with faults:
         bodies = add_bodies(mapping(record.get("bodies", {}), "bodies", MAX_BODIES), parts.reader, points, faults)
@@ -143,7 +146,9 @@ def _prove(found: Mechanism, faults: Faults) -> None:
     faulty = {(fault.key or "").partition(".")[0] for fault in faults.found}
     if not faulty & _SHAPE:
         check_bars(found, faults)
-        if "closing" not in faulty:
+        if found.closing and "closing" not in faulty:
+            from ptmcad.mechanism.loops import check_closing
+
             check_closing(found, faults)
         if "springs" not in faulty and "torsion" not in faulty:
             check_springs(found, faults)
@@ -151,8 +156,12 @@ def _prove(found: Mechanism, faults: Faults) -> None:
         check_unknowns(found, faults)
         check_symmetries(found, faults)
         check_moments(found, faults)
-        check_loops(found, faults)
-        check_crossed(found, faults)
+        if found.closing or found.xjoints:  # most mechanisms have neither, and do not wait for what reads them
+            from ptmcad.mechanism.crossed import check_crossed
+            from ptmcad.mechanism.loops import check_loops
+
+            check_loops(found, faults)
+            check_crossed(found, faults)
 
 
 def check_moments(mechanism: Mechanism, faults: Faults) -> None:
