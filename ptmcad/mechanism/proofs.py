@@ -157,9 +157,10 @@ def check_bars(mechanism: Mechanism, faults: Faults) -> None:
 def check_springs(mechanism: Mechanism, faults: Faults) -> None:
     """Note each spring whose length no unknown changes, and each torsion spring whose angle none does."""
     points = Points(mechanism)
+    closing = {frozenset((bar.start, bar.end)) for bar in mechanism.closing}
     for n, spring in enumerate(mechanism.springs, 1):
         with faults:
-            if not points.moves(spring.start, spring.end):
+            if frozenset((spring.start, spring.end)) in closing or not points.moves(spring.start, spring.end):
                 raise ConfigError(
                     f"the length of {spring.start}{spring.end} is constant, so that this spring does nothing: leave it "
                     "out, or put an end where it moves",

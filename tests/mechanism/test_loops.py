@@ -357,6 +357,11 @@ def test_the_branches_of_a_parallelogram_by_themselves() -> None:
             assert (found.stable, len(found.equilibria)) == (minima, minima + maxima)
 
 
+def test_a_spring_along_a_closing_bar_does_nothing() -> None:
+    with pytest.raises(ConfigError, match=r"springs.3: the length of QP is constant"):
+        ptmcad.Mechanism({**FOUR_BAR, "springs": [*FOUR_BAR["springs"], {"between": ["Q", "P"], "k": 1}]})
+
+
 def test_lengths_and_stiffnesses_written_where_they_are_used_are_proved_positive() -> None:
     for change, part in (
         ({"closing": [{"between": ["P", "Q"], "length": "L3 + F"}]}, "closing.1.length"),

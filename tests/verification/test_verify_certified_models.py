@@ -28,6 +28,7 @@ from ptmcad.options import Options
 from ptmcad.question.slice import Count, Point
 from ptmcad.text.expressions import constant
 from ptmcad.text.tree import Chain, Name, Number, Step
+from ptmcad.verification.certified import points
 from ptmcad.verification.certified.counted import Counts
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.field import Field, power
@@ -449,6 +450,17 @@ def test_random_points_find_that_curves_were_left_out(name: str) -> None:
     report = ptmcad.verify(false, boxes=4, effort=0)
     assert report.violation is not None
     assert report.violation.startswith("random boxes:")
+
+
+@pytest.mark.parametrize("name", ["truss", "loop"])
+def test_boxes_that_are_not_decided_hide_no_false_count(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a box smaller than what doubles part nothing is decided; the counts of all cells are compared nevertheless."""
+    monkeypatch.setattr(points, "HOPELESS", 1)
+    narrow = with_solution(map_of(name), lambda s: replace(s, radius=Fraction(1, 10**40)))
+    report = ptmcad.verify(narrow, boxes=0, effort=0)
+    assert next(c.passed for c in report.checks if c.name == "counts and solutions") is None
+    last = len(narrow.cells) - 1
+    assert_rejected(recounted(narrow, last, 1), "counts and solutions")
 
 
 def test_a_text_too_large_to_compare_hides_no_other() -> None:

@@ -35,11 +35,15 @@ PRECISIONS = (53, 128, 320)
 BUDGET = 12_000
 """Squares of the torus for one box of parameters."""
 HOPELESS = 16
-"""Samples or random points that were not decided, after which no more are tried."""
+"""Samples or random points whose counts were not decided, after which no more are tried."""
 _BOX_PRECISION = 128
 _PI, _PI_ERROR = Fraction(355, 113), Fraction(1, 10**5)
 """Near pi; and more than six times its error."""
 _BASE = MECHANISM.first(Kind.BASE)
+
+
+class _InBoxes(Unproved):
+    """The counts are true, but not that each stored box holds one solution: other cells' counts tell more."""
 
 
 def check_points(claims: CertifiedClaims, report: Callable[[int, int], None] = lambda _done, _total: None) -> str:
@@ -48,7 +52,7 @@ def check_points(claims: CertifiedClaims, report: Callable[[int, int], None] = l
     Of the paper's mechanism all cells can be decided, so one that cannot is a fault of the map. Samples that are flat
     or nearly so (`ptmcad.verification.certified.flat`) are by the counts beside them, unless the whole slice is flat.
     """
-    counting, number = counting_of(claims), 0
+    counting, number, uncounted = counting_of(claims), 0, 0
     undecided: list[str] = []
     for n, cell in enumerate(claims.result.cells):
         report(n, len(claims.result.cells))
@@ -59,7 +63,8 @@ def check_points(claims: CertifiedClaims, report: Callable[[int, int], None] = l
             if counting.is_complete and not _is_all_flat(claims, cell):
                 raise Violation(f"cell {n}: the counts {where} could not be confirmed: {reason}") from None
             undecided.append(f"cell {n} {where}: {reason}")
-            if len(undecided) == HOPELESS:
+            uncounted += not isinstance(reason, _InBoxes)
+            if uncounted == HOPELESS:
                 break
             continue
         except Violation as violation:
@@ -67,7 +72,7 @@ def check_points(claims: CertifiedClaims, report: Callable[[int, int], None] = l
         number += found
     samples = len(claims.result.cells)
     if undecided:
-        most = " or more" if len(undecided) == HOPELESS else ""
+        most = " or more" if uncounted == HOPELESS else ""
         return Unchecked(f"{len(undecided)}{most} of {samples} samples were not decided, the first one {undecided[0]}")
     return f"{samples} samples, {number} equilibria"
 
@@ -94,7 +99,21 @@ def _check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell) -> int:
     kept = [e for e in there.found if claims.result.slice.count not in MINIMA or "-" not in e.signs]
     if len(cell.solutions) != len(kept):
         raise Violation(f"{len(cell.solutions)} boxes of solutions for {len(kept)} equilibria")
-    taken: set[int] = set()
+    try:
+        _check_boxes(claims, counting, cell, replace(there, found=kept))
+    except Unproved as reason:
+        raise _InBoxes(str(reason)) from reason
+    return len(kept)
+
+
+def _check_boxes(claims: CertifiedClaims, counting: Counting, cell: Cell, there: Counted) -> None:
+    """Each stored box holds one solution, each another one, and these are those that are kept.
+
+    Raises
+    ------
+    Violation, Unproved
+    """
+    taken, kept = set[int](), there.found
     for k, (solution, e) in enumerate(zip(cell.solutions, counting.within(there, cell.solutions), strict=True)):
         match = [i for i, other in enumerate(kept) if counting.same(e, other)]
         if len(match) != 1 or match[0] in taken:
@@ -102,7 +121,6 @@ def _check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell) -> int:
             raise Violation(f"the solution {k} near ({near}) is stored twice, or not asked for")
         _check_signs(claims, kept[match[0]].signs, solution.signs, k)
         taken.add(match[0])
-    return len(kept)
 
 
 def _check_signs(claims: CertifiedClaims, true: str, said: str, k: int) -> None:
