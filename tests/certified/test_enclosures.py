@@ -192,6 +192,7 @@ def fold_curves() -> list[Curve]:
 
 
 @pytest.mark.parametrize("number", few(range(len(fold_curves())), *range(1, len(fold_curves()))))
+@pytest.mark.slow
 def test_contraction_keeps_known_folds(number: int, folds: list[Floats]) -> None:
     rng = np.random.default_rng(8)
     system = fold_curves()[number].system.arguments()

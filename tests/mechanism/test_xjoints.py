@@ -132,6 +132,7 @@ def test_one_joint_has_the_minima_along_its_angle() -> None:
     assert seen == {1, 2}
 
 
+@pytest.mark.slow
 def test_two_joints_have_44_complex_solutions() -> None:
     problem = problem_of(ptmcad.load(CONFIGS / "two-x-joints.yaml"))
     values = point_values(problem.parameters, (fmpq(29, 97), fmpq(-31, 89)))

@@ -69,6 +69,7 @@ def without(stored: RegionMap, number: int) -> RegionMap:
 
 
 @pytest.mark.parametrize("name", RECORDS)
+@pytest.mark.slow_cases("zeeman")
 def test_all_of_a_true_map_is_proved(name: str) -> None:
     assert check_free_area(MOST_EFFORT, CertifiedClaims(a_map(name))).startswith("100 % of the free area")
 
