@@ -32,12 +32,10 @@ from ptmcad.exact.cad.curves import Curve, curves_of, lines_of
 from ptmcad.exact.cad.projection import Projection, predicted_cost, project
 from ptmcad.exact.cad.stacks import Avoided, StackData, lift
 from ptmcad.exact.counting import Equilibria, equilibria
-from ptmcad.exact.folds import with_folds
 from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.exact.regions import Link, members, merge
 from ptmcad.exact.variety import Known, check_hypotheses, discriminant_variety
-from ptmcad.exact.witness import points, with_witness
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import decimal, fraction_of, short_text
 
@@ -202,6 +200,10 @@ def _explained(
 ) -> DegenerateSliceError | InfiniteSolutionsError:
     """The error with its cause, where it is a loop that folds flat, and a point that shows it."""
     system, parameters, window = problem.system, problem.parameters, problem.window
+    # what tells faults apart is loaded only where there is one
+    from ptmcad.exact.folds import with_folds
+    from ptmcad.exact.witness import points, with_witness
+
     told = with_folds(error, problem.slice.model, system, parameters, points(window))
     return with_witness(error, system, parameters, window, problem.place) if told is error else told
 

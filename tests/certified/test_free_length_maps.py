@@ -94,9 +94,10 @@ def check_free02(result: RegionMap, tolerance: Fraction) -> None:
     """Counts and areas are those of REFERENCE, from 160 x 160 grids and a map with 0.01 % undetermined."""
     assert result.status is Status.CERTIFIED
     assert result.undetermined <= tolerance
-    by_count = {count: sum(r.area[0] for r in result.regions if r.stable == count) for count in (1, 2)}
-    assert abs(by_count[1] - Fraction("2.569")) < Fraction("0.02")
-    assert abs(by_count[2] - Fraction("1.329")) < Fraction("0.02")
+    for count, known in ((1, Fraction("2.569")), (2, Fraction("1.329"))):
+        low = sum(r.area[0] for r in result.regions if r.stable == count)
+        # what is undetermined of the window, whose area is 3.9, may belong to it
+        assert low - Fraction("0.002") < known < low + Fraction(39, 10) * result.undetermined + Fraction("0.002")
     assert RegionMap.from_json(result.to_json()) == result
     assert differing(result, 12, 3, 40) == []
 

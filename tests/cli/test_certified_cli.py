@@ -386,6 +386,7 @@ WINDOW = ["--slice", "rho,L2", "--range", "rho=1/2:1", "--range", "L2=5/4:7/4", 
 
 MARKING = """
 import sys
+import time
 from pathlib import Path
 from ptmcad.process import handover
 
@@ -395,12 +396,13 @@ def telling(topic, *texts):
     tell(topic, *texts)
     if topic is handover.Topic.RESULT:
         marker.touch()
+        time.sleep(3600)
 
 handover.send = telling
 from ptmcad.__main__ import main
 sys.exit(main())
 """
-"""The program, which makes a file as soon as it has handed over a result."""
+"""The program, which makes a file as soon as it has handed over a result, and gets no further."""
 
 
 def _command(folder: Path, *options: str) -> list[str]:
@@ -427,7 +429,7 @@ def test_the_engine_stopped_by_ctrl_c_and_gone_on_with(tmp_path: Path) -> None:
         found = finer.locate(**cell.sample)
         assert found.status is Status.UNDECIDED or found.stable == cell.stable
     marker = tmp_path / "handed-over"
-    command = _command(tmp_path, "--tolerance", "1e-9", "--resume", str(tmp_path / SAVED))
+    command = _command(tmp_path, "--tolerance", "1e-13", "--resume", str(tmp_path / SAVED))
     command[1:3] = ["-c", MARKING, str(marker)]
     with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE) as stopped:
         while not marker.exists():

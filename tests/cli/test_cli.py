@@ -6,6 +6,7 @@ import errno
 import json
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -346,7 +347,7 @@ def test_help_examples_about_a_result_run(
     if "loads.json" in example:
         Path("free.yaml").write_text("name: loads\n" + FAMILY.replace("sweep:", "free:"), encoding="utf-8")
         assert run(["classify", "free.yaml", "--changes", "--members", "2", "--no-areas", "--format", "json"]) == 0
-    assert run(example.split()) == 0
+    assert run(shlex.split(example)) == 0
 
 
 def test_help_examples_have_known_options(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -358,7 +359,7 @@ def test_help_examples_have_known_options(monkeypatch: pytest.MonkeyPatch, tmp_p
         Path(name).parent.mkdir(exist_ok=True)
         Path(name).touch()
     for example in help_examples():
-        name, *arguments = example.split()
+        name, *arguments = shlex.split(example)
         command = group.get_command(None, name)  # type: ignore[arg-type]
         assert command is not None
         command.make_context(name, arguments)
@@ -369,7 +370,7 @@ def test_help_examples_run(
     engine: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, example: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert run(example.split()) == 0
+    assert run(shlex.split(example)) == 0
     assert names(tmp_path)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
+from typing import NamedTuple
 
 import pytest
 from flint import arb, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz_poly
@@ -18,6 +19,7 @@ from ptmcad.algebra.fibre import CoordinatesInBalls, Fibre, univariate_represent
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
 from ptmcad.algebra.resultants import balanced, discriminant, resultant
 from ptmcad.exact.cad import area
+from ptmcad.exact.cad.curves import Curve
 from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import point_system
 from ptmcad.studies.stress.measure import answer, work_of
@@ -200,22 +202,29 @@ def test_walls_share_their_fibres_and_hopeless_strips_are_not_tried(monkeypatch:
     seen: list[tuple[object, ...]] = []
     rounds: list[int] = []
 
-    def counted(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
-        seen.append((str(p), low, high))
-        return isolate(p, low, high)
+    class Counted(NamedTuple):
+        curve: Curve
 
-    refined = area._refine
+        def __getattr__(self, name: str) -> object:
+            return getattr(self.curve, name)
+
+        def roots_over(self, u: fmpq, fibre: tuple[fmpq, fmpq]) -> tuple[RealRoot, ...]:
+            seen.append((self.curve.component, u, fibre))
+            return self.curve.roots_over(u, fibre)
+
+    refined, found = area._refine, area.by_component
 
     def followed(*arguments: object) -> object:
         rounds.append(len(seen))
         return refined(*arguments)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(area, "isolate", counted)
+    monkeypatch.setattr(area, "by_component", lambda curves: {n: Counted(c) for n, c in found(curves).items()})
     monkeypatch.setattr(area, "_refine", followed)
     s = ten(30)
     vast = SliceQuestion(LOADED, {"rho": (Fraction(0), s), "L2": (Fraction(0), s)})
     answer(vast)
     assert len(rounds) == 1
+    assert seen
     assert len(seen) == len(set(seen))
 
 

@@ -48,7 +48,7 @@ sys.exit(main())
 
 @dataclass(frozen=True)
 class Interrupted:
-    """A run, how it was ended, and what it left."""
+    """A run, how it was ended, and what it left; ``"itself"`` where it was faster than that."""
 
     name: str
     how: str
@@ -63,6 +63,9 @@ class Interrupted:
         """What is not as it was promised; empty if nothing."""
         if not self.message and self.saved is None and self.handed is None:
             return ""  # the command line was not read yet: nothing has begun
+        if self.how == "itself":
+            done = self.saved is not None and self.saved.status is Status.CERTIFIED and not self.message
+            return "" if done else "it ended without a map"
         if "Traceback" in self.message or self.message.count("\n") != 1:
             return "not one message"
         if self.saved is None:
@@ -88,13 +91,14 @@ def interrupted(name: str, how: str, seconds: float, folder: Path) -> Interrupte
     marker = folder / "handed"
     options = ["--timeout", f"{seconds}"] if how == "timeout" else []
     command = [sys.executable, "-c", WATCHING, str(marker), "classify", f"configs/{name}.yaml", "--format", "json",
-               "--tolerance", "1e-7", "--out", str(folder), *options]  # fmt: skip
+               "--tolerance", "1e-9", "--out", str(folder), *options]  # fmt: skip
     with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
         if how != "timeout":
             while worked(process.pid) < seconds and process.poll() is None:
                 time.sleep(0.02)
             process.send_signal(signal.Signals[how])
         _, errors = process.communicate()
+        how = "itself" if process.returncode == 0 else how
     path = folder / f"{name}.json"
     saved = RegionMap.from_json(path.read_text(encoding="utf-8")) if path.exists() else None
     handed = marker.read_text() if marker.exists() else None
@@ -102,12 +106,12 @@ def interrupted(name: str, how: str, seconds: float, folder: Path) -> Interrupte
 
 
 def campaign(number: int, seed: int) -> Iterator[Interrupted]:
-    """Runs of all slices ended in all ways, at random moments between 0 and 40 seconds."""
+    """Runs of all slices ended in all ways, at random moments within 15 seconds."""
     generator = random.Random(seed)
     for k in range(number):
         name, how = NAMES[k % 3], (*(s.name for s in SIGNALS), "timeout")[k // 3 % 4]
         # none before the program has its handlers, which takes the interpreter's own start
-        seconds = round(0.5 + generator.random() ** 1.5 * 39.5, 2)
+        seconds = round(0.5 + generator.random() ** 1.5 * 14.5, 2)
         with tempfile.TemporaryDirectory() as folder:
             yield interrupted(name, how, seconds, Path(folder))
 
@@ -132,8 +136,9 @@ def test_interrupted_at_60_random_moments() -> None:
     saved = 0
     for k, run in enumerate(campaign(60, 14)):
         assert not run.fault(), (run.fault(), run)
-        assert run.status == (3 if run.how == "timeout" else 128 + signal.Signals[run.how])
-        saved += run.saved is not None
+        status = {"timeout": 3, "itself": 0}
+        assert run.status == (status[run.how] if run.how in status else 128 + signal.Signals[run.how])
+        saved += run.saved is not None and run.how != "itself"
         if run.saved is not None and k % 7 == 0 and run.saved.undetermined < Fraction(1, 2):
             assert goes_on(run)
-    assert saved > 30
+    assert saved > 20

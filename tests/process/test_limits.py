@@ -345,7 +345,7 @@ def judge(folder: Path, status: int, errors: str, limit: str) -> str:
     assert status == 0 or limit in errors, errors
     files = sorted(path.name for path in folder.glob("out/*") if not path.name.startswith("."))
     assert not list(folder.glob("out/.*"))
-    saved = re.findall(r"the (partial|complete) result(?:, [^,]* undetermined,)? is in [^;,]*/([^;,\s]*)", errors)
+    saved = re.findall(r"(partial|complete) map(?: \([^)]* undetermined\))? saved to [^;]*/([^;/\s]*)", errors)
     if status == 0:
         assert len(files) == 2
     else:
