@@ -272,3 +272,31 @@ def test_a_loop_has_the_equilibria_of_every_side(at: tuple[str, str]) -> None:
     counter = plain_counter(ptmcad.slice_from_mapping(LOOP))
     total, stable = (counter.at(force, up, count) for count in (Count.TOTAL, Count.STABLE))
     assert (total.total, stable.stable) == loop_by_samples(float(force), float(up))
+
+
+PAIR: dict[str, Any] = {
+    "name": "pair",
+    "mechanism": {
+        "name": "pair",
+        "parameters": {
+            "m": {"kind": "free length", "default": "1/2"},
+            "F": {"kind": "force"},
+            "G": {"kind": "force", "default": "1/3"},
+        },
+        "unknowns": {"x": "length", "y": "length"},
+        "points": {"O": [0, 0], "S": ["x", 0], "T": ["y", 0]},
+        "springs": [{"between": ["O", "S"], "k": 1, "free": 1}, {"between": ["S", "T"], "k": 2, "free": "m"}],
+        "loads": {"S": ["F", 0], "T": ["G", 0]},
+    },
+    "axes": {"F": [-1, 1], "m": [0, 1]},
+    "count": "index",
+}
+"""Two sliders on one guide: a spring holds the first one, and another spring the second one by the first."""
+
+
+@pytest.mark.parametrize(("force", "free"), [("1/10", "1/2"), ("-5/4", "1/2"), ("1/10", "1/7"), ("3/2", "1/10")])
+def test_two_sliders_have_the_equilibria_of_every_side(force: str, free: str) -> None:
+    """x = F + G + p and y - x = G/2 + q m on the sides p, q, exactly."""
+    f, m, g = Fraction(force), Fraction(free), Fraction(1, 3)
+    true = sum(p * (f + g + p) > 0 and q * (g / 2 + q * m) > 0 for p, q in product((1, -1), repeat=2))
+    assert counted(PAIR, F=f, m=m, G=g).index == (true, 0, 0)
