@@ -149,8 +149,10 @@ def _check_bounded(slice: Slice) -> None:
         return
     from ptmcad.certified.plain.infinity import patches
     from ptmcad.certified.plain.problem import problem_of
+    from ptmcad.certified.plain.straight import branches
 
-    patches(problem_of(slice), slice.axes)
+    for branch in branches(problem_of(slice), slice.axes):
+        patches(branch, slice.axes)
 
 
 def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tuple[Check, int]:

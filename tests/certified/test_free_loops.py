@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -426,7 +425,7 @@ def test_the_equations_are_the_energy_s_slope_along_the_loop() -> None:
     def slopes(f: Any, t: Numbers) -> Numbers:
         return np.array([(f(t + step * e) - f(t - step * e)) / (2 * step) for e in np.eye(2)])
 
-    counter = replace(plain_counter(slice_of("four-bar-free")), pause=None)
+    counter = plain_counter(slice_of("four-bar-free")).branches[0]
     for t in (np.array([0.3, 1.7]), np.array([-2.0, 0.9])):
         first, second = slopes(closed, t)
         along = np.array([-second, first]) @ slopes(lambda at: energy(*place(at)), t)

@@ -69,7 +69,7 @@ def refusal(problem: Problem, found: Sequence[Range]) -> ConfigError:
     """What to raise where some unknowns have no range, with their names."""
     missing = [name for name, bounds in zip(problem.unknowns, found, strict=True) if not isfinite(sum(bounds))]
     which = f"no bound of the unknown{'s' * (len(missing) > 1)} {', '.join(missing)} could be proved over the window"
-    if problem.cones:  # which no other engine takes
+    if problem.has_springs:  # which no other engine takes
         return ConfigError(
             f"{which}, and the certified engine, which free lengths need, searches a bounded box: narrow the window, "
             "or add a spring that holds what is not bounded",
@@ -92,7 +92,7 @@ def _vanishing(problem: Problem, with_products: bool) -> list[TrigonometricPolyn
 
 def _rigid(problem: Problem) -> Sequence[TrigonometricPolynomial]:
     """The equations that are polynomials: with cones those that close loops."""
-    return problem.equations[: problem.closing] if problem.cones else problem.equations
+    return problem.equations[: problem.closing] if problem.has_springs else problem.equations
 
 
 @dataclass(frozen=True, slots=True)

@@ -144,6 +144,11 @@ def chart(exact: Geometry, short: int | None = None) -> Chart:
     phi = None if short is None else graph.variable(FIRST + len(size))
     springs = tuple(s.spring(graph, unknowns, phi if k == short else None) for k, s in enumerate(exact.shapes))
     rigid = [[f.formula(graph, unknowns) for f in row] for row in exact.slopes]
+    for push in exact.pushes:
+        strength = push.strength(graph)
+        for i, w in enumerate(push.weights):
+            smooth[i] = smooth[i] - strength * w.formula(graph, unknowns)
+            rigid[i] = [r - strength * w.derivative(j).formula(graph, unknowns) for j, r in enumerate(rigid[i])]
     for at in springs:
         for i in size:
             for j in size:

@@ -21,6 +21,7 @@ from ptmcad.certified.plain.geometry import Geometry, geometry
 from ptmcad.certified.plain.infinity import Patch, at_infinity, patches
 from ptmcad.certified.plain.loopcurves import curves_of_loops
 from ptmcad.certified.plain.problem import FIRST, Condition, Problem, problem_of
+from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.scales import TURNING_WEIGHT, short_lengths, variable_weights
 from ptmcad.certified.system import system
 from ptmcad.question.slice import Count, Slice
@@ -63,14 +64,14 @@ def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) ->
     ConfigError, GeometryError
         As `problem_of` and `patches` do.
     """
-    found = patches(problem_of(slice), slice.axes)
+    found = (patch for branch in branches(problem_of(slice), slice.axes) for patch in patches(branch, slice.axes))
     return tuple(curve for patch in found for curve in _of_patch(slice, count, without, patch))
 
 
 def _of_patch(slice: Slice, count: Count, without: frozenset[str], patch: Patch) -> Iterator[Curve]:
     problem = patch.problem
     if problem.closing:
-        yield from curves_of_loops(slice, patch)
+        yield from curves_of_loops(slice, count, patch)
         return
     exact = geometry(problem, slice.axes)
     at = chart(exact)
@@ -85,7 +86,7 @@ def _of_patch(slice: Slice, count: Count, without: frozenset[str], patch: Patch)
         not stable or "cones-and-creases" in without,
         "dependent-equations" not in without,
         problem.conditions(count),
-        "".join(f", {problem.unknowns[k]} large" for k in patch.inverse),
+        problem.where + "".join(f", {problem.unknowns[k]} large" for k in patch.inverse),
     )
     yield from _smooth(search, at)
     yield from _boundaries(search, at)
@@ -208,7 +209,12 @@ def _short_folds(search: _Search, at: Chart) -> Iterator[Curve]:
                 [at.aligned, *at.equations, at.determinant()],
                 (0, 1, *search.problem.variables, FIRST + len(search.problem.unknowns)),
                 _dependent(search, at),
-                [at.springs[s].extent, search.short[s] - at.lengths[s], *semidefinite],
+                [
+                    at.springs[s].extent,
+                    search.short[s] - at.lengths[s],
+                    *semidefinite,
+                    *_values(search.conditions, at),
+                ],
             ),
             (*search.ranges, TURN),
             np.array([*search.weights, TURNING_WEIGHT]),
@@ -221,9 +227,14 @@ def _points_without_length(search: _Search, at: Chart) -> Iterator[Curve]:
     for cone in search.problem.cones:
         vanishing = [d.formula(unknown.graph, [unknown]) for d in cone.difference]
         yield Curve(
-            f"cone {cone.name}",
+            f"cone {cone.name}{search.where}",
             f"an equilibrium is swallowed where spring {cone.name} has no length",
-            system([f for f in vanishing if f.value != 0], (0, 1, FIRST), ((), at.equations)),
+            system(
+                [f for f in vanishing if f.value != 0],
+                (0, 1, FIRST),
+                ((), at.equations),
+                _values(search.conditions, at),
+            ),
             search.ranges,
             np.array(search.weights),
         )
@@ -238,12 +249,13 @@ def _cones(search: _Search) -> Iterator[Curve]:
         # a coordinate that is zero everywhere says nothing
         vanishing = [f for f in (d.formula(graph, unknowns) for d in cone.difference) if f.value != 0]
         yield Curve(
-            f"cone {cone.name}",
+            f"cone {cone.name}{search.where}",
             f"an equilibrium is swallowed where spring {cone.name} has no length",
             system(
                 [*vanishing, *at.equations],
                 (0, 1, *search.problem.variables, FIRST + len(search.problem.unknowns)),
                 ((), at.balances),
+                _values(search.conditions, at),
             ),
             (*search.ranges, TURN),
             np.array([*search.weights, TURNING_WEIGHT]),

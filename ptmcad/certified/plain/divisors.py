@@ -11,6 +11,7 @@ from fractions import Fraction
 from functools import reduce
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint.utils.flint_exceptions import DomainError
 
 from ptmcad.text.expressions import Term
 
@@ -31,6 +32,14 @@ def quotient(polynomial: tuple[Term, ...], divisor: tuple[Term, ...]) -> tuple[T
         Of FLINT, when it is none.
     """
     return _terms(_polynomial(polynomial) / _polynomial(divisor))
+
+
+def square_root(polynomial: tuple[Term, ...]) -> tuple[Term, ...] | None:
+    """A polynomial with this square, either one of both; None where there is none."""
+    try:
+        return _terms(_polynomial(polynomial).sqrt())
+    except DomainError:
+        return None
 
 
 def _polynomial(terms: tuple[Term, ...]) -> fmpq_mpoly:

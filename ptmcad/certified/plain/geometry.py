@@ -5,9 +5,9 @@ Guarantee: everything is over the positive common factor of its equation.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from ptmcad.certified.plain.problem import Problem
+from ptmcad.certified.plain.problem import Problem, Push
 from ptmcad.certified.plain.scaling import common_factors, over
 from ptmcad.certified.plain.springs import Shape, shape
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
@@ -25,7 +25,8 @@ class Geometry:
     factors : of the equations, positive in the open window.
     equations, slopes : the smooth parts over their factors, and their derivatives by the unknowns.
     shapes : of the springs with a free length.
-    turns : directions in which bodies turn together.
+    turns : directions in which bodies turn together; none are used where springs are pushes.
+    pushes : of the problem, with their weights over the factors.
     """
 
     problem: Problem
@@ -34,6 +35,7 @@ class Geometry:
     slopes: tuple[tuple[TrigonometricPolynomial, ...], ...]
     shapes: tuple[Shape, ...]
     turns: tuple[Turn, ...]
+    pushes: tuple[Push, ...]
 
 
 def geometry(problem: Problem, axes: tuple[Axis, Axis] | None = None) -> Geometry:
@@ -51,5 +53,9 @@ def geometry(problem: Problem, axes: tuple[Axis, Axis] | None = None) -> Geometr
         equations,
         tuple(tuple(f.derivative(j) for j in range(len(factors))) for f in equations),
         tuple(shape(cone, factors) for cone in problem.cones),
-        () if axes is None else turns(problem, axes),
+        () if axes is None or problem.pushes else turns(problem, axes),
+        tuple(
+            replace(push, weights=tuple(over(w, g) for w, g in zip(push.weights, factors, strict=True)))
+            for push in problem.pushes
+        ),
     )

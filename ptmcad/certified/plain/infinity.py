@@ -56,7 +56,7 @@ def patches(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Patch, ...]:
     free = [k for k, bounds in enumerate(known) if not isfinite(sum(bounds))]
     if not free:
         return (Patch(problem, known),)
-    for blocks in ([(k,) for k in free], [tuple(free)]) if not problem.cones else ():
+    for blocks in ([(k,) for k in free], [tuple(free)]) if not (problem.has_springs or problem.closing) else ():
         found = tuple(_patches(problem, known, blocks))
         if any(_is_clear(found, point) for point in _points(axes)):
             return found

@@ -64,6 +64,11 @@ def loop_chart(problem: Problem, short: int | None = None) -> LoopChart:
     size = len(unknowns)
     smooth = [f.formula(graph, unknowns) for f in problem.equations]
     entries = [[f.derivative(j).formula(graph, unknowns) for j in range(size)] for f in problem.equations]
+    for push in problem.pushes:
+        strength = push.strength(graph)
+        for i, w in enumerate(push.weights):
+            smooth[i] = smooth[i] - strength * w.formula(graph, unknowns)
+            entries[i] = [r - strength * w.derivative(j).formula(graph, unknowns) for j, r in enumerate(entries[i])]
     vectors = [tuple(d.formula(graph, unknowns) for d in cone.difference) for cone in problem.cones]
     units = [(direction(dx, dy), direction(dy, dx)) for dx, dy in vectors]
     turning: tuple[Formula, ...] = ()

@@ -19,7 +19,15 @@ from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, newton, refined
 from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.points import PlainCounter, plain_counter
-from ptmcad.certified.plain.poses import MAX_DOUBLINGS, assembled, numbers_of, point_slice, settle, tape_of
+from ptmcad.certified.plain.poses import (
+    MAX_DOUBLINGS,
+    assembled,
+    numbers_of,
+    point_slice,
+    settle,
+    solutions_at,
+    tape_of,
+)
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS_AT_POINTS
 from ptmcad.certified.plain.unsettled import not_settled
 from ptmcad.certified.potential import potential
@@ -56,12 +64,11 @@ def loop_poses(model: ClosedMechanism, parameters: Mapping[str, Fraction], digit
 
     slice = point_slice(model, parameters)
     prove_slice(slice)
-    counter = plain_counter(slice, MAX_UNKNOWNS_AT_POINTS)
-    counts = counter.at(Fraction(0), Fraction(0), Count.TOTAL)
-    if not counts.decided or not all(solution.signs for solution in counts.solutions):
+    found = solutions_at(plain_counter(slice, MAX_UNKNOWNS_AT_POINTS), Count.TOTAL)
+    if found is None or not all(solution.signs for _, solution in found):
         return undecided(NOT_TOLD)
     written, poses, most = tape_of(model.mechanism, parameters), [], 0
-    for solution in counts.solutions:
+    for counter, solution in found:
         pose, bits = _pose(model.mechanism, parameters, written, counter, solution, digits)
         most = max(most, bits)
         if isinstance(pose, str):

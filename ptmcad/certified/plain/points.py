@@ -7,7 +7,7 @@ not proved is undecided. Springs without length are no solutions: total counts d
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite
@@ -26,6 +26,7 @@ from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.infinity import WITNESSES, patches
 from ptmcad.certified.plain.loopchart import LoopChart, loop_chart
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS, Problem, problem_of
+from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.points import BUDGET, MAX_OPEN_BOXES, MIN_BOX_WIDTHS, PRECISIONS, QUICK_BUDGET, PointCount, boxed
 from ptmcad.certified.search import Boxes, Found, isolate
 from ptmcad.certified.system import Arguments, System, system
@@ -36,6 +37,9 @@ from ptmcad.text.numerals import text_of
 
 MANY_BOXES = 6_000_000
 """Boxes in floating point for one point where there are more than `MAX_UNKNOWNS` unknowns: about half a minute."""
+
+HALVINGS = 60
+"""Of a box around a solution, before it is in no other solution's way."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,7 +106,7 @@ class PlainCounter:
                 solutions = (*solutions, boxed(wide, box, signs, self.problem.variables))
         if only_minima:
             return PointCount(stable=index[0], solutions=solutions, decided=True)
-        smooth = not (self.problem.cones or self.problem.reals or self.problem.inequalities)
+        smooth = not (self.problem.has_springs or self.problem.reals or self.problem.inequalities)
         if smooth and sum((-1) ** k * number for k, number in enumerate(index)):
             raise ArithmeticError(f"critical points of a function on the torus by index {index} at ({x}, {y})")
         cones = 0 if smooth else None
@@ -119,8 +123,23 @@ class PlainCounter:
             if counts is None:
                 return None
             if counts:
-                found.append((unique, narrow))
+                own = self._apart(x, y, unique, narrow) if self.problem.where else unique
+                if own is None:
+                    return None
+                found.append((own, narrow))
         return found
+
+    def _apart(self, x: Fraction, y: Fraction, unique: Boxes, narrow: Boxes) -> Boxes | None:
+        """A box between two around a zero of a branch in which its conditions hold: no other branch has a zero there.
+
+        None where they are not proved to hold in the narrower one.
+        """
+        for k in range(HALVINGS):
+            box = np.clip(narrow + (unique - narrow) / 2.0**k, *_ends(unique))
+            values = run_arb(self.conditions, self._box(x, y, box), PRECISIONS[0])
+            if all(values[int(place)] > 0 for place in self.conditions.outputs[0][: len(self.problem.inequalities)]):
+                return box
+        return None
 
     def _asked(self, count: Count) -> int:
         """How many of the conditions hold at what is counted, from the first one on."""
@@ -225,7 +244,46 @@ class PlainCounter:
         return None
 
 
-def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], None] | None = None) -> PlainCounter:
+@dataclass(frozen=True, slots=True, eq=False)
+class BranchCounter:
+    """Counts at points of one slice, of whose problem each branch has a counter."""
+
+    branches: tuple[PlainCounter, ...]
+
+    def at(self, x: Fraction, y: Fraction, count: Count, *, thorough: bool = True) -> PointCount:
+        """What ``count`` needs at the point (x, y) of the two axes, as `PlainCounter.at` has it."""
+        parts = []
+        for counter in self.branches:
+            parts.append(counter.at(x, y, count, thorough=thorough))
+            if not parts[-1].decided:
+                return PointCount()
+        return parts[0] if len(parts) == 1 else _sum(parts)
+
+
+def _ends(box: Boxes) -> tuple[Boxes, Boxes]:
+    """Its low ends, twice, and its high ends, twice."""
+    low, high = np.split(box, 2)
+    return np.concatenate([low, low]), np.concatenate([high, high])
+
+
+def _sum(parts: Sequence[PointCount]) -> PointCount:
+    """Of decided counts of solutions that are all different."""
+
+    def added(numbers: Sequence[int | None]) -> int | None:
+        known = [n for n in numbers if n is not None]
+        return sum(known) if len(known) == len(numbers) else None
+
+    indices = [p.index for p in parts if p.index is not None]
+    return PointCount(
+        total=added([p.total for p in parts]),
+        stable=added([p.stable for p in parts]),
+        index=tuple(map(sum, zip(*indices, strict=True))) if len(indices) == len(parts) else None,
+        solutions=tuple(solution for p in parts for solution in p.solutions),
+        decided=True,
+    )
+
+
+def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], None] | None = None) -> BranchCounter:
     """Write the solutions of a slice out, to count them at its points.
 
     Parameters
@@ -241,6 +299,10 @@ def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], No
         When a condition is zero at a solution wherever one looks, so that nothing would ever be decided.
     """
     problem = problem_of(slice, most)
+    return BranchCounter(tuple(_counter(slice, branch, pause) for branch in branches(problem, slice.axes)))
+
+
+def _counter(slice: Slice, problem: Problem, pause: Callable[[], None] | None) -> PlainCounter:
     found = patches(problem, slice.axes)
     at = loop_chart(problem) if problem.closing else chart(geometry(problem))
     vanishing = (at.dependent, at.balances)
@@ -263,7 +325,8 @@ def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], No
         record([[*inequalities, *stability]]),
         pause,
     )
-    _check_conditions(counter)
+    if not problem.where:  # where sides of kinks are not conditions that anybody asked for
+        _check_conditions(counter)
     return counter
 
 

@@ -16,7 +16,7 @@ from ptmcad.answer.regionmap import Solution, Status
 from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.formula import Graph
-from ptmcad.certified.plain.points import PlainCounter, plain_counter
+from ptmcad.certified.plain.points import BranchCounter, PlainCounter, plain_counter
 from ptmcad.certified.plain.problem import MAX_UNKNOWNS_AT_POINTS
 from ptmcad.certified.plain.relaxed import Relaxed, relaxed_numbers
 from ptmcad.certified.plain.resting import rational_point
@@ -56,12 +56,11 @@ def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits
     """
     slice = point_slice(mechanism, parameters)
     prove_slice(slice)
-    counter = plain_counter(slice, MAX_UNKNOWNS_AT_POINTS)
-    counts = counter.at(Fraction(0), Fraction(0), Count.INDEX)
-    if not counts.decided:
+    found = solutions_at(plain_counter(slice, MAX_UNKNOWNS_AT_POINTS), Count.INDEX)
+    if found is None:
         return Poses(mechanism, parameters, (), Status.UNDECIDED, digits, 0, NOT_TOLD)
     written, poses, most = tape_of(mechanism, parameters), [], 0
-    for solution in counts.solutions:
+    for counter, solution in found:
         pose, bits = _pose(mechanism, parameters, written, counter, solution, digits)
         most = max(most, bits)
         if isinstance(pose, str):
@@ -69,6 +68,17 @@ def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits
         poses.append(pose)
     ordered = sorted(poses, key=_order)
     return Poses(mechanism, parameters, tuple(ordered), Status.CERTIFIED, digits, most)
+
+
+def solutions_at(counter: BranchCounter, count: Count) -> list[tuple[PlainCounter, Solution]] | None:
+    """The solutions that a count has, each with the counter of its branch; None where they are not decided."""
+    found = []
+    for branch in counter.branches:
+        counts = branch.at(Fraction(0), Fraction(0), count)
+        if not counts.decided:
+            return None
+        found += [(branch, solution) for solution in counts.solutions]
+    return found
 
 
 def _order(pose: Pose) -> tuple[Fraction, ...]:

@@ -14,6 +14,8 @@ from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from itertools import combinations
 
+from ptmcad.certified.formula import Formula, Graph, length
+from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
 from ptmcad.errors import ConfigError, GeometryError
 from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, System
@@ -61,6 +63,24 @@ class Cone:
 
 
 @dataclass(frozen=True, slots=True)
+class Push:
+    """What a spring takes off the equations that can only point along one direction e: K |e| w_i, K with its side.
+
+    Attributes
+    ----------
+    weights : the derivatives of s by the unknowns, where its vector is s e; as those of a `Cone` with closed loops.
+    """
+
+    pull: Expression
+    direction: tuple[Expression, Expression]
+    weights: tuple[TrigonometricPolynomial, ...]
+
+    def strength(self, graph: Graph) -> Formula:
+        """K |e|"""
+        return expression_formula(graph, self.pull) * length(*(expression_formula(graph, e) for e in self.direction))
+
+
+@dataclass(frozen=True, slots=True)
 class Condition:
     """What is positive at solutions that count, or at stable ones; as the record says it, too."""
 
@@ -86,6 +106,8 @@ class Problem:
         energy's slope along the curve of configurations that is left. A solution is stable where the determinant of the
         Jacobian is positive, which then is not among ``stability``. 0 without springs of free lengths, and without
         loops.
+    pushes : of springs along one line each, of which a branch of a problem has one side; the equations lack them.
+    where : which branch it is, in words (`ptmcad.certified.plain.straight`).
     """
 
     unknowns: tuple[str, ...]
@@ -97,6 +119,13 @@ class Problem:
     stability: tuple[Condition, ...] = ()
     multiples: tuple[TrigonometricPolynomial, ...] = ()
     closing: int = 0
+    pushes: tuple[Push, ...] = ()
+    where: str = ""
+
+    @property
+    def has_springs(self) -> bool:
+        """Whether some parts of the equations are no polynomials."""
+        return bool(self.cones or self.pushes)
 
     @property
     def moves_along_a_curve(self) -> bool:

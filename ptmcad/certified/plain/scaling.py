@@ -22,7 +22,14 @@ from ptmcad.text.expressions import Expression, constant
 def common_factors(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Expression, ...]:
     """Of each equation and the slopes of its springs' ends: a positive common factor, 1 where none is proved to be."""
     return tuple(
-        common_factor([f, *(d.derivative(i) for cone in problem.cones for d in cone.difference)], axes)
+        common_factor(
+            [
+                f,
+                *(d.derivative(i) for cone in problem.cones for d in cone.difference),
+                *(push.weights[i] for push in problem.pushes),
+            ],
+            axes,
+        )
         for i, f in enumerate(problem.equations)
     )
 

@@ -13,10 +13,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import combinations
 from math import inf, prod
+from types import MappingProxyType
 from typing import NamedTuple
 
 from flint import arb, arb_mat
 
+from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.kinks import Sides, line_of
 from ptmcad.verification.certified.vectors import evaluated
 from ptmcad.verification.certified.waves import Cone, Form, Waves
 
@@ -112,6 +115,13 @@ class Field:
     values : a ball for each parameter; no pull of a spring is negative.
     conditions : of the form's inequalities and conditions for stability those that are asked for.
     with_determinant : whether that of the Jacobian is a further condition, with its columns as `Form.closing` has them.
+    sides : of springs on one line each, on which side of length zero solutions are looked for. There every one of these
+        has its direction, also where it is short, and a further condition, which comes before all others.
+
+    Raises
+    ------
+    Unproved
+        When such a line may have no direction.
     """
 
     def __init__(
@@ -120,7 +130,9 @@ class Field:
         values: Mapping[str, arb],
         conditions: Sequence[Waves] = (),
         with_determinant: bool = False,
+        sides: Sides = MappingProxyType({}),
     ):
+        self.sides = sides
         self._with_determinant = with_determinant
         self.form, self.values, self._conditions = form, dict(values), len(conditions)
         self.cones: list[tuple[int, Cone, arb]] = []
@@ -129,6 +141,9 @@ class Field:
             if not (pull == 0):  # noqa: SIM201 (a ball that is not exactly zero: != would ask for one without zero)
                 self.cones.append((number, cone, pull))
         rows: list[Waves] = [*form.equations, *form.jacobian]
+        self._lines = {
+            number: _pointed(cone, values, sides[cone.name]) for number, cone, _ in self.cones if cone.name in sides
+        }
         for _, cone, _ in self.cones:
             for pair in (cone.vector, *cone.slopes, *(cone.weights if form.closing else ()), *cone.bends):
                 rows += pair
@@ -168,14 +183,17 @@ class Field:
         rows: list[arb] = (self._matrix * self._waves(at)).entries()
         smooth, place = rows[:n], n + n * n
         values, jacobian = list(smooth), [rows[n + n * i : n + n * i + n] for i in range(n)]
-        springs = []
+        springs, ahead = [], list[arb]()
         length = 2 + (4 if self.form.closing else 2) * n + 2 * n * n
         for number, _, pull in self.cones:
-            new = _spring(number, pull, rows[place : place + length], jacobian)
+            line = self._lines.get(number)
+            new = _spring(number, pull, rows[place : place + length], jacobian, line)
+            if line is not None:
+                ahead.append(line[0] * rows[place] + line[1] * rows[place + 1])
             values = [value - part for value, part in zip(values, new.part, strict=True)]
             springs.append(new)
             place += length
-        conditions = rows[len(rows) - self._conditions :]
+        conditions = [*ahead, *rows[len(rows) - self._conditions :]]
         if self._with_determinant:
             known = not any(s.is_short for s in springs)
             ordered = [[row[k] for k in self.form.closing] for row in jacobian]
@@ -183,8 +201,24 @@ class Field:
         return Jet(values, jacobian, smooth, tuple(springs), conditions)
 
 
-def _spring(number: int, pull: arb, rows: list[arb], jacobian: Matrix) -> Spring:
-    """A spring from its vector and its derivatives; its part is taken off the Jacobian if it surely has a length."""
+def _pointed(cone: Cone, values: Mapping[str, arb], side: int) -> Vector:
+    """The direction of a spring on one line."""
+    line = line_of(cone)
+    assert line is not None
+    x, y = (side * arb(evaluated(terms, values)) for terms in line)
+    squared = square(x) + square(y)
+    if not squared > 0:
+        raise Unproved(f"the line of spring {cone.name} may have no direction")
+    return x / squared.sqrt(), y / squared.sqrt()
+
+
+def _spring(number: int, pull: arb, rows: list[arb], jacobian: Matrix, line: Vector | None) -> Spring:
+    """A spring from its vector and its derivatives; its part is taken off the Jacobian if it surely has a direction.
+
+    Parameters
+    ----------
+    line : its direction, where it is on one line: then it does not turn.
+    """
     n = len(jacobian)
     a, b = rows[:2]
     slopes = tuple((rows[2 + 2 * i], rows[3 + 2 * i]) for i in range(n))
@@ -193,14 +227,14 @@ def _spring(number: int, pull: arb, rows: list[arb], jacobian: Matrix) -> Spring
     weights = slopes if is_gradient else tuple((rows[2 * (n + i) + 2], rows[2 * (n + i) + 3]) for i in range(n))
     q = square(a) + square(b)
     outer = tuple(pull * size(*bends[2 * i * (n + 1) : 2 * i * (n + 1) + 2]) for i in range(n))
-    if not q > 0:
-        reach = (square(a).upper() + square(b).upper()).sqrt()
+    reach = (square(a).upper() + square(b).upper()).sqrt()
+    if line is None and not q > 0:
         part = tuple(pull * _ANY * size(*w) for w in weights)
         return Spring(number, pull, reach, slopes, weights, part, outer, True)
-    inverse = q.rsqrt()
-    u, v = unit(a * inverse), unit(b * inverse)
-    cross = [u * gy - v * gx for gx, gy in slopes]
-    lean = cross if is_gradient else [u * wy - v * wx for wx, wy in weights]
+    inverse = _ZERO if line else q.rsqrt()
+    u, v = line or (unit(a * inverse), unit(b * inverse))
+    cross = [_ZERO if line else u * gy - v * gx for gx, gy in slopes]
+    lean = cross if is_gradient or line else [u * wy - v * wx for wx, wy in weights]
     for i in range(n):
         for j in range(i if is_gradient else 0, n):
             across, up = bends[2 * (i * n + j)], bends[2 * (i * n + j) + 1]
@@ -210,7 +244,7 @@ def _spring(number: int, pull: arb, rows: list[arb], jacobian: Matrix) -> Spring
             if is_gradient and i != j:
                 jacobian[j][i] = jacobian[j][i] - entry
     part = tuple(pull * (u * x + v * y) for x, y in weights)
-    return Spring(number, pull, q.sqrt(), slopes, weights, part, outer, False)
+    return Spring(number, pull, q.sqrt() if q > 0 else reach, slopes, weights, part, outer, False)
 
 
 def determinant(matrix: Matrix) -> arb:

@@ -21,6 +21,7 @@ from ptmcad.verification.certified.boxes import Box, Zero, disjoint, same
 from ptmcad.verification.certified.counted import MINIMA, Counted, Counts
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.field import Field
+from ptmcad.verification.certified.kinks import Sides, sides
 from ptmcad.verification.certified.parameters import exact, over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import Spent, zeros
@@ -35,6 +36,7 @@ BUDGETS = (20_000, 40_000, 60_000)
 """Boxes of the unknowns for one point, by their number; one more unknown makes each of them dearer, too."""
 BOX_BUDGET_SHARE = 4
 """For a box of parameters so many times fewer."""
+_HALVINGS = 60
 MAX_ANGLE = 8
 """Of the middle of a stored box, where an unknown is an angle."""
 MAX_REAL = 2**60
@@ -55,11 +57,7 @@ class ModelCounting:
         for bits in PRECISIONS:
             with ctx.workprec(bits):
                 try:
-                    field = _field_at(self.form, values, count)
-                    all_found, _ = zeros(field, _only_minima(self.form, count), [_start(field)], self._budget)
-                    found = _counted(field, all_found, count)
-                    if count is Count.TOTAL and self.form.conditions_for_stability:
-                        found = _with_signs(_field_at(self.form, values, Count.STABLE), self.form, found)
+                    found = [zero for side in sides(self.form) for zero in self._on_side(values, count, side)]
                 except Spent:
                     raise  # more digits would not make them fewer
                 except Unproved as unproved:
@@ -69,11 +67,20 @@ class ModelCounting:
         assert reason is not None
         raise reason
 
+    def _on_side(self, values: Mapping[str, Fraction], count: Count, side: Sides) -> list[Zero]:
+        """The solutions that count at a point, with springs on one line each on one side of length zero."""
+        field = _field_at(self.form, values, count, side)
+        all_found, _ = zeros(field, _only_minima(self.form, count), [_start(field)], self._budget)
+        found = _counted(field, all_found, count)
+        if count is Count.TOTAL and self.form.conditions_for_stability:
+            found = _with_signs(_field_at(self.form, values, Count.STABLE, side), self.form, found)
+        return found
+
     def within(self, there: Counted, boxes: Sequence[Solution]) -> list[Zero]:
         """The only solution in each of the stored boxes."""
         with ctx.workprec(_BOX_PRECISION):
-            field = _field_at(self.form, there.values)
-            return [_only(field, solution, k, self._budget) for k, solution in enumerate(boxes)]
+            fields = [_field_at(self.form, there.values, side=side) for side in sides(self.form)]
+            return [_only(fields, solution, k, self._budget) for k, solution in enumerate(boxes)]
 
     def same(self, one: Zero, two: Zero) -> bool:
         """Whether a solution lies where another one is alone.
@@ -98,13 +105,17 @@ class ModelCounting:
         values = {name: arb(0) for name in slice.model.free_lengths} | values
         if not all(evaluated(cone.pull, values) >= 0 for cone in self.form.cones):
             raise Unproved("a stiffness times a free length may be negative")
-        field = _field(self.form, values, slice.count)
         # boxes much smaller than the box of parameters are excluded no better than larger ones
         smallest = max(float(max(x.rad(), y.rad())) / 256, 2.0**-32)
         minima = _only_minima(self.form, slice.count)
         budget = self._budget // BOX_BUDGET_SHARE
-        found, _ = zeros(field, minima, [_start(field)], budget, smallest, there.found)
-        return counts_of(self.form, _counted(field, found, slice.count), slice.count)
+        counted = list[Zero]()
+        for side in sides(self.form):
+            field = _field(self.form, values, slice.count, side)
+            near = [zero for zero in there.found if _may_be_on_side(field, zero)]
+            found, _ = zeros(field, minima, [_start(field)], budget, smallest, near)
+            counted += _counted(field, found, slice.count)
+        return counts_of(self.form, counted, slice.count)
 
     @property
     def _budget(self) -> int:
@@ -115,12 +126,19 @@ def _only_minima(form: Form, count: Count) -> bool:
     return form.is_gradient and count in MINIMA
 
 
-def _field(form: Form, values: Mapping[str, arb], count: Count | None) -> Field:
+def _may_be_on_side(field: Field, zero: Zero) -> bool:
+    """Whether a solution may be on the field's side of the lengths zero."""
+    ahead = field(zero.within).conditions[: len(field.sides)]
+    return not any(c < 0 for c in ahead)
+
+
+def _field(form: Form, values: Mapping[str, arb], count: Count | None, side: Sides) -> Field:
     """The equations with what is positive at the solutions that are counted, and at no others, if a count is given."""
     if count is None:
-        return Field(form, values)
+        return Field(form, values, sides=side)
     stable = count is Count.STABLE
-    return Field(form, values, form.inequalities + (form.stability if stable else ()), stable and bool(form.closing))
+    asked = form.inequalities + (form.stability if stable else ())
+    return Field(form, values, asked, stable and bool(form.closing), side)
 
 
 def _counted(field: Field, found: Sequence[Zero], count: Count) -> list[Zero]:
@@ -141,15 +159,26 @@ def _counted(field: Field, found: Sequence[Zero], count: Count) -> list[Zero]:
             raise Unproved(f"a condition may be zero at the solution near ({where})")
         of_equations = not field.form.is_gradient and count is Count.STABLE
         signs = "+" * field.form.conditions_for_stability if of_equations else zero.signs
-        kept.append(replace(zero, signs=signs))
+        kept.append(_apart(field, replace(zero, signs=signs)))
     return kept
+
+
+def _apart(field: Field, zero: Zero) -> Zero:
+    """A solution alone where every spring on one line is on its side: so it is alone among those of all sides, too."""
+    for k in range(_HALVINGS if field.sides else 0):
+        alone = tuple(max(r, a / 2**k) for r, a in zip(zero.radii, zero.alone, strict=True))
+        if all(c > 0 for c in field(tuple(map(arb, zero.center, alone))).conditions[: len(field.sides)]):
+            return replace(zero, alone=alone)
+    if field.sides:
+        raise Unproved("a solution may be where a spring on one line has no length")
+    return zero
 
 
 def _with_signs(field: Field, form: Form, found: Sequence[Zero]) -> list[Zero]:
     """The solutions with the signs of the conditions for stability; empty where one is not certain."""
     kept = []
     for zero in found:
-        conditions = field(zero.within).conditions[len(form.inequalities) :]
+        conditions = field(zero.within).conditions[len(field.sides) + len(form.inequalities) :]
         certain = all(c > 0 or c < 0 for c in conditions)
         kept.append(replace(zero, signs="".join("+" if c > 0 else "-" for c in conditions) if certain else ""))
     return kept
@@ -179,8 +208,10 @@ def _values_at(claims: Claims, form: Form, x: Fraction, y: Fraction) -> dict[str
     return values
 
 
-def _field_at(form: Form, values: Mapping[str, Fraction], count: Count | None = None) -> Field:
-    return _field(form, {name: exact(value) for name, value in values.items()}, count)
+def _field_at(
+    form: Form, values: Mapping[str, Fraction], count: Count | None = None, side: Sides | None = None
+) -> Field:
+    return _field(form, {name: exact(value) for name, value in values.items()}, count, side or {})
 
 
 def _start(field: Field) -> Box:
@@ -209,9 +240,9 @@ def counts_of(form: Form, found: Sequence[Zero], count: Count) -> Counts:
     return Counts(len(found), index[0], index, None)
 
 
-def _only(field: Field, solution: Solution, k: int, budget: int) -> Zero:
-    """The one solution in a stored box."""
-    circles = field.form.is_circle
+def _only(fields: Sequence[Field], solution: Solution, k: int, budget: int) -> Zero:
+    """The one solution in a stored box, on whichever side it is."""
+    circles = fields[0].form.is_circle
     if len(solution.center) != len(circles) or not 0 < solution.radius <= (1 if any(circles) else MAX_REAL):
         raise Violation(f"box {k} of the solutions is not a box of {len(circles)} unknowns")
     if any(circle and abs(x) > MAX_ANGLE for circle, x in zip(circles, solution.center, strict=True)):
@@ -221,7 +252,10 @@ def _only(field: Field, solution: Solution, k: int, budget: int) -> Zero:
     center = tuple(float(x) for x in solution.center)
     # floats have the centers and radii of stored boxes exactly, or nearly: then the box is made a little larger
     radii = tuple(float(solution.radius) * (1 + 2.0**-40) + 2.0**-50 * max(1.0, abs(x)) for x in center)
-    inside, _ = zeros(field, False, [(center, radii)], budget)
+    inside = list[Zero]()
+    for field in fields:
+        found, _ = zeros(field, False, [(center, radii)], budget)
+        inside += [zero for zero in found if _may_be_on_side(field, zero)]
     held = [zero for zero in inside if _distances(zero, solution, "in")]
     open_ = [zero for zero in inside if zero not in held and not _distances(zero, solution, "out")]
     near = ", ".join(f"{x:.6g}" for x in center)

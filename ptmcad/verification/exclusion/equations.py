@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from ptmcad.errors import ExpressionError
 from ptmcad.text.expressions import Expression
+from ptmcad.verification.certified.kinks import Sides, line_of
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.vectors import Terms, evaluated
 from ptmcad.verification.certified.waves import Cone, Form, Key, Waves, form_of
@@ -51,6 +52,7 @@ class Equations:
         self.axes = axes
         self.parameters = {n: f.number(0) for n in claims.model.free_lengths}
         self.parameters |= {n: self._expression(e, axes) for n, e in claims.result.slice.parameters.items()}
+        self.sides: Sides = {}
         self.unknowns = [f.variable(k + 2) for k in range(self.form.size)]
         self.turn_to([[int(i == j) for j in range(self.form.size)] for i in range(self.form.size)])
 
@@ -155,7 +157,7 @@ class Equations:
             for i in range(n):
                 for j in range(n):
                     part = f.dot(u, s.bends[i * n + j])
-                    if k != without:
+                    if k != without and s.name not in self.sides:
                         inverse = f.inverse_length(*s.vector)
                         whole = f.multiply(turning[j], self.factors[j])
                         part = f.add(part, f.multiply(f.multiply(turning[i], whole), inverse))
@@ -171,8 +173,30 @@ class Equations:
         ]
 
     def directions(self) -> dict[int, Pair]:
-        """Those of all springs, from their vectors."""
-        return {k: self.list.direction(*s.vector) for k, s in enumerate(self.springs)}
+        """Those of all springs, from their vectors; of those on one line each, on the side that is looked at."""
+        return {
+            k: self._pointed(s.name) if s.name in self.sides else self.list.direction(*s.vector)
+            for k, s in enumerate(self.springs)
+        }
+
+    def _line(self, name: str) -> Pair:
+        """The vector along which a spring on one line points, on its side."""
+        line = line_of(next(c for c in self.form.cones if c.name == name))
+        assert line is not None
+        x, y = (self.list.multiply(self.list.number(self.sides[name]), self.terms(terms)) for terms in line)
+        return x, y
+
+    def _pointed(self, name: str) -> Pair:
+        f, (x, y) = self.list, self._line(name)
+        p, q = f.constant(x), f.constant(y)
+        if p is not None and q is not None and (p == 0 or q == 0):
+            return f.number((p > 0) - (p < 0)), f.number((q > 0) - (q < 0))
+        return f.direction(x, y)
+
+    def ahead(self, k: int) -> int:
+        """What is positive where a spring on one line is on its side."""
+        s = self.springs[k]
+        return self.list.dot(self._line(s.name), s.vector)
 
     def without(self, k: int) -> list[int]:
         """The equations without the part of one spring, which is what balances it."""

@@ -19,6 +19,7 @@ from flint import arb
 from ptmcad.question.slice import Count
 from ptmcad.verification.certified.counted import MINIMA
 from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.kinks import sides
 from ptmcad.verification.certified.parameters import exact, over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.structure import CertifiedClaims
@@ -100,12 +101,23 @@ class _Systems:
         self.minima = self.form.is_gradient and self.count in MINIMA
         stable = self.form.stability if self.count is Count.STABLE else ()
         self.conditions: list[Waves] = [*self.form.inequalities, *stable]
-        self.positive = [self.model.waves(c) for c in self.conditions]
+        self.asked = [self.model.waves(c) for c in self.conditions]
+        self.positive, self.turning, self.where = self.asked, list[int](), ""
         self.excesses = self._excesses() if self.count is Count.ADMISSIBLE else []
 
     def all(self) -> Iterator[System]:
-        """All of them."""
-        m, f, springs = self.model, self.model.list, range(len(self.model.springs))
+        """All of them, for springs on one line each on all sides of length zero."""
+        m = self.model
+        for side in sides(self.form):
+            m.sides = side
+            straight = [k for k, s in enumerate(m.springs) if s.name in side]
+            self.turning = [k for k in range(len(m.springs)) if k not in straight]
+            self.positive = [*self.asked, *map(m.ahead, straight)]
+            self.where = "".join(f", {name} {'ahead' if sign > 0 else 'behind'}" for name, sign in side.items())
+            yield from self._on_side()
+
+    def _on_side(self) -> Iterator[System]:
+        m, f, springs = self.model, self.model.list, self.turning
         charted = not self.minima and self.form.size > 1
         plain = [[int(i == j) for j in range(self.form.size)] for i in range(self.form.size)]
         at_solutions, degenerate, signs = list[int](), list[int](), [*self.positive]
@@ -204,7 +216,7 @@ class _Systems:
         if number:
             ranges += [(-half, half) for half in self._halves] + [_ANGLE] * (number - self.form.size)
         return System(
-            name, tape, tuple(places[:count]), tuple(places[count:]), len(first), early, np.array(ranges)
+            name + self.where, tape, tuple(places[:count]), tuple(places[count:]), len(first), early, np.array(ranges)
         )  # fmt: skip
 
     @property
