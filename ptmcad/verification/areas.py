@@ -10,6 +10,7 @@ its stored bounds or outside of them; bounds that are too narrow for that are re
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -67,23 +68,19 @@ def check_areas(claims: Claims) -> str:
         bits += _doublings(fraction((ends[1] - ends[0]) / max(abs(ends[0]), abs(ends[1]))))
     strip = rational(scale) / (16 * len(result.stacks))
     unconfirmed = "the precision did not suffice to confirm the areas"
-    degrees: tuple[int, ...] = (2,)
     # of the narrowest bounds' width: how far inside of them an area can be proved to be
     margin = fmpq(1, 64)
     for _ in range(ATTEMPTS):
         with ctx.workprec(bits):
             try:
-                open_region = _attempt(claims, strip, margin, bits, degrees)
+                open_region = _attempt(claims, strip, margin, bits)
             except PrecisionTooLow:
                 bits = 2 * bits
                 continue
         if open_region is None:
             return f"{len(result.regions)} enclosures within the stored bounds, {bits} bits"
         unconfirmed = open_region
-        if degrees == (2,):
-            degrees = (2, 10)
-        else:
-            bits, strip, margin = 2 * bits, strip / 2**16, margin / 2**16
+        bits, strip, margin = 2 * bits, strip / 2**16, margin / 2**16
     raise Violation(unconfirmed)
 
 
@@ -92,7 +89,7 @@ def _doublings(scale: Fraction) -> int:
     return max(0, scale.denominator.bit_length() - scale.numerator.bit_length())
 
 
-def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int, degrees: tuple[int, ...]) -> str | None:
+def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None:
     """None when every enclosure is within its bounds; else which one could not be made narrow enough."""
     result = claims.result
     (start, stop), (low, high) = claims.base, claims.height
@@ -103,7 +100,7 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int, degrees: tupl
     lost = sum((b - a for a, b in brackets), fmpq(0)) * (high - low)
     bounds = [(arb(rational(r.area[0])), arb(rational(r.area[1]))) for r in result.regions]
     share = min((b - a).mid() for a, b in bounds) * margin / max(1, sum(len(s.walls) for s in result.stacks))
-    effort = Effort(share, width / 2**8, width / 2 ** (bits // 3), (low, high), degrees)
+    effort = Effort(share, width / 2**8, width / 2 ** (bits // 3), (low, high), (2,))
     whole = [arb(0) for _ in result.regions]
     panels: list[_Panel] = []
     for s, stack in enumerate(result.stacks):
@@ -131,8 +128,9 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int, degrees: tupl
                 open_regions.add(n)
         if not open_regions:
             return None
-        crowded = len(degrees) == 1 and len(panels) > CROWDED_PANELS * len(result.stacks)
-        halved = None if crowded else _halved(panels, open_regions, bounds, effort)
+        if len(panels) > CROWDED_PANELS * len(result.stacks):
+            effort = replace(effort, degrees=(2, 10))
+        halved = _halved(panels, open_regions, bounds, effort)
         if halved is None:
             n = min(open_regions)
             return (f"region {n}: its area is in {areas[n].str(20)}; that it is {_between(result.regions[n])} "

@@ -126,7 +126,7 @@ def integrals_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort) -> l
     middle, half = (left + right) / 2, (right - left) / 2
     height = branch.height(middle, low, high)
     if height is not None:
-        found = _by_series(branch, middle, half, height, effort)
+        found = _more_precisely(branch, middle, half, height, effort)
         if found is not None:
             integral, proved = found
             ends = (left, middle - proved, middle + proved, right)
@@ -138,6 +138,25 @@ def integrals_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort) -> l
     return [_known_by_edges(left, right, effort, True)]
 
 
+def _more_precisely(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> tuple[arb, fmpq] | None:
+    """`_by_series` at the working precision, or at more, which few panels ask for.
+
+    Raises
+    ------
+    PrecisionTooLow
+    """
+    bits = ctx.prec
+    for times in (1, 2, 4):
+        with ctx.workprec(times * bits):
+            finer = height if times == 1 else branch.height(middle, *effort.heights)
+            assert finer is not None  # there is a root, as there was with fewer bits
+            try:
+                return _by_series(branch, middle, half, finer, effort)
+            except PrecisionTooLow:
+                continue
+    raise PrecisionTooLow
+
+
 def _known_by_edges(left: fmpq, right: fmpq, effort: Effort, tried: bool) -> Part:
     low, high = effort.heights
     return Part(left, right, arb(0).union(arb((right - left) * (high - low))), tried)
@@ -147,6 +166,10 @@ _FAR, _NEAR = fmpq(4), fmpq(3, 2)
 """Radii of disks that prove a part of a panel, in halves of it: the larger, the fewer terms of the series."""
 _PROVED = (fmpq(1), fmpq(3, 4), fmpq(1, 2), fmpq(3, 8), fmpq(1, 4), fmpq(3, 16), fmpq(1, 8), fmpq(1, 16))
 """Shares of a panel that are proved where no disk reaches beyond all of it: longest first."""
+
+
+_POOR = 4
+"""A polynomial of higher degree is worth its cost where so small a share of a panel is proved, or none."""
 
 
 def _by_series(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> tuple[arb, fmpq] | None:
@@ -164,11 +187,11 @@ def _by_series(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Ef
             continue
         shifted = [c(arb_poly([middle, 1])) for c in rows]
         for degree in effort.degrees:
+            if best is not None and best[1] * _POOR > half:
+                break
             found = _along(shifted, half, height, degree, effort, rows is branch.squares)
             if found is not None and (best is None or found[1] > best[1]):
                 best = found
-            if best is not None and best[1] == half:
-                break
     return best
 
 
