@@ -130,12 +130,12 @@ def integrals_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort) -> l
         if found is not None:
             integral, proved = found
             ends = (left, middle - proved, middle + proved, right)
-            sides = [_known_by_edges(a, b, effort, False) for a, b in (ends[:2], ends[2:]) if a < b]
+            sides = [known_by_edges(a, b, effort, False) for a, b in (ends[:2], ends[2:]) if a < b]
             return [Part(ends[1], ends[2], integral - low * (2 * proved), True), *sides]
         if 2 * half < effort.shut:
             bottom, top = _enclosed(branch, middle, half, height, effort)
             return [Part(left, right, arb(bottom - low).union(arb(top - low)) * (2 * half), True)]
-    return [_known_by_edges(left, right, effort, True)]
+    return [known_by_edges(left, right, effort, True)]
 
 
 def _more_precisely(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> tuple[arb, fmpq] | None:
@@ -157,7 +157,7 @@ def _more_precisely(branch: Branch, middle: fmpq, half: fmpq, height: arb, effor
     raise PrecisionTooLow
 
 
-def _known_by_edges(left: fmpq, right: fmpq, effort: Effort, tried: bool) -> Part:
+def known_by_edges(left: fmpq, right: fmpq, effort: Effort, tried: bool) -> Part:
     low, high = effort.heights
     return Part(left, right, arb(0).union(arb((right - left) * (high - low))), tried)
 
@@ -199,11 +199,77 @@ def _along(
     rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effort: Effort, squares: bool = False
 ) -> tuple[arb, fmpq] | None:
     """As `_by_series`, of the polynomial with these coefficients of the powers of v, or of v^2."""
-    root = height * height if squares else height
+    found = disk(rows, half, height * height if squares else height, degree)
+    if found is None or (squares and not found.center > found.slack + found.reach):
+        return None
+    bound = (found.center + found.slack + found.reach).sqrt() if squares else found.reach
+    # order until the tail is negligible
+    proved, ratio, order, tail = found.proved, 1 / found.factor, 4, arb(0)
+    while True:
+        tail = 2 * arb(proved) * bound * arb(ratio) ** order / ((order + 1) * (1 - arb(ratio) ** 2))
+        if tail < effort.share or order >= ctx.prec:
+            break
+        order += 4
+    coefficients = found.coefficients(order)
+    if squares:
+        coefficients = _root(coefficients, height)
+    total, power = arb(0), arb(proved)
+    for k in range(0, len(coefficients), 2):
+        total += coefficients[k] * power * fmpq(2, k + 1)
+        power = power * proved * proved
+    return total + arb(0).union(2 * tail) - tail, proved
+
+
+class Disk(NamedTuple):
+    """A disk on which a branch is analytic, as the module's text says: center + z(s) + t(s), |t| < reach.
+
+    Attributes
+    ----------
+    rows : the polynomial's coefficients in s of the powers of v - center.
+    start : encloses v - center over s = 0.
+    along : z, less its constant coefficient.
+    proved, factor : the branch is analytic for |s| <= proved * factor, where factor > 1.
+    slack : a bound for |z| there.
+    spare : by how much |d_01| reach exceeds the sum of the other terms.
+    """
+
+    rows: list[arb_poly]
+    center: arb
+    start: arb_series
+    along: arb_poly
+    proved: fmpq
+    factor: fmpq
+    slack: arb
+    reach: arb
+    spare: arb
+
+    def coefficients(self, order: int) -> list[arb]:
+        """The branch's power series, so many coefficients or more: beyond them they are those of t."""
+        found = _series(self.rows, self.start, max(order, len(self.along.coeffs()) + 1))
+        found[0] += self.center
+        return found
+
+
+def disk(
+    rows: Sequence[arb_poly], half: fmpq, root: arb, degree: int, beside: tuple[arb, arb] | None = None
+) -> Disk | None:
+    """A disk about s = 0 that is larger than the longest part of (-half, half) for which one is proved.
+
+    Parameters
+    ----------
+    rows : coefficients in s of the powers of v in a polynomial.
+    root : its root over s = 0.
+    degree : of z.
+    beside : a bound for what is to be added to the polynomial where |v| is at most the second number: the condition
+        holds with it, too.
+
+    Raises
+    ------
+    PrecisionTooLow
+    """
     center, length = root.mid(), degree + 1
     rows = _recentered(rows, center)
     start = arb_series([root - center], prec=length)
-    # z, less its constant coefficient
     polynomial = arb_poly(
         [arb(0), *(c.mid() for c in _series([row.truncate(length) for row in rows], start, length)[1:])]
     )
@@ -217,30 +283,14 @@ def _along(
     absolute, slope = [_absolute(row) for row in d], _absolute(polynomial)
     for proved, factor in ((half, _FAR), (half, fmpq(2)), *((half * share, _NEAR) for share in _PROVED)):
         radius = arb(proved * factor)
-        off = slope(radius)
-        reach = _reach([row(radius) for row in absolute], steepness, off)
-        if reach is not None and (not squares or center > off + reach):
-            bound = (center + off + reach).sqrt() if squares else reach
-            break
-    else:
-        return None
-    # order until the tail is negligible
-    ratio, order, tail = 1 / factor, 4, arb(0)
-    while True:
-        tail = 2 * arb(proved) * bound * arb(ratio) ** order / ((order + 1) * (1 - arb(ratio) ** 2))
-        if tail < effort.share or order >= ctx.prec:
-            break
-        order += 4
-    # beyond its degree z has no coefficients, and those of the branch are t's
-    coefficients = _series(rows, start, max(order, length))
-    coefficients[0] += center
-    if squares:
-        coefficients = _root(coefficients, height)
-    total, power = arb(0), arb(proved)
-    for k in range(0, len(coefficients), 2):
-        total += coefficients[k] * power * fmpq(2, k + 1)
-        power = power * proved * proved
-    return total + arb(0).union(2 * tail) - tail, proved
+        slack = slope(radius)
+        sizes = [row(radius) for row in absolute]
+        if beside is not None:
+            sizes[0] += beside[0]
+        found = _reach(sizes, steepness, slack)
+        if found is not None and (beside is None or abs(center) + slack + found[0] < beside[1]):
+            return Disk(rows, center, start, polynomial, proved, factor, slack, *found)
+    return None
 
 
 def _root(coefficients: Sequence[arb], constant: arb) -> list[arb]:
@@ -284,8 +334,8 @@ def _absolute(row: arb_poly) -> arb_poly:
     return arb_poly([abs(c) for c in row.coeffs()])
 
 
-def _reach(sizes: list[arb], steepness: arb, slack: arb) -> arb | None:
-    """An r for which Rouche's condition holds; None when none is found.
+def _reach(sizes: list[arb], steepness: arb, slack: arb) -> tuple[arb, arb] | None:
+    """An r for which Rouche's condition holds, and a bound below for its sides' difference; None if none is found.
 
     Parameters
     ----------
@@ -297,8 +347,9 @@ def _reach(sizes: list[arb], steepness: arb, slack: arb) -> arb | None:
     first = (sizes[0] / steepness).upper()
     for multiple in (fmpq(5, 4), fmpq(2), fmpq(4)):
         reach = (first * multiple).upper() if first > 0 else arb(1) / 2**64
-        if low(reach) + high(slack + reach) * reach**_SHIFTED < steepness * reach:
-            return reach
+        spare = steepness * reach - low(reach) - high(slack + reach) * reach**_SHIFTED
+        if spare > 0:
+            return reach, spare.lower()
     return None
 
 
