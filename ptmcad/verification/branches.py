@@ -230,7 +230,8 @@ class Disk(NamedTuple):
     along : z, less its constant coefficient.
     proved, factor : the branch is analytic for |s| <= proved * factor, where factor > 1.
     slack : a bound for |z| there.
-    spare : by how much |d_01| reach exceeds the sum of the other terms.
+    spread : reach sup |g| / (least difference of the condition's sides), g as in `_evening`: twice that is what a
+        change of the polynomial by 1 moves the root at most.
     """
 
     rows: list[arb_poly]
@@ -241,7 +242,7 @@ class Disk(NamedTuple):
     factor: fmpq
     slack: arb
     reach: arb
-    spare: arb
+    spread: arb
 
     def coefficients(self, order: int) -> list[arb]:
         """The branch's power series, so many coefficients or more: beyond them they are those of t."""
@@ -274,6 +275,8 @@ def disk(
         [arb(0), *(c.mid() for c in _series([row.truncate(length) for row in rows], start, length)[1:])]
     )
     d = _shifted(rows, polynomial)
+    factor_at_most = _absolute(even := _evening(d[1]))
+    d = [row * even for row in d]
     steepness = abs(d[1][0])
     # the polynomial follows the branch to its degree, so but for rounding the first coefficients are zero
     rounded = sum((c.rad() * half**i for i, c in enumerate(d[0].coeffs())), arb(0))
@@ -286,10 +289,11 @@ def disk(
         slack = slope(radius)
         sizes = [row(radius) for row in absolute]
         if beside is not None:
-            sizes[0] += beside[0]
+            sizes[0] += beside[0] * factor_at_most(radius)
         found = _reach(sizes, steepness, slack)
         if found is not None and (beside is None or abs(center) + slack + found[0] < beside[1]):
-            return Disk(rows, center, start, polynomial, proved, factor, slack, *found)
+            spread = found[0] * factor_at_most(radius) / found[1]
+            return Disk(rows, center, start, polynomial, proved, factor, slack, found[0], spread)
     return None
 
 
@@ -323,6 +327,27 @@ def _shifted(rows: Sequence[arb_poly], by: arb_poly) -> list[arb_poly]:
         for j in range(len(shifted) - 2, start - 1, -1):
             shifted[j] = shifted[j] + shifted[j + 1] * by
     return shifted
+
+
+_EVENED = 8
+"""Terms of the polynomial by which `_evening` evens the steepness out."""
+
+
+def _evening(steepness: arb_poly) -> arb_poly:
+    """A polynomial g in s, 1 at s = 0, whose product with a given one is nearly constant on a larger disk.
+
+    Whatever g is: by Rouche's condition g p has one root over each s, so g is not zero there, and the root is p's.
+    """
+    cap = ctx.cap
+    ctx.cap = _EVENED
+    try:
+        start = arb_series(steepness.truncate(_EVENED).coeffs(), prec=_EVENED)
+        if start.coeffs() == [] or start.coeffs()[0].contains(0):
+            return arb_poly([1])
+        found = steepness[0] / start
+        return arb_poly([arb(1), *(c.mid() for c in found.coeffs()[1:])])
+    finally:
+        ctx.cap = cap
 
 
 def _size(row: arb_poly, radius: arb) -> arb:

@@ -9,8 +9,8 @@ shorter and shorter towards c.)
 None of that has to be exact. Of s^L P the terms of lower order than L vanish for the exact point, and are small for
 the one that is known; P is taken without them. With J a bound for what is left out where the panel is, s >= s0 > 0,
 the disk's condition holds with J, too. So over each such s the whole polynomial has one root in the disk, which is
-therefore the branch if it is so over one s; and by the least modulus of P over t less its root, it is within
-2 reach J / spare of the root of P.
+therefore the branch if it is so over one s. It is within 2 reach J / m of the root t0 of P, where m is the least
+|P| on the disk's edge: P / (t - t0) has no zero in the disk, so its least modulus, at least m / (2 reach), is there.
 
 Guarantee: what is returned contains the integral of the branch that was asked for.
 """
@@ -118,7 +118,7 @@ def _enclosed(branch: Branch, beside: Beside, effort: Effort) -> tuple[arb, fmpq
     off = within(cut, at_cut) - tube.center - tube.along(end)
     if not abs(off) < tube.reach:
         return None  # another branch, or not to be told apart from one
-    beyond = 2 * tube.reach * left_out / tube.spare
+    beyond = 2 * tube.spread * left_out
     return _integrated(tube, chart, origin, (start, end), beyond, abs(width), effort), cut
 
 
