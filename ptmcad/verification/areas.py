@@ -1,6 +1,6 @@
 """Checks of the areas: another enclosure of each region's area, which has to lie within the stored bounds.
 
-Each wall between two regions is integrated over panels by `ptmcad.verification.branches`; narrow strips around critical
+Each wall between two regions is integrated over panels by `ptmcad.verification.walls`; narrow strips around critical
 values that are not rational count as error.
 
 Guarantee: the enclosures are proved (ball arithmetic of Arb, rational panels). They are refined until each is within

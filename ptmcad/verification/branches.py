@@ -13,6 +13,9 @@ or a bend would need panels as short as they are close.) Where R is too small fo
 for which it is large enough. Where no R does, as at turning points, the panel is halved or the branch is shut in
 between two heights at which the curve does not meet the panel.
 
+What is compared is p times a polynomial g(s) that makes the coefficient of t nearly constant. Whatever g is, the
+condition for g p says that g is not zero there, and that p has one root: with it R may be several times as large.
+
 Of a polynomial in v^2 the same is done with w = v^2, of half the degree, where the disk proves that |w| <= M and that w
 is not zero: v is analytic there then and |v| <= sqrt(M), which takes the place of r.
 
@@ -217,7 +220,13 @@ def _along(
     for k in range(0, len(coefficients), 2):
         total += coefficients[k] * power * fmpq(2, k + 1)
         power = power * proved * proved
+    if total.rad() > effort.share and total.rad() * 2**_ROUNDED_BITS > arb(proved) * bound:
+        raise PrecisionTooLow  # the disk alone says nearly as much as the series
     return total + arb(0).union(2 * tail) - tail, proved
+
+
+_ROUNDED_BITS = 20
+"""By so many bits is a series to be better known than by the disk's size."""
 
 
 class Disk(NamedTuple):
