@@ -18,9 +18,10 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.answer.regionmap import Region
 from ptmcad.text.numerals import approximate_text
-from ptmcad.verification.branches import Branch, Effort, Part, PrecisionTooLow
+from ptmcad.verification.branches import Branch, Effort, Part
 from ptmcad.verification.claims import Claims, bracket, fraction
 from ptmcad.verification.derivation import rational
+from ptmcad.verification.disks import PrecisionTooLow
 from ptmcad.verification.report import Violation
 from ptmcad.verification.walls import Known, Wall, abscissa_of, image_of
 

@@ -3,7 +3,7 @@
 Beside a critical value c let u = c + X s^q and v = v0 + m s^q + s^e w. With the right numbers, which the first terms
 of p about the point (c, v0) show, p = s^L P(s, w), and the branch is the only one through its point on s = 0: for a
 turning point q = 2, e = 1, for a node q = e = 1, for a cusp q = 2, e = 3, or q = 3, e = 2 where it stands upright.
-There `ptmcad.verification.branches.disk` proves w to be analytic about s = 0 itself. (Panels in u would have to be
+There `ptmcad.verification.disks.disk` proves w to be analytic about s = 0 itself. (Panels in u would have to be
 shorter and shorter towards c.)
 
 None of that has to be exact. Of s^L P the terms of lower order than L vanish for the exact point, and are small for
@@ -22,7 +22,8 @@ from typing import NamedTuple
 
 from flint import arb, arb_poly, ctx, fmpq
 
-from ptmcad.verification.branches import Branch, Disk, Effort, PrecisionTooLow, disk
+from ptmcad.verification.branches import Branch, Effort
+from ptmcad.verification.disks import Disk, PrecisionTooLow, disk
 
 DEGREE = 4
 """Of the polynomials that branches are compared with."""

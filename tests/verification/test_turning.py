@@ -10,8 +10,9 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification import turning
-from ptmcad.verification.branches import Branch, Effort, disk
+from ptmcad.verification.branches import Branch, Effort
 from ptmcad.verification.claims import PlaneCurve
+from ptmcad.verification.disks import disk
 from ptmcad.verification.turning import Beside, integral_beside
 from ptmcad.verification.walls import Wall, image_of, reflection
 
