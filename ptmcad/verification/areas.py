@@ -1,6 +1,6 @@
 """Checks of the areas: another enclosure of each region's area, which has to lie within the stored bounds.
 
-Each wall between two regions is integrated over panels by `ptmcad.verification.branches`; narrow strips around critical
+Each wall between two regions is integrated over panels by `ptmcad.verification.walls`; narrow strips around critical
 values that are not rational count as error.
 
 Guarantee: the enclosures are proved (ball arithmetic of Arb, rational panels). They are refined until each is within
@@ -9,7 +9,8 @@ its stored bounds or outside of them; bounds that are too narrow for that are re
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -17,15 +18,19 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.answer.regionmap import Region
 from ptmcad.text.numerals import approximate_text
-from ptmcad.verification.branches import Branch, Effort, Part, PrecisionTooLow, integrals_over
+from ptmcad.verification.branches import Branch, Effort, Part
 from ptmcad.verification.claims import Claims, bracket, fraction
 from ptmcad.verification.derivation import rational
+from ptmcad.verification.disks import PrecisionTooLow
 from ptmcad.verification.report import Violation
+from ptmcad.verification.walls import Known, Wall, abscissa_of, image_of
 
 NARROWEST = 10**60
 """Bounds that are relatively narrower than the inverse of this are not even tried."""
 CROWDED_PANELS = 100
 """Panels for each stack beyond which polynomials of higher degree are worth their cost."""
+MARGIN = 2**12
+"""Of a strip, the part that is left out besides where a series about the critical value is taken."""
 ATTEMPTS = 7
 """Times that precision is raised, and strips are narrowed, before bounds count as not confirmed."""
 
@@ -33,14 +38,10 @@ ATTEMPTS = 7
 class _Panel(NamedTuple):
     """A part of a wall from region ``below`` to region ``above``."""
 
-    branch: Branch
+    wall: Wall
     below: int
     above: int
     part: Part
-
-
-def _panels(branch: Branch, ends: tuple[fmpq, fmpq], below: int, above: int, effort: Effort) -> list[_Panel]:
-    return [_Panel(branch, below, above, part) for part in integrals_over(branch, *ends, effort)]
 
 
 def check_areas(claims: Claims) -> str:
@@ -67,23 +68,19 @@ def check_areas(claims: Claims) -> str:
         bits += _doublings(fraction((ends[1] - ends[0]) / max(abs(ends[0]), abs(ends[1]))))
     strip = rational(scale) / (16 * len(result.stacks))
     unconfirmed = "the precision did not suffice to confirm the areas"
-    degrees: tuple[int, ...] = (2,)
     # of the narrowest bounds' width: how far inside of them an area can be proved to be
     margin = fmpq(1, 64)
     for _ in range(ATTEMPTS):
         with ctx.workprec(bits):
             try:
-                open_region = _attempt(claims, strip, margin, bits, degrees)
+                open_region = _attempt(claims, strip, margin, bits)
             except PrecisionTooLow:
                 bits = 2 * bits
                 continue
         if open_region is None:
             return f"{len(result.regions)} enclosures within the stored bounds, {bits} bits"
         unconfirmed = open_region
-        if degrees == (2,):
-            degrees = (2, 10)
-        else:
-            bits, strip, margin = 2 * bits, strip / 2**16, margin / 2**16
+        bits, strip, margin = 2 * bits, strip / 2**16, margin / 2**16
     raise Violation(unconfirmed)
 
 
@@ -92,29 +89,27 @@ def _doublings(scale: Fraction) -> int:
     return max(0, scale.denominator.bit_length() - scale.numerator.bit_length())
 
 
-def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int, degrees: tuple[int, ...]) -> str | None:
+def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None:
     """None when every enclosure is within its bounds; else which one could not be made narrow enough."""
     result = claims.result
     (start, stop), (low, high) = claims.base, claims.height
     width = stop - start
     window = fraction(width * (high - low))
-    curves = {c.number: c for c in claims.curves}
     brackets = [bracket(v, strip * width) for v in result.critical_values]
     lost = sum((b - a for a, b in brackets), fmpq(0)) * (high - low)
     bounds = [(arb(rational(r.area[0])), arb(rational(r.area[1]))) for r in result.regions]
-    share = min((b - a).mid() for a, b in bounds) * margin / max(1, sum(len(s.walls) for s in result.stacks))
-    effort = Effort(share, width / 2**8, width / 2 ** (bits // 3), (low, high), degrees)
+    number = max(1, sum(len(s.walls) for s in result.stacks))
+    shares = [(b - a).mid() * margin / number for a, b in bounds]
+    effort = Effort(min(shares), width / 2**8, width / 2 ** (bits // 3), (low, high), (2,))
+    known: Known = {}
     whole = [arb(0) for _ in result.regions]
     panels: list[_Panel] = []
     for s, stack in enumerate(result.stacks):
         left = start if s == 0 else brackets[s - 1][1]
         right = stop if s == len(brackets) else brackets[s][0]
         whole[result.cells[stack.cells[-1]].region] += arb((right - left) * (high - low))
-        for level, wall in enumerate(stack.walls):
-            below, above = (result.cells[stack.cells[level + k]].region for k in (0, 1))
-            if below != above:
-                branch = Branch.of(curves[wall.component], wall.root)
-                panels += _panels(branch, (left, right), below, above, effort)
+        for below, above, wall in _borders(claims, s, (left, right), strip * width / MARGIN, shares):
+            panels += [_Panel(wall, below, above, part) for part in wall.parts(left, right, effort, known)]
     while True:
         areas = list(whole)
         for p in panels:
@@ -131,8 +126,9 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int, degrees: tupl
                 open_regions.add(n)
         if not open_regions:
             return None
-        crowded = len(degrees) == 1 and len(panels) > CROWDED_PANELS * len(result.stacks)
-        halved = None if crowded else _halved(panels, open_regions, bounds, effort)
+        if len(panels) > CROWDED_PANELS * len(result.stacks):
+            effort = replace(effort, degrees=(2, 10))
+        halved = _halved(panels, open_regions, effort, known)
         if halved is None:
             n = min(open_regions)
             return (f"region {n}: its area is in {areas[n].str(20)}; that it is {_between(result.regions[n])} "
@@ -140,13 +136,34 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int, degrees: tupl
         panels = halved
 
 
+def _borders(
+    claims: Claims, s: int, span: tuple[fmpq, fmpq], margin: fmpq, shares: Sequence[arb]
+) -> Iterator[tuple[int, int, Wall]]:
+    """The walls of a stack between different regions, with the region below and that above.
+
+    Parameters
+    ----------
+    span : the stack without strips.
+    margin : width of what is left out besides where a series about a critical value is taken.
+    shares : errors that a panel may have beside each region.
+    """
+    result = claims.result
+    stack, values = result.stacks[s], result.critical_values
+    curves = {c.number: c for c in claims.curves}
+    places = (abscissa_of(values[s - 1]) if s else None, abscissa_of(values[s]) if s < len(values) else None)
+    for level, (component, root) in enumerate((w.component, w.root) for w in stack.walls):
+        below, above = (result.cells[stack.cells[level + k]].region for k in (0, 1))
+        if below != above:
+            branch = Branch.of(curves[component], root)
+            image = image_of(branch, (span[0] + span[1]) / 2, claims.height)
+            yield below, above, Wall(branch, span, places, margin, min(shares[below], shares[above]), image)
+
+
 def _between(region: Region) -> str:
     return f"between {approximate_text(region.area[0])} and {approximate_text(region.area[1])}"
 
 
-def _halved(
-    panels: Sequence[_Panel], regions: set[int], bounds: Sequence[tuple[arb, arb]], effort: Effort
-) -> list[_Panel] | None:
+def _halved(panels: Sequence[_Panel], regions: set[int], effort: Effort, known: Known) -> list[_Panel] | None:
     """The panels of the given regions, the worst ones halved or tried for the first time; None when too narrow."""
     concerned = [p for p in panels if regions & {p.below, p.above}]
     worst = max((p.part.integral.rad() for p in concerned), default=arb(0))
@@ -162,5 +179,5 @@ def _halved(
             return None
         middle = (left + right) / 2
         for ends in ((left, middle), (middle, right)) if tried else ((left, right),):
-            refined += _panels(p.branch, ends, p.below, p.above, effort)
+            refined += [p._replace(part=part) for part in p.wall.parts(*ends, effort, known)]
     return refined

@@ -38,10 +38,11 @@ from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas
 from ptmcad.verification.auxiliary import check_auxiliary
-from ptmcad.verification.branches import Effort, PrecisionTooLow, _along, _series
+from ptmcad.verification.branches import Effort, _along
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
 from ptmcad.verification.derivation import rational
+from ptmcad.verification.disks import PrecisionTooLow, _series
 from ptmcad.verification.fibre import Counts, Fibre
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.model import check_system
