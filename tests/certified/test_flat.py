@@ -58,6 +58,7 @@ def test_which_slices_have_the_mirror() -> None:
     assert has_flat_mirror(slice_of(l0_1="0", l0_3="0"))
     assert has_flat_mirror(slice_of(l0_2="rho"))
     assert has_flat_mirror(slice_of(F3="0"))
+    assert not has_flat_mirror(slice_of(l0_1="1/1000"))
     for name, value in (
         ("F3", "1"), ("F4", "rho"), ("F3x", "-1/10"), ("F4x", "1/10"),
         ("l0_1", "(rho - 1)^2"), ("l0_3", "L2 + rho"),

@@ -18,10 +18,12 @@ from ptmcad.algebra.arcs import arc_integral
 from ptmcad.algebra.fibre import CoordinatesInBalls, Fibre, univariate_representation
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
 from ptmcad.algebra.resultants import balanced, discriminant, resultant
+from ptmcad.answer.regionmap import Status
 from ptmcad.exact.cad import area
 from ptmcad.exact.cad.curves import Curve
 from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import point_system
+from ptmcad.question.config import slice_from_mapping
 from ptmcad.studies.stress.measure import answer, work_of
 from ptmcad.studies.stress.slices import FIG4, LOADED, SliceQuestion, ten
 from ptmcad.verification.sturm import roots_between
@@ -337,3 +339,12 @@ def test_multiple_roots_are_refused_at_an_end_of_the_interval_too(roots: tuple[i
         else:
             assert len(found) == len(simple)
             assert all(f.low <= fmpq(r.numerator, r.denominator) <= f.high for f, r in zip(found, simple, strict=True))
+
+
+def test_series_beside_a_critical_abscissa_that_is_found_to_be_rational() -> None:
+    """Forces up to 1e9 on both sides of zero: F3 = 0 is critical, and known to be zero only when it is refined."""
+    record = {"mechanism": "ptm", "parameters": {"L1": 1, "L2": "3/2", "rho": "3/4", "k": 100}, "count": "stable"}
+    axes = {"F3": ["-1e9", "1e9"], "F4": ["-1e9", "1e9"]}
+    wide = ptmcad.classify(slice_from_mapping({"name": "wide", **record, "axes": axes}))
+    assert wide.status is Status.EXACT
+    assert all(high - low <= high / 10**4 for low, high in (region.area for region in wide.regions))

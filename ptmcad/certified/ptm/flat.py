@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ptmcad.certified.formula import Formula, direction, length
+from ptmcad.certified.parameters import values_at
 from ptmcad.certified.ptm.statics import positive_everywhere
 from ptmcad.certified.solved import with_formula
 from ptmcad.question.slice import Slice
@@ -78,7 +79,9 @@ class Unfolding(NamedTuple):
 def has_flat_mirror(slice: Slice) -> bool:
     """Whether there is no load, on a base that is certainly positive, with pulls that are zero or certainly positive.
 
-    Where a pull vanished on a line only, minima could run into a configuration in which its spring has no length.
+    Where a pull vanished on a line only, minima could run into a configuration in which its spring has no length. Free
+    lengths that are small beside the lengths of the mechanism are left to the general formulas, which are faster there:
+    those of `Unfolding` are told apart from their poles only in boxes as small as the free lengths.
     """
     given = slice.parameters
     loaded = any(given[name].numerator for name in slice.model.forces if name in given)
@@ -87,7 +90,18 @@ def has_flat_mirror(slice: Slice) -> bool:
         for free, stiffness in (("l0_1", "k1"), ("l0_2", "k2"), ("l0_3", "k3"))
         if free in given
     )
-    return pulls and not loaded and positive_everywhere(slice, "rho")
+    return pulls and not loaded and positive_everywhere(slice, "rho") and not _is_weak(slice)
+
+
+def _is_weak(slice: Slice) -> bool:
+    """Whether a free length is positive and, in the middle of the window, under a sixth of a bar or of the base there.
+
+    It decides how long the search takes, and nothing else.
+    """
+    middle = [(a.low + a.high) / 2 for a in slice.axes]
+    values = values_at(slice, middle[0], middle[1])
+    longest = max(values[name] for name in ("rho", "L1", "L2"))
+    return any(0 < values[name] < longest / 6 for name in ("l0_1", "l0_2", "l0_3"))
 
 
 def exchanged(values: Mapping[str, Formula]) -> dict[str, Formula]:

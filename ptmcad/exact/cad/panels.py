@@ -16,7 +16,7 @@ from ptmcad.algebra.branches import Integral, PrecisionTooLow, branch_integral
 from ptmcad.algebra.graphs import graph_integral
 from ptmcad.algebra.polynomials import RationalPolynomial
 from ptmcad.algebra.puiseux import Beside, puiseux_integral
-from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
+from ptmcad.algebra.real_roots import RealRoot, refine, sign_at, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve
 from ptmcad.exact.cad.horizontals import horizontals
@@ -151,20 +151,29 @@ def _at_end(border: Border, over: Interval, side: int, effort: Effort, allowed: 
     """A panel from an end of the stack as far as a series about that end reaches; a rough one when that fails."""
     end, near, far = border.ends[side], over[side], over[1 - side]
     width = far - near
-    strip = arb(0)
-    if end.value == near:
+    critical, strip = _told(end, near), arb(0)
+    if critical == near:
         # what is not exactly zero cannot be divided by a power of zero
         bottom, top = effort.fibre
         left_out = min(abs(width) / 2**_LEAST_BITS, allowed / (top - bottom) / 2) * (1 if width > 0 else -1)
         near = simplest_between(*sorted((near + left_out / 2, near + left_out)))
-        strip = arb(bottom).union(arb(top)) * arb(abs(near - end.value))
-    bits = ctx.prec + 3 * int(abs(width / (near - end.value)).ceil()).bit_length()
+        strip = arb(bottom).union(arb(top)) * arb(abs(near - critical))
+    bits = ctx.prec + 3 * int(abs(width / (near - critical)).ceil()).bit_length()
     found = _about_end(border, end, (near, far), effort, allowed, bits)
     if found is None:
         return _rough_panel(border, over, effort, 2 * side - 1)
     value, cut = found
     ends = (over[0], cut) if side == 0 else (cut, over[1])
     return Panel(border, *ends, value + strip, True, 0)
+
+
+def _told(end: BaseEnd, near: fmpq) -> fmpq:
+    """The end's place as far as it is known, exactly where ``near`` is that place."""
+    root = end.root
+    if root is None or sign_at(root.polynomial, near):
+        return end.value
+    # a rational root may become known as such only when it is refined
+    return near if root.low < near < root.high or root.low == near == root.high else end.value
 
 
 def _about_end(
