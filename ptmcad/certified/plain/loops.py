@@ -27,6 +27,7 @@ from ptmcad.certified.system import system
 from ptmcad.certified.tape import Tape
 from ptmcad.mechanism import ClosedMechanism, Mechanism
 from ptmcad.mechanism.evaluate import value_at
+from ptmcad.mechanism.fourbars import flat_everywhere
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Count
 from ptmcad.text.enclosure import Enclosure
@@ -56,6 +57,9 @@ def loop_poses(model: ClosedMechanism, parameters: Mapping[str, Fraction], digit
 
     slice = point_slice(model, parameters)
     prove_slice(slice)
+    if flat := flat_everywhere(model.mechanism, slice.parameters):
+        loop, fold = flat
+        return undecided(loop.in_short(fold))
     counter = plain_counter(slice, MAX_UNKNOWNS_AT_POINTS)
     counts = counter.at(Fraction(0), Fraction(0), Count.TOTAL)
     if not counts.decided or not all(solution.signs for solution in counts.solutions):
