@@ -18,7 +18,7 @@ from ptmcad.ask.engines import is_certified
 from ptmcad.ask.estimate import WORDS, cost
 from ptmcad.ask.forecast import Forecast, curve_text, forecast, way_text
 from ptmcad.ask.forecast import cost_text as in_figures
-from ptmcad.errors import ConfigError, GeometryError, LimitReached, shown
+from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, LimitReached, shown
 from ptmcad.mechanism import Mechanism, ptm
 from ptmcad.mechanism.sizes import terms_of
 from ptmcad.process.timed import returns_within
@@ -240,7 +240,7 @@ def _encloses(slice: Slice) -> bool:
         return False
     try:
         check_taken(slice)
-    except (ConfigError, GeometryError):
+    except (ConfigError, DegenerateSliceError, GeometryError):
         return False
     return True
 

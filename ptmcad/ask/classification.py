@@ -216,7 +216,7 @@ def check_taken(slice: Slice) -> None:
 
     Raises
     ------
-    ConfigError, GeometryError
+    ConfigError, DegenerateSliceError, GeometryError
         As the engine does.
     """
     if slice.model != ptm():
