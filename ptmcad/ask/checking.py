@@ -13,12 +13,12 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from ptmcad.ask.classification import check_taken
+from ptmcad.ask.classification import check_taken, flat_loops
 from ptmcad.ask.engines import is_certified
 from ptmcad.ask.estimate import WORDS, cost
 from ptmcad.ask.forecast import Forecast, curve_text, forecast, way_text
 from ptmcad.ask.forecast import cost_text as in_figures
-from ptmcad.errors import ConfigError, GeometryError, LimitReached, shown
+from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, LimitReached, shown
 from ptmcad.mechanism import Mechanism, ptm
 from ptmcad.mechanism.sizes import terms_of
 from ptmcad.process.timed import returns_within
@@ -105,11 +105,12 @@ def check(slice: Slice, sized: bool = True) -> Check:
     sample = tuple(a.low + (a.high - a.low) * share for a, share in zip(slice.axes, (_ACROSS, _UP), strict=True))
     at = (sample[0], sample[1])
     if is_certified(slice, "auto"):
+        cost, flat = _CERTIFIED, flat_loops(slice)
         if not _is_large(slice):
             _check_certified(slice)
         elif not returns_within(MAX_EXPANDING, _check_certified, slice):
-            return Check(slice, at, None, "certified", _LARGE)
-        return Check(slice, at, None, "certified", _CERTIFIED)
+            cost = _LARGE
+        return Check(slice, at, None, "certified", f"{cost}; {flat}" if flat else cost)
     if len(slice.model.unknowns) > MAX_UNKNOWNS:
         return Check(slice, at, None, "exact", WORDS[-1])
     found, bound = _counted(slice, at, sized)
@@ -241,7 +242,7 @@ def _encloses(slice: Slice) -> bool:
         return False
     try:
         check_taken(slice)
-    except (ConfigError, GeometryError):
+    except (ConfigError, DegenerateSliceError, GeometryError):
         return False
     return True
 

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from ptmcad.answer.regionmap import RegionMap, Status, with_compilation
 from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached, expect, quoted
-from ptmcad.mechanism import ptm
+from ptmcad.mechanism import ClosedMechanism, ptm
 from ptmcad.options import Options, Progress
 from ptmcad.process.memory import check_room, loading
 from ptmcad.question.config import slice_from
@@ -216,7 +216,7 @@ def check_taken(slice: Slice) -> None:
 
     Raises
     ------
-    ConfigError, GeometryError
+    ConfigError, DegenerateSliceError, GeometryError
         As the engine does.
     """
     if slice.model != ptm():
@@ -239,10 +239,21 @@ def _certified(slice: Slice, options: Options) -> RegionMap:
         return certified_map(slice, replace(options, partial=None if partial is None else improved))
     except LimitReached as stop:
         found = stop.partial
+        if flat := flat_loops(slice):
+            stop = LimitReached(f"{stop}; {flat}", found)
         if earlier is None or (isinstance(found, RegionMap) and found.undetermined < earlier.undetermined):
-            raise
+            raise stop
         kept_map = replace(earlier, status=Status.PARTIAL)
         raise LimitReached(f"{stop}; the map to go on from has no more, and is kept", partial=kept_map) from stop
+
+
+def flat_loops(slice: Slice) -> str:
+    """What to say of loops that leave parts of a certified map undecided; empty where nothing is known of any."""
+    if not (isinstance(slice.model, ClosedMechanism) and slice.model.tangent):
+        return ""
+    from ptmcad.mechanism.fourbars import may_be_flat
+
+    return may_be_flat(slice.model.mechanism, slice.parameters)
 
 
 def check_resumable(slice: Slice, earlier: RegionMap) -> None:

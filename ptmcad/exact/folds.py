@@ -7,22 +7,20 @@ Guarantee: exact. Where a loop folds flat at a point is decided by the ideal of 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
-from itertools import combinations
 
 from flint import fmpq
 
 from ptmcad.algebra.bases import quotient
 from ptmcad.algebra.polynomials import Ratio, evaluate
-from ptmcad.errors import DegenerateSliceError, ExpressionError, InfiniteSolutionsError
+from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
 from ptmcad.exact.models.potential import elements_of
 from ptmcad.exact.models.system import ParametricSystem, at_point, polynomial_at
 from ptmcad.exact.witness import Point
-from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
-from ptmcad.mechanism.description import Closing
-from ptmcad.mechanism.evaluate import value_at
-from ptmcad.mechanism.proofs import MirrorImage, Points
+from ptmcad.mechanism import ClosedMechanism, Model
+from ptmcad.mechanism.fourbars import IN_TWO_WAYS, closed_by, four_bars
+from ptmcad.text.expressions import Expression, constant
 
 Degenerate = DegenerateSliceError | InfiniteSolutionsError
 
@@ -45,7 +43,7 @@ def with_folds(
     seen = {p: found for p in at if (found := _folds_at(model, system, parameters, p)) is not None}
     if not seen or not all(seen.values()):
         return error
-    which = " and ".join(f"{c.start}{c.end}" for c in model.mechanism.closing)
+    which = closed_by(model.mechanism)
     why = _branches(model, parameters, tuple(seen))
     return DegenerateSliceError(
         f"at every point of the slice the loop that {which} closes can fold flat{why}", part=error.part
@@ -69,80 +67,16 @@ def _folds_at(
 def _branches(model: ClosedMechanism, parameters: Mapping[str, Ratio], at: Sequence[Point]) -> str:
     """What the branches are that meet in flat poses, where they can be named, and how to describe each by itself."""
     mechanism = model.mechanism
-    for closing in mechanism.closing if len(mechanism.closing) == 1 else ():
-        for loop in _four_bars(mechanism, closing):
-            kinds = [_kind(mechanism, closing, loop, _values(parameters, p)) for p in at]
-            if kinds and kinds[0] and len(set(kinds)) == 1:
-                return _named(kinds[0], loop)
-    return (
-        ", as lengths of its bars add up alike: two ways of assembling it meet there, and flat poses are multiple "
-        "solutions whatever the loads are; give its bars other lengths, or write the branch that you mean as an open "
-        "chain"
-    )
+    for loop in four_bars(mechanism) if len(mechanism.closing) == 1 else ():
+        folds = [loop.fold(_values(parameters, p)) for p in at]
+        if folds and folds[0] and len(set(folds)) == 1:
+            return loop.named(folds[0])
+    return IN_TWO_WAYS
 
 
-_SINGULAR = "in flat poses, the loop is singular, and these are multiple solutions whatever the loads are"
-Loop = tuple[str, str, str, str]
-"""Points A, P, Q and B: PQ is the closing bar."""
-
-
-def _named(kind: str, loop: Loop) -> str:
-    a, p, q, b = loop
-    if kind == "parallelogram":
-        return (
-            f": {a} {p} {q} {b} is a parallelogram with two branches, on one {a}{p} and {b}{q} are parallel, on the "
-            f"other they cross; where the two meet, {_SINGULAR}. Describe the parallel branch as an open chain, with "
-            f"{q} as far from {p} as {b} from {a}, and the crossed one by 'x-joint:'"
-        )
-    if kind == "rhombus":
-        return (
-            f": {a} {p} {q} {b} is a rhombus with three branches, on one {a}{p} and {b}{q} are parallel, on the others "
-            f"{p} stays at {b} or {q} at {a}; where they meet, {_SINGULAR}. Describe each branch as an open chain"
-        )
-    still, centre, far = (p, b, f"{a}{q}") if kind == f"kite {p}" else (q, a, f"{b}{p}")
-    return (
-        f": {a} {p} {q} {b} is a kite with two branches, on one {still} stays at {centre} and two bars turn about it, "
-        f"the other is symmetric about {far}; where the two meet, {_SINGULAR}. Describe the symmetric branch by the "
-        f"angle and the length of {far} as unknowns; the other one is an open chain"
-    )
-
-
-def _four_bars(mechanism: Mechanism, closing: Closing) -> Iterator[Loop]:
-    """The loops of four rigid parts that a closing bar is in."""
-    fixed = [name for name in mechanism.points if name not in mechanism.moving]
-    rigid = {
-        frozenset(pair)
-        for part in (*mechanism.bars, fixed, *mechanism.bodies.values())
-        for pair in combinations(part, 2)
-    }
-    p, q = closing.start, closing.end
-    for a in mechanism.points:
-        for b in mechanism.points:
-            if {a, b} & {p, q} or a == b:
-                continue
-            if {frozenset((a, p)), frozenset((q, b)), frozenset((b, a))} <= rigid:
-                yield a, p, q, b
-
-
-def _values(parameters: Mapping[str, Ratio], at: Point) -> dict[str, Fraction]:
+def _values(parameters: Mapping[str, Ratio], at: Point) -> dict[str, Expression]:
     found = {}
     for name, (above, below) in parameters.items():
         value = evaluate(above, *at) / evaluate(below, *at)
-        found[name] = Fraction(int(value.p), int(value.q))
+        found[name] = constant(Fraction(int(value.p), int(value.q)))
     return found
-
-
-def _kind(mechanism: Mechanism, closing: Closing, loop: Loop, values: Mapping[str, Fraction]) -> str:
-    """What a loop of four bars is by its lengths at values of the parameters; empty where they are no equal pairs."""
-    points = Points(mechanism, MirrorImage(values))
-    a, p, q, b = loop
-    try:
-        first, second, ground = (points.squared(*pair).terms.get((), Fraction(0)) for pair in ((a, p), (q, b), (b, a)))
-    except ExpressionError:
-        return ""
-    coupler = value_at(closing.length, values) ** 2
-    if first == second and coupler == ground:
-        return "rhombus" if first == ground else "parallelogram"
-    if first == ground and coupler == second:
-        return f"kite {p}"
-    return f"kite {q}" if first == coupler and second == ground else ""

@@ -45,13 +45,26 @@ ZEEMAN: dict[str, Any] = {
     "axes": {"X": ["3/2", 5], "Y": [-2, 2]},
     "count": "total",
 }
+
+
+def paper(count: str, free: str, rho: list[str], l2: list[str]) -> dict[str, Any]:
+    parameters = {"L1": 1, "k": 100, "F3": -10, "F4": -10, "l0": free}
+    return {"mechanism": "ptm", "parameters": parameters, "axes": {"rho": rho, "L2": l2}, "count": count}
+
+
+PAPER = {
+    "stable": paper("stable", "1/5", ["11/10", "13/10"], ["4/5", "1"]),
+    "total": paper("total", "1/5", ["11/10", "13/10"], ["4/5", "1"]),
+    "admissible": paper("admissible", "1/2", ["7/5", "3/2"], ["21/20", "23/20"]),
+}
+"""Windows with one curve each: of admissible counts the one where a spring has its free length."""
 RECORDS = {"zeeman": ZEEMAN, "truss": TRUSS}
 
 
 @cache
 def a_map(name: str, tolerance: float = 3e-3) -> RegionMap:
     def made() -> RegionMap:
-        return ptmcad.classify(RECORDS[name], engine="certified", tolerance=str(tolerance))
+        return ptmcad.classify((RECORDS | PAPER)[name], engine="certified", tolerance=str(tolerance))
 
     return once_per_run(f"exclusion-{name}-{tolerance}", made)
 
@@ -130,6 +143,24 @@ def test_a_piece_of_a_billionth_of_the_window_is_found() -> None:
     assert areas[smallest] < stored.cover.steps**2 * 1e-9
     with pytest.raises(Violation, match="critical curve"):
         check_free_area(8, CertifiedClaims(without(stored, len(stored.cover.rectangles) + smallest)))
+
+
+@pytest.mark.parametrize("count", PAPER)
+@pytest.mark.slow_cases("admissible")
+def test_all_of_a_map_of_the_paper_s_mechanism_is_proved(count: str) -> None:
+    stored = a_map(count, 0.05)
+    assert len(stored.regions) == 2
+    assert check_free_area(MOST_EFFORT, CertifiedClaims(stored)).startswith("100 % of the free area")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", PAPER)
+def test_a_dropped_piece_of_the_paper_s_mechanism_is_found(count: str) -> None:
+    stored = with_one_cell(a_map(count, 0.05))
+    assert stored.cover is not None
+    middle = len(stored.cover.rectangles) // 3
+    with pytest.raises(Violation, match=f"{count} [0-9].*critical curve"):
+        check_free_area(4, CertifiedClaims(without(stored, middle)))
 
 
 OPERATIONS = ("add", "subtract", "multiply", "divide", "cosine", "sine", "inverse_length", "length", "direction")

@@ -35,6 +35,7 @@ from ptmcad.certified.system import system
 from ptmcad.certified.tape import Tape
 from ptmcad.mechanism import ClosedMechanism, Mechanism
 from ptmcad.mechanism.evaluate import value_at
+from ptmcad.mechanism.fourbars import flat_everywhere
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Count
 from ptmcad.text.enclosure import Enclosure
@@ -64,6 +65,9 @@ def loop_poses(model: ClosedMechanism, parameters: Mapping[str, Fraction], digit
 
     slice = point_slice(model, parameters)
     prove_slice(slice)
+    if flat := flat_everywhere(model.mechanism, slice.parameters):
+        loop, fold = flat
+        return undecided(loop.in_short(fold))
     found = solutions_at(plain_counter(slice, MAX_UNKNOWNS_AT_POINTS), Count.TOTAL)
     if found is None or not all(solution.signs for _, solution in found):
         return undecided(NOT_TOLD)

@@ -17,9 +17,10 @@ from itertools import combinations
 from ptmcad.certified.formula import Formula, Graph, length
 from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
-from ptmcad.errors import ConfigError, GeometryError
+from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError
 from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, System
 from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.mechanism.fourbars import closed_by, flat_everywhere
 from ptmcad.mechanism.work import split_moments
 from ptmcad.question.domain import fault, unproved
 from ptmcad.question.slice import Axis, Count, Slice
@@ -153,6 +154,8 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
     GeometryError
         When it is not proved that k l0 is nowhere negative in the window: only then is a spring without length, whose
         energy has a peak there, no stable equilibrium that is not counted.
+    DegenerateSliceError
+        When a closed loop is proved to fold flat all over the window; the message says what its branches are.
     """
     model = slice.model
     if len(model.unknowns) > most:
@@ -170,6 +173,8 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
         if key not in _IRRELEVANT | _SAID_IN_EQUATIONS | _USED and getattr(model, key):
             raise ConfigError(f"the certified engine does not take {key}, and {model.name} has some", key=key)
     ring = Harmonics(tuple(model.unknowns), model.reals, slice.parameters)
+    if isinstance(model, ClosedMechanism) and model.tangent:
+        _check_loops(model, slice)
     if isinstance(model, ClosedMechanism) and slice.has_free_lengths:
         return _of_loops(model, ring, slice.axes)
     if isinstance(model, System):
@@ -190,6 +195,19 @@ def _check_pulls(mechanism: Mechanism, cones: Sequence[Cone], axes: tuple[Axis, 
         if problem := fault(*asked) or unproved(*asked):
             number = next(n for n, spring in enumerate(mechanism.springs, 1) if spring.name == cone.name)
             raise GeometryError(problem, part=f"springs.{number}")
+
+
+def _check_loops(model: ClosedMechanism, slice: Slice) -> None:
+    """Refuse a loop with flat poses all over the window: the Jacobian is singular there, nothing would be decided."""
+    found = flat_everywhere(model.mechanism, slice.parameters)
+    if found is not None:
+        loop, fold = found
+        raise DegenerateSliceError(
+            f"at every point of the slice the loop that {closed_by(model.mechanism)} closes can fold flat"
+            f"{loop.named(fold, slice.has_free_lengths)}. Of the branches together the certified engine decides no "
+            "count, not even that of stable equilibria",
+            part="closing.1",
+        )
 
 
 def _of_loops(model: ClosedMechanism, ring: Harmonics, axes: tuple[Axis, Axis]) -> Problem:

@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 from flint import arb, arb_mat
 
-from ptmcad.verification.certified.vectors import BARS, CROSSING, ORDER, ROWS, SPRINGS, Spring, Terms, evaluated
+from ptmcad.verification.certified.vectors import BARS, CROSSING, ORDER, ROWS, SPRINGS, Spring, Terms, ball
 
 Pair = tuple[arb, arb]
 Sides = tuple[int, ...]
@@ -119,7 +119,7 @@ class Energy:
         )
 
     def _value(self, terms: Terms) -> arb:
-        return arb(evaluated(terms, self.values))
+        return ball(terms, self.values)
 
     def _rows(self, one: arb, two: arb) -> list[arb]:
         """The sums of waves that the derivatives are made of."""

@@ -274,7 +274,7 @@ def _proved(energy: Energy, center: Pair) -> Equilibrium | None:
             return None
         r1, r2 = radius * unit1, radius * unit2
         near = energy(arb(x, r1), arb(y, r2))
-        signs = _signs(near)
+        signs = signs_of(near)
         if signs is None:
             return None
         if unit1 != unit2:
@@ -289,7 +289,8 @@ def _proved(energy: Energy, center: Pair) -> Equilibrium | None:
     return None
 
 
-def _signs(d: Derivatives) -> str | None:
+def signs_of(d: Derivatives) -> str | None:
+    """The signs of the Hessian's eigenvalues all over a square; None where they are not told."""
     determinant = d.e11 * d.e22 - d.e12 * d.e21
     if determinant < 0:
         return "+-"
@@ -344,4 +345,4 @@ def _first(d: Derivatives, r1: float, r2: float) -> bool:
     return by1 >= by2 if max(r1, r2) < 32 * min(r1, r2) else r1 >= r2
 
 
-__all__ = ["MIN_HALF_WIDTH", "TORUS", "Equilibrium", "Square", "Unproved", "equilibria"]
+__all__ = ["MIN_HALF_WIDTH", "TORUS", "Equilibrium", "Square", "Unproved", "equilibria", "signs_of"]

@@ -20,7 +20,7 @@ from flint import arb, arb_mat
 
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.kinks import Sides, line_of
-from ptmcad.verification.certified.vectors import evaluated
+from ptmcad.verification.certified.vectors import ball
 from ptmcad.verification.certified.waves import Cone, Form, Waves
 
 Matrix = list[list[arb]]
@@ -137,7 +137,7 @@ class Field:
         self.form, self.values, self._conditions = form, dict(values), len(conditions)
         self.cones: list[tuple[int, Cone, arb]] = []
         for number, cone in enumerate(form.cones):
-            pull = arb(evaluated(cone.pull, values))
+            pull = ball(cone.pull, values)
             if not (pull == 0):  # noqa: SIM201 (a ball that is not exactly zero: != would ask for one without zero)
                 self.cones.append((number, cone, pull))
         rows: list[Waves] = [*form.equations, *form.jacobian]
@@ -154,7 +154,7 @@ class Field:
         entries = [arb(0)] * (len(rows) * 2 * len(found))
         for n, row in enumerate(rows):
             for (turned, raised, sine), terms in row.items():
-                entries[n * 2 * len(found) + place[turned, raised] + sine] = arb(evaluated(terms, values))
+                entries[n * 2 * len(found) + place[turned, raised] + sine] = ball(terms, values)
         self._matrix = arb_mat(len(rows), 2 * len(found), entries)
         self._turned = sorted({turned for turned, _ in found if any(turned)})
 
@@ -205,7 +205,7 @@ def _pointed(cone: Cone, values: Mapping[str, arb], side: int) -> Vector:
     """The direction of a spring on one line."""
     line = line_of(cone)
     assert line is not None
-    x, y = (side * arb(evaluated(terms, values)) for terms in line)
+    x, y = (side * ball(terms, values) for terms in line)
     squared = square(x) + square(y)
     if not squared > 0:
         raise Unproved(f"the line of spring {cone.name} may have no direction")

@@ -20,11 +20,13 @@ from ptmcad.question.slice import Count, Slice
 from ptmcad.verification.certified.boxes import Box, Zero, disjoint, same
 from ptmcad.verification.certified.counted import MINIMA, Counted, Counts
 from ptmcad.verification.certified.equilibria import Unproved
-from ptmcad.verification.certified.field import Field
+from ptmcad.verification.certified.field import Field, Matrix
 from ptmcad.verification.certified.kinks import Sides, sides
+from ptmcad.verification.certified.narrow import Function, judged, no_solution
 from ptmcad.verification.certified.parameters import exact, over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import Spent, zeros
+from ptmcad.verification.certified.spectrum import inertia
 from ptmcad.verification.certified.vectors import evaluated
 from ptmcad.verification.certified.waves import Form
 from ptmcad.verification.claims import Claims
@@ -80,7 +82,13 @@ class ModelCounting:
         """The only solution in each of the stored boxes."""
         with ctx.workprec(_BOX_PRECISION):
             fields = [_field_at(self.form, there.values, side=side) for side in sides(self.form)]
-            return [_only(fields, solution, k, self._budget) for k, solution in enumerate(boxes)]
+            return [self._in_box(fields, there.values, solution, k) for k, solution in enumerate(boxes)]
+
+    def _in_box(self, fields: Sequence[Field], values: Mapping[str, Fraction], solution: Solution, k: int) -> Zero:
+        _check_box(self.form, solution, k)
+        # where springs are on lines, a box has to be searched on each side of them
+        narrow = _narrow(self.form, values, solution, k) if len(fields) == 1 else None
+        return narrow or _only(fields, solution, k, self._budget)
 
     def same(self, one: Zero, two: Zero) -> bool:
         """Whether a solution lies where another one is alone.
@@ -240,15 +248,41 @@ def counts_of(form: Form, found: Sequence[Zero], count: Count) -> Counts:
     return Counts(len(found), index[0], index, None)
 
 
-def _only(fields: Sequence[Field], solution: Solution, k: int, budget: int) -> Zero:
-    """The one solution in a stored box, on whichever side it is."""
-    circles = fields[0].form.is_circle
+def _narrow(form: Form, values: Mapping[str, Fraction], solution: Solution, k: int) -> Zero | None:
+    """The one solution in a stored box that is narrow; None where a search has to tell."""
+
+    def function() -> Function:
+        field = _field_at(form, values)
+
+        def at(box: Sequence[arb]) -> tuple[Sequence[arb], Matrix] | None:
+            jet = field(box)
+            return None if jet.short else (jet.values, jet.jacobian)
+
+        return at
+
+    found = judged(function, solution)
+    if found is None:
+        return None
+    if not found.holds:
+        raise Violation(no_solution(solution, k))
+    signs = inertia(found.jacobian) if form.is_gradient else ""
+    # nothing is said of what is around the box
+    return None if signs is None else Zero(*found.in_floats(), (0.0,) * form.size, signs)
+
+
+def _check_box(form: Form, solution: Solution, k: int) -> None:
+    """Refuse what is no box within the bounds of unknowns."""
+    circles = form.is_circle
     if len(solution.center) != len(circles) or not 0 < solution.radius <= (1 if any(circles) else MAX_REAL):
         raise Violation(f"box {k} of the solutions is not a box of {len(circles)} unknowns")
     if any(circle and abs(x) > MAX_ANGLE for circle, x in zip(circles, solution.center, strict=True)):
         raise Violation(f"box {k} of the solutions is too many turns away")
     if any(abs(x) > MAX_REAL for x in solution.center):
         raise Violation(f"box {k} of the solutions is beyond all bounds of unknowns")
+
+
+def _only(fields: Sequence[Field], solution: Solution, k: int, budget: int) -> Zero:
+    """The one solution in a stored box, on whichever side it is."""
     center = tuple(float(x) for x in solution.center)
     # floats have the centers and radii of stored boxes exactly, or nearly: then the box is made a little larger
     radii = tuple(float(solution.radius) * (1 + 2.0**-40) + 2.0**-50 * max(1.0, abs(x)) for x in center)

@@ -20,9 +20,19 @@ from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.counted import MINIMA, Counted, Counting, Counts, Enclosed, differs, stored
 from ptmcad.verification.certified.energy import Energy
-from ptmcad.verification.certified.equilibria import MIN_HALF_WIDTH, TORUS, Equilibrium, Square, Unproved, equilibria
+from ptmcad.verification.certified.equilibria import (
+    MIN_HALF_WIDTH,
+    TORUS,
+    Equilibrium,
+    Square,
+    Unproved,
+    equilibria,
+    signs_of,
+)
+from ptmcad.verification.certified.field import Matrix
 from ptmcad.verification.certified.flat import beside, is_flat, is_nearly_flat
 from ptmcad.verification.certified.models import ModelCounting
+from ptmcad.verification.certified.narrow import Function, judged, no_solution
 from ptmcad.verification.certified.parameters import Values, energy_at, energy_over, exact, values_at
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.vectors import CROSSING, SPRINGS, TURNED, evaluated
@@ -197,7 +207,7 @@ class PaperCounting:
         with ctx.workprec(_BOX_PRECISION):
             # the counts may be certain with parameters that were rounded too much to say what is in a small box
             energy = energy_at(there.values)
-        return [_only(energy, solution, k) for k, solution in enumerate(boxes)]
+        return [_narrow(there.values, solution, k) or _only(energy, solution, k) for k, solution in enumerate(boxes)]
 
     def same(self, one: Equilibrium, two: Equilibrium) -> bool:
         """Whether an equilibrium lies where another one is alone."""
@@ -307,10 +317,43 @@ def cones(energy: Energy, values: Mapping[str, Fraction]) -> int:
     return peaks
 
 
-def _only(energy: Energy, solution: Solution, k: int) -> Equilibrium:
-    """The one equilibrium in a stored box."""
+def _narrow(values: Values, solution: Solution, k: int) -> Equilibrium | None:
+    """The one equilibrium in a stored box that is narrow; None where a search has to tell."""
+    _check_box(solution, k)
+
+    def function() -> Function:
+        energy = energy_at(values)
+
+        def at(box: Sequence[arb]) -> tuple[Sequence[arb], Matrix] | None:
+            one, two = box
+            d = energy(one, two)
+            if d.short or energy.one_sided(one, two):
+                return None
+            return (d.e1, d.e2), [[d.e11, d.e12], [d.e21, d.e22]]
+
+        return at
+
+    found = judged(function, solution)
+    if found is None:
+        return None
+    if not found.holds:
+        raise Violation(no_solution(solution, k))
+    with ctx.workprec(_BOX_PRECISION):
+        one, two = found.within
+        signs = signs_of(energy_at(values)(one, two))
+    (x, y), (r1, r2) = found.in_floats()
+    # nothing is said of what is around the box
+    return None if signs is None else Equilibrium((x, y), (r1, r2), (0.0, 0.0), signs)
+
+
+def _check_box(solution: Solution, k: int) -> None:
     if len(solution.center) != 2 or not 0 < solution.radius <= 1 or any(abs(x) > 8 for x in solution.center):
         raise Violation(f"box {k} of the solutions is not a box of two angles")
+
+
+def _only(energy: Energy, solution: Solution, k: int) -> Equilibrium:
+    """The one equilibrium in a stored box."""
+    _check_box(solution, k)
     x, y = (float(c) for c in solution.center)
     # floats have the centers and radii of stored boxes exactly, or nearly: then the box is made a little larger
     radius = float(solution.radius) * (1 + 2.0**-40) + 2.0**-50

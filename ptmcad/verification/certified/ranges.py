@@ -23,7 +23,7 @@ from flint import arb
 
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.field import power, size
-from ptmcad.verification.certified.vectors import Terms, evaluated
+from ptmcad.verification.certified.vectors import ball
 from ptmcad.verification.certified.waves import Form, Key, Waves
 
 HALF_TURN = 101 / 32
@@ -115,11 +115,11 @@ class _Bounds:
 
     def __init__(self, form: Form, values: Mapping[str, arb], with_products: bool):
         def row(waves: Waves) -> Row:
-            return {key: _value(terms, values) for key, terms in waves.items()}
+            return {key: ball(terms, values) for key, terms in waves.items()}
 
         rows = [row(waves) for waves in form.equations]
         springs = [
-            [(_value(c.pull, values), row(c.weights[k][0]), row(c.weights[k][1])) for c in form.cones]
+            [(ball(c.pull, values), row(c.weights[k][0]), row(c.weights[k][1])) for c in form.cones]
             for k in range(form.size)
         ]
         self.equations = list(map(_Equation, rows, springs))
@@ -214,10 +214,6 @@ class _Bounds:
                 return False
             waiting += halves
         return True
-
-
-def _value(terms: Terms, values: Mapping[str, arb]) -> arb:
-    return arb(evaluated(terms, values))
 
 
 def _is_positive(terms: Monomials, lead: int, bound: arb, sign: int) -> bool:

@@ -8,15 +8,16 @@ sines of the angles and of their sum, and so are the derivatives. A description 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from fractions import Fraction
 from functools import reduce
 from itertools import product
 from math import prod
 from typing import Any, NamedTuple
 
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint import Ordering, arb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.mechanism import description
-from ptmcad.verification.derivation import ANGLES, MECHANISM, POSITIVE, Configuration
+from ptmcad.verification.derivation import ANGLES, MECHANISM, POSITIVE, Configuration, rational
 
 NAMES = MECHANISM.variables
 Frequency = tuple[int, int]
@@ -179,12 +180,24 @@ def _terms(p: fmpq_mpoly) -> Terms:
 
 
 def evaluated(terms: Terms, values: Mapping[str, Any]) -> Any:
-    """The value of a polynomial for exact numbers, functions or balls."""
+    """The value of a polynomial for exact numbers, functions or balls; of one without names a fraction, or 0."""
     total: Any = 0
+    number = Fraction(0)  # exact: a quotient of integers would be a double
     for numerator, denominator, names in terms:
-        term = prod([values[name] for name in names], start=numerator)
-        total = total + (term / denominator if denominator != 1 else term)
-    return total
+        if names:
+            term = prod([values[name] for name in names], start=numerator)
+            total = total + (term / denominator if denominator != 1 else term)
+        else:
+            number += Fraction(numerator, denominator)
+    if not number:
+        return total
+    return total + (rational(number) if isinstance(total, arb) else number)
+
+
+def ball(terms: Terms, values: Mapping[str, Any]) -> arb:
+    """The value of a polynomial for balls, also of one without names."""
+    found = evaluated(terms, values)
+    return found if isinstance(found, arb) else arb(rational(Fraction(found)))
 
 
 _POINTS = _CONFIGURATION.points()

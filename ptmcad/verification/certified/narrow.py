@@ -1,0 +1,102 @@
+"""Boxes that are too narrow for doubles: whether one has a solution, by one test in balls of as many digits as it asks.
+
+Guarantee: a box that is said to have one solution has exactly one, and it is in the enclosure; one that is said to have
+none has none. A solution on the box's edge, or a degenerate one, leaves it open.
+
+The test is Krawczyk's (`ptmcad.verification.certified.krawczyk`) of the stored box itself, without doubles on the way:
+in a box of half width r the Jacobian hardly varies, so that the image is nearly the point m - C f(m), which either is
+within r of m or is not. A search by halving gains nothing there, and rounding a middle to doubles loses the box.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from flint import arb, arb_mat, ctx
+
+from ptmcad.answer.regionmap import Solution
+from ptmcad.verification.certified.boxes import Floats
+from ptmcad.verification.certified.field import Matrix
+from ptmcad.verification.certified.parameters import exact
+
+NARROW = Fraction(1, 2**20)
+"""Half the width of a box up to which one test is tried before a search."""
+_LEAST_BITS, _SPARE_BITS = 128, 64
+_DOUBLINGS = 2
+_MAX_BITS = 2**16
+"""Beyond, a box stays open: its number of digits is the maker's choice."""
+
+Function = Callable[[Sequence[arb]], tuple[Sequence[arb], Matrix] | None]
+"""The equations and their derivatives over a box; None where they have none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """What a test shows of a box: whether it has a solution, and then where, with the derivatives all over the box."""
+
+    holds: bool
+    within: tuple[arb, ...] = ()
+    jacobian: Matrix = field(default_factory=list)
+
+    def in_floats(self) -> tuple[Floats, Floats]:
+        """Middle and half widths of a box of doubles that has the solution."""
+        center = tuple(float(x.mid()) for x in self.within)
+        off = (abs(x - c) for x, c in zip(self.within, center, strict=True))
+        return center, tuple(float(d.upper()) * (1 + 2.0**-40) + 2.0**-1000 for d in off)
+
+
+def judged(function_at: Callable[[], Function], solution: Solution) -> Judgement | None:
+    """What one test shows of a stored box with as many digits as it has, and then more; None where nothing.
+
+    Parameters
+    ----------
+    function_at : makes the equations with the precision that is set.
+    """
+    if solution.radius > NARROW:
+        return None
+    size = max((abs(c) for c in solution.center), default=Fraction(0)) + 1
+    bits = max(_LEAST_BITS, _SPARE_BITS + 2 * int(size / solution.radius).bit_length())
+    for _ in range(_DOUBLINGS + 1):
+        if bits > _MAX_BITS:
+            break
+        with ctx.workprec(bits):
+            found = _judged(function_at(), solution)
+        if found is not None:
+            return found
+        bits *= 2
+    return None
+
+
+def no_solution(solution: Solution, k: int) -> str:
+    """That a stored box has none, in words."""
+    near = ", ".join(f"{float(x):.6g}" for x in solution.center)
+    return f"box {k} of the solutions, around ({near}), has 0 equilibria, not one"
+
+
+def _judged(function: Function, solution: Solution) -> Judgement | None:
+    given, radius = [exact(c) for c in solution.center], exact(solution.radius)
+    middle = [x.mid() for x in given]
+    lost = max((x.rad() for x in given), key=float)
+    # the first box has the stored one, which has the second one
+    outer, inner = (radius + lost).upper(), (radius - lost).lower()
+    at, over = function(middle), function([arb(m, outer) for m in middle])
+    if at is None or over is None:
+        return None
+    (values, _), (_, jacobian) = at, over
+    n = len(middle)
+    try:
+        inverse = arb_mat(n, n, [x.mid() for row in jacobian for x in row]).inv()
+    except ZeroDivisionError:
+        return None
+    inverse = arb_mat(n, n, [x.mid() for x in inverse.entries()])
+    steps = (inverse * arb_mat(n, 1, list(values))).entries()
+    whole = (inverse * arb_mat(n, n, [x for row in jacobian for x in row])).entries()
+    reach = arb(0, outer)
+    image = [sum((((i == j) - whole[n * i + j]) * reach for j in range(n)), -steps[i]) for i in range(n)]
+    if any(abs(s) > outer for s in image):
+        return Judgement(False)
+    if all(abs(s) < inner for s in image):
+        return Judgement(True, tuple(m + s for m, s in zip(middle, image, strict=True)), jacobian)
+    return None
