@@ -1,8 +1,8 @@
 """The size of a slice's critical curve before it is computed: its degrees, from solutions at points of three lines.
 
-Not guaranteed: the degrees are those of the norm of the Jacobian's determinant on the lines x = c, y = c and y = x + c
-modulo one prime, without multiplicities and without what bounds the slice's domain; an unlucky line or prime makes them
-smaller, and other factors of the norm are counted along. This is for forecasts.
+Not guaranteed: the degrees are those of the norm of the Jacobian's determinant on the lines x = c, y = c and y = 3 x +
+c modulo one prime, without multiplicities and without what bounds the slice's domain; an unlucky line or prime makes
+them smaller, and other factors of the norm are counted along. This is for forecasts.
 
 On a line the norm is a rational function of one variable; it is known once the fraction of least degree through the
 first values (by Euclid's algorithm) has a degree that leaves some values over. So is a sum of all entries of the
@@ -37,8 +37,9 @@ _GENERIC = fmpq(10_007), fmpq(20_011)
 _WEIGHT = 0x2545F4914F6CDD1D
 """Of an entry of the tables that of the one before, times this."""
 _LINES = (1, 1), (1, 0), (0, 1)
-_ACROSS, _UP, _APART = 29, 37, 43
-"""The lines are y = _UP, x = _ACROSS and y = x + _APART."""
+_ACROSS, _UP, _SLOPE, _APART = 29, 37, 3, 43
+"""The lines are y = _UP, x = _ACROSS and y = _SLOPE x + _APART: parallel to the last one no asymptote is likely, as to
+y = x, along which degrees are lost where equations have a difference of the axes."""
 
 
 class Sizes(NamedTuple):
@@ -105,7 +106,7 @@ def sizes(problem: SliceProblem, solutions: int, seconds: float, most: Work | No
 
 def _place(s: int, line: tuple[int, int]) -> tuple[int, int]:
     """The point of a line with a parameter."""
-    return s if line[0] else _ACROSS, s + _APART * line[0] if line[1] else _UP
+    return s if line[0] else _ACROSS, (_SLOPE * s + _APART if line[0] else s) if line[1] else _UP
 
 
 def _restricted(p: Coefficient, line: tuple[int, int]) -> nmod_poly:

@@ -60,6 +60,13 @@ def test_what_bounds_the_domain_is_no_part_of_the_curve() -> None:
     assert found.total == sum(max(i + j for i, j, _ in p.terms) for p in critical) == 24
 
 
+def test_a_difference_of_the_axes_takes_no_degree_away() -> None:
+    """v^3 = 3 p v + 2 q is critical where p^3 = q^2: here a b^3 (a - b)^3 = 1, and the axis a = 0."""
+    system = {"name": "s", "unknowns": {"v": "real"}, "equations": ["v^3 - 3*a*b*(a - b)*v - 2*a"]}
+    slice = ptmcad.slice_from_mapping({"system": system, "axes": {"a": [-2, 2], "b": [-2, 2]}, "count": "total"})
+    assert sizes(problem_of(slice), 3, 60.0) == Sizes((4, 6), 7, (1, 1), (2, 2, 3))
+
+
 @pytest.mark.parametrize(("name", "solutions"), [("forces", 6), ("systems/kuramoto", 6)])
 def test_the_degrees_of_the_tables_are_those_of_the_computed_ones(name: str, solutions: int) -> None:
     problem = problem_of(load(CONFIGS / f"{name}.yaml"))
