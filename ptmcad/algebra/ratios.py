@@ -13,6 +13,12 @@ from typing import NamedTuple
 
 from flint import nmod_poly
 
+from ptmcad.algebra.polynomials import Coefficient
+
+LinePolynomial = nmod_poly
+"""A polynomial in a line's parameter, modulo a prime."""
+_WEIGHT = 0x2545F4914F6CDD1D
+"""Of a number that of the one before, times this."""
 _SPARE = 4
 """Values that a fraction has to fit although they were not asked for."""
 
@@ -32,7 +38,7 @@ class Numerator(NamedTuple):
     step: int
 
 
-def numerator(points: Sequence[tuple[int, int]], prime: int, known: Sequence[nmod_poly] = ()) -> Numerator | None:
+def numerator(points: Sequence[tuple[int, int]], prime: int, known: Sequence[LinePolynomial] = ()) -> Numerator | None:
     """Of the fraction of least degree through points (x, y); None where nearly all of them are needed for it.
 
     Parameters
@@ -49,6 +55,17 @@ def numerator(points: Sequence[tuple[int, int]], prime: int, known: Sequence[nmo
     zero = len(parts) > 1 and not int(parts[0])
     exponents = [k for k, c in enumerate(parts[1:] if zero else parts) if int(c)]
     return Numerator(exponents[-1], zero, gcd(*exponents) or 1)
+
+
+def restricted(p: Coefficient, line: tuple[tuple[int, int], tuple[int, int]], prime: int) -> LinePolynomial:
+    """p on a line, of which two points are given: those of the parameters 0 and 1."""
+    x, y = (nmod_poly([at, after - at], prime) for at, after in zip(*line, strict=True))
+    return sum((x ** int(i) * y ** int(j) * (int(c) % prime) for (i, j), c in p.terms()), nmod_poly([0], prime))
+
+
+def weighted(numbers: Sequence[int], prime: int) -> int:
+    """A sum with weights that are no accident."""
+    return int(nmod_poly(numbers, prime)(_WEIGHT % prime))
 
 
 def degree(points: Sequence[tuple[int, int]], prime: int) -> int | None:

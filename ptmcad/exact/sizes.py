@@ -16,13 +16,12 @@ from itertools import islice
 from time import process_time
 from typing import NamedTuple
 
-from flint import fmpq, nmod_mat, nmod_poly
+from flint import fmpq, nmod_mat
 
 from ptmcad.algebra.fibre import Fibre, Work
 from ptmcad.algebra.grid import support_of
 from ptmcad.algebra.groebner import Monomial
-from ptmcad.algebra.polynomials import Coefficient
-from ptmcad.algebra.ratios import Numerator, degree, numerator
+from ptmcad.algebra.ratios import LinePolynomial, Numerator, degree, numerator, restricted, weighted
 from ptmcad.algebra.residues import primes
 from ptmcad.errors import LimitReached
 from ptmcad.exact.models.system import RationalPolynomial
@@ -34,8 +33,6 @@ MOST_POINTS = 256
 _FIRST_POINTS = 24
 _GENERIC = fmpq(10_007), fmpq(20_011)
 """Where the monomial basis is the usual one."""
-_WEIGHT = 0x2545F4914F6CDD1D
-"""Of an entry of the tables that of the one before, times this."""
 _LINES = (1, 1), (1, 0), (0, 1)
 _ACROSS, _UP, _SLOPE, _APART = 29, 37, 3, 43
 """The lines are y = _UP, x = _ACROSS and y = _SLOPE x + _APART: parallel to the last one no asymptote is likely, as to
@@ -90,7 +87,7 @@ def sizes(problem: SliceProblem, solutions: int, seconds: float, most: Work | No
         return None
     found, tables = [], []
     for line in _LINES:
-        known = [_restricted(limit, line) for limit in limits]
+        known = [restricted(p, (_place(0, line), _place(1, line)), next(primes())) for p in limits]
         values = _values(problem, solutions, line, (usual.algebra.basis, most))
         seen = _sizes_on(values, [g for g in known if g.degree() > 0], end)
         if seen is None:
@@ -107,13 +104,6 @@ def sizes(problem: SliceProblem, solutions: int, seconds: float, most: Work | No
 def _place(s: int, line: tuple[int, int]) -> tuple[int, int]:
     """The point of a line with a parameter."""
     return s if line[0] else _ACROSS, (_SLOPE * s + _APART if line[0] else s) if line[1] else _UP
-
-
-def _restricted(p: Coefficient, line: tuple[int, int]) -> nmod_poly:
-    """A polynomial in the line's parameter, modulo the prime."""
-    prime = next(primes())
-    x, y = (nmod_poly([at, after - at], prime) for at, after in zip(_place(0, line), _place(1, line), strict=True))
-    return sum((x ** int(i) * y ** int(j) * (int(c) % prime) for (i, j), c in p.terms()), nmod_poly([0], prime))
 
 
 def _at(problem: SliceProblem, at: Sample, solutions: int, most: Work | None) -> PointSystem | None:
@@ -154,7 +144,7 @@ def _values(
         yield _Value(
             s,
             _norm(tables, point.jacobian, prime),
-            int(nmod_poly(entries, prime)(_WEIGHT % prime)) if usual_here else None,
+            weighted(entries, prime) if usual_here else None,
         )
 
 
@@ -201,7 +191,7 @@ def _determinant(rows: list[list[nmod_mat]]) -> nmod_mat:
     return total
 
 
-def _sizes_on(values: Iterator[_Value], known: Sequence[nmod_poly], end: float) -> tuple[Numerator, int] | None:
+def _sizes_on(values: Iterator[_Value], known: Sequence[LinePolynomial], end: float) -> tuple[Numerator, int] | None:
     """On a line the norm's numerator and the tables' degree, of which values that do not suffice tell a lower bound.
 
     Parameters
