@@ -11,12 +11,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from time import process_time
 from typing import TYPE_CHECKING
 
 from ptmcad.ask.classification import check_taken, flat_loops
 from ptmcad.ask.engines import is_certified
 from ptmcad.ask.estimate import WORDS, cost
-from ptmcad.ask.forecast import Forecast, curve_text, forecast, way_text
+from ptmcad.ask.forecast import QUICK, Forecast, curve_text, forecast, seconds_to_discriminant, way_text
 from ptmcad.ask.forecast import cost_text as in_figures
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, LimitReached, shown
 from ptmcad.mechanism import Mechanism, ptm
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 
     from ptmcad.exact.models import ParametricSystem
     from ptmcad.exact.stages import SliceProblem
+    from ptmcad.exact.survey import Survey
 
 MAX_UNKNOWNS = 4
 """Beyond, even one point takes too long for a question that should be answered at once."""
@@ -42,6 +44,8 @@ MAX_SECONDS = 4.0
 """For that proof."""
 MAX_SIZING = 1.5
 """Seconds for the size of the critical curve."""
+MAX_SURVEYING = 1.5
+"""Seconds for the cells."""
 OUT_OF_REACH = "a curve of such a degree may be out of the exact map's reach: try --timeout, or counts along lines"
 MAX_EXPANDING = 1.0
 """Seconds for what is written out as functions of the axes."""
@@ -199,7 +203,26 @@ def _foretold(problem: SliceProblem, solutions: int) -> Forecast | None:
     from ptmcad.exact.sizes import sizes
 
     found = sizes(problem, solutions, MAX_SIZING, Work(MAX_COUNTED, *MAX_BASIS))
-    return None if found is None else forecast(solutions, found)
+    if found is None:
+        return None
+    quick = seconds_to_discriminant(solutions, found) <= QUICK
+    return forecast(solutions, found, _surveyed(problem) if quick else None)
+
+
+def _surveyed(problem: SliceProblem) -> Survey | None:
+    """The decomposition's sizes; None where it takes much longer than predicted."""
+    from ptmcad.exact.survey import survey
+
+    end = process_time() + MAX_SURVEYING
+
+    def check() -> None:
+        if process_time() > end:
+            raise LimitReached("the survey takes too long")
+
+    try:
+        return survey(problem, check)
+    except LimitReached:
+        return None
 
 
 def _prove(slice: Slice) -> None:

@@ -1,8 +1,14 @@
-"""What an exact map will take, in seconds and memory, from the size of its critical curve.
+"""What an exact map will take, in seconds and memory, from counts of what there is to compute.
 
-Not guaranteed: these are figures fitted to measurements (docs/benchmarks/forecast.md), within a factor of three on
-the shipped and on most random slices; how many real points the curve has in the window, on which time depends too, is
-not looked at.
+Not guaranteed: the time is a sum over the stages of what each has to do, with constants fitted to measurements
+(docs/benchmarks/forecast.md), within a factor of three on the shipped and on most random slices.
+
+Equations become a curve by arithmetic with the entries of multiplication tables, as many as the square of the number of
+solutions, each product of which takes time as the square of their terms; and by an interpolation of the norm.
+The curve's discriminant follows the product of its degrees. All that comes after grows with the cells of the window and
+the walls between them. Where the curve and its discriminant are quick they are computed, and the cells counted
+(`ptmcad.exact.survey`); where they are not, the number of cells is not known, and what is usual at the curve's size is
+taken.
 """
 
 from __future__ import annotations
@@ -12,13 +18,26 @@ from typing import NamedTuple
 
 from ptmcad.algebra.resultants import LONG
 from ptmcad.exact.sizes import Sizes
+from ptmcad.exact.survey import Survey
 
 MOST_DEGREE = 50
 """Of the curve in an axis, in the mean of both: beyond, the map may take hours."""
+QUICK = 0.8
+"""Seconds for the curve and its discriminant, up to which they are computed to know better what comes after."""
 _START = 0.2
 """Seconds that a process takes before it computes."""
-_UNIT, _SECONDS, _BY_SIZE, _BY_SOLUTIONS = 144, 0.22, 1.5, 1.0
-"""A map with 6 solutions whose degrees have this product takes so long; with what powers of both it grows."""
+_TABLE, _NORM = 5.6e-7, 2.25e-6
+"""Seconds for the product of two terms in an entry of the multiplication tables, and for a term of the norm."""
+_UNIT = 144
+"""A product of the curve's degrees, to which the next seconds belong."""
+_DISCRIMINANT, _BY_SIZE = 0.034, 1.8
+"""Seconds for the curve's discriminant, and with what power of the product they grow."""
+_CELL = 7.1e-6
+"""Seconds to count in a cell, by the square of the number of solutions and the root of the terms of an entry."""
+_WALLS, _BY_WALLS, _BY_DEGREE = 1.3e-4, 0.94, 1.69
+"""Seconds for adjacency and area along one wall of degree 1, and with what powers of both numbers they grow."""
+_USUAL, _BY_USUAL = 0.0178, 1.24
+"""Seconds, for each solution, of all that comes after the discriminant where cells are not counted."""
 _LIBRARIES, _MEGABYTES, _MEMORY_BY_SIZE = 38, 3.0, 1.3
 """Of memory likewise."""
 WITHIN = 3
@@ -63,17 +82,32 @@ def _powers(sizes: Sizes) -> tuple[int, int]:
     return across, up
 
 
-def forecast(solutions: int, sizes: Sizes) -> Forecast:
-    """The forecast for a number of complex solutions and a critical curve.
+def seconds_to_discriminant(solutions: int, sizes: Sizes) -> float:
+    """What the curve and its discriminant are predicted to take."""
+    across, up = _powers(sizes)
+    tables = _TABLE * (solutions * sizes.table_terms) ** 2
+    return tables + _NORM * solutions**2 * sizes.terms + _DISCRIMINANT * math.pow(across * up / _UNIT, _BY_SIZE)
+
+
+def seconds_after(solutions: int, sizes: Sizes, seen: Survey | None) -> float:
+    """What all stages after the discriminant are predicted to take."""
+    if seen is None:
+        across, up = _powers(sizes)
+        return _USUAL * solutions * math.pow(across * up / _UNIT, _BY_USUAL)
+    counts = _CELL * seen.cells * solutions**2 * math.sqrt(sizes.table_terms)
+    return counts + _WALLS * math.pow(seen.walls, _BY_WALLS) * math.pow(seen.degree, _BY_DEGREE)
+
+
+def forecast(solutions: int, sizes: Sizes, seen: Survey | None = None) -> Forecast:
+    """The forecast for a number of complex solutions, a critical curve, and what is known of the cells.
 
     >>> found = forecast(6, Sizes((24, 12), 24, (2, 1)))
     >>> found.seconds < 1, found.reachable, found.points, found.modular
     (True, True, 265, False)
     """
     across, up = _powers(sizes)
-    size = across * up / _UNIT
-    seconds = _SECONDS * size**_BY_SIZE * (solutions / 6) ** _BY_SOLUTIONS
-    return Forecast(sizes, _START + seconds, _LIBRARIES + _MEGABYTES * size**_MEMORY_BY_SIZE)
+    seconds = _START + seconds_to_discriminant(solutions, sizes) + seconds_after(solutions, sizes, seen)
+    return Forecast(sizes, seconds, _LIBRARIES + _MEGABYTES * (across * up / _UNIT) ** _MEMORY_BY_SIZE)
 
 
 def curve_text(found: Forecast, names: tuple[str, str]) -> str:

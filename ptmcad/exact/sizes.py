@@ -1,11 +1,12 @@
 """The size of a slice's critical curve before it is computed: its degrees, from solutions at points of three lines.
 
-Not guaranteed: the degrees are those of the norm of the Jacobian's determinant on the lines x = c, y = c and y = x + c
-modulo one prime, without multiplicities; an unlucky line or prime makes them smaller, and other factors of the norm are
-counted along. This is for forecasts.
+Not guaranteed: the degrees are those of the norm of the Jacobian's determinant on the lines x = c, y = c and y = 3 x +
+c modulo one prime, without multiplicities and without what bounds the slice's domain; an unlucky line or prime makes
+them smaller, and other factors of the norm are counted along. This is for forecasts.
 
 On a line the norm is a rational function of one variable; it is known once the fraction of least degree through the
-first values (by Euclid's algorithm) has a degree that leaves some values over.
+first values (by Euclid's algorithm) has a degree that leaves some values over. So is a sum of all entries of the
+multiplication tables with random weights, whose degrees are those of the tables.
 """
 
 from __future__ import annotations
@@ -19,16 +20,23 @@ from flint import fmpq, nmod_mat
 
 from ptmcad.algebra.fibre import Fibre, Work
 from ptmcad.algebra.grid import support_of
-from ptmcad.algebra.ratios import Numerator, numerator
+from ptmcad.algebra.groebner import Monomial
+from ptmcad.algebra.ratios import LinePolynomial, Numerator, degree, numerator, restricted, weighted
 from ptmcad.algebra.residues import primes
 from ptmcad.errors import LimitReached
 from ptmcad.exact.models.system import RationalPolynomial
-from ptmcad.exact.point_system import DegeneratePoint, point_system
-from ptmcad.exact.stages import SliceProblem, point_values
+from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
+from ptmcad.exact.stages import Sample, SliceProblem, domain_limits, point_values
 
 MOST_POINTS = 256
 """On a line; they tell degrees of 60 and more, and tell of more that they are more."""
 _FIRST_POINTS = 24
+_GENERIC = fmpq(10_007), fmpq(20_011)
+"""Where the monomial basis is the usual one."""
+_LINES = (1, 1), (1, 0), (0, 1)
+_ACROSS, _UP, _SLOPE, _APART = 29, 37, 3, 43
+"""The lines are y = _UP, x = _ACROSS and y = _SLOPE x + _APART: parallel to the last one no asymptote is likely, as to
+y = x, along which degrees are lost where equations have a difference of the axes."""
 
 
 class Sizes(NamedTuple):
@@ -38,17 +46,29 @@ class Sizes(NamedTuple):
     ----------
     degrees, total : in the axes, and in both together.
     steps : the powers of each axis that occur are multiples of these numbers.
+    tables : of the multiplication tables of the unknowns, the degrees in the axes and in both together.
     """
 
     degrees: tuple[int, int]
     total: int
     steps: tuple[int, int]
+    tables: tuple[int, int, int] = (0, 0, 0)
 
     @property
     def terms(self) -> int:
         """How many exponents these degrees leave."""
-        (dx, dy), (sx, sy) = self.degrees, self.steps
-        return sum(len(range(0, n, sy)) for n in support_of([(1, 0, dx), (0, 1, dy), (1, 1, self.total)])[::sx])
+        return _terms(self.degrees, self.total, self.steps)
+
+    @property
+    def table_terms(self) -> int:
+        """How many exponents the degrees leave to an entry of the tables."""
+        x, y, total = self.tables
+        return _terms((x, y), total, self.steps)
+
+
+def _terms(degrees: tuple[int, int], total: int, steps: tuple[int, int]) -> int:
+    (dx, dy), (sx, sy) = degrees, steps
+    return sum(len(range(0, n, sy)) for n in support_of([(1, 0, dx), (0, 1, dy), (1, 1, total)])[::sx])
 
 
 def sizes(problem: SliceProblem, solutions: int, seconds: float, most: Work | None = None) -> Sizes | None:
@@ -61,46 +81,87 @@ def sizes(problem: SliceProblem, solutions: int, seconds: float, most: Work | No
     most : work at a point.
     """
     end = process_time() + seconds
-    found = []
-    for direction in ((1, 1), (1, 0), (0, 1)):
-        seen = _numerator(_values(problem, solutions, direction, most), end)
+    limits = domain_limits(problem.system, problem.parameters)
+    usual = _at(problem, _GENERIC, solutions, most)
+    if usual is None:
+        return None
+    found, tables = [], []
+    for line in _LINES:
+        known = [restricted(p, (_place(0, line), _place(1, line)), next(primes())) for p in limits]
+        values = _values(problem, solutions, line, (usual.algebra.basis, most))
+        seen = _sizes_on(values, [g for g in known if g.degree() > 0], end)
         if seen is None:
             return None
-        found.append(seen)
+        found.append(seen[0])
+        tables.append(seen[1])
     both, x, y = found
     # an axis is where a length or a stiffness vanishes, and no part of the critical curve
     total = both.degree + both.has_zero - x.has_zero - y.has_zero
-    return Sizes((x.degree, y.degree), max(total, x.degree, y.degree), (x.step, y.step))
+    degrees = x.degree, y.degree
+    return Sizes(degrees, max(total, *degrees), (x.step, y.step), (tables[1], tables[2], max(tables)))
+
+
+def _place(s: int, line: tuple[int, int]) -> tuple[int, int]:
+    """The point of a line with a parameter."""
+    return s if line[0] else _ACROSS, (_SLOPE * s + _APART if line[0] else s) if line[1] else _UP
+
+
+def _at(problem: SliceProblem, at: Sample, solutions: int, most: Work | None) -> PointSystem | None:
+    """The system at a point; None where solutions are lost."""
+    try:
+        point = point_system(problem.system, point_values(problem.parameters, at), most=most)
+    except (ZeroDivisionError, DegeneratePoint, LimitReached):
+        return None
+    return point if point.algebra.dimension == solutions else None
+
+
+class _Value(NamedTuple):
+    """At a point of a line: the parameter, the norm, and the sum of the tables' entries where the basis is the usual
+    one."""
+
+    parameter: int
+    norm: int
+    entries: int | None
 
 
 def _values(
-    problem: SliceProblem, solutions: int, direction: tuple[int, int], most: Work | None
-) -> Iterator[tuple[int, int]]:
-    """The line's parameter, and the norm there modulo a prime; points over which solutions are lost are left out."""
-    prime = next(primes())
+    problem: SliceProblem,
+    solutions: int,
+    line: tuple[int, int],
+    usual: tuple[tuple[Monomial, ...], Work | None],
+) -> Iterator[_Value]:
+    """Values modulo a prime; points over which solutions are lost are left out."""
+    prime, (basis, most) = next(primes()), usual
     for t in range(MOST_POINTS):
         s = (t + 1) // 2 * (-1) ** t
-        at = (fmpq(3 if not direction[0] else s), fmpq(5 if not direction[1] else s + 7 * direction[0]))
-        try:
-            point = point_system(problem.system, point_values(problem.parameters, at), most=most)
-        except (ZeroDivisionError, DegeneratePoint, LimitReached):
+        x, y = _place(s, line)
+        point = _at(problem, (fmpq(x), fmpq(y)), solutions, most)
+        tables = None if point is None else _residues(point.algebra, prime)
+        if point is None or tables is None:
             continue
-        if point.algebra.dimension != solutions:
-            continue
-        value = _norm(point.algebra, point.jacobian, prime)
-        if value is not None:
-            yield s, value
+        entries = [int(c) for table in tables for c in table.entries()]
+        usual_here = point.algebra.basis == basis
+        yield _Value(
+            s,
+            _norm(tables, point.jacobian, prime),
+            weighted(entries, prime) if usual_here else None,
+        )
 
 
-def _norm(algebra: Fibre, jacobian: Sequence[Sequence[RationalPolynomial]], prime: int) -> int | None:
-    """The norm of a determinant modulo a prime; None where that divides a denominator."""
-    size = algebra.dimension
-    unknowns = []
+def _residues(algebra: Fibre, prime: int) -> list[nmod_mat] | None:
+    """The multiplication tables modulo a prime; None where that divides a denominator."""
+    found = []
     for matrix in algebra.multiplication:
         numerators, denominator = matrix.numer_denom()
         if int(denominator) % prime == 0:
             return None
-        unknowns.append(nmod_mat(numerators, prime) * pow(int(denominator), -1, prime))
+        found.append(nmod_mat(numerators, prime) * pow(int(denominator), -1, prime))
+    return found
+
+
+def _norm(unknowns: Sequence[nmod_mat], jacobian: Sequence[Sequence[RationalPolynomial]], prime: int) -> int:
+    """The norm of a determinant modulo a prime."""
+    size = unknowns[0].nrows()
     one = nmod_mat(size, size, [int(i == j) for i in range(size) for j in range(size)], prime)
     powers: dict[tuple[int, ...], nmod_mat] = {}
 
@@ -130,19 +191,26 @@ def _determinant(rows: list[list[nmod_mat]]) -> nmod_mat:
     return total
 
 
-def _numerator(values: Iterator[tuple[int, int]], end: float) -> Numerator | None:
-    """The numerator of the fraction with these values."""
+def _sizes_on(values: Iterator[_Value], known: Sequence[LinePolynomial], end: float) -> tuple[Numerator, int] | None:
+    """On a line the norm's numerator and the tables' degree, of which values that do not suffice tell a lower bound.
+
+    Parameters
+    ----------
+    known : what is left out of the numerator.
+    """
     prime = next(primes())
-    points: list[tuple[int, int]] = []
+    seen: list[_Value] = []
     asked = _FIRST_POINTS
     while True:
-        for pair in islice(values, asked - len(points)):
-            points.append(pair)
+        for value in islice(values, asked - len(seen)):
+            seen.append(value)
             if process_time() > end:
                 return None
-        if len(points) < asked:
+        norm = numerator([(v.parameter, v.norm) for v in seen], prime, known)
+        entries = [(v.parameter, v.entries) for v in seen if v.entries is not None]
+        tables = degree(entries, prime)
+        if norm is not None and (tables is not None or len(seen) < asked or 2 * len(entries) < len(seen)):
+            return norm, len(entries) // 2 if tables is None else tables
+        if len(seen) < asked:
             return None
-        found = numerator(points, prime)
-        if found is not None:
-            return found
         asked = min(asked * 3 // 2, MOST_POINTS) if asked < MOST_POINTS else asked + 1

@@ -10,6 +10,7 @@ from ptmcad.ask.checking import check as checked
 from ptmcad.ask.checking import cost_text, foretold
 from ptmcad.ask.forecast import WITHIN, forecast
 from ptmcad.exact.sizes import Sizes
+from ptmcad.exact.survey import Survey
 from ptmcad.question.config import load
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
@@ -50,3 +51,34 @@ def test_more_solutions_and_higher_degrees_take_longer() -> None:
     assert least.megabytes < middle.megabytes
     assert forecast(6, Sizes((24, 24), 24, (2, 2))).seconds < middle.seconds
     assert not forecast(6, Sizes((60, 50), 70, (1, 1))).reachable
+
+
+def test_seconds_follow_what_there_is_to_compute() -> None:
+    curve = Sizes((12, 12), 24, (1, 1), (5, 5, 5))
+    cells = Survey(40, 20, 12)
+    usual = forecast(6, curve, cells).seconds
+    assert usual < forecast(6, curve._replace(tables=(25, 25, 25)), cells).seconds
+    assert usual < forecast(6, curve, cells._replace(cells=4000)).seconds
+    assert usual < forecast(6, curve, cells._replace(walls=2000)).seconds
+    assert usual < forecast(6, curve, cells._replace(degree=48)).seconds
+
+
+def test_cells_are_counted_where_the_curve_is_quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    slice, asked = load(CONFIGS / "forces.yaml"), []
+
+    def counted(*_: object) -> Survey:
+        asked.append(True)
+        return Survey(1_000_000, 0, 1)
+
+    monkeypatch.setattr("ptmcad.exact.survey.survey", counted)
+    found = checked(slice).forecast
+    assert found is not None and found.seconds > 100 and asked
+    monkeypatch.setattr("ptmcad.ask.checking.QUICK", 0.0)
+    without = checked(slice).forecast
+    assert without == forecast(6, found.sizes) and len(asked) == 1
+
+
+def test_a_survey_that_takes_too_long_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ptmcad.ask.checking.MAX_SURVEYING", 0.0)
+    found = checked(load(CONFIGS / "forces.yaml")).forecast
+    assert found is not None and found == forecast(6, found.sizes)
