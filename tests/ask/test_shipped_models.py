@@ -18,7 +18,7 @@ import pytest
 import yaml
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 from support.few import few
-from support.shipped_records import OTHER
+from support.shipped_records import LINES_ONLY, OTHER
 
 from ptmcad import RegionMap, Slice, classify, load
 from ptmcad.answer.counts import Counts
@@ -34,8 +34,6 @@ VALIDATOR = jsonschema.Draft202012Validator(
     json.loads((ROOT / "ptmcad" / "record.schema.json").read_text(encoding="utf-8"))
 )
 RECORDS = list(OTHER)
-LINES_ONLY = {"five-bar", "three-bar-chain", "two-dof-tensegrity-loaded", "two-x-joints"}
-"""Too large for an exact map."""
 SPURIOUS = {"two-x-joints"}
 """Its equations have two solutions more, which inequalities exclude; signatures of its forms take a minute."""
 MAPPED = [path for path in RECORDS if path.stem not in LINES_ONLY]
