@@ -121,6 +121,18 @@ def refused(claims: CertifiedClaims) -> None:
         check_points(claims)
 
 
+@pytest.mark.parametrize("power", [21, 40, 100])
+def test_a_solution_next_to_an_edge_is_told(power: int) -> None:
+    """The root of 2, which is further from the edge than its digits, but nearer than its parabola bends in the box."""
+    radius, near = Fraction(1, 2**power), Fraction(1, 2 ** (2 * power + 20))
+    with ctx.workprec(2000):
+        root = exactly((arb(2).sqrt()).mid())
+    for off, holds in ((radius - near, True), (near - radius, True), (radius + near, False), (-radius - near, False)):
+        found = judged(lambda: square, Solution((root + off,), radius, ""))
+        assert found is not None
+        assert found.holds is holds
+
+
 def test_other_signs_of_a_narrow_box_are_refused() -> None:
     claims = forged("ptm", "index", Fraction(1, 10**30), Fraction(0))
     number, _ = places("ptm", "index")

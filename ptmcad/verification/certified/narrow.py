@@ -1,7 +1,7 @@
 """Boxes that are too narrow for doubles: whether one has a solution, by one test in balls of as many digits as it asks.
 
 Guarantee: a box that is said to have one solution has exactly one, and it is in the enclosure; one that is said to have
-none has none. A solution on the box's edge, or a degenerate one, leaves it open.
+none has none. A solution on the box's edge, to nearly all digits, or a degenerate one leaves it open.
 
 The test is Krawczyk's (`ptmcad.verification.certified.krawczyk`) of the stored box itself, without doubles on the way:
 in a box of half width r the Jacobian hardly varies, so that the image is nearly the point m - C f(m), which either is
@@ -25,6 +25,7 @@ NARROW = Fraction(1, 2**20)
 """Half the width of a box up to which one test is tried before a search."""
 _LEAST_BITS, _SPARE_BITS = 128, 64
 _DOUBLINGS = 2
+_NARROWINGS = 8
 _MAX_BITS = 2**16
 """Beyond, a box stays open: its number of digits is the maker's choice."""
 
@@ -79,9 +80,34 @@ def _judged(function: Function, solution: Solution) -> Judgement | None:
     given, radius = [exact(c) for c in solution.center], exact(solution.radius)
     middle = [x.mid() for x in given]
     lost = max((x.rad() for x in given), key=float)
-    # the first box has the stored one, which has the second one
-    outer, inner = (radius + lost).upper(), (radius - lost).lower()
-    at, over = function(middle), function([arb(m, outer) for m in middle])
+    # the first box has the stored one
+    outer = (radius + lost).upper()
+    found = _image(function, middle, [outer] * len(middle))
+    if found is not None and any(abs(s) > outer for s in found[0]):
+        return Judgement(False)
+    # next to an edge the image of a box may cross it: that of one twice as wide is narrowed until it does not
+    wide = [2 * outer] * len(middle)
+    found = _image(function, middle, wide)
+    if found is None or not all(abs(s) < w for s, w in zip(found[0], wide, strict=True)):
+        return None
+    for _ in range(_NARROWINGS):
+        image, jacobian = found
+        within = tuple(m + s for m, s in zip(middle, image, strict=True))
+        away = [abs(x - c) for x, c in zip(within, given, strict=True)]
+        if any(d > radius for d in away):
+            return Judgement(False)
+        if all(d < radius for d in away):
+            return Judgement(True, within, jacobian)
+        middle = [x.mid() for x in within]
+        found = _image(function, middle, [x.rad() for x in within])
+        if found is None:
+            break
+    return None
+
+
+def _image(function: Function, middle: list[arb], reach: list[arb]) -> tuple[list[arb], Matrix] | None:
+    """Krawczyk's image of a box, less its middle, and the derivatives over the box; None where they are singular."""
+    at, over = function(middle), function([arb(m, r) for m, r in zip(middle, reach, strict=True)])
     if at is None or over is None:
         return None
     (values, _), (_, jacobian) = at, over
@@ -93,10 +119,6 @@ def _judged(function: Function, solution: Solution) -> Judgement | None:
     inverse = arb_mat(n, n, [x.mid() for x in inverse.entries()])
     steps = (inverse * arb_mat(n, 1, list(values))).entries()
     whole = (inverse * arb_mat(n, n, [x for row in jacobian for x in row])).entries()
-    reach = arb(0, outer)
-    image = [sum((((i == j) - whole[n * i + j]) * reach for j in range(n)), -steps[i]) for i in range(n)]
-    if any(abs(s) > outer for s in image):
-        return Judgement(False)
-    if all(abs(s) < inner for s in image):
-        return Judgement(True, tuple(m + s for m, s in zip(middle, image, strict=True)), jacobian)
-    return None
+    balls = [arb(0, r) for r in reach]
+    image = [sum((((i == j) - whole[n * i + j]) * balls[j] for j in range(n)), -steps[i]) for i in range(n)]
+    return image, jacobian
