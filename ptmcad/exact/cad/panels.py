@@ -15,7 +15,6 @@ from ptmcad.algebra.arcs import arc_integral
 from ptmcad.algebra.branches import Integral, PrecisionTooLow, branch_integral
 from ptmcad.algebra.graphs import graph_integral
 from ptmcad.algebra.polynomials import RationalPolynomial
-from ptmcad.algebra.puiseux import Beside, puiseux_integral
 from ptmcad.algebra.real_roots import RealRoot, refine, sign_at, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve
@@ -189,6 +188,9 @@ def _about_end(
     ----------
     ends : the place beside the end, then the other one.
     """
+    # most curves have no such end: a map of lines needs no series
+    from ptmcad.algebra.puiseux import Beside, puiseux_integral
+
     near, far = ends
 
     def enclosed() -> tuple[arb, fmpq] | None:
