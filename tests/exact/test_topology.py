@@ -19,11 +19,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.examples import examples
 
+from ptmcad.algebra import puiseux
 from ptmcad.algebra.branches import PrecisionTooLow
 from ptmcad.algebra.polynomials import PLANE, coefficients_in
 from ptmcad.algebra.puiseux import puiseux_integral
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part
-from ptmcad.exact.cad import area, mirrors, panels
+from ptmcad.exact.cad import area, mirrors
 from ptmcad.exact.cad.adjacency import Separator, cross
 from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.curves import Curve, curve
@@ -359,7 +360,7 @@ def test_a_series_beside_a_cusp_is_tried_at_twice_the_precision(failures: int, m
             raise PrecisionTooLow
         return puiseux_integral(*arguments)
 
-    monkeypatch.setattr(panels, "puiseux_integral", scarce)
+    monkeypatch.setattr(puiseux, "puiseux_integral", scarce)
     check_area("between cusp and line", 0, Fraction(1, 10**6))
     assert len(tried) >= 2
     assert tried[1] == 2 * tried[0]
