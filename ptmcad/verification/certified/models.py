@@ -14,7 +14,7 @@ from typing import Any
 
 from flint import arb, ctx
 
-from ptmcad.answer.regionmap import Solution
+from ptmcad.answer.regionmap import Cell, Solution
 from ptmcad.mechanism import Model
 from ptmcad.question.slice import Count, Slice
 from ptmcad.verification.certified.boxes import Box, Zero, disjoint, same
@@ -89,6 +89,32 @@ class ModelCounting:
         # where springs are on lines, a box has to be searched on each side of them
         narrow = _narrow(self.form, values, solution, k) if len(fields) == 1 else None
         return narrow or _only(fields, solution, k, self._budget)
+
+    def check_list(self, claims: Claims, cell: Cell) -> None:
+        """What can be refused where not all solutions at a sample can be found: a list of another length or with other
+        signs than the counts, a box without a solution or with several, and a solution that is listed twice.
+
+        Raises
+        ------
+        Violation
+        """
+        said, listed = cell.stable if cell.total is None else cell.total, cell.solutions
+        if len(listed) != said:
+            raise Violation(f"{len(listed)} boxes of solutions for {said} that are counted")
+        negative = Counter(solution.signs.count("-") for solution in listed)
+        if cell.index is not None and any(negative[k] != number for k, number in enumerate(cell.index)):
+            raise Violation(f"the signs of the listed solutions are not those of the index {cell.index}")
+        values, known = _values_at(claims, self.form, *cell.sample), list[Zero]()
+        with ctx.workprec(_BOX_PRECISION):
+            fields = [_field_at(self.form, values, side=side) for side in sides(self.form)]
+            for k, solution in enumerate(listed):
+                try:
+                    zero = self._in_box(fields, values, solution, k)
+                    if any(self.same(zero, other) for other in known):
+                        raise Violation(f"the solution {k} is stored twice")
+                except Unproved:
+                    continue  # nothing is said of this box: the sample is told as undecided
+                known.append(zero)
 
     def same(self, one: Zero, two: Zero) -> bool:
         """Whether a solution lies where another one is alone.

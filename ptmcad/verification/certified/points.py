@@ -101,6 +101,8 @@ def _check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell) -> int:
     try:
         there = counting.at(claims, *cell.sample)
     except Unproved as reason:
+        if isinstance(counting, ModelCounting):
+            counting.check_list(claims, cell)
         if not (counting.is_complete and is_nearly_flat(values_at(claims, *cell.sample))):
             raise
         return _check_beside(claims, counting, cell, reason)
