@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ptmcad.answer.boundaries import Boundary, Grid
     from ptmcad.answer.comparison import Comparison
     from ptmcad.answer.field import Field
+    from ptmcad.answer.location import Location
     from ptmcad.answer.motion import Motion
     from ptmcad.cover.rectangles import Cover
 
@@ -282,19 +283,6 @@ class Region:
     def __repr__(self) -> str:
         area = f"{float(self.area[0]):.6g} to {float(self.area[1]):.6g}"
         return f"<Region {_told(self)}, {len(self.cells)} cells, area {area}>"
-
-
-@dataclass(frozen=True, slots=True)
-class Location:
-    """Where a point lies; region, cell and counts are None unless the point is decided and in a cell."""
-
-    status: Status
-    region: int | None = None
-    cell: int | None = None
-    total: int | None = None
-    stable: int | None = None
-    index: MorseIndex | None = None
-    admissible: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

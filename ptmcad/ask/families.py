@@ -6,7 +6,6 @@ Guarantee: that of `ptmcad.ask.members`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -57,7 +56,7 @@ def family(
         chosen = sorted({number_for(asked.free.name, value) for value in values})
         if not chosen:
             raise ConfigError("give at least one value of the free parameter", key="values")
-        asked = replace(asked, values=tuple(chosen))
+        asked = asked._replace(values=tuple(chosen))
     options = Options(engine=engine, areas=areas, jobs=jobs, progress=progress)
     common = in_common(asked, options)
     found = None
@@ -66,7 +65,7 @@ def family(
 
         found = changes_of(common, options=options)
     if found is not None and values == "between":
-        asked = replace(asked, values=found.between)
+        asked = asked._replace(values=found.between)
         common = common._replace(family=asked)
     members = tuple(result for _, result in members_of(common, options))
     return FamilyMap(

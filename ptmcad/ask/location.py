@@ -14,7 +14,8 @@ from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial, from_fraction
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at
-from ptmcad.answer.regionmap import CriticalValue, Location, RegionMap, Status
+from ptmcad.answer.location import Location
+from ptmcad.answer.regionmap import CriticalValue, RegionMap, Status
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError, expect

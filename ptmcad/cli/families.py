@@ -101,7 +101,7 @@ def family_to_files(family: Family, options: Options, wanted: Wanted) -> Made:
         ends = None if options.timeout is None else time.monotonic() + options.timeout
         changes = _changes(common, replace(options, progress=progress), wanted)
         if changes is not None and wanted.between:
-            family = replace(family, values=changes.between)
+            family = family._replace(values=changes.between)
             common = common._replace(family=family)
         for number, value in enumerate(family.values):
             progress("members", number, len(family.values))

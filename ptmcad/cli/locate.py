@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import click
 
-from ptmcad.answer.regionmap import Location, RegionMap
+from ptmcad.answer.location import Location
+from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import index_words
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.stored import read_result

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 
 from ptmcad.ask.members import Common, in_common
@@ -98,8 +98,7 @@ class Panel:
             return self.record
         scalars = {name: Scalar(text_of(value), Place(name)) for name, value in changed.items()}
         name = self.record.name + "".join(f"-{n}-{text_of(v).replace('/', '_')}" for n, v in changed.items())
-        return replace(
-            self.record,
+        return self.record._replace(
             name=name if len(name) <= MAX_NAME else f"{self.record.name[: MAX_NAME - 9]}-explored",
             values={**self.record.values, **scalars},
             title="",
@@ -118,7 +117,7 @@ class Panel:
         if record.free is None:
             return slice_of(record)
         name, value = record.free[0], values[record.free[0]]
-        return slice_of(replace(bound(record, name, value), name=member_name(record, name, value)[:MAX_NAME]))
+        return slice_of(bound(record, name, value)._replace(name=member_name(record, name, value)[:MAX_NAME]))
 
 
 class Families:
@@ -136,7 +135,7 @@ class Families:
             assert record.free is not None
             place = Place("members")
             stated = Sequence((Scalar(text_of(values[record.free[0]]), place),), place)
-            self.known[others] = in_common(family_of(replace(record, members=stated)), options)
+            self.known[others] = in_common(family_of(record._replace(members=stated)), options)
             if len(self.known) > REMEMBERED:
                 self.known.popitem(last=False)
         self.known.move_to_end(others)
@@ -156,7 +155,7 @@ def panel_of(record: Record, ranges: Iterable[str] = ()) -> Panel:
         For anything wrong with the record, or an end.
     """
     if not record.name:
-        record = replace(record, name="-".join(("explored", *record.axes)))
+        record = record._replace(name="-".join(("explored", *record.axes)))
     if record.free is None:
         member, first = slice_of(record), None
     else:

@@ -16,8 +16,9 @@ if TYPE_CHECKING:
     from ptmcad.answer.boundaries import Boundary, Grid
     from ptmcad.answer.comparison import Comparison
     from ptmcad.answer.field import Field
+    from ptmcad.answer.location import Location
     from ptmcad.answer.motion import Motion
-    from ptmcad.answer.regionmap import Location, RegionMap
+    from ptmcad.answer.regionmap import RegionMap
     from ptmcad.show.widget import Explorer
 
 

@@ -12,7 +12,6 @@ References: Farouki, "The Bernstein polynomial basis: a centennial retrospective
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 from functools import lru_cache
@@ -51,9 +50,10 @@ class Need(Enum):
     """its denominator, as it is written, is not zero"""
 
 
-@dataclass(frozen=True, slots=True)
-class Proved:
+class Proved(Enum):
     """The function is what was asked for at every point of the open window."""
+
+    PROVED = "proved"
 
 
 class Witness(NamedTuple):
@@ -80,7 +80,7 @@ class Undecided(NamedTuple):
 
 
 Verdict = Proved | Witness | Undecided
-PROVED = Proved()
+PROVED = Proved.PROVED
 
 
 @lru_cache(maxsize=256)

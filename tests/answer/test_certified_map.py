@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 from support.certified_map import certified_map, free_slice
 
 import ptmcad
-from ptmcad.answer.regionmap import Location, RegionMap, Status
+from ptmcad.answer.location import Location
+from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.cli import run
 from ptmcad.cover import union_area
 from ptmcad.cover.rectangles import Cover

@@ -12,12 +12,11 @@ answers that it is undecided. The certified engine refuses such a slice, the exa
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, expect
-from ptmcad.mechanism import Kind, Parameter
+from ptmcad.mechanism import Kind, Parameter, ptm
 from ptmcad.question.config.binding import bound, member_name, released_names, settled
 from ptmcad.question.config.family import Family, checked_family, family_of, fault_of_member, member_like
 from ptmcad.question.config.model import named_model
@@ -175,7 +174,7 @@ def question_from_options(typed: Typed) -> Slice | Family:
     if typed.members is not None:
         if record.free is None:
             raise ConfigError("there are members where a parameter is free: add --free NAME=LO:HI", key="--members")
-        record = replace(record, members=_members(typed.members))
+        record = record._replace(members=_members(typed.members))
     return slice_of(record) if record.free is None else family_of(record)
 
 
@@ -196,22 +195,22 @@ def record_from_options(typed: Typed) -> Record:
     config, slice, sets, ranges, count, mechanism, free, _ = typed
     if config is not None and mechanism is not None:
         raise ConfigError("the record says which mechanism is meant: leave one out", key="--mechanism")
-    record = record_of(read_file(config)) if config is not None else Record()
+    record = record_of(read_file(config)) if config is not None else Record(ptm())
     if mechanism is not None:
-        record = Record(model=named_model(Scalar(mechanism, Place("--mechanism"))))
+        record = Record(named_model(Scalar(mechanism, Place("--mechanism"))))
     if free is not None:
         ((name, window),) = ranges_of([free], "--free").items()
         check_axis_name(name, window.place)
         values = {n: value for n, value in record.values.items() if n != name}
-        record = replace(record, free=(name, window), members=None, values=values, title="", reference={})
+        record = record._replace(free=(name, window), members=None, values=values, title="", reference={})
     released = None if record.free is None else record.free[0]
     given_sets, given_ranges = settings_of(sets, record.model, released_names(record, released)), ranges_of(ranges)
     if released is not None and released in given_sets:
         number = number_of(given_sets.pop(released), f"the value of {released}")
-        record = replace(bound(record, released, number), name=member_name(record, released, number))
+        record = bound(record, released, number)._replace(name=member_name(record, released, number))
     elif record.free is not None and slice is not None and released in [name.strip() for name in slice.split(",")]:
         given_ranges = dict([record.free]) | given_ranges  # an axis is free, too
-        record = replace(record, free=None, members=None)
+        record = record._replace(free=None, members=None)
     if slice is not None:
         record = with_axes(record, slice, given_sets, given_ranges)
     elif config is None:
@@ -221,18 +220,18 @@ def record_from_options(typed: Typed) -> Record:
     for name, value in given_sets.items():
         if name in record.axes:
             raise value.place.error(f"{name} is an axis and cannot be fixed too: choose other axes with --slice")
-        record = replace(record, values={**record.values, name: value})
+        record = record._replace(values={**record.values, name: value})
     for name, window in given_ranges.items():
         if name not in record.axes:
             axes = " and ".join(record.axes)
             raise window.place.error(f"{name} is not an axis; the axes are {axes}{did_you_mean(name, record.axes)}")
-        record = replace(record, axes={**record.axes, name: window})
+        record = record._replace(axes={**record.axes, name: window})
     if slice is not None or sets or given_ranges:
-        record = replace(record, title="", reference={})
+        record = record._replace(title="", reference={})
     if count is not None:
         text = count.value if isinstance(count, Count) else count
         place = Place("--count")
-        record = replace(record, count=count_of(Scalar(text, place)), count_place=place)
+        record = record._replace(counting=count_of(Scalar(text, place)), count_place=place)
     return record
 
 

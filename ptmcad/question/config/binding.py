@@ -6,7 +6,6 @@ Guarantee: the record that a person would get who typed the numbers.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from fractions import Fraction
 
 from ptmcad.errors import ExpressionError
@@ -34,7 +33,7 @@ def with_numbers(record: Record, numbers: Mapping[str, Fraction], places: Mappin
         for name, number in numbers.items()
         if name in known
     }
-    return replace(record, values={**record.values, **values, **fixed})
+    return record._replace(values={**record.values, **values, **fixed})
 
 
 def released_names(record: Record, free: str | None) -> set[str]:
@@ -47,7 +46,7 @@ def bound(record: Record, name: str, value: Fraction) -> Record:
     assert record.free is not None
     found = with_numbers(record, {name: value}, {name: record.free[1].place})
     title = f"{record.title}, {name} = {text_of(value)}" if record.title else ""
-    return replace(found, free=None, members=None, title=title, reference={})
+    return found._replace(free=None, members=None, title=title, reference={})
 
 
 def member_name(record: Record, name: str, value: Fraction) -> str:
@@ -69,7 +68,7 @@ def settled(record: Record, given: Mapping[str, Scalar]) -> tuple[Record, dict[s
     left = {name: place for name, place in swept.items() if name not in given and name not in record.axes}
     for name, place in left.items():
         raise place.error(f"{name} is swept too: add --set {name}=VALUE, or ask `ptmcad sweep` for all of its values")
-    settled = replace(with_numbers(record, new, {}), sweep=None)
+    settled = with_numbers(record, new, {})._replace(sweep=None)
     return settled, {name: scalar for name, scalar in given.items() if name not in new}
 
 

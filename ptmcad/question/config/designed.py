@@ -6,7 +6,7 @@ Guarantee: the slice of a design is the one that the options ``--set`` would ask
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 
@@ -85,9 +85,9 @@ class Design:
     def family(self) -> Family | None:
         """The family of which all designs are lines or members; None where there are fewer or more coordinates."""
         if self.aim is Aim.RANGE and len(self.over) == 2:
-            return family_of(replace(self._line_record(), free=_free(self.over[1])))
+            return family_of(self._line_record()._replace(free=_free(self.over[1])))
         if self.aim is Aim.AREA and len(self.over) == 1:
-            return family_of(replace(_without(self.record, self.over), free=_free(self.over[0])))
+            return family_of(_without(self.record, self.over)._replace(free=_free(self.over[0])))
         return None
 
     def slice(self, values: Mapping[str, Fraction]) -> Slice:
@@ -104,7 +104,7 @@ class Design:
         """
         record = self._line_record() if self.aim is Aim.RANGE else _without(self.record, self.over)
         given = {n: v for n, v in values.items() if n not in record.axes}
-        return slice_of(replace(with_numbers(record, given, {}), title="", reference={}))
+        return slice_of(with_numbers(record, given, {})._replace(title="", reference={}))
 
     def point(self, values: Mapping[str, Fraction]) -> dict[str, Fraction]:
         """Every parameter of the model at a design that leaves no axis free.
@@ -147,13 +147,13 @@ class Design:
     def _line_record(self) -> Record:
         """The slice of the line's parameter and the first design parameter."""
         windows = {self.along: self.record.axes[self.along], self.over[0].name: _window(self.over[0])}
-        return replace(_without(self.record, self.over), axes=windows)
+        return _without(self.record, self.over)._replace(axes=windows)
 
 
 def _without(record: Record, over: Iterable[Axis]) -> Record:
     """The record without the values that design parameters have in it."""
     names = {axis.name for axis in over}
-    return replace(record, values={n: v for n, v in record.values.items() if n not in names})
+    return record._replace(values={n: v for n, v in record.values.items() if n not in names})
 
 
 def _free(axis: Axis) -> tuple[str, Window]:

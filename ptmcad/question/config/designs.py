@@ -6,7 +6,7 @@ Guarantee: whatever is wrong is a `ConfigError` with file, line and key.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -143,8 +143,8 @@ def checked_design(tree: Tree, given: Mapping[str, Node] | None = None) -> Desig
                 raise tree.entries[other].place.error(f"a design has no {other!r}: its parameters are those of 'over'")
     unread = unread_names(record, tree, faults) | _entries(entries.get("over")).keys()
     if faults.found and (not entries or len(record.axes) != 2):
-        note_values(replace(record, unread=unread), faults)
-    record = replace(record, design=None, unread=unread if faults.found else frozenset())
+        note_values(record._replace(unread=unread), faults)
+    record = record._replace(design=None, unread=unread if faults.found else frozenset())
     return _Reader(record, entries, place, faults).design()
 
 
@@ -185,7 +185,7 @@ class _Reader:
         conditions = self._conditions(parts["conditions"], over) if "conditions" in parts else ()
         if self.faults.found:
             unread = _entries(self.entries.get("over")).keys()
-            note_values(replace(self.record, unread=self.record.unread | unread), self.faults)
+            note_values(self.record._replace(unread=self.record.unread | unread), self.faults)
         found = Design(self.record, maximise, along, over, working, conditions, tension, pose)
         self._check_slice(found)
         return found

@@ -8,8 +8,9 @@ and complete as any slice.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
+from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism import Model
@@ -27,8 +28,7 @@ MEMBERS = 9
 """Where nothing is stated: so many values, evenly spaced."""
 
 
-@dataclass(frozen=True, slots=True)
-class Family:
+class Family(NamedTuple):
     """The question that is put to `ptmcad.family`.
 
     Attributes
@@ -92,7 +92,7 @@ def family_of(record: Record, faults: Faults | None = None) -> Family:
         with faults:
             if free is not None:
                 _values(free, record.members, faults)
-        note_values(replace(record, unread=record.unread | {name}), faults)
+        note_values(record._replace(unread=record.unread | {name}), faults)
     assert free is not None
     values: tuple[Fraction, ...] = (free.low, free.high)
     with faults:
@@ -126,7 +126,7 @@ def checked_family(tree: Tree) -> Family:
             if "free" not in tree.entries:
                 missing = tree.place.below("free")
                 raise missing.error("is missing: a family has a third parameter, such as free: {F: [-20, 0]}")
-        note_values(replace(record, unread=unread_names(record, tree, faults)), faults)
+        note_values(record._replace(unread=unread_names(record, tree, faults)), faults)
     return family_of(record, faults)
 
 
@@ -184,7 +184,7 @@ def _resolved(
 
 
 def _member(record: Record, name: str, value: Fraction) -> Slice:
-    return slice_of(replace(bound(record, name, value), name=member_name(record, name, value)))
+    return slice_of(bound(record, name, value)._replace(name=member_name(record, name, value)))
 
 
 def _located(record: Record, name: str, value: Fraction, faults: Faults) -> Slice | None:

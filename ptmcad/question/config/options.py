@@ -4,7 +4,6 @@ Guarantee: whatever is wrong is a `ConfigError` that names the option.
 """
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -100,4 +99,4 @@ def with_axes(record: Record, slice: str, sets: Mapping[str, Scalar], ranges: Ma
     for name in record.axes:
         if name in parameters and name not in axes and name not in sets and name not in record.values:
             raise place.error(f"{name} was an axis of {record.place.file} and has no value now: add --set {name}=VALUE")
-    return replace(record, axes=axes, values={name: v for name, v in record.values.items() if name not in axes})
+    return record._replace(axes=axes, values={name: v for name, v in record.values.items() if name not in axes})

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -46,7 +45,7 @@ def point_from_mapping(values: Mapping[str, object], model: Model | None = None)
         if name not in model.parameters:
             raise ConfigError(unknown_parameter(name, model))
         given[name] = number_text(from_python(plain(value), place))
-    return point_of(Record(model=model, values=given), {})
+    return point_of(Record(model, values=given), {})
 
 
 def point_from_options(
@@ -65,7 +64,7 @@ def point_from_options(
     ConfigError
         For anything wrong, with file, line and key, or the option.
     """
-    record = record_of(read_file(config)) if config is not None else Record()
+    record = record_of(read_file(config)) if config is not None else Record(ptm())
     given = {name: Scalar(text, Place(f"--at {name[:40]}")) for name, text in (at or {}).items()}
     return _at_point(record, given, sets)
 
@@ -148,4 +147,4 @@ def _at_point(
     for name in record.axes:
         if name not in given and name not in axes:
             raise ConfigError(f"{name} is an axis of {where} and has no value: add {name}=VALUE", key=option)
-    return record.model, point_of(replace(record, values={**record.values, **given}), axes)
+    return record.model, point_of(record._replace(values={**record.values, **given}), axes)

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -27,9 +26,14 @@ MAX_MEMBERS = 400
 """Of a family."""
 _MAX_NAME = 100
 _MAX_TITLE = 300
+_FIELDS = {"parameters": "values", "count": "counting"}
+"""Of a `Record`, where it is not named like its key."""
 _PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")
 _DEVICES = frozenset(("CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$", *_PORTS))
 """Windows takes a file of such a name, in any case and with any suffix, for a device."""
+
+_NOTHING: Mapping[str, Any] = {}
+"""What is not written; a plain mapping, as records go to other processes."""
 
 
 class Window(NamedTuple):
@@ -40,32 +44,32 @@ class Window(NamedTuple):
     place: Place
 
 
-@dataclass(frozen=True, slots=True)
-class Record:
+class Record(NamedTuple):
     """A record whose keys are known and whose values are still text.
 
     Attributes
     ----------
+    counting : which count distinguishes two regions; None of the mechanism's own choice.
     values_place : where the values are given, or would be; None of what is no record.
     sweep : what is swept, as it is written; `ptmcad.question.config.sweeps` reads it.
     design : what is designed, as it is written; `ptmcad.question.config.designs` reads it, and no other command asks.
     unread : names that may stand in values and of which nothing can be said, because what says it is faulty.
     """
 
+    model: Model
     name: str = ""
     title: str = ""
-    model: Model = field(default_factory=ptm)
-    values: Mapping[str, Scalar] = field(default_factory=dict)
-    axes: Mapping[str, Window] = field(default_factory=dict)
+    values: Mapping[str, Scalar] = _NOTHING
+    axes: Mapping[str, Window] = _NOTHING
     free: tuple[str, Window] | None = None
     members: Node | None = None
-    count: Count | None = None
-    units: Mapping[str, str] = field(default_factory=dict)
-    reference: Mapping[str, Any] = field(default_factory=dict)
-    place: Place = field(default_factory=Place)
+    counting: Count | None = None
+    units: Mapping[str, str] = _NOTHING
+    reference: Mapping[str, Any] = _NOTHING
+    place: Place = Place()
     sweep: Node | None = None
     design: Node | None = None
-    count_place: Place = field(default_factory=lambda: Place("count"))
+    count_place: Place = Place("count")
     values_place: Place | None = None
     described: Described | None = None
     unread: frozenset[str] = frozenset()
@@ -144,13 +148,15 @@ def read_record(tree: Tree, faults: Faults) -> Record:
     for key, reader in readers.items():
         with faults:
             if key in tree.entries:
-                read["values" if key == "parameters" else key] = reader(tree.entries[key])
+                read[_FIELDS.get(key, key)] = reader(tree.entries[key])
             elif key == "name":
                 read[key] = _name_of_file(tree.place.file)
     if "members" in tree.entries and "free" not in tree.entries:
         with faults:
             place = _node_place(tree.entries["members"], "members", tree)
             raise place.error("there are members where a parameter is free: add one, such as free: {F: [-20, 0]}")
+    if model is None:  # of which nothing is known: the rest is read as if it were of the built-in one
+        read["model"] = ptm()
     return Record(**read)
 
 
@@ -162,7 +168,7 @@ def with_place(error: ConfigError | HypothesisError, record: Record) -> PtmcadEr
     if isinstance(error, ConfigError):
         if error.file is not None or error.line is not None or len(error.faults) > 1:
             return error
-        if error.key == "count" and record.count is not None:
+        if error.key == "count" and record.counting is not None:
             return record.count_place.error(error.message)
         described = record.described
         return (

@@ -8,7 +8,6 @@ engines, which decide or refuse: `ptmcad.question.domain.prove`. A slice's texts
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from fractions import Fraction
 
 from ptmcad.errors import ExpressionError, Faults
@@ -42,7 +41,7 @@ def checked_slice(tree: Tree) -> Slice:
     record = read_record(tree, faults)
     if record.described is None:
         faults.check()  # without it nothing can be said of the values
-    return slice_of(replace(record, unread=unread_names(record, tree, faults)), faults)
+    return slice_of(record._replace(unread=unread_names(record, tree, faults)), faults)
 
 
 def unread_names(record: Record, tree: Tree, faults: Faults) -> frozenset[str]:
@@ -91,11 +90,11 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
             raise record.sweep.place.error(
                 "the record asks for a sweep: `ptmcad sweep` answers it, and --set NAME=VALUE chooses one member"
             )
-        record = replace(record, unread=record.unread | swept_names(record).keys())
+        record = record._replace(unread=record.unread | swept_names(record).keys())
     if record.free is not None:
         with faults:
             refuse_free(*record.free)
-        record = replace(record, unread=record.unread | {record.free[0]})
+        record = record._replace(unread=record.unread | {record.free[0]})
     axes, resolved = _resolved(record, faults)
     with faults:
         described = (fault for fault in faults.found if (fault.key or "").startswith(("mechanism", "system")))
@@ -144,7 +143,7 @@ def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[s
                 raise place.error(f"{name} is an axis and cannot be fixed too: remove it here or from the axes")
     axes = [_judged_axis(name, window, record, faults) for name, window in record.axes.items()]
     unread = record.unread | set(tuple(record.axes)[2:])  # of three axes the last one
-    record = replace(record, unread=unread)
+    record = record._replace(unread=unread)
     resolution = Resolution(record, {name: axis(index) for index, name in enumerate(tuple(record.axes)[:2])})
     for name in record.values:
         with faults:
@@ -223,7 +222,7 @@ def _slice(record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expre
         model=record.model,
         axes=axes,
         parameters=effective,
-        count=record.count or _usual_count(record.model),
+        count=record.counting or _usual_count(record.model),
         title=record.title,
         reference=record.reference,
         text=_texts(effective, resolved, record, axes),
@@ -238,7 +237,7 @@ def _usual_count(model: Model) -> Count:
 
 def _check_count(record: Record, resolved: Mapping[str, Expression]) -> None:
     """Refuse a count that makes no sense for the model."""
-    model, count = record.model, record.count
+    model, count = record.model, record.counting
     problem = ""
     if count is Count.STABLE and not model.tells_stability:
         problem = "nothing says what a stable solution is: add conditions as 'stable:' to the system, or count total"

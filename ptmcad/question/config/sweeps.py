@@ -7,7 +7,7 @@ Guarantee: whatever is wrong is a `ConfigError` with file, line and key. A membe
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -58,7 +58,7 @@ class Sweeping:
 
 def with_values(record: Record, values: Mapping[str, Fraction]) -> Record:
     """The record with values for what it sweeps; its title and its published answers are those of another slice."""
-    return replace(with_numbers(record, values, {}), sweep=None, title="", reference={})
+    return with_numbers(record, values, {})._replace(sweep=None, title="", reference={})
 
 
 def load_sweep(path: str | Path) -> Sweeping:
@@ -121,7 +121,7 @@ def checked_sweep(tree: Tree) -> Sweeping:
             raise tree.place.below("sweep").error(f"is missing: say what is swept, such as {A_SWEEP}")
     if sweep is None:  # of the values only what does not depend on what is swept
         unread = unread_names(record, tree, faults) | swept_names(record).keys()
-        note_values(replace(record, unread=unread), faults)
+        note_values(record._replace(unread=unread), faults)
     assert sweep is not None
     slice_of(with_values(record, sweep[0]), faults)
     return Sweeping(record, sweep)

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from ptmcad.question.slice import unstorable
 from ptmcad.text.numerals import fraction_of
@@ -27,8 +26,7 @@ Item = TypeVar("Item")
 Choice = TypeVar("Choice", bound=Enum)
 
 
-@dataclass(frozen=True, slots=True)
-class Node:
+class Node(NamedTuple):
     """A value of the document with its place, such as ``cells[3].sample``."""
 
     value: Any
