@@ -181,6 +181,7 @@ def test_the_command_draws_and_tells_them(tmp_path: Path, capsys: pytest.Capture
     assert "saddle, not followed" in picture
 
 
+@pytest.mark.slow
 def test_a_slider_on_a_level_is_none_of_the_points_that_rise() -> None:
     """y of P lies between 0.2 and 0.8 on both paths; the slider's height is always 0."""
     slider = ptmcad.slice_from_mapping({

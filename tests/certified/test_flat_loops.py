@@ -54,6 +54,9 @@ KINDS = [
 
 @pytest.mark.parametrize("count", ["total", "stable"])
 @pytest.mark.parametrize(("numbers", "said"), KINDS)
+@pytest.mark.slow_cases(
+    "kite of P-stable", "kite of Q-stable", "rhombus-total", "equal sums-stable", "parallelogram-total"
+)
 def test_a_loop_that_is_flat_everywhere_is_named_before_anything_is_searched(
     numbers: dict[str, Any], said: str, count: str
 ) -> None:

@@ -318,8 +318,9 @@ LONG = (
     "stress stiffness",
     "design configs/fig4.yaml --maximise area",
 )
-DOCUMENTED = ("--value barrier", "--over L2", "--value stiffness", "--value length:k1", "--path", "--quantity th1")
-"""In commands that the tests of README.md, of `ptmcad range`, its branches, fields and films run too."""
+DOCUMENTED = ("--value barrier", "--over L2", "--value stiffness", "--value length:k1", "--path", "--quantity th1",
+              "--surface", "--no-ranges")  # fmt: skip
+"""In commands that the tests of README.md, of `ptmcad range`, its branches, fields, films and surfaces run too."""
 
 
 @pytest.mark.usefixtures("coarse")

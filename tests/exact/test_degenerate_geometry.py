@@ -64,7 +64,8 @@ CURVES: dict[str, tuple[str, Window, Ring, int, str]] = {
     "a window of width 1e-30 around a triple point": ("1e60*x*y*(x-y)", THIN, (1, 1, 1, 2, 2, 2), 6, "on"),
     "a window of width 1e-30 around an isolated point": ("1e30*(x^2+y^2)", THIN, (2,), 0, "on"),
 }  # fmt: skip
-THIN_TWINS = ("a window of width 1e-30 around a triple point", "a window of width 1e-30 around a vertical tangent")
+TWINS = ("a triple point", "a vertical tangent", "a node", "a smooth point")
+THIN_TWINS = tuple(f"a window of width 1e-30 around {place}" for place in TWINS)
 """Points around which wider windows are tried too."""
 
 

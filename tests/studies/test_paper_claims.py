@@ -255,7 +255,7 @@ FACTS: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 
 
-SLOW = ("5.2-six", "c-six-free", "5.2-real")
+SLOW = ("5.2-six", "c-six-free", "5.2-real", "5.2-degree-328", "4.3-widest")
 """Many eliminations; tests/algebra makes one of each kind, and the proofs one by one are below."""
 
 

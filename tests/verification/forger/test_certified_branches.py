@@ -318,16 +318,22 @@ ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
     (check_points, springs, with_parameter("rho", "-1"), "cell 0, at rho=.*: rho is negative"),
     (check_points, springs, with_parameter("l0_2", "-1"), "cell 0, at rho=.*: l0_2 is negative"),
     (check_points, springs, lambda r: with_parameter("F3", f"1/(rho - {r.cells[0].sample[0]})")(r), "zero|pole"),
-    (check_points, partial(made, "pitchfork"), sample_at(0, 400, 0), r"confirmed: an equilibrium near \(.*\) may be"),
     (check_points, partial(made, "crease", "total"), sample_at(0, 6, 6), "confirmed: rho equals the length of a bar"),
     (check_points, partial(made, "other-crease", "total"), sample_at(0, 6, 3), "confirmed: rho equals the length"),
     (check_points, partial(made, "slack", "admissible"), sample_at(0, 0, 0), "a spring may be as long as its free"),
     (partial(check_boxes, seed="branches", number=1), springs, both(0, stable=7), "in cell 0, which is said to have"),
     (partial(check_boxes, seed="branches", number=1), total, both(0, total=7), "in cell 0, which is said to have"),
 ]  # fmt: skip
+LONG = pytest.param(
+    check_points, partial(made, "pitchfork"), sample_at(0, 400, 0), r"confirmed: an equilibrium near \(.*\) may be",
+    marks=pytest.mark.slow,
+)  # fmt: skip
+"""Searched in ever smaller boxes before it is given up."""
 
 
-@pytest.mark.parametrize(("check", "make", "change", "words"), ROWS, ids=lambda x: x[:40] if isinstance(x, str) else "")
+@pytest.mark.parametrize(
+    ("check", "make", "change", "words"), [*ROWS, LONG], ids=lambda x: x[:40] if isinstance(x, str) else ""
+)
 def test_rejecting_branches(check: Check, make: Callable[[], RegionMap], change: Change, words: str) -> None:
     with pytest.raises(Violation, match=words):
         check(CertifiedClaims(change(make())))
