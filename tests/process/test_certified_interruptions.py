@@ -21,6 +21,7 @@ import pytest
 pytest.importorskip("numba")
 
 from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.text.bounds import percent
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = ("free02", "free-load", "free-l0-L1")
@@ -71,10 +72,10 @@ class Interrupted:
         if self.saved is None:
             said = any(reason in self.message for reason in NOTHING)
             return "" if said and self.handed is None else "nothing is saved"
-        share = re.search(r"([0-9.e+-]+) % (?:of it )?undetermined", self.message)
+        share = re.search(r"([0-9.e+-]+ %) (?:of it )?undetermined", self.message)
         if share is None or f"--resume {self.path}" not in self.message:
             return "it is not said what was saved, or how to go on"
-        if abs(float(share[1]) - 100 * float(self.saved.undetermined)) > 0.06 * float(share[1]):
+        if share[1] != percent(self.saved.undetermined):
             return "another share is said than was saved"
         return "" if self.saved.status is Status.PARTIAL else "not marked as partial"
 
