@@ -8,7 +8,7 @@ that is not negative for each of these, and R and such a number for h: if all co
 constant one is not zero, there is no solution from R on. All signs of unknowns are tried. Coefficients are balls over
 all angles and all other real unknowns as far as they are bounded; the part of a spring with a free length is at most
 its pull times the slope, of either sign. Where unknowns bound one another, x_j = t_j g^w_j with |t_j| at most 1, and
-the same is tried for g. The second
+the same is tried for g; where springs hold several, `ptmcad.verification.certified.held` is. The second
 engine evaluates by Horner's rule on unbounded intervals.
 """
 
@@ -209,7 +209,7 @@ class _Bounds:
             rest.append(terms.get(none, _ZERO))
             parts.append([(across.get(none, _ZERO), up.get(none, _ZERO)) for across, up in slopes])
         springs = [
-            (pull, *zip(*(vectors[c] for vectors in parts), strict=True))
+            (pull, [vectors[c][0] for vectors in parts], [vectors[c][1] for vectors in parts])
             for c, (pull, _, _) in enumerate(self.equations[chosen[0]].springs)
         ]
         return Linear(matrix, rest, springs)
