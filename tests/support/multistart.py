@@ -64,7 +64,8 @@ def model_of(record: Mapping[str, Any]) -> Model:
     energy: Any = sympy.Integer(0)
     for spring in given.get("springs", ()):
         (x0, y0), (x1, y1) = (points[p] for p in spring["between"])
-        energy += read(spring["k"]) * ((x1 - x0) ** 2 + (y1 - y0) ** 2) / 2
+        square = (x1 - x0) ** 2 + (y1 - y0) ** 2
+        energy += read(spring["k"]) * (square / 2 - read(spring.get("free", 0)) * sympy.sqrt(square))
     for name, force in given.get("loads", {}).items():
         energy -= sum(read(f) * c for f, c in zip(force, points[name], strict=True))
     symbols = [sympy.Symbol(u) for u in given["unknowns"]]
@@ -100,7 +101,7 @@ def _model(
     parameters = sorted(free, key=str)
     given = [*symbols, *parameters]
     asked = list(equations), [d for row in jacobian for d in row], list(positive)
-    of_intervals = {"mpf": mpmath.iv.mpf, "cos": mpmath.iv.cos, "sin": mpmath.iv.sin}
+    of_intervals = {"mpf": mpmath.iv.mpf, "cos": mpmath.iv.cos, "sin": mpmath.iv.sin, "sqrt": mpmath.iv.sqrt}
 
     def functions(modules: Any) -> Functions:
         return Functions(*(sympy.lambdify(given, e, modules=modules, cse=True) for e in asked))
@@ -125,8 +126,15 @@ class Found:
     counts: bool
 
 
-def solutions(model: Model, values: Mapping[str, Fraction], starts: int, seed: int) -> list[Found]:
-    """What Newton's method reaches from so many random starts, each solution once and certified."""
+def solutions(
+    model: Model, values: Mapping[str, Fraction], starts: int, seed: int, span: float = np.inf
+) -> list[Found]:
+    """What Newton's method reaches from so many random starts, each solution once and certified.
+
+    Parameters
+    ----------
+    span : lengths start from -span to span with short steps, which finds peaks beside short springs; else of all sizes.
+    """
     generator = np.random.default_rng(seed)
     equations, jacobian = model.arrays.equations, model.arrays.jacobian
     numbers = [float(values[name]) for name in model.parameters]
@@ -135,6 +143,8 @@ def solutions(model: Model, values: Mapping[str, Fraction], starts: int, seed: i
     for k, name in enumerate(model.unknowns):
         if name in model.angles:
             x[k] = generator.uniform(-np.pi, np.pi, starts)
+        elif span < np.inf:
+            x[k] = generator.uniform(-span, span, starts)
         else:  # of all sizes
             x[k] = generator.choice([-1, 1], starts) * 10 ** generator.uniform(-3, 2.5, starts)
     with np.errstate(all="ignore"):
@@ -148,7 +158,7 @@ def solutions(model: Model, values: Mapping[str, Fraction], starts: int, seed: i
             regular[regular] &= np.abs(np.linalg.det(j[regular])) > 1e-300
             step = np.zeros((starts, n))
             step[regular] = np.linalg.solve(j[regular], f.T[regular][..., None])[..., 0]
-            limit = np.array([1.0 if u in model.angles else np.inf for u in model.unknowns])
+            limit = np.array([1.0 if u in model.angles else span / 20 for u in model.unknowns])
             x = x - np.clip(step, -limit, limit).T
             x[:, ~regular] = np.nan
     ends: list[tuple[Any, ...]] = []

@@ -20,6 +20,7 @@ from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.loopchart import loop_chart
 from ptmcad.certified.plain.nested import eliminated, nested, scaled, sharp_squares, times
 from ptmcad.certified.plain.problem import FIRST, Problem
+from ptmcad.certified.plain.separated import separated
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.certified.tape import Tape, enclosing_floats, record
 from ptmcad.errors import ConfigError
@@ -31,6 +32,8 @@ LEAST_POWER, MOST_POWER = -10, 40
 """Of two, tried as bounds."""
 MAX_BOXES = 1000
 """For one bound; each is halved along an axis or an unknown where nothing excludes it."""
+MAX_BOXES_HELD = 5_000
+"""The same for a length that springs hold together with others, by all parts in which they are regular."""
 LEAST_SHARE = 1e-12
 """Of a range, or of a number's size, below which it is not halved again."""
 MAX_WEIGHT = 3
@@ -117,6 +120,7 @@ class _Search:
             # the ranges that are known serve to bound the others
             new = next(filter(None, (self._range(tapes[k], found, k) for k in waiting)), None)
             new = new or next(filter(None, (self._together(found, chosen) for chosen in _subsets(waiting))), None)
+            new = new or next(filter(None, (self._held(found, chosen) for chosen in _subsets(waiting))), None)
             if new is None:
                 return tuple(found)
             for k, bounds in new.items():
@@ -157,14 +161,22 @@ class _Search:
         inequalities = ways(c.value for c in problem.inequalities)
         return sharp_squares(record([[*at.equations, *ways(self.vanishing)], inequalities]))
 
-    def _range(self, tape: Tape, found: Sequence[Range], k: int) -> _Found | None:
-        """The range of one unknown, whatever those without a range are; each end is a power of two, or it is known."""
+    def _range(
+        self, tape: Tape, found: Sequence[Range], k: int, parts: Sequence[Floats] = (), most: int = MAX_BOXES
+    ) -> _Found | None:
+        """The range of one unknown, whatever those without a range are; each end is a power of two, or it is known.
+
+        Parameters
+        ----------
+        parts : boxes that cover the window and the other ranges, where it is not to be the whole in one.
+        most : boxes for each of them.
+        """
+        boxes = parts or [np.array([*self.window, *found])]
 
         def least(sign: int) -> int | None:
             def holds(power: int) -> bool:
-                box = np.array([*self.window, *found])
-                box[FIRST + k] = (2.0**power, inf) if sign > 0 else (-inf, -(2.0**power))
-                return is_empty(tape, box)
+                beyond = (2.0**power, inf) if sign > 0 else (-inf, -(2.0**power))
+                return all(is_empty(tape, _with(box, FIRST + k, beyond), most) for box in boxes)
 
             return _least(holds)
 
@@ -173,6 +185,27 @@ class _Search:
             below = least(-1)
             low = -inf if below is None else -(2.0**below)
         return None if above is None or low == -inf else {k: (low, 2.0**above)}
+
+    def _held(self, found: Sequence[Range], chosen: tuple[int, ...]) -> _Found | None:
+        """Ranges of several lengths that springs hold together: for polynomials alone, and a single length, all that
+        this could tell has been tried."""
+        equations = separated(self.problem, chosen) if len(chosen) > 1 and self.problem.has_springs else ()
+        if not equations:
+            return None
+        # it is the determinant that has to be halved, in what it depends on
+        graph = Graph()
+        unknowns = [graph.variable(j) for j in self.problem.variables]
+        slope = record([[equations[0].slope.formula(graph, unknowns)], []])
+        parts = empty_parts(slope, np.array([*self.window, *found]))
+        if parts is None:
+            return None
+        ranges: _Found = {}
+        order = [(j, False) for j, name in enumerate(self.problem.unknowns) if name in self.problem.reals]
+        for equation in equations:
+            tape = sharp_squares(record([[], equation.nonnegative(graph, unknowns, order)]))
+            most = max(1, MAX_BOXES_HELD // len(parts))
+            ranges |= self._range(tape, found, equation.unknown, parts, most) or {}
+        return ranges or None
 
     def _together(self, found: Sequence[Range], chosen: tuple[int, ...]) -> _Found | None:
         """Ranges of unknowns of which one is always the largest: x_j = t_j u^-w_j, |t_j| at most 1, and one 1 or -1.
@@ -216,7 +249,7 @@ _Found = dict[int, Range]
 """Ranges by the number of the unknown."""
 
 
-def _with(box: Floats, variable: int, value: float) -> Floats:
+def _with(box: Floats, variable: int, value: float | Range) -> Floats:
     face = box.copy()
     face[variable] = value
     return face
@@ -237,8 +270,13 @@ def _least(holds: Callable[[int], bool]) -> int | None:
     return high
 
 
-def is_empty(tape: Tape, box: Floats) -> bool:
+def is_empty(tape: Tape, box: Floats, most: int = MAX_BOXES) -> bool:
     """Whether it is proved that a box has no solution that counts; shape (variables, 2), infinite ends included."""
+    return empty_parts(tape, box, most) is not None
+
+
+def empty_parts(tape: Tape, box: Floats, most: int = MAX_BOXES) -> list[Floats] | None:
+    """The parts of a box of which each is proved to have none; None where that takes more boxes."""
     low, high = np.empty((2, len(tape)))
     finite = np.isfinite(box).all(axis=1)
     used = np.isin(np.arange(len(box)), tape.first[tape.operations == Operation.VARIABLE])
@@ -248,22 +286,24 @@ def is_empty(tape: Tape, box: Floats) -> bool:
         lengths = np.where(finite & used & wide, box[:, 1] - box[:, 0], inf)
     vanishing, nonnegative = tape.outputs
     waiting, treated = [box], 0
+    empty: list[Floats] = []
     while waiting:
         part = waiting.pop()
         treated += 1
         # a run that finds two enclosures of one number apart has proved that there is no such point
-        if not run(program(tape), part[:, 0].copy(), part[:, 1].copy(), low, high, 0, len(tape)):
-            continue
-        if (low[vanishing] > 0).any() or (high[vanishing] < 0).any() or (high[nonnegative] < 0).any():
+        if not run(program(tape), part[:, 0].copy(), part[:, 1].copy(), low, high, 0, len(tape)) or (
+            (low[vanishing] > 0).any() or (high[vanishing] < 0).any() or (high[nonnegative] < 0).any()
+        ):
+            empty.append(part)
             continue
         with np.errstate(invalid="ignore"):
             widths = np.where(finite, part[:, 1] - part[:, 0], 0.0) / lengths
         widest = int(np.argmax(widths))
-        if treated >= MAX_BOXES or widths[widest] < LEAST_SHARE:
-            return False
+        if treated >= most or widths[widest] < LEAST_SHARE:
+            return None
         middle = part[widest].mean()
         for side in (0, 1):
             half = part.copy()
             half[widest, side] = middle
             waiting.append(half)
-    return True
+    return empty

@@ -8,7 +8,7 @@ that is not negative for each of these, and R and such a number for h: if all co
 constant one is not zero, there is no solution from R on. All signs of unknowns are tried. Coefficients are balls over
 all angles and all other real unknowns as far as they are bounded; the part of a spring with a free length is at most
 its pull times the slope, of either sign. Where unknowns bound one another, x_j = t_j g^w_j with |t_j| at most 1, and
-the same is tried for g. The second
+the same is tried for g; where springs hold several, `ptmcad.verification.certified.held` is. The second
 engine evaluates by Horner's rule on unbounded intervals.
 """
 
@@ -17,12 +17,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
-from math import comb
+from math import comb, inf, nextafter
 
 from flint import arb
 
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.field import power, size
+from ptmcad.verification.certified.held import Linear
 from ptmcad.verification.certified.vectors import ball
 from ptmcad.verification.certified.waves import Form, Key, Waves
 
@@ -171,6 +172,48 @@ class _Bounds:
                 return {k: bound**w for k, w in of.items()}
         return None
 
+    def held(self, chosen: Sequence[int]) -> dict[int, float] | None:
+        """Bounds of some unknowns in which their equations are linear, but for the directions of springs."""
+        factors = tuple(arb(1) if half is None else self._factor(k) for k, half in enumerate(self.found))
+        variables = tuple(k if half is None else None for k, half in enumerate(self.found))
+        whole = _Chart(factors, variables, (1,) * len(factors), 0)
+        waiting, most = [whole], [arb(0)] * len(chosen)
+        treated = 0
+        while waiting:
+            part = waiting.pop()
+            treated += 1
+            linear = self._linear(part, chosen)
+            if linear is None:
+                return None
+            bounds = linear.bounds()
+            if bounds is not None:
+                most = list(map(max, most, bounds))
+                continue
+            halves = None if treated + len(waiting) >= MAX_PARTS else part.halves(whole)
+            if halves is None:
+                return None
+            waiting += halves
+        return {k: nextafter(float(bound), inf) for k, bound in zip(chosen, most, strict=True)}
+
+    def _linear(self, chart: _Chart, chosen: Sequence[int]) -> Linear | None:
+        """The equations of some unknowns; None where other unknowns without a bound, or squares of these, are in."""
+        none = (0,) * (len(chart.factors) + 1)
+        units = [tuple(int(j == k) for j in range(len(none))) for k in chosen]
+        matrix, rest, parts = [], [], []
+        for equation in (self.equations[k] for k in chosen):
+            terms = chart.monomials(equation.smooth)
+            slopes = [(chart.monomials(across), chart.monomials(up)) for _, across, up in equation.springs]
+            if not _present(terms) <= {none, *units} or any(not _present(f) <= {none} for pair in slopes for f in pair):
+                return None
+            matrix.append([terms.get(unit, _ZERO) for unit in units])
+            rest.append(terms.get(none, _ZERO))
+            parts.append([(across.get(none, _ZERO), up.get(none, _ZERO)) for across, up in slopes])
+        springs = [
+            (pull, [vectors[c][0] for vectors in parts], [vectors[c][1] for vectors in parts])
+            for c, (pull, _, _) in enumerate(self.equations[chosen[0]].springs)
+        ]
+        return Linear(matrix, rest, springs)
+
     def _faces(self, weights: Mapping[int, int]) -> Iterator[_Chart]:
         lead, everything = len(self.found), range(len(self.found))
         free = [j for j, half in enumerate(self.found) if half is None and j not in weights]
@@ -214,6 +257,11 @@ class _Bounds:
                 return False
             waiting += halves
         return True
+
+
+def _present(terms: Monomials) -> set[tuple[int, ...]]:
+    """The powers of terms that are not exactly zero."""
+    return {powers for powers, c in terms.items() if not (c == 0)}  # noqa: SIM201 (a ball that is not exactly zero)
 
 
 def _is_positive(terms: Monomials, lead: int, bound: arb, sign: int) -> bool:
@@ -274,8 +322,9 @@ def _all_bounds(bounds: _Bounds) -> list[float | None]:
             if found[k] is not None:
                 break
         else:
-            for chosen in (c for n in range(2, len(waiting) + 1) for c in combinations(waiting, n)):
-                both = bounds.together(chosen)
+            several = [c for n in range(2, len(waiting) + 1) for c in combinations(waiting, n)]
+            for way, chosen in product((bounds.together, bounds.held), several):
+                both = way(chosen)
                 if both is not None:
                     for k, half in both.items():
                         found[k] = half

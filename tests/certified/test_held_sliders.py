@@ -1,0 +1,272 @@
+"""Sliders that springs alone hold, on guides in any direction: bounds and counts against a search of the test's own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import cache
+from math import inf
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from support.multistart import Found, Model, model_of, solutions
+
+pytest.importorskip("numba")
+
+import ptmcad
+from ptmcad.certified.plain import bounds
+from ptmcad.certified.plain.bounds import known_ranges
+from ptmcad.certified.plain.points import plain_counter
+from ptmcad.certified.plain.poses import point_slice
+from ptmcad.certified.plain.problem import Problem, problem_of
+from ptmcad.certified.plain.separated import separated
+from ptmcad.certified.plain.straight import branches
+from ptmcad.errors import ConfigError
+from ptmcad.question.slice import Count, Slice
+
+NUMBERS = ("a", "b", "c", "d", "F", "G")
+STIFF, FREE = ("k", "m", "n"), ("l", "r", "q")
+PAIR: dict[str, Any] = {
+    "name": "pair",
+    "mechanism": {
+        "name": "pair",
+        "parameters": {n: {"kind": "number"} for n in NUMBERS}
+        | {n: {"kind": "stiffness"} for n in STIFF}
+        | {n: {"kind": "free length"} for n in FREE},
+        "unknowns": {"x": "length", "y": "length"},
+        "points": {"S": ["a*x", "b*x"], "T": ["1+c*y", "1/3+d*y"], "A": ["1/5", "-3/7"], "B": ["-1", "2/3"]},
+        "springs": [
+            {"between": ["A", "S"], "k": "k", "free": "l"},
+            {"between": ["B", "T"], "k": "m", "free": "r"},
+            {"between": ["S", "T"], "k": "n", "free": "q"},
+        ],
+        "loads": {"S": ["F", "1/9"], "T": [0, "G"]},
+    },
+    "axes": {"F": [-2, 2], "l": ["1/10", 2]},
+    "parameters": {"a": 1, "b": 2, "c": 3, "d": 1, "G": "1/7", "k": 1, "m": 1, "n": "1/2", "r": 1, "q": "1/4"},
+    "count": "index",
+}
+"""Two sliders, each with a spring to a point beside its guide, and one between them; unknowns are shares of vectors."""
+TURNED: dict[str, Any] = {
+    "name": "turned",
+    "mechanism": {
+        "name": "turned",
+        "parameters": {"F": {"kind": "force"}, "l": {"kind": "free length"}},
+        "unknowns": {"t": "angle", "x": "length", "y": "length"},
+        "points": {
+            "S": ["x*cos(t) - sin(t)", "x*sin(t) + cos(t)"],
+            "T": ["2 + y", "y/2"],
+            "A": [1, "-1/2"],
+            "B": [3, 1],
+        },
+        "springs": [
+            {"between": ["A", "S"], "k": 1, "free": "l"},
+            {"between": ["B", "T"], "k": 1, "free": 1},
+            {"between": ["S", "T"], "k": 5, "free": "1/2"},
+        ],
+        "loads": {"S": ["F", "1/5"]},
+    },
+    "axes": {"F": [-1, 1], "l": ["1/2", 2]},
+    "count": "index",
+}
+"""One of two guides turns."""
+THREE: dict[str, Any] = {
+    "name": "three",
+    "mechanism": {
+        "name": "three",
+        "parameters": {"F": {"kind": "force"}, "l": {"kind": "free length"}},
+        "unknowns": {"x": "length", "y": "length", "z": "length"},
+        "points": {"P": ["x", "x/3"], "Q": ["2*y-1", "y"], "R": ["z", "1+z/5"], "A": [1, "-1/2"]},
+        "springs": [
+            {"between": ["A", "P"], "k": 1, "free": "l"},
+            {"between": ["P", "Q"], "k": 20, "free": 1},
+            {"between": ["Q", "R"], "k": 30, "free": 1},
+            {"between": ["R", "P"], "k": 10, "free": "l"},
+        ],
+        "loads": {"P": ["F", "1/5"]},
+    },
+    "axes": {"F": [-1, 1], "l": ["1/2", 2]},
+    "count": "index",
+}
+"""Three sliders, of which only one is held by a spring from the base."""
+SLANTED: dict[str, Any] = {
+    "name": "slanted",
+    "mechanism": {
+        "name": "slanted",
+        "parameters": {"a": {"kind": "number"}, "F": {"kind": "force"}},
+        "unknowns": {"x": "length", "y": "length"},
+        "points": {"S": ["x", 0], "T": ["y", "1 + a*y"]},
+        "springs": [{"between": ["S", "T"], "k": 1, "free": "1/2"}],
+        "loads": {"S": ["F", 0]},
+    },
+    "axes": {"a": ["-1/4", "3/4"], "F": [1, 2]},
+    "count": "total",
+}
+"""Sliders on two guides with nothing but a spring between them, and a force on one: far away where a is small."""
+
+
+@cache
+def searched(name: str) -> Model:
+    return model_of({"pair": PAIR, "turned": TURNED, "three": THREE, "slanted": SLANTED}[name])
+
+
+def slice_at(record: dict[str, Any], values: dict[str, Fraction]) -> Slice:
+    return point_slice(ptmcad.slice_from_mapping(record).model, values)
+
+
+def problems(slice: Slice) -> tuple[Problem, ...]:
+    return branches(problem_of(slice), slice.axes)
+
+
+def hull(slice: Slice) -> list[tuple[float, float]]:
+    """The ranges of all branches in one."""
+    found = [known_ranges(problem, slice.axes) for problem in problems(slice)]
+    return [(min(low for low, _ in ends), max(high for _, high in ends)) for ends in zip(*found, strict=True)]
+
+
+def within(found: Found, ranges: list[tuple[float, float]], reals: list[int]) -> bool:
+    return all(ranges[k][0] <= found.at[k] <= ranges[k][1] for k in reals)
+
+
+def index(found: list[Found], unknowns: int) -> tuple[int, ...]:
+    return tuple(sum(f.negative == k for f in found) for k in range(unknowns + 1))
+
+
+def agrees(values: dict[str, Fraction], counted: Sequence[int]) -> bool:
+    """Whether counts are those of the search, which goes on while it knows of fewer: peaks are reached from nearby."""
+    found: list[Found] = []
+    for starts, span in ((400, inf), (4_000, 3.0), (40_000, 3.0), (400_000, 1.0)):
+        found = solutions(searched("pair"), values, starts, starts, span)
+        if len(found) >= sum(counted):
+            break
+    return index(found, 2) == tuple(counted)
+
+
+coordinates = st.fractions(min_value=-3, max_value=3, max_denominator=4)
+stiffnesses = st.fractions(min_value=Fraction(1, 20), max_value=20, max_denominator=20)
+lengths = st.fractions(min_value=Fraction(1, 10), max_value=2, max_denominator=10)
+guides = st.tuples(coordinates, coordinates).filter(any)
+
+
+@st.composite
+def pairs(draw: st.DrawFn) -> dict[str, Fraction]:
+    """Values of all parameters of the pair."""
+    directions = dict(zip("abcd", (*draw(guides), *draw(guides)), strict=True))
+    return (
+        directions
+        | {name: draw(coordinates) for name in "FG"}
+        | {name: draw(stiffnesses) for name in STIFF}
+        | {name: draw(lengths) for name in FREE}
+    )
+
+
+@settings(max_examples=6, deadline=None)
+@given(pairs())
+def test_no_equilibrium_is_beyond_the_bounds(values: dict[str, Fraction]) -> None:
+    ranges = hull(slice_at(PAIR, values))
+    assert all(-1e4 < low <= high < 1e4 for low, high in ranges)
+    for found in solutions(searched("pair"), values, 200, seed=1):
+        assert within(found, ranges, [0, 1])
+
+
+@pytest.mark.slow
+@settings(max_examples=40, deadline=None)
+@given(pairs())
+def test_counts_are_those_of_a_search(values: dict[str, Fraction]) -> None:
+    counted = plain_counter(slice_at(PAIR, values)).at(Fraction(0), Fraction(0), Count.INDEX)
+    assert counted.index is None or agrees(values, counted.index)
+
+
+def test_a_map_at_irrational_guides_has_the_counts_of_a_search() -> None:
+    """Guides along (1, 2) and (3, 1): neither vector has a rational length."""
+    result = ptmcad.classify(PAIR, tolerance="1/20", jobs=1)
+    assert result.undetermined < 0.05
+    fixed = {name: Fraction(value) for name, value in PAIR["parameters"].items()}
+    seen = set()
+    for force, free in ((Fraction(u, 9), Fraction(v, 11)) for u in (-17, -4, 5, 16) for v in (2, 9, 15, 21)):
+        there = result.locate(F=force, l=free)
+        if there.index is not None:
+            assert agrees(fixed | {"F": force, "l": free}, there.index)
+            seen.add(there.index)
+    assert len(seen) > 2
+
+
+@pytest.mark.parametrize(("record", "reals"), [(TURNED, [1, 2]), (THREE, [0, 1, 2])])
+def test_bounds_with_a_guide_that_turns_and_of_three_sliders(record: dict[str, Any], reals: list[int]) -> None:
+    ranges = hull(ptmcad.slice_from_mapping(record))
+    assert all(-100 < low <= high < 100 for low, high in ranges)
+    for force, free in ((Fraction(1), Fraction(2)), (Fraction(-1), Fraction(1, 2)), (Fraction(0), Fraction(7, 5))):
+        found = solutions(searched(record["name"]), {"F": force, "l": free}, 60, seed=2)
+        assert found
+        assert all(within(f, ranges, reals) for f in found)
+
+
+def test_a_combination_has_one_length_with_the_determinant_as_its_slope() -> None:
+    """Cramer's rule, exactly, with angles and without."""
+    for record, chosen in ((TURNED, (1, 2)), (THREE, (0, 1, 2)), (PAIR, (0, 1))):
+        (problem,) = problems(ptmcad.slice_from_mapping(record))
+        found = separated(problem, chosen)
+        assert [equation.unknown for equation in found] == list(chosen)
+        for equation in found:
+            for k in chosen:
+                slope = equation.smooth.derivative(k)
+                assert slope == equation.slope if k == equation.unknown else not slope.terms
+
+
+FAR = {"a": Fraction(1, 1000), "F": Fraction(3, 2)}
+"""Where the guides of two sliders without a hold are nearly parallel."""
+
+
+def test_a_window_over_parallel_guides_has_no_bound() -> None:
+    """The guides are parallel at a = 0, where no equilibrium is, and as near as one likes to it they are far away."""
+    whole = ptmcad.slice_from_mapping(SLANTED)
+    assert not all(abs(end) < 1e30 for ends in hull(whole) for end in ends)
+    with pytest.raises(ConfigError, match="no bound of the unknowns x, y"):
+        ptmcad.classify(SLANTED, tolerance="1/10", jobs=1)
+    (found,) = solutions(searched("slanted"), FAR, 4000, seed=3)
+    assert abs(found.at[0]) > 500
+    assert within(found, hull(slice_at(SLANTED, FAR)), [0, 1])
+
+
+def test_without_regularity_all_over_the_window_a_bound_is_false(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the determinant at one point in the place of the whole window equilibria are beyond."""
+    empty = bounds.empty_parts
+
+    def at_the_middle(tape: Any, box: Any, *most: int) -> Any:
+        narrow = box.copy()
+        narrow[:2] = narrow[:2].mean(axis=1)[:, None]
+        return empty(tape, narrow, *most)
+
+    monkeypatch.setattr(bounds, "empty_parts", at_the_middle)
+    (found,) = solutions(searched("slanted"), FAR, 4000, seed=3)
+    assert not within(found, hull(ptmcad.slice_from_mapping(SLANTED)), [0, 1])
+
+
+@pytest.mark.parametrize("way", ["without the springs", "without the loads"])
+def test_without_what_pulls_a_bound_is_false(way: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The reach of springs with free lengths, and forces, count."""
+    fixed = {name: Fraction(value) for name, value in PAIR["parameters"].items()} | {"l": Fraction(1)}
+    free = Fraction(50) if way == "without the springs" else Fraction(1)
+    force = Fraction(90) if way == "without the loads" else Fraction(0)
+    slice = slice_at(PAIR, fixed | {"l": free, "r": free, "F": force})
+    found = solutions(searched("pair"), fixed | {"l": free, "r": free, "F": force}, 800, seed=4)
+    assert all(within(f, hull(slice), [0, 1]) for f in found)
+    whole = bounds.separated
+
+    def less(problem: Problem, chosen: Any) -> Any:
+        kept = []
+        for equation in whole(problem, chosen):
+            if way == "without the springs":
+                kept.append(equation.__class__(equation.unknown, equation.slope, equation.smooth, (), ()))
+            else:
+                key = next(iter(equation.slope.terms))
+                terms = {k: c for k, c in equation.smooth.terms.items() if k[1][equation.unknown]}
+                assert key
+                smooth = equation.smooth.__class__(terms)
+                kept.append(equation.__class__(equation.unknown, equation.slope, smooth, equation.cones, ()))
+        return tuple(kept)
+
+    monkeypatch.setattr(bounds, "separated", less)
+    assert not all(within(f, hull(slice), [0, 1]) for f in found)

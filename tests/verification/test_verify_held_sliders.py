@@ -1,0 +1,175 @@
+"""`verify` of maps with lengths that springs alone hold: its own bounds, and solutions that are left out everywhere."""
+
+from __future__ import annotations
+
+import copy
+import json
+from fractions import Fraction
+from functools import cache
+from math import inf
+from typing import Any
+
+import pytest
+from flint import arb
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from support.multistart import Model, model_of, solutions
+
+pytest.importorskip("numba")
+
+import ptmcad
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.verification.certified import held, ranges
+from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.parameters import exact
+from ptmcad.verification.certified.ranges import half_widths
+from ptmcad.verification.certified.waves import Form, form_of
+
+STIFF, FREE = ("k", "m", "n"), ("l", "r", "q")
+PAIR: dict[str, Any] = {
+    "name": "pair",
+    "mechanism": {
+        "name": "pair",
+        "parameters": {n: {"kind": "number"} for n in ("a", "b", "c", "d", "F")}
+        | {n: {"kind": "stiffness"} for n in STIFF}
+        | {n: {"kind": "free length"} for n in FREE},
+        "unknowns": {"x": "length", "y": "length"},
+        "points": {"S": ["a*x", "b*x"], "T": ["1+c*y", "1/3+d*y"], "A": ["1/5", "-3/7"], "B": ["-1", "2/3"]},
+        "springs": [
+            {"between": ["A", "S"], "k": "k", "free": "l"},
+            {"between": ["B", "T"], "k": "m", "free": "r"},
+            {"between": ["S", "T"], "k": "n", "free": "q"},
+        ],
+        "loads": {"S": ["F", "1/9"], "T": [0, "1/7"]},
+    },
+    "axes": {"F": [-2, 2], "l": ["1/10", 2]},
+    "parameters": {"a": 1, "b": 2, "c": 3, "d": 1, "k": 1, "m": 1, "n": "1/2", "r": 1, "q": "1/4"},
+    "count": "index",
+}
+"""Two sliders on guides along vectors whose lengths are not rational, and springs to points beside the guides."""
+SLANTED: dict[str, Any] = {
+    "name": "slanted",
+    "mechanism": {
+        "name": "slanted",
+        "parameters": {"a": {"kind": "number"}, "F": {"kind": "force"}},
+        "unknowns": {"x": "length", "y": "length"},
+        "points": {"S": ["x", 0], "T": ["y", "1 + a*y"]},
+        "springs": [{"between": ["S", "T"], "k": 1, "free": "1/2"}],
+        "loads": {"S": ["F", 0]},
+    },
+    "axes": {"a": ["1/4", "3/4"], "F": [1, 2]},
+    "count": "total",
+}
+"""Two sliders with nothing but a spring between them, on guides that are parallel where a is 0."""
+CURVED: dict[str, Any] = {
+    "name": "curved",
+    "mechanism": {
+        "name": "curved",
+        "parameters": {"F": {"kind": "force"}, "l": {"kind": "free length"}},
+        "unknowns": {"x": "length", "y": "length"},
+        "points": {"S": ["x*(1 - y/10)", 1], "T": ["y", "1/3"], "A": [0, 0]},
+        "springs": [{"between": ["A", "S"], "k": 1, "free": "l"}, {"between": ["A", "T"], "k": 1, "free": "1/2"}],
+        "loads": {"S": [1, 0], "T": ["F", 0]},
+    },
+    "axes": {"F": [-1, 1], "l": ["1/2", 1]},
+    "count": "total",
+}
+"""The equations are not linear in the two lengths together, but for the springs."""
+
+
+@cache
+def searched(name: str) -> Model:
+    return model_of({"pair": PAIR, "slanted": SLANTED, "curved": CURVED}[name])
+
+
+def form(record: dict[str, Any]) -> Form:
+    return form_of(ptmcad.slice_from_mapping(record).model)
+
+
+def balls(values: dict[str, Fraction]) -> dict[str, arb]:
+    return {name: exact(value) for name, value in values.items()}
+
+
+@cache
+def true_map() -> str:
+    return ptmcad.classify(PAIR, tolerance="1/20", jobs=1).to_json()
+
+
+@pytest.mark.parametrize("boxes", [0, pytest.param(20, marks=pytest.mark.slow)])
+def test_a_true_map_is_proved_at_points_and_over_boxes(boxes: int) -> None:
+    report = ptmcad.verify(RegionMap.from_json(true_map()), seed=1, boxes=boxes, effort=0)
+    said = {check.name: check for check in report.checks}
+    for name in ("counts and solutions", *(["random boxes"] if boxes else [])):
+        assert said[name].passed, said[name].detail
+        assert "not decided" not in said[name].detail
+
+
+def test_a_solution_that_is_left_out_of_counts_and_lists_alike_is_missed() -> None:
+    forged = copy.deepcopy(json.loads(true_map()))
+    left = 0
+    for part in forged["cells"] + forged["regions"]:
+        stable = next((k for k, n in enumerate(part["index"]) if n and part["total"] > 1), None)
+        if stable is None:
+            continue
+        part["total"] -= 1
+        part["index"][stable] -= 1
+        part["stable"] -= stable == 0
+        for k, solution in enumerate(part.get("solutions", ())):
+            if solution["signs"].count("-") == stable:
+                left += 1
+                del part["solutions"][k]
+                break
+    assert left
+    report = ptmcad.verify(RegionMap.from_json(json.dumps(forged)), seed=1, boxes=0, effort=0)
+    assert not report.ok
+    assert report.violation.startswith("counts and solutions")
+
+
+coordinates = st.fractions(min_value=-3, max_value=3, max_denominator=4)
+stiffnesses = st.fractions(min_value=Fraction(1, 20), max_value=20, max_denominator=20)
+lengths = st.fractions(min_value=Fraction(1, 10), max_value=2, max_denominator=10)
+guides = st.tuples(coordinates, coordinates).filter(any)
+
+
+@st.composite
+def pairs(draw: st.DrawFn) -> dict[str, Fraction]:
+    """Values of all parameters of the pair."""
+    directions = dict(zip("abcd", (*draw(guides), *draw(guides)), strict=True))
+    return (
+        directions
+        | {"F": draw(coordinates)}
+        | {name: draw(stiffnesses) for name in STIFF}
+        | {name: draw(lengths) for name in FREE}
+    )
+
+
+@settings(max_examples=6, deadline=None)
+@given(pairs())
+def test_no_equilibrium_is_beyond_the_checkers_bounds(values: dict[str, Fraction]) -> None:
+    bounds = half_widths(form(PAIR), balls(values))
+    assert max(bounds) < 1e4
+    for found in solutions(searched("pair"), values, 200, seed=1):
+        assert all(abs(x) < bound for x, bound in zip(found.at, bounds, strict=True))
+
+
+def test_bounds_need_a_dominant_diagonal_in_all_of_the_balls(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As near as one likes to parallel guides an equilibrium is far away; without the test there is a false bound."""
+    values = {"a": Fraction(1, 1000), "F": Fraction(3, 2)}
+    (found,) = solutions(searched("slanted"), values, 4000, seed=3)
+    whole = {"a": arb("1/4", "1/2"), "F": arb(1.5, 0.5)}
+    with pytest.raises(Unproved, match="no bound of the unknown x"):
+        half_widths(form(SLANTED), whole)
+    assert abs(found.at[0]) < half_widths(form(SLANTED), balls(values))[0]
+    monkeypatch.setattr(held, "MAX_SHARE", inf)
+    assert abs(found.at[0]) > half_widths(form(SLANTED), whole)[0]
+
+
+def test_bounds_need_equations_that_are_linear(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without the products of the two lengths there would be a bound, and an equilibrium beyond."""
+    values = {"F": Fraction(47, 5), "l": Fraction(1)}
+    found = solutions(searched("curved"), values, 4000, 3)
+    with pytest.raises(Unproved, match="no bound"):
+        half_widths(form(CURVED), balls(values))
+    monkeypatch.setattr(ranges, "_present", lambda terms: set())
+    bounds = half_widths(form(CURVED), balls(values))
+    assert any(abs(f.at[0]) > 2 * bounds[0] for f in found)
