@@ -95,7 +95,8 @@ def true_map() -> str:
     return ptmcad.classify(PAIR, tolerance="1/20", jobs=1).to_json()
 
 
-@pytest.mark.parametrize("boxes", [0, pytest.param(20, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("boxes", [0, 20])
 def test_a_true_map_is_proved_at_points_and_over_boxes(boxes: int) -> None:
     report = ptmcad.verify(RegionMap.from_json(true_map()), seed=1, boxes=boxes, effort=0)
     said = {check.name: check for check in report.checks}
