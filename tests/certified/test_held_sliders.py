@@ -193,7 +193,9 @@ def test_a_map_at_irrational_guides_has_the_counts_of_a_search() -> None:
     assert len(seen) > 2
 
 
-@pytest.mark.parametrize(("record", "reals"), [pytest.param(TURNED, [1, 2], marks=pytest.mark.slow), (THREE, [0, 1, 2])])
+@pytest.mark.parametrize(
+    ("record", "reals"), [pytest.param(TURNED, [1, 2], marks=pytest.mark.slow), (THREE, [0, 1, 2])]
+)
 def test_bounds_with_a_guide_that_turns_and_of_three_sliders(record: dict[str, Any], reals: list[int]) -> None:
     ranges = hull(ptmcad.slice_from_mapping(record))
     assert all(-100 < low <= high < 100 for low, high in ranges)
