@@ -39,10 +39,11 @@ BUDGET = 60_000
 """Boxes in floating point for one point."""
 MIN_BOX_WIDTHS = (1e-8, 1e-4)
 """Boxes this narrow are left to Arb; the second number counts where the first leaves too many, next to a fold."""
-MAX_OPEN_BOXES = 40
+MAX_OPEN_BOXES = 100
 """Boxes that floating point may leave to Arb."""
 PRECISIONS = (128, 320)
-ARB_BUDGET = 800
+ARB_BUDGETS = (6_000, 800)
+"""Boxes by precision. What takes many is nearly a curve of equilibria, and of that more digits make no fewer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +151,7 @@ class PointCounter:
         if kept is None and not thorough:
             return None
         if kept is None:
-            zeros = _by_arb(written, x, y, only_minima, unique, left)
+            zeros = _by_arb(written, x, y, only_minima, (unique, narrow), left)
         else:
             zeros = _kinds(written, x, y, unique[kept], narrow[kept], only_minima)
         return None if zeros is None else _off_creases(zeros, creases)
@@ -203,18 +204,18 @@ def _kinds(
 
 
 def _by_arb(
-    written: Equilibria, x: Fraction, y: Fraction, only_minima: bool, unique: Boxes, left: Boxes
+    written: Equilibria, x: Fraction, y: Fraction, only_minima: bool, proved: tuple[Boxes, Boxes], left: Boxes
 ) -> list[_Zero] | None:
-    """The same with Arb, for the boxes that floating point left open."""
+    """The same with Arb, for the boxes that floating point left open; those it proved go on from the narrow ones."""
     system = written.minima if only_minima else written.all
     equations = written.equations
-    for precision in PRECISIONS:
-        more = isolate_arb(system, equations, [_balls(x, y, box, precision) for box in left], precision, ARB_BUDGET)
+    for precision, budget in zip(PRECISIONS, ARB_BUDGETS, strict=True):
+        more = isolate_arb(system, equations, [_balls(x, y, box, precision) for box in left], precision, budget)
         if more is None:
             continue
-        for wide in unique:
-            box = _balls(x, y, wide, precision)
-            more.append(Isolated(box, refined(equations, box, precision)))
+        for wide, box in zip(*proved, strict=True):
+            narrow = refined(equations, _balls(x, y, box, precision), precision)
+            more.append(Isolated(_balls(x, y, wide, precision), narrow))
         kept = _distinct_balls(more, precision)
         if kept is None:
             continue

@@ -131,6 +131,34 @@ def test_bisection_to_a_fold_goes_beyond_floats() -> None:
     assert high - low < Q(1, 10**18) and abs(low - Q("1.231662423294416")) < Q(1, 10**14)
 
 
+@pytest.mark.parametrize(
+    ("free", "l1", "rho", "l2", "index"),
+    [
+        # rho = L1 = L2 is a double point: two springs have no length in a flat pose, where all its poses are narrow
+        pytest.param(
+            (Q(23, 5 * 10**10), Q(23, 5 * 10**10), Q(0)), Q(3, 4), Q(2337421877420497, 3116562500000000),
+            Q(1168710937170709, 1558281250000000), (2, 3, 1), id="within 2 l0 of rho = L1 = L2",
+        ),
+        pytest.param(
+            (Q(17, 5 * 10**12),) * 3, Q(5, 4), (Q(5, 4) + Q(1371287499984524271, 2493250000000000000)) / 2
+            + Q(18256, 10**4) / 2 * Q(17, 5 * 10**12), Q(1371287499984524271, 2493250000000000000), (1, 2, 1),
+            id="within 2 l0 of 2 rho = L1 + L2", marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            (Q(77, 200000),) * 3, Q(27, 20), Q(1121961703421063, 2493250000000000),
+            Q(4487852344664553, 4986500000000000), (2, 4, 2),
+            id="within 2 l0^2 of rho = L1 - L2", marks=pytest.mark.slow,
+        ),
+    ],
+)  # fmt: skip
+def test_points_within_a_few_free_lengths_of_singular_lines(
+    free: tuple[Q, Q, Q], l1: Q, rho: Q, l2: Q, index: tuple[int, int, int]
+) -> None:
+    """Indices by an independent search in doubles with lengths written as differences from the line."""
+    counts = counter(L1=l1, F3=Q(0), F4=Q(0), **{f"l0_{k}": free[k - 1] for k in (1, 2, 3)})
+    assert counts.at(rho, l2, Count.INDEX).index == index
+
+
 @pytest.mark.parametrize("free", [Q(0), Q(1, 5)])
 def test_a_circle_of_equilibria_is_undecided(free: Q) -> None:
     # unloaded with rho = 0 the mechanism turns freely about A1 = A2

@@ -24,15 +24,15 @@ from ptmcad.cli import run
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count, Point
-from ptmcad.show.render import draw
+from ptmcad.show.render import coveroutline, draw, simplification
 from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, UNDETERMINED, fill_of
 from ptmcad.show.render.coveroutline import TOLERANCE
 from ptmcad.show.render.layout import LEFT, MARGIN, SIDE, TITLE_LINE
 from ptmcad.show.render.legend import RIM
 from ptmcad.show.render.regionmap import _zoomed, figure_of
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.simplification import simplified
-from ptmcad.show.render.view import View
+from ptmcad.show.render.simplification import simplified, simplified_polygons
+from ptmcad.show.render.view import Floats, View
 from ptmcad.show.report import page
 
 STEPS = 2**20
@@ -176,6 +176,67 @@ def test_simplified_polygons_stay_near_and_keep_their_corners(corners: list[tupl
         along = b - a
         share = np.clip(((p - a) * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-300), 0, 1)
         assert np.hypot(*(p - a - share[:, None] * along).T).min() <= TOLERANCE * 1.000001
+
+
+def distance(points: np.ndarray, polygon: np.ndarray) -> float:
+    """The largest one of a point from a closed polygon."""
+    a, along = polygon, np.roll(polygon, -1, axis=0) - polygon
+    offset = points[:, None] - a
+    share = np.clip((offset * along).sum(axis=2) / np.maximum((along**2).sum(axis=1), 1e-300), 0, 1)
+    return float(np.linalg.norm(offset - share[:, :, None] * along, axis=2).min(axis=1).max())
+
+
+@settings(deadline=None)
+@given(st.lists(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), max_size=20), min_size=1, max_size=6))
+def test_polygons_that_are_simplified_together_are_what_each_is_by_itself(corners: list[list[tuple[int, int]]]) -> None:
+    """Empty ones, and such as collapse to a point, too."""
+    polygons = [np.array(each, dtype=float).reshape(-1, 2) for each in corners]
+    together = simplified_polygons(np.concatenate(polygons), np.array([len(p) for p in polygons]), 1.5)
+    assert [p.tolist() for p in together] == [simplified(p, 1.5).tolist() for p in polygons]
+
+
+def test_a_triangle_stays_however_flat() -> None:
+    flat = np.array([[0.0, 0.0], [9.0, 0.0], [4.0, 0.1]])
+    assert simplified(flat, 1.5).tolist() == flat.tolist()
+
+
+@pytest.mark.parametrize("height", [3.0, 0.3])
+def test_a_long_flight_of_stairs_is_simplified_in_few_steps(height: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Halving splits off stair by stair: so many stairs, higher than the tolerance, took half as many steps."""
+    steps: list[int] = []
+    measured = simplification._distances
+
+    def counted(points: Floats, a: Floats, b: Floats) -> Floats:
+        steps.append(len(points))
+        return measured(points, a, b)
+
+    monkeypatch.setattr(simplification, "_distances", counted)
+    rises = np.repeat(np.cumsum(np.linspace(1.0, 1.2, 400)), 2) * height * TOLERANCE
+    stairs = np.concatenate([np.stack([rises[1:], rises[:-1]], axis=1), [[0.0, rises[-1]]]])
+    few = simplified(stairs, TOLERANCE)
+    assert len(steps) <= 70
+    assert {tuple(p) for p in few.tolist()} <= {tuple(p) for p in stairs.tolist()}
+    assert distance(stairs, few) <= TOLERANCE * 1.000001
+    assert len(few) > 760 if height > 1 else len(few) < 30
+
+
+def test_outlines_are_simplified_once_for_a_view(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However many regions and lines are drawn; and none of a polygon that is not in the view."""
+    sizes: list[int] = []
+    once = coveroutline.simplified_polygons
+
+    def counted(points: Floats, each: np.ndarray, tolerance: float) -> list[Floats]:
+        sizes.append(len(each))
+        return once(points, each, tolerance)
+
+    monkeypatch.setattr(coveroutline, "simplified_polygons", counted)
+    result = tube(0.25, 0.5)
+    whole = shapes(result)
+    right = whole.in_view(View((Fraction(3, 2), Fraction(2)), (Fraction(0), Fraction(2))))
+    for seen in (whole, right):
+        drawn = [len(list(seen.polygons(number))) for number in range(len(result.regions))]
+        assert sum(drawn) == len(list(seen.edges())) == (2 if seen is whole else 1)
+    assert sizes == [2, 1]
 
 
 # ------------------------------------------------------------------------------------------------------- the page

@@ -27,7 +27,7 @@ from ptmcad.certified.plain.infinity import WITNESSES, patches
 from ptmcad.certified.plain.loopchart import LoopChart, loop_chart
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS, Problem, problem_of
 from ptmcad.certified.plain.straight import branches
-from ptmcad.certified.points import BUDGET, MAX_OPEN_BOXES, MIN_BOX_WIDTHS, PRECISIONS, QUICK_BUDGET, PointCount, boxed
+from ptmcad.certified.points import BUDGET, MIN_BOX_WIDTHS, PRECISIONS, QUICK_BUDGET, PointCount, boxed
 from ptmcad.certified.search import Boxes, Found, isolate
 from ptmcad.certified.system import Arguments, System, system
 from ptmcad.certified.tape import Tape, enclosing_floats, record
@@ -37,6 +37,9 @@ from ptmcad.text.numerals import text_of
 
 MANY_BOXES = 6_000_000
 """Boxes in floating point for one point where there are more than `MAX_UNKNOWNS` unknowns: about half a minute."""
+
+MAX_OPEN_BOXES = 40
+"""Boxes as narrow as is looked at that stay open, before a search ends: with one of them nothing is decided."""
 
 HALVINGS = 60
 """Of a box around a solution, before it is in no other solution's way."""

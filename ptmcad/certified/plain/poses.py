@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from flint import acb_mat, arb, arb_mat, ctx
+from flint import arb, arb_mat, ctx
 
 from ptmcad.answer.poses import Pose, Poses, Spring, TorsionSpring
 from ptmcad.answer.regionmap import Solution, Status
@@ -21,6 +21,7 @@ from ptmcad.certified.plain.problem import MAX_UNKNOWNS_AT_POINTS
 from ptmcad.certified.plain.relaxed import Relaxed, relaxed_numbers
 from ptmcad.certified.plain.resting import rational_point
 from ptmcad.certified.plain.slanted import with_slanted
+from ptmcad.certified.plain.spectrum import ordered_eigenvalues
 from ptmcad.certified.plain.symmetric import Point, fixed_by_symmetry, quarter_turns, rational_numbers
 from ptmcad.certified.plain.unsettled import not_settled
 from ptmcad.certified.potential import potential
@@ -130,7 +131,6 @@ def _pose(
 ) -> tuple[Pose | str, int]:
     """The pose with all numbers settled, and the bits that this took; a sentence that says which number is not."""
     tape, _ = written
-    last = f"eigenvalue {len(mechanism.unknowns) - 1}"
     bits, found = 64 + 4 * digits, dict[str, Enclosure]()
     turns: dict[str, int] = {}
     at: Point = {}
@@ -152,7 +152,7 @@ def _pose(
             numbers = numbers_of(mechanism, written, values, turns, found)
             size = len(mechanism.unknowns) if mechanism.has_potential else 0
             entries = arb_mat(size, size, [values[int(place)] for place in tape.outputs[1]])
-            numbers |= {f"eigenvalue {n}": value for n, value in enumerate(_eigenvalues(entries))}
+            numbers |= {f"eigenvalue {n}": value for n, value in enumerate(ordered_eigenvalues(entries))}
             settle(found, numbers, written, digits, attempt)
         if attempt == 1:
             relaxed = Relaxed(
@@ -162,7 +162,7 @@ def _pose(
             found |= relaxed_numbers(
                 mechanism, parameters, relaxed, (whole, box), bits, fixed_by_symmetry(mechanism, at)
             )
-        if found.keys() >= numbers.keys() and (last in found or not mechanism.has_potential):
+        if found.keys() >= numbers.keys():
             index = solution.signs.count("-") if mechanism.has_potential else None
             return assembled(mechanism, parameters, found, index), bits
         bits *= 2
@@ -237,17 +237,6 @@ def told(number: arb, digits: int, attempt: int) -> Enclosure | None:
     """
     found = enclosed(number, digits)
     return enclosed(number, digits + 1) if found is None and attempt > 1 else found
-
-
-def _eigenvalues(matrix: arb_mat) -> list[arb]:
-    """The eigenvalues of a symmetric matrix, the smallest first; none where they are not separated."""
-    if matrix.nrows() < 2:
-        return [matrix[k, k] for k in range(matrix.nrows())]
-    try:
-        found = acb_mat(matrix).eig()
-    except ValueError:
-        return []
-    return sorted((value.real for value in found), key=lambda value: float(value.mid()))
 
 
 def assembled(

@@ -21,19 +21,17 @@ def not_settled(mechanism: Mechanism, found: Mapping[str, Enclosure], missing: C
     Parameters
     ----------
     found : the equilibrium's numbers that are settled, by the names that `ptmcad.certified.plain.poses` gives them.
-    missing : the names of those that are not; none where eigenvalues are not separated.
+    missing : the names of those that are not.
     """
     named = list(dict.fromkeys(_named(mechanism, name) for name in sorted(missing)))
     more = [f"{len(named) - _MOST} more"] if len(named) > _MOST else []
-    *first, last = [*named[:_MOST], *more] or [""]
+    *first, last = [*named[:_MOST], *more]
     what = f"{', '.join(first)} and {last}" if first else last
     which = "they" if len(named) > 1 else "it"
     end = f"{which} may be exactly zero, by a coincidence of which no proof is known"
     at = [f"{a} = {_text(found[f'degrees {a}'])} deg" for a in mechanism.angles if f"degrees {a}" in found]
     at += [f"{name} = {_text(found[f'real {name}'])}" for name in mechanism.reals if f"real {name}" in found]
     where = f" at {', '.join(at[:_MOST])}" if at else ""
-    if not what:
-        return f"two eigenvalues of the equilibrium{where} could not be told apart: they may be equal"
     said = f"{what} could not be distinguished from zero in the equilibrium{where}: {end}"
     return said if len(said) <= _LENGTH else "a number of an equilibrium could not be distinguished from zero"
 

@@ -24,7 +24,7 @@ from ptmcad.cover.outlines import outlines
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.slanted import shown as with_steps
 from ptmcad.cover.subdivision import FREE
-from ptmcad.show.render.simplification import simplified
+from ptmcad.show.render.simplification import simplified_polygons
 from ptmcad.show.render.view import Floats, Same, View
 
 TOLERANCE = 1.5e-4
@@ -55,15 +55,15 @@ class CoverOutline:
 
     def polygons(self, region: int, tolerance: float = 0.0) -> Iterator[Floats]:
         """The region's outlines; those around holes turn the other way."""
+        found = _polygons(Same(self), tolerance)
         for cell in self.result.regions[region].cells:
-            yield from self._of_cell(cell, tolerance)
+            yield from found[cell]
 
     def cells(self, tolerance: float = 0.0) -> Iterator[tuple[int, list[Floats]]]:
         """Every cell's outlines; with a tolerance those that collapse are among them, as a line or a point."""
-        for cell in range(len(self.result.cells)):
-            found = list(self._of_cell(cell, tolerance))
+        for cell, found in enumerate(_polygons(Same(self), tolerance)):
             if found:
-                yield cell, found
+                yield cell, list(found)
 
     def walls(self, tolerance: float = 0.0) -> Iterator[tuple[int, bool, Floats]]:
         """None: a certified map knows no curve, only what encloses the curves."""
@@ -91,21 +91,45 @@ class CoverOutline:
         image[free] = self.region_at[self.complement.owner[leaf[free]]]
         return image.reshape(rows, columns)
 
-    def _of_cell(self, cell: int, tolerance: float) -> Iterator[Floats]:
-        """The outlines of a cell in the view: without a tolerance of one's own those that do not collapse."""
-        least = 1 if tolerance else 3
-        scale = [
-            (
-                float((axis.high - axis.low) / (shown[1] - shown[0]) / self.complement.cover.steps),
-                float((axis.low - shown[0]) / (shown[1] - shown[0])),
-            )
-            for axis, shown in zip(self.result.slice.axes, (self.view.x, self.view.y), strict=True)
-        ]
-        for corners in self.corners[cell]:
-            points = np.stack([corners[:, k] * scale[k][0] + scale[k][1] for k in (0, 1)], axis=1)
-            seen = simplified(np.clip(points, *_FAR), tolerance or TOLERANCE)
-            if len(seen) >= least and (seen.max(axis=0) > 0).all() and (seen.min(axis=0) < 1).all():
-                yield seen
+
+@lru_cache(maxsize=16)
+def _polygons(of: Same[CoverOutline], tolerance: float) -> tuple[tuple[Floats, ...], ...]:
+    """Each cell's outlines in the view: without a tolerance of one's own those that do not collapse.
+
+    All at once, as the fill of every region and the lines along them ask for the same ones.
+    """
+    seen = of.it
+    found: list[list[Floats]] = [[] for _ in seen.result.cells]
+    cells = np.array([cell for cell, polygons in enumerate(seen.corners) for _ in polygons], dtype=np.int64)
+    corners = [polygon for polygons in seen.corners for polygon in polygons]
+    if not corners:
+        return tuple(map(tuple, found))
+    sizes = np.array([len(polygon) for polygon in corners])
+    points = np.clip(_in_view(np.concatenate(corners), seen), *_FAR)
+    starts = np.cumsum(sizes) - sizes
+    there = _meets_view(np.minimum.reduceat(points, starts), np.maximum.reduceat(points, starts))
+    points, sizes, cells = points[np.repeat(there, sizes)], sizes[there], cells[there]
+    least = 1 if tolerance else 3
+    few = simplified_polygons(points, sizes, tolerance or TOLERANCE)
+    for cell, polygon in zip(cells.tolist(), few, strict=True):
+        if len(polygon) >= least and _meets_view(polygon.min(axis=0), polygon.max(axis=0)):
+            found[cell].append(polygon)
+    return tuple(map(tuple, found))
+
+
+def _in_view(corners: NDArray[np.int64], seen: CoverOutline) -> Floats:
+    """Lattice points in the view's coordinates."""
+    columns = []
+    for k, (axis, shown) in enumerate(zip(seen.result.slice.axes, (seen.view.x, seen.view.y), strict=True)):
+        width = shown[1] - shown[0]
+        scale = float((axis.high - axis.low) / width / seen.complement.cover.steps)
+        columns.append(corners[:, k] * scale + float((axis.low - shown[0]) / width))
+    return np.stack(columns, axis=1)
+
+
+def _meets_view(low: Floats, high: Floats) -> NDArray[np.bool_]:
+    """Whether boxes, given by their lower left and upper right corners, reach into the view."""
+    return np.logical_and((high > 0).all(axis=-1), (low < 1).all(axis=-1))
 
 
 def cover_outline(result: RegionMap, cover: Cover) -> CoverOutline:
