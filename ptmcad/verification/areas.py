@@ -23,7 +23,7 @@ from ptmcad.verification.claims import Claims, bracket, fraction
 from ptmcad.verification.derivation import rational
 from ptmcad.verification.disks import PrecisionTooLow
 from ptmcad.verification.report import Violation
-from ptmcad.verification.walls import Known, Wall, abscissa_of, image_of
+from ptmcad.verification.walls import LONG, Known, Wall, abscissa_of, image_of
 
 NARROWEST = 10**60
 """Bounds that are relatively narrower than the inverse of this are not even tried."""
@@ -156,7 +156,15 @@ def _borders(
         if below != above:
             branch = Branch.of(curves[component], root)
             image = image_of(branch, (span[0] + span[1]) / 2, claims.height)
-            yield below, above, Wall(branch, span, places, margin, min(shares[below], shares[above]), image)
+            share = min(shares[below], shares[above])
+            yield below, above, Wall(branch, span, places, margin, share, image, _scale(claims, span))
+
+
+def _scale(claims: Claims, span: tuple[fmpq, fmpq]) -> fmpq:
+    """How far from zero a stack begins or something singular is, of what is much nearer to it than the far end."""
+    places = [*span, *(rational(v.low) for v in claims.result.critical_values)]
+    distance = max(abs(end) for end in span) / LONG
+    return max((abs(u) for u in places if 0 < abs(u) < distance), default=fmpq(1))
 
 
 def _between(region: Region) -> str:

@@ -1,8 +1,8 @@
 """Walls of stacks: enclosures of their integrals from one critical value to the next.
 
 In the middle power series are taken, as far as they reach (`ptmcad.verification.branches`), beside critical values
-series about these (`ptmcad.verification.turning`). Where a reflection (u, v) to (u, T(u) - v) maps a curve to itself,
-what is known of one branch is known of its image.
+series about these, and to the far end of a long stack one about infinity (`ptmcad.verification.turning`). Where a
+reflection (u, v) to (u, T(u) - v) maps a curve to itself, what is known of one branch is known of its image.
 
 Guarantee: what is returned contains the integral of the branch. That the curve is its own image is proved by
 comparing polynomials, which branch is the image by counting roots over one abscissa of the stack.
@@ -23,6 +23,10 @@ from ptmcad.verification.turning import Abscissa, Beside, integral_beside
 
 Known = dict[tuple[int, int, fmpq, fmpq], list[Part]]
 """Parts of panels, by the curve, the number of its root, and the panel's ends."""
+LONG = 2**6
+"""Times as far away as anything singular that is known: where a series about infinity is tried."""
+_LEAP = fmpq(2) ** 16
+"""By so much nearer to the far end is it tried next."""
 _ROOM_BITS = 64
 """By so many bits is a critical value known better than it is asked for."""
 
@@ -38,6 +42,7 @@ class Wall:
     margin : width of what is left out beside a critical value.
     share : error that a panel may have.
     image : the number of the root that is its mirror image, and T; None when there is none in the window.
+    scale : how far from zero something singular is known to be, at the most; 1 where nothing is known.
     """
 
     branch: Branch
@@ -46,6 +51,7 @@ class Wall:
     margin: fmpq
     share: arb
     image: tuple[int, fmpq_poly] | None
+    scale: fmpq
 
     def parts(self, left: fmpq, right: fmpq, effort: Effort, known: Known) -> list[Part]:
         """The integral over a panel from the window's lower edge, in parts: the best enclosures at hand.
@@ -58,11 +64,31 @@ class Wall:
         if self.image is not None and (curve, self.image[0], left, right) in known:
             return [_reflected(p, self.image[1], effort) for p in known[curve, self.image[0], left, right]]
         effort = replace(effort, share=self.share)
-        found = integrals_over(self.branch, left, right, effort)
         if (left, right) == self.span:
-            found = [q for p in found for q in self._to_the_end(p, effort)]
+            found, rest = self._from_infinity(effort)
+            inside = integrals_over(self.branch, *rest, effort) if rest[0] < rest[1] else []
+            found += [q for p in inside for q in self._to_the_end(p, effort)]
+        else:
+            found = integrals_over(self.branch, left, right, effort)
         known[curve, number, left, right] = found
         return found
+
+    def _from_infinity(self, effort: Effort) -> tuple[list[Part], tuple[fmpq, fmpq]]:
+        """The parts of the span that series about infinity reach from its far ends, and the rest of it."""
+        done, rest = [], list(self.span)
+        for side, sign in enumerate((-1, 1)):
+            near, distance = self.span[side], self.scale
+            while near * sign > distance * LONG and (rest[1 - side] - distance * sign) * sign <= 0:
+                far = distance * sign
+                found = integral_beside(self.branch, Beside(None, near, far), far * far / abs(near), effort)
+                if found is not None:
+                    integral, reached = found
+                    first, last = sorted((near, reached))
+                    done.append(Part(first, last, integral - effort.heights[0] * (last - first), True))
+                    rest[side] = reached
+                    break
+                distance *= _LEAP
+        return done, (rest[0], rest[1])
 
     def _to_the_end(self, part: Part, effort: Effort) -> list[Part]:
         """A part of the span, by a series about the critical value at its end if one reaches from there."""

@@ -41,7 +41,42 @@ POINTS: dict[str, tuple[Terms, int, Callable[[arb], arb]]] = {
     ),
     "upright cusp: v^3 = u^2": ([(0, 3, 1), (2, 0, -1)], 0, lambda u: (u**5).root(3) * 3 / 5),
     "upright inflection: v^3 = 2 u": ([(0, 3, 1), (1, 0, -2)], 0, lambda u: (2 * u).root(3) * u * 3 / 4),
+    "blunt cusp beside a line: (v + u)^3 = u^4": (
+        [(0, 3, 1), (1, 2, 3), (2, 1, 3), (3, 0, 1), (4, 0, -1)],
+        0,
+        lambda u: -u * u / 2 + u * u * u.root(3) * 3 / 7,
+    ),
+    "cusp of branches that touch: (v - u^2)^2 = u^5": (
+        [(0, 2, 1), (2, 1, -2), (4, 0, 1), (5, 0, -1)],
+        0,
+        lambda u: u**3 / 3 - u**3 * u.sqrt() * 2 / 7,
+    ),
 }
+
+AFAR: dict[str, tuple[Terms, int, int, Callable[[arb], arb]]] = {
+    "one over u: u v = 1": ([(1, 1, 1), (0, 0, -1)], 1, 0, lambda u: u.log()),
+    "its left half": ([(1, 1, 1), (0, 0, -1)], -1, 0, lambda u: (-u).log()),
+    "a power: v^3 = u^2": ([(0, 3, 1), (2, 0, -1)], 1, 0, lambda u: (u**5).root(3) * 3 / 5),
+    "a hyperbola: v^2 = u^2 + 2": (
+        [(0, 2, 1), (2, 0, -1), (0, 0, -2)],
+        1,
+        1,
+        lambda u: (u * (u * u + 2).sqrt()) / 2 + (u + (u * u + 2).sqrt()).log(),
+    ),
+    "parallels: (v - u)^2 = 1 + 1 / u": (
+        [(1, 2, 1), (2, 1, -2), (3, 0, 1), (1, 0, -1), (0, 0, -1)],
+        1,
+        1,
+        lambda u: u * u / 2 + (u * (u + 1)).sqrt() + (u.sqrt() + (u + 1).sqrt()).log(),
+    ),
+    "branches that come closer: (v - u)^2 u = 1": (
+        [(1, 2, 1), (2, 1, -2), (3, 0, 1), (0, 0, -1)],
+        1,
+        0,
+        lambda u: u * u / 2 - 2 * u.sqrt(),
+    ),
+}
+"""By what they are: terms, the side of zero, the root's number, an antiderivative."""
 
 
 def branch_of(terms: Terms, root: int) -> Branch:
@@ -59,6 +94,36 @@ def test_one_series_holds_the_integral_from_beside_a_critical_value(name: str) -
         expected = antiderivative(arb(reached)) - antiderivative(arb(NEAR))
         assert integral.overlaps(expected)
         assert integral.rad() < arb(2) ** -50
+
+
+@pytest.mark.parametrize("name", AFAR)
+def test_one_series_holds_the_integral_from_afar(name: str) -> None:
+    """From 10^30 as near to zero as one series reaches, with an error of 2^-50 units; four of them are enough."""
+    terms, sign, root, antiderivative = AFAR[name]
+    near, far = sign * fmpq(10) ** 30, sign * fmpq(1)
+    effort = replace(EFFORT, heights=(-(fmpq(10) ** 31), fmpq(10) ** 31))
+    with ctx.workprec(320):
+        found = integral_beside(branch_of(terms, root), Beside(None, near, far), fmpq(1, 10**30), effort)
+        assert found is not None
+        integral, reached = found
+        assert 1 <= abs(reached) <= 16**2
+        expected = sign * (antiderivative(arb(near)) - antiderivative(arb(reached)))
+        assert integral.overlaps(expected)
+        assert integral.rad() < arb(2) ** -50
+
+
+def test_a_branch_that_is_not_analytic_up_to_there_is_not_taken_from_afar() -> None:
+    """(v - u)^2 = u^2 - 10^6 has no real branch near zero, v^2 = u^2 - u + 1000 one with complex turning points."""
+    with ctx.workprec(128):
+        effort = replace(EFFORT, heights=(fmpq(0), fmpq(10) ** 7))
+        beside = Beside(None, fmpq(10) ** 6, fmpq(1))
+        none = branch_of([(0, 2, 1), (1, 1, -2), (0, 0, 10**6)], 0)
+        assert integral_beside(none, beside, fmpq(1, 10**6), effort) is None
+        far = branch_of([(0, 2, 1), (2, 0, -1), (1, 0, 1), (0, 0, -1000)], 0)
+        assert integral_beside(far, beside, fmpq(1, 10**6), effort) is None
+        found = integral_beside(far, beside._replace(far=fmpq(2**8)), fmpq(2**16, 10**6), effort)
+        assert found is not None
+        assert found[1] ** 2 > 1000
 
 
 def test_a_critical_value_known_in_a_ball_is_enough() -> None:
@@ -110,7 +175,7 @@ def test_what_is_left_out_of_the_polynomial_counts_as_error() -> None:
 
 def wall(branch: Branch, span: tuple[fmpq, fmpq]) -> Wall:
     image = image_of(branch, (span[0] + span[1]) / 2, HEIGHTS)
-    return Wall(branch, span, (None, None), fmpq(1, 10**9), arb(2) ** -60, image)
+    return Wall(branch, span, (None, None), fmpq(1, 10**9), arb(2) ** -60, image, fmpq(1))
 
 
 def test_the_image_of_a_wall_has_the_integral_that_its_own_series_has() -> None:
