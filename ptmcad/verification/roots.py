@@ -12,6 +12,11 @@ from ptmcad.verification.sturm import changes_of
 
 def numbered_root(p: fmpz_poly, low: fmpq, high: fmpq, number: int) -> arb | None:
     """A root in the open interval (low, high), by its number from below; None where there are not so many."""
+    # halving a window would take one step for each doubling of it
+    bound = _bound(p)
+    low, high = max(low, -bound), min(high, bound)
+    if low >= high:
+        return None
     changes = changes_of(p)
     first, last = changes(low), changes(high) + (p(high) == 0)
     wanted = first - number  # changes below the root, one less above it
@@ -31,6 +36,14 @@ def numbered_root(p: fmpz_poly, low: fmpq, high: fmpq, number: int) -> arb | Non
             return arb(middle)
         else:
             high, last = middle, beyond + (p(middle) == 0)
+
+
+def _bound(p: fmpz_poly) -> fmpq:
+    """A power of two beyond all roots: twice the greatest |c_(n-k) / c_n|^(1/k) or more (Fujiwara)."""
+    *rest, leading = (int(c).bit_length() for c in p.coeffs())
+    # of bit lengths, each the logarithm rounded up or one more than it
+    exponents = [-(-(bits - leading + 1) // k) for k, bits in enumerate(reversed(rest), 1) if bits]
+    return fmpq(2) ** (max(exponents) + 2) if exponents else fmpq(1)
 
 
 def _alone(p: fmpz_poly, low: fmpq, high: fmpq) -> arb:

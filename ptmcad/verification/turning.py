@@ -16,13 +16,14 @@ Guarantee: what is returned contains the integral of the branch that was asked f
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from flint import arb, arb_poly, ctx, fmpq
 
 from ptmcad.verification.branches import Branch, Effort
 from ptmcad.verification.disks import Disk, PrecisionTooLow, disk
+from ptmcad.verification.places import Abscissa
 from ptmcad.verification.straightening import Chart, straightened
 
 DEGREE = 4
@@ -33,9 +34,6 @@ _STEPS = 64
 """Of Newton's method."""
 _FARTHEST = 2**16
 """So many times its size at the panel's other end w may be; more would only count what is left out as more."""
-
-Abscissa = Callable[[fmpq], arb]
-"""A ball around a critical value, at most as wide as a number."""
 
 
 class Beside(NamedTuple):

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import pytest
-from flint import arb, ctx, fmpq
+from flint import arb, ctx, fmpq, fmpz_poly
 
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification import turning
+from ptmcad.verification import roots, sturm, turning
 from ptmcad.verification.branches import Branch, Effort
 from ptmcad.verification.claims import PlaneCurve
 from ptmcad.verification.disks import disk
+from ptmcad.verification.places import Place, at_edge, beyond
+from ptmcad.verification.roots import numbered_root
 from ptmcad.verification.turning import Beside, integral_beside
 from ptmcad.verification.walls import Wall, image_of, reflection
 
@@ -173,9 +175,9 @@ def test_what_is_left_out_of_the_polynomial_counts_as_error() -> None:
         assert disk(branch.value, fmpq(1, 8), arb(1), 2, (arb(10), arb(4))) is None
 
 
-def wall(branch: Branch, span: tuple[fmpq, fmpq]) -> Wall:
+def wall(branch: Branch, span: tuple[fmpq, fmpq], places: tuple[Sequence[Place], Sequence[Place]] = ((), ())) -> Wall:
     image = image_of(branch, (span[0] + span[1]) / 2, HEIGHTS)
-    return Wall(branch, span, (None, None), fmpq(1, 10**9), arb(2) ** -60, image, fmpq(1))
+    return Wall(branch, span, places, fmpq(1, 10**9), arb(2) ** -60, image, fmpq(1))
 
 
 def test_the_image_of_a_wall_has_the_integral_that_its_own_series_has() -> None:
@@ -193,6 +195,69 @@ def test_the_image_of_a_wall_has_the_integral_that_its_own_series_has() -> None:
         for a, b in zip(mirrored, own, strict=True):
             assert a.integral.overlaps(b.integral)
             assert a.integral.rad() < arb(2) ** -50
+
+
+def test_a_pole_beyond_the_end_of_a_stack_is_what_its_series_is_about() -> None:
+    """v^2 (u + 10^-9) = 1: up to the pole's neighbourhood there would be a panel for each doubling of the distance."""
+    branch = branch_of([(1, 2, 10**9), (0, 2, 1), (0, 0, -(10**9))], 0)
+    span, effort = (fmpq(0), fmpq(1)), replace(EFFORT, heights=(fmpq(0), fmpq(10**5)))
+    poles = [*beyond(branch.curve, span, 0)]
+    assert len(poles) == 1
+    assert poles[0].abscissa(fmpq(1, 10**20)).overlaps(arb(fmpq(-1, 10**9)))
+    assert poles[0].gap == 0
+    assert not [*beyond(branch.curve, span, 1)]
+    with ctx.workprec(192):
+        found = wall(branch, span, (poles, ())).parts(*span, effort, {})
+        proved = [p for p in found if p.tried]
+        assert min(p.left for p in proved) == 0
+        rest = sum((p.right - p.left for p in found if not p.tried), fmpq(0))
+        assert rest < fmpq(9, 10)
+        for p in proved:
+            expected = 2 * (arb(p.right + fmpq(1, 10**9)).sqrt() - arb(p.left + fmpq(1, 10**9)).sqrt())
+            assert p.integral.overlaps(expected)
+            assert p.integral.rad() < arb(2) ** -40
+
+
+def test_an_edge_of_the_window_is_such_a_place_where_branches_meet_over_it() -> None:
+    curve = branch_of([(0, 2, 1), (1, 0, -1)], 0).curve  # v^2 = u
+    (place,) = at_edge(curve, fmpq(0), fmpq(1, 10**12))
+    assert place.abscissa(fmpq(1)) == 0
+    assert place.gap == fmpq(1, 10**12)
+    assert at_edge(curve, fmpq(1), fmpq(1, 10**12)) == []
+    assert at_edge(branch_of([(1, 1, 1), (0, 0, -1)], 0).curve, fmpq(0), fmpq(1, 10**12))  # u v = 1
+
+
+def test_a_root_is_found_in_a_window_of_any_size(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In few steps: the window is cut to what may hold roots at first."""
+    asked = []
+
+    def changes_of(p: fmpz_poly) -> Callable[[fmpq], int]:
+        changes = sturm.changes_of(p)
+
+        def counted(at: fmpq) -> int:
+            asked.append(at)
+            return changes(at)
+
+        return counted
+
+    monkeypatch.setattr(roots, "changes_of", changes_of)
+    far = fmpq(10) ** 300
+    for p, expected in (
+        (fmpz_poly([-1, 3]), [fmpq(1, 3)]),
+        (fmpz_poly([-6, 11, -6, 1]), [fmpq(1), fmpq(2), fmpq(3)]),
+        (fmpz_poly([0, -(10**40), 1]), [fmpq(0), fmpq(10**40)]),
+        (fmpz_poly([-1, 0, 10**40]), [fmpq(-1, 10**20), fmpq(1, 10**20)]),
+        (fmpz_poly([1, 0, 1]), []),
+    ):
+        for number, value in enumerate(expected):
+            asked.clear()
+            found = numbered_root(p, -far, far, number)
+            assert found is not None
+            assert abs(found - value) < arb(2) ** -40 * abs(arb(value)) + arb(2) ** -400
+            assert len(asked) < 12
+            assert numbered_root(p, value, far, len(expected) - number - 1) is None
+        assert numbered_root(p, -far, far, len(expected)) is None
+        assert numbered_root(p, far / 2, far, 0) is None
 
 
 def test_curves_that_are_not_their_own_images_have_no_reflection() -> None:
