@@ -5,6 +5,9 @@ Guarantee: the ball that is returned contains that root and, if precision allows
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache, lru_cache
+
 from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 
 from ptmcad.verification.sturm import changes_of
@@ -17,7 +20,7 @@ def numbered_root(p: fmpz_poly, low: fmpq, high: fmpq, number: int) -> arb | Non
     low, high = max(low, -bound), min(high, bound)
     if low >= high:
         return None
-    changes = changes_of(p)
+    changes = _changes_of(tuple(int(c) for c in p.coeffs()))
     first, last = changes(low), changes(high) + (p(high) == 0)
     wanted = first - number  # changes below the root, one less above it
     if wanted <= last:
@@ -36,6 +39,12 @@ def numbered_root(p: fmpz_poly, low: fmpq, high: fmpq, number: int) -> arb | Non
             return arb(middle)
         else:
             high, last = middle, beyond + (p(middle) == 0)
+
+
+@lru_cache(maxsize=64)
+def _changes_of(coefficients: tuple[int, ...]) -> Callable[[fmpq], int]:
+    """`changes_of`, for walls over the same abscissa, whose roots are told apart at the same heights."""
+    return cache(changes_of(fmpz_poly(list(coefficients))))
 
 
 def _bound(p: fmpz_poly) -> fmpq:

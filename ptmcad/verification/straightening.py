@@ -2,9 +2,9 @@
 
 Near x = 0 let p(x, v) = 0 have several branches. Newton's polygon of the terms that do not vanish says with which power
 v ~ c x^(a/b) the wanted one begins: the one that is compared with the branch's height at a place beside x = 0. With
-x = s^b and v = s^a (c + w) its equation is divided by a power of s; where c is a multiple root, the same is done with w
-and s, again and again, until the branch is the only one through (0, 0). So turning points, nodes, cusps, branches that
-touch, those that run beside one another to infinity and their like are all one case.
+x = s^b and v = s^a w its equation is divided by a power of s; where c is a multiple root, the same is done with w - c
+and s, again and again, until the branch is the only one through its point. So turning points, nodes, cusps, branches
+that touch, those that run beside one another to infinity and their like are all one case.
 
 Guarantee: none is needed. The coordinates are an exact change of variables whatever has been chosen; terms that should
 vanish are kept (`Chart.low`), and `ptmcad.verification.turning` counts them as error.
@@ -18,6 +18,8 @@ from itertools import takewhile
 from typing import NamedTuple
 
 from flint import arb, arb_poly, ctx
+
+from ptmcad.verification.disks import recentered
 
 _STAGES = 6
 """Newton polygons for one branch."""
@@ -105,20 +107,14 @@ def _stage(chart: Chart, x: arb, branches: int, first: bool) -> tuple[Chart, int
         lowered = b * edge.first + a * edge.start + lift
         # what all rows have as a factor exactly
         spare = min(lowered, *(_order(row) for row in inflated if row.coeffs()))
-        rows = moved([row.right_shift(spare) for row in inflated], arb_poly([root]))
+        rows = [row.right_shift(spare) for row in inflated]
         exponent = b * chart.exponent + a
-        along = (*((b * k, c) for k, c in chart.along), (exponent, root))
-        return Chart(chart.power * b, exponent, along, lowered - spare, rows, scaled - root), multiplicity
+        along = tuple((b * k, c) for k, c in chart.along)
+        if multiplicity > 1:
+            rows, scaled = recentered(rows, root), scaled - root
+            along = (*along, (exponent, root))
+        return Chart(chart.power * b, exponent, along, lowered - spare, rows, scaled), multiplicity
     return None
-
-
-def moved(rows: Sequence[arb_poly], by: arb_poly) -> list[arb_poly]:
-    """Coefficients of the powers of w in p(s, by(s) + w), given those of the powers of v in p(s, v)."""
-    shifted = list(rows)
-    for start in range(len(shifted) - 1):
-        for j in range(len(shifted) - 2, start - 1, -1):
-            shifted[j] = shifted[j] + shifted[j + 1] * by
-    return shifted
 
 
 def _order(row: arb_poly) -> int:

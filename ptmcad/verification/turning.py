@@ -129,7 +129,8 @@ def _enclosed(branch: Branch, beside: Beside, effort: Effort) -> tuple[arb, fmpq
     if root is None:
         return None
     start = local.parameter(beside.near)
-    most = (1 + abs(local.within(beside.far, distant)) + sum(abs(c) for _, c in chart.along)).upper() * _FARTHEST
+    sizes = (abs(root), abs(local.within(beside.far, distant)), *(abs(c) for _, c in chart.along))
+    most = (1 + sum(sizes, arb(0))).upper() * _FARTHEST
     left_out = sum((abs(c) * start ** (i - chart.lowered) * most**j for j, row in enumerate(chart.low)
                     for i, c in enumerate(row) if c != 0), arb(0))  # fmt: skip
     # a tube no wider than rounding could not be seen to hold the branch
