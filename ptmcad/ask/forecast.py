@@ -111,9 +111,20 @@ def forecast(solutions: int, sizes: Sizes, seen: Survey | None = None) -> Foreca
 
 
 def curve_text(found: Forecast, names: tuple[str, str]) -> str:
-    """The critical curve's size in words."""
+    """The critical curve's size in words.
+
+    >>> curve_text(Forecast(Sizes((5, 3), 5, (1, 1), lines=(True, False)), 1, 40), ("a", "b"))
+    'critical of degree 5, 5 in a, 3 in b: up to 18 terms; and the line a = 0'
+    >>> curve_text(Forecast(Sizes((0, 0), 0, (1, 1), lines=(True, True)), 1, 40), ("a", "b"))
+    'critical the lines a = 0 and b = 0 alone'
+    """
     (dx, dy), total = found.sizes.degrees, found.sizes.total
-    return f"critical of degree {total}, {dx} in {names[0]}, {dy} in {names[1]}: up to {found.sizes.terms} terms"
+    zero = [f"{name} = 0" for name, line in zip(names, found.sizes.lines, strict=True) if line]
+    lines = f"the line{'s' * (len(zero) > 1)} {' and '.join(zero)}" if zero else ""
+    if total == 0:
+        return f"critical {lines} alone" if lines else "none critical"
+    curve = f"critical of degree {total}, {dx} in {names[0]}, {dy} in {names[1]}: up to {found.sizes.terms} terms"
+    return f"{curve}; and {lines}" if lines else curve
 
 
 def cost_text(found: Forecast) -> str:

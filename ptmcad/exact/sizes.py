@@ -40,19 +40,22 @@ y = x, along which degrees are lost where equations have a difference of the axe
 
 
 class Sizes(NamedTuple):
-    """Of the critical curve, its components taken together.
+    """Of the critical curve, its components taken together but for the lines on which an axis' value is zero.
 
     Attributes
     ----------
     degrees, total : in the axes, and in both together.
     steps : the powers of each axis that occur are multiples of these numbers.
     tables : of the multiplication tables of the unknowns, the degrees in the axes and in both together.
+    lines : for each axis, whether the line on which its value is zero is a component. It takes hardly any time, and
+        powers of the axis' value are told without it.
     """
 
     degrees: tuple[int, int]
     total: int
     steps: tuple[int, int]
     tables: tuple[int, int, int] = (0, 0, 0)
+    lines: tuple[bool, bool] = (False, False)
 
     @property
     def terms(self) -> int:
@@ -95,10 +98,15 @@ def sizes(problem: SliceProblem, solutions: int, seconds: float, most: Work | No
         found.append(seen[0])
         tables.append(seen[1])
     both, x, y = found
-    # an axis is where a length or a stiffness vanishes, and no part of the critical curve
     total = both.degree + both.has_zero - x.has_zero - y.has_zero
     degrees = x.degree, y.degree
-    return Sizes(degrees, max(total, *degrees), (x.step, y.step), (tables[1], tables[2], max(tables)))
+    # where solutions are lost on such a line they go to infinity there: no critical component
+    lines = [
+        n.has_zero and _at(problem, at, solutions, most) is not None
+        for n, at in ((x, (fmpq(0), _GENERIC[1])), (y, (_GENERIC[0], fmpq(0))))
+    ]
+    of_tables = tables[1], tables[2], max(tables)
+    return Sizes(degrees, max(total, *degrees), (x.step, y.step), of_tables, (lines[0], lines[1]))
 
 
 def _place(s: int, line: tuple[int, int]) -> tuple[int, int]:

@@ -22,8 +22,9 @@ from ptmcad.verification.branches import Branch, Effort, Part
 from ptmcad.verification.claims import Claims, bracket, fraction
 from ptmcad.verification.derivation import rational
 from ptmcad.verification.disks import PrecisionTooLow
+from ptmcad.verification.places import at_edge, at_value, beyond
 from ptmcad.verification.report import Violation
-from ptmcad.verification.walls import Known, Wall, abscissa_of, image_of
+from ptmcad.verification.walls import LONG, Known, Wall, image_of
 
 NARROWEST = 10**60
 """Bounds that are relatively narrower than the inverse of this are not even tried."""
@@ -148,15 +149,29 @@ def _borders(
     shares : errors that a panel may have beside each region.
     """
     result = claims.result
-    stack, values = result.stacks[s], result.critical_values
+    stack = result.stacks[s]
     curves = {c.number: c for c in claims.curves}
-    places = (abscissa_of(values[s - 1]) if s else None, abscissa_of(values[s]) if s < len(values) else None)
+    values = [result.critical_values[k] if 0 <= k < len(result.critical_values) else None for k in (s - 1, s)]
+    critical = [None if value is None else at_value(value, margin) for value in values]
     for level, (component, root) in enumerate((w.component, w.root) for w in stack.walls):
         below, above = (result.cells[stack.cells[level + k]].region for k in (0, 1))
         if below != above:
-            branch = Branch.of(curves[component], root)
+            curve = curves[component]
+            branch = Branch.of(curve, root)
+            first, last = (
+                [*beyond(curve, span, side), *(at_edge(curve, span[side], margin) if place is None else [place])]
+                for side, place in enumerate(critical)
+            )
             image = image_of(branch, (span[0] + span[1]) / 2, claims.height)
-            yield below, above, Wall(branch, span, places, margin, min(shares[below], shares[above]), image)
+            share = min(shares[below], shares[above])
+            yield below, above, Wall(branch, span, (first, last), margin, share, image, _scale(claims, span))
+
+
+def _scale(claims: Claims, span: tuple[fmpq, fmpq]) -> fmpq:
+    """How far from zero a stack begins or something singular is, of what is much nearer to it than the far end."""
+    places = [*span, *(rational(v.low) for v in claims.result.critical_values)]
+    distance = max(abs(end) for end in span) / LONG
+    return max((abs(u) for u in places if 0 < abs(u) < distance), default=fmpq(1))
 
 
 def _between(region: Region) -> str:

@@ -5,6 +5,9 @@ Guarantee: the ball that is returned contains that root and, if precision allows
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache, lru_cache
+
 from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 
 from ptmcad.verification.sturm import changes_of
@@ -12,7 +15,12 @@ from ptmcad.verification.sturm import changes_of
 
 def numbered_root(p: fmpz_poly, low: fmpq, high: fmpq, number: int) -> arb | None:
     """A root in the open interval (low, high), by its number from below; None where there are not so many."""
-    changes = changes_of(p)
+    # halving a window would take one step for each doubling of it
+    bound = _bound(p)
+    low, high = max(low, -bound), min(high, bound)
+    if low >= high:
+        return None
+    changes = _changes_of(tuple(int(c) for c in p.coeffs()))
     first, last = changes(low), changes(high) + (p(high) == 0)
     wanted = first - number  # changes below the root, one less above it
     if wanted <= last:
@@ -31,6 +39,20 @@ def numbered_root(p: fmpz_poly, low: fmpq, high: fmpq, number: int) -> arb | Non
             return arb(middle)
         else:
             high, last = middle, beyond + (p(middle) == 0)
+
+
+@lru_cache(maxsize=64)
+def _changes_of(coefficients: tuple[int, ...]) -> Callable[[fmpq], int]:
+    """`changes_of`, for walls over the same abscissa, whose roots are told apart at the same heights."""
+    return cache(changes_of(fmpz_poly(list(coefficients))))
+
+
+def _bound(p: fmpz_poly) -> fmpq:
+    """A power of two beyond all roots: twice the greatest |c_(n-k) / c_n|^(1/k) or more (Fujiwara)."""
+    *rest, leading = (int(c).bit_length() for c in p.coeffs())
+    # of bit lengths, each the logarithm rounded up or one more than it
+    exponents = [-(-(bits - leading + 1) // k) for k, bits in enumerate(reversed(rest), 1) if bits]
+    return fmpq(2) ** (max(exponents) + 2) if exponents else fmpq(1)
 
 
 def _alone(p: fmpz_poly, low: fmpq, high: fmpq) -> arb:

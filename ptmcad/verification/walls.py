@@ -1,8 +1,8 @@
 """Walls of stacks: enclosures of their integrals from one critical value to the next.
 
 In the middle power series are taken, as far as they reach (`ptmcad.verification.branches`), beside critical values
-series about these (`ptmcad.verification.turning`). Where a reflection (u, v) to (u, T(u) - v) maps a curve to itself,
-what is known of one branch is known of its image.
+series about these, and to the far end of a long stack one about infinity (`ptmcad.verification.turning`). Where a
+reflection (u, v) to (u, T(u) - v) maps a curve to itself, what is known of one branch is known of its image.
 
 Guarantee: what is returned contains the integral of the branch. That the curve is its own image is proved by
 comparing polynomials, which branch is the image by counting roots over one abscissa of the stack.
@@ -10,21 +10,24 @@ comparing polynomials, which branch is the image by counting roots over one absc
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from functools import lru_cache
 
-from flint import arb, ctx, fmpq, fmpq_poly
+from flint import arb, fmpq, fmpq_poly
 
-from ptmcad.answer.regionmap import CriticalValue
 from ptmcad.verification.branches import Branch, Effort, Part, integrals_over, known_by_edges
-from ptmcad.verification.claims import PlaneCurve, ball
+from ptmcad.verification.claims import PlaneCurve
+from ptmcad.verification.places import Place
 from ptmcad.verification.sturm import ends_of, roots_between
-from ptmcad.verification.turning import Abscissa, Beside, integral_beside
+from ptmcad.verification.turning import Beside, integral_beside
 
 Known = dict[tuple[int, int, fmpq, fmpq], list[Part]]
 """Parts of panels, by the curve, the number of its root, and the panel's ends."""
-_ROOM_BITS = 64
-"""By so many bits is a critical value known better than it is asked for."""
+LONG = 2**6
+"""Times as far away as anything singular that is known: where a series about infinity is tried."""
+_LEAP = fmpq(2) ** 16
+"""By so much nearer to the far end is it tried next."""
 
 
 @dataclass(frozen=True)
@@ -34,18 +37,20 @@ class Wall:
     Attributes
     ----------
     span : of the stack, without the strips around critical values.
-    places : the critical values at its ends, None for the window's edges.
-    margin : width of what is left out beside a critical value.
+    places : about what series may be taken at either end of it, the first that serves.
+    margin : a part that is not some times as wide is not tried.
     share : error that a panel may have.
     image : the number of the root that is its mirror image, and T; None when there is none in the window.
+    scale : how far from zero something singular is known to be, at the most; 1 where nothing is known.
     """
 
     branch: Branch
     span: tuple[fmpq, fmpq]
-    places: tuple[Abscissa | None, Abscissa | None]
+    places: tuple[Sequence[Place], Sequence[Place]]
     margin: fmpq
     share: arb
     image: tuple[int, fmpq_poly] | None
+    scale: fmpq
 
     def parts(self, left: fmpq, right: fmpq, effort: Effort, known: Known) -> list[Part]:
         """The integral over a panel from the window's lower edge, in parts: the best enclosures at hand.
@@ -58,34 +63,57 @@ class Wall:
         if self.image is not None and (curve, self.image[0], left, right) in known:
             return [_reflected(p, self.image[1], effort) for p in known[curve, self.image[0], left, right]]
         effort = replace(effort, share=self.share)
-        found = integrals_over(self.branch, left, right, effort)
         if (left, right) == self.span:
-            found = [q for p in found for q in self._to_the_end(p, effort)]
+            found, rest = self._from_infinity(effort)
+            inside = integrals_over(self.branch, *rest, effort) if rest[0] < rest[1] else []
+            found += [q for p in inside for q in self._to_the_ends(p, effort)]
+        else:
+            found = integrals_over(self.branch, left, right, effort)
         known[curve, number, left, right] = found
         return found
 
-    def _to_the_end(self, part: Part, effort: Effort) -> list[Part]:
-        """A part of the span, by a series about the critical value at its end if one reaches from there."""
-        if part.tried or part.right - part.left < 4 * self.margin:
+    def _from_infinity(self, effort: Effort) -> tuple[list[Part], tuple[fmpq, fmpq]]:
+        """The parts of the span that series about infinity reach from its far ends, and the rest of it."""
+        rest = list(self.span)
+        done: list[Part] = []
+        for side, sign in enumerate((-1, 1)):
+            near, distance = self.span[side], self.scale
+            while near * sign > distance * LONG and (rest[1 - side] - distance * sign) * sign <= 0:
+                far = distance * sign
+                found = integral_beside(self.branch, Beside(None, near, far), far * far / abs(near), effort)
+                if found is not None:
+                    integral, reached = found
+                    first, last = sorted((near, reached))
+                    done.append(Part(first, last, integral - effort.heights[0] * (last - first), True))
+                    rest[side] = reached
+                    break
+                distance *= _LEAP
+        return done, (rest[0], rest[1])
+
+    def _to_the_ends(self, part: Part, effort: Effort) -> list[Part]:
+        """A part of the span of which nothing is known, by series about places at its ends as far as they reach."""
+        heights, rest = effort.heights, [part.left, part.right]
+        done: list[Part] = []
+        known = part.integral.rad() * 4 < (heights[1] - heights[0]) * (part.right - part.left)
+        if known or part.right - part.left < 4 * self.margin:
             return [part]
-        for side, place in enumerate(self.places):
-            end, other = (part.left, part.right) if side == 0 else (part.right, part.left)
-            if place is None or end != self.span[side]:
-                continue
-            near = end + (self.margin if side == 0 else -self.margin)
-            found = integral_beside(self.branch, Beside(place, near, other), self.margin, effort)
-            if found is None:
-                continue
-            integral, reached = found
-            first, last = (near, reached) if side == 0 else (reached, near)
-            done = [Part(first, last, integral - effort.heights[0] * (last - first), True)]
-            beyond = (end, near) if side == 0 else (near, end)
-            done.append(known_by_edges(*beyond, effort, True))
-            if reached != other:
-                rest = (reached, other) if side == 0 else (other, reached)
-                done.append(known_by_edges(*rest, effort, False))
-            return done
-        return [part]
+        for side, places in enumerate(self.places):
+            end, other = rest[side], rest[1 - side]
+            for place in places if end == self.span[side] and end != other else ():
+                near = end + (-place.gap if side else place.gap)
+                found = integral_beside(self.branch, Beside(place.abscissa, near, other), place.away, effort)
+                if found is None:
+                    continue
+                integral, reached = found
+                first, last = sorted((near, reached))
+                done.append(Part(first, last, integral - heights[0] * (last - first), True))
+                if place.gap > 0:
+                    done.append(known_by_edges(min(end, near), max(end, near), effort, True))
+                rest[side] = reached
+                break
+        if not done:
+            return [part]
+        return done if rest[0] == rest[1] else [*done, known_by_edges(rest[0], rest[1], effort, False)]
 
 
 def _reflected(part: Part, total: fmpq_poly, effort: Effort) -> Part:
@@ -97,20 +125,6 @@ def _reflected(part: Part, total: fmpq_poly, effort: Effort) -> Part:
     return Part(
         left, right, fmpq(whole(right)) - fmpq(whole(left)) - 2 * effort.heights[0] * (right - left) - integral, tried
     )
-
-
-def abscissa_of(value: CriticalValue) -> Abscissa:
-    """A function for a ball around a critical value, which remembers it for each power of two."""
-
-    @cache
-    def known(bits: int) -> arb:
-        with ctx.workprec(max(ctx.prec, bits + _ROOM_BITS)):
-            return ball(value, fmpq(2) ** -bits)
-
-    def abscissa(width: fmpq) -> arb:
-        return known(int((1 / width).ceil()).bit_length())
-
-    return abscissa
 
 
 @lru_cache(maxsize=64)

@@ -33,7 +33,7 @@ CONFIGS = Path(__file__).resolve().parents[2] / "configs"
         ("systems/kuramoto-4", 14, Sizes((32, 32), 42, (1, 1))),
         ("mechanisms/two-bar-chain", 6, Sizes((24, 24), 24, (2, 1))),
         ("mechanisms/four-bar", 12, Sizes((18, 18), 18, (1, 1))),
-        ("mechanisms/two-dof-tensegrity", 12, Sizes((10, 10), 10, (2, 2))),
+        ("mechanisms/two-dof-tensegrity", 12, Sizes((10, 10), 12, (2, 2))),  # six lines, three curves at infinity
     ],
 )
 @pytest.mark.fast_cases("forces-6-known1", "systems/kuramoto-6-known2")
@@ -64,7 +64,26 @@ def test_a_difference_of_the_axes_takes_no_degree_away() -> None:
     """v^3 = 3 p v + 2 q is critical where p^3 = q^2: here a b^3 (a - b)^3 = 1, and the axis a = 0."""
     system = {"name": "s", "unknowns": {"v": "real"}, "equations": ["v^3 - 3*a*b*(a - b)*v - 2*a"]}
     slice = ptmcad.slice_from_mapping({"system": system, "axes": {"a": [-2, 2], "b": [-2, 2]}, "count": "total"})
-    assert sizes(problem_of(slice), 3, 60.0) == Sizes((4, 6), 7, (1, 1), (2, 2, 3))
+    assert sizes(problem_of(slice), 3, 60.0) == Sizes((4, 6), 7, (1, 1), (2, 2, 3), (True, False))
+
+
+@pytest.mark.parametrize(
+    ("equation", "solutions", "known"),
+    [
+        ("z^2 - a*b", 2, Sizes((0, 0), 0, (1, 1), (1, 1, 2), (True, True))),
+        ("z^3 - 3*b*z^2 + a^2*z + a", 3, Sizes((5, 3), 5, (1, 1), (2, 1, 2), (True, False))),
+        ("a*z^2 + a*z + b", 2, Sizes((1, 1), 1, (1, 1), (1, 1, 1))),
+    ],
+    ids=["both axes alone", "an axis beside a curve", "an axis at infinity"],
+)
+def test_axes_are_told_where_solutions_meet_over_them(equation: str, solutions: int, known: Sizes) -> None:
+    """By hand: discriminants are 4 a b, -27 a (4 a^5 - 9 a^3 b^2 + 54 a^2 b + 27 a - 108 b^3) / 27 and a (a - 4 b)."""
+    system = {"name": "s", "unknowns": {"z": "real"}, "equations": [equation]}
+    slice = ptmcad.slice_from_mapping({"system": system, "axes": {"a": [-1, 1], "b": [-1, 1]}, "count": "total"})
+    assert sizes(problem_of(slice), solutions, 60.0) == known
+    critical = {c.polynomial.text(("a", "b")) for c in variety_of(problem_of(slice)).components
+                if c.kind is Kind.CRITICAL}  # fmt: skip
+    assert tuple(name in critical for name in ("a", "b")) == known.lines
 
 
 @pytest.mark.parametrize(("name", "solutions"), [("forces", 6), ("systems/kuramoto", 6)])

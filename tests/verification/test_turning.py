@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import pytest
-from flint import arb, ctx, fmpq
+from flint import arb, ctx, fmpq, fmpz_poly
 
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification import turning
+from ptmcad.verification import roots, sturm, turning
 from ptmcad.verification.branches import Branch, Effort
 from ptmcad.verification.claims import PlaneCurve
 from ptmcad.verification.disks import disk
+from ptmcad.verification.places import Place, at_edge, beyond
+from ptmcad.verification.roots import numbered_root
 from ptmcad.verification.turning import Beside, integral_beside
 from ptmcad.verification.walls import Wall, image_of, reflection
 
@@ -41,7 +43,42 @@ POINTS: dict[str, tuple[Terms, int, Callable[[arb], arb]]] = {
     ),
     "upright cusp: v^3 = u^2": ([(0, 3, 1), (2, 0, -1)], 0, lambda u: (u**5).root(3) * 3 / 5),
     "upright inflection: v^3 = 2 u": ([(0, 3, 1), (1, 0, -2)], 0, lambda u: (2 * u).root(3) * u * 3 / 4),
+    "blunt cusp beside a line: (v + u)^3 = u^4": (
+        [(0, 3, 1), (1, 2, 3), (2, 1, 3), (3, 0, 1), (4, 0, -1)],
+        0,
+        lambda u: -u * u / 2 + u * u * u.root(3) * 3 / 7,
+    ),
+    "cusp of branches that touch: (v - u^2)^2 = u^5": (
+        [(0, 2, 1), (2, 1, -2), (4, 0, 1), (5, 0, -1)],
+        0,
+        lambda u: u**3 / 3 - u**3 * u.sqrt() * 2 / 7,
+    ),
 }
+
+AFAR: dict[str, tuple[Terms, int, int, Callable[[arb], arb]]] = {
+    "one over u: u v = 1": ([(1, 1, 1), (0, 0, -1)], 1, 0, lambda u: u.log()),
+    "its left half": ([(1, 1, 1), (0, 0, -1)], -1, 0, lambda u: (-u).log()),
+    "a power: v^3 = u^2": ([(0, 3, 1), (2, 0, -1)], 1, 0, lambda u: (u**5).root(3) * 3 / 5),
+    "a hyperbola: v^2 = u^2 + 2": (
+        [(0, 2, 1), (2, 0, -1), (0, 0, -2)],
+        1,
+        1,
+        lambda u: (u * (u * u + 2).sqrt()) / 2 + (u + (u * u + 2).sqrt()).log(),
+    ),
+    "parallels: (v - u)^2 = 1 + 1 / u": (
+        [(1, 2, 1), (2, 1, -2), (3, 0, 1), (1, 0, -1), (0, 0, -1)],
+        1,
+        1,
+        lambda u: u * u / 2 + (u * (u + 1)).sqrt() + (u.sqrt() + (u + 1).sqrt()).log(),
+    ),
+    "branches that come closer: (v - u)^2 u = 1": (
+        [(1, 2, 1), (2, 1, -2), (3, 0, 1), (0, 0, -1)],
+        1,
+        0,
+        lambda u: u * u / 2 - 2 * u.sqrt(),
+    ),
+}
+"""By what they are: terms, the side of zero, the root's number, an antiderivative."""
 
 
 def branch_of(terms: Terms, root: int) -> Branch:
@@ -59,6 +96,36 @@ def test_one_series_holds_the_integral_from_beside_a_critical_value(name: str) -
         expected = antiderivative(arb(reached)) - antiderivative(arb(NEAR))
         assert integral.overlaps(expected)
         assert integral.rad() < arb(2) ** -50
+
+
+@pytest.mark.parametrize("name", AFAR)
+def test_one_series_holds_the_integral_from_afar(name: str) -> None:
+    """From 10^30 as near to zero as one series reaches, with an error of 2^-50 units; four of them are enough."""
+    terms, sign, root, antiderivative = AFAR[name]
+    near, far = sign * fmpq(10) ** 30, sign * fmpq(1)
+    effort = replace(EFFORT, heights=(-(fmpq(10) ** 31), fmpq(10) ** 31))
+    with ctx.workprec(320):
+        found = integral_beside(branch_of(terms, root), Beside(None, near, far), fmpq(1, 10**30), effort)
+        assert found is not None
+        integral, reached = found
+        assert 1 <= abs(reached) <= 16**2
+        expected = sign * (antiderivative(arb(near)) - antiderivative(arb(reached)))
+        assert integral.overlaps(expected)
+        assert integral.rad() < arb(2) ** -50
+
+
+def test_a_branch_that_is_not_analytic_up_to_there_is_not_taken_from_afar() -> None:
+    """(v - u)^2 = u^2 - 10^6 has no real branch near zero, v^2 = u^2 - u + 1000 one with complex turning points."""
+    with ctx.workprec(128):
+        effort = replace(EFFORT, heights=(fmpq(0), fmpq(10) ** 7))
+        beside = Beside(None, fmpq(10) ** 6, fmpq(1))
+        none = branch_of([(0, 2, 1), (1, 1, -2), (0, 0, 10**6)], 0)
+        assert integral_beside(none, beside, fmpq(1, 10**6), effort) is None
+        far = branch_of([(0, 2, 1), (2, 0, -1), (1, 0, 1), (0, 0, -1000)], 0)
+        assert integral_beside(far, beside, fmpq(1, 10**6), effort) is None
+        found = integral_beside(far, beside._replace(far=fmpq(2**8)), fmpq(2**16, 10**6), effort)
+        assert found is not None
+        assert found[1] ** 2 > 1000
 
 
 def test_a_critical_value_known_in_a_ball_is_enough() -> None:
@@ -108,9 +175,9 @@ def test_what_is_left_out_of_the_polynomial_counts_as_error() -> None:
         assert disk(branch.value, fmpq(1, 8), arb(1), 2, (arb(10), arb(4))) is None
 
 
-def wall(branch: Branch, span: tuple[fmpq, fmpq]) -> Wall:
+def wall(branch: Branch, span: tuple[fmpq, fmpq], places: tuple[Sequence[Place], Sequence[Place]] = ((), ())) -> Wall:
     image = image_of(branch, (span[0] + span[1]) / 2, HEIGHTS)
-    return Wall(branch, span, (None, None), fmpq(1, 10**9), arb(2) ** -60, image)
+    return Wall(branch, span, places, fmpq(1, 10**9), arb(2) ** -60, image, fmpq(1))
 
 
 def test_the_image_of_a_wall_has_the_integral_that_its_own_series_has() -> None:
@@ -128,6 +195,70 @@ def test_the_image_of_a_wall_has_the_integral_that_its_own_series_has() -> None:
         for a, b in zip(mirrored, own, strict=True):
             assert a.integral.overlaps(b.integral)
             assert a.integral.rad() < arb(2) ** -50
+
+
+def test_a_pole_beyond_the_end_of_a_stack_is_what_its_series_is_about() -> None:
+    """v^2 (u + 10^-9) = 1: up to the pole's neighbourhood there would be a panel for each doubling of the distance."""
+    branch = branch_of([(1, 2, 10**9), (0, 2, 1), (0, 0, -(10**9))], 0)
+    span, effort = (fmpq(0), fmpq(1)), replace(EFFORT, heights=(fmpq(0), fmpq(10**5)))
+    poles = [*beyond(branch.curve, span, 0)]
+    assert len(poles) == 1
+    assert poles[0].abscissa(fmpq(1, 10**20)).overlaps(arb(fmpq(-1, 10**9)))
+    assert poles[0].gap == 0
+    assert not [*beyond(branch.curve, span, 1)]
+    with ctx.workprec(192):
+        found = wall(branch, span, (poles, ())).parts(*span, effort, {})
+        proved = [p for p in found if p.tried]
+        assert min(p.left for p in proved) == 0
+        rest = sum((p.right - p.left for p in found if not p.tried), fmpq(0))
+        assert rest < fmpq(9, 10)
+        for p in proved:
+            expected = 2 * (arb(p.right + fmpq(1, 10**9)).sqrt() - arb(p.left + fmpq(1, 10**9)).sqrt())
+            assert p.integral.overlaps(expected)
+            assert p.integral.rad() < arb(2) ** -40
+
+
+def test_an_edge_of_the_window_is_such_a_place_where_branches_meet_over_it() -> None:
+    curve = branch_of([(0, 2, 1), (1, 0, -1)], 0).curve  # v^2 = u
+    (place,) = at_edge(curve, fmpq(0), fmpq(1, 10**12))
+    assert place.abscissa(fmpq(1)) == 0
+    assert place.gap == fmpq(1, 10**12)
+    assert at_edge(curve, fmpq(1), fmpq(1, 10**12)) == []
+    assert at_edge(branch_of([(1, 1, 1), (0, 0, -1)], 0).curve, fmpq(0), fmpq(1, 10**12))  # u v = 1
+
+
+def test_a_root_is_found_in_a_window_of_any_size(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In few steps: the window is cut to what may hold roots at first."""
+    asked = []
+
+    def changes_of(p: fmpz_poly) -> Callable[[fmpq], int]:
+        changes = sturm.changes_of(p)
+
+        def counted(at: fmpq) -> int:
+            asked.append(at)
+            return changes(at)
+
+        return counted
+
+    monkeypatch.setattr(roots, "changes_of", changes_of)
+    far = fmpq(10) ** 300
+    for p, expected in (
+        (fmpz_poly([-1, 3]), [fmpq(1, 3)]),
+        (fmpz_poly([-6, 11, -6, 1]), [fmpq(1), fmpq(2), fmpq(3)]),
+        (fmpz_poly([0, -(10**40), 1]), [fmpq(0), fmpq(10**40)]),
+        (fmpz_poly([-1, 0, 10**40]), [fmpq(-1, 10**20), fmpq(1, 10**20)]),
+        (fmpz_poly([1, 0, 1]), []),
+    ):
+        for number, value in enumerate(expected):
+            asked.clear()
+            roots._changes_of.cache_clear()
+            found = numbered_root(p, -far, far, number)
+            assert found is not None
+            assert abs(found - value) < arb(2) ** -40 * abs(arb(value)) + arb(2) ** -400
+            assert len(asked) < 12
+            assert numbered_root(p, value, far, len(expected) - number - 1) is None
+        assert numbered_root(p, -far, far, len(expected)) is None
+        assert numbered_root(p, far / 2, far, 0) is None
 
 
 def test_curves_that_are_not_their_own_images_have_no_reflection() -> None:

@@ -19,8 +19,11 @@ from support.shipped_records import EXACT
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.question.slice import Point
+from ptmcad.verification import walls
 from ptmcad.verification.areas import check_areas
+from ptmcad.verification.branches import integrals_over
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.report import Violation
 
 CONFIGS = [path.stem for path in EXACT]
 LARGE = ("stiffness", "unequal-springs", "fig5-caption", "horizontal")
@@ -178,6 +181,37 @@ def test_any_changed_entry_of_the_file_is_rejected(name: str, number: int, shipp
         if is_accepted(altered, path[0]) and altered != shipped(name):
             accepted.append((path, old, new))
     assert not accepted
+
+
+LENGTHS = {"parameters": {"L1": 1, "k": 100, "F3": -10, "F4": -10}, "axes": {"rho": [0, "1e30"], "L2": [0, "1e30"]}}
+LOADS = {
+    "parameters": {"L1": 1, "L2": "3/2", "rho": "3/4", "k": 100},
+    "axes": {"F3": ["-1e30", "1e30"], "F4": ["-1e30", "1e30"]},
+}
+
+
+@pytest.mark.parametrize("record", [pytest.param(LENGTHS, marks=pytest.mark.slow, id="lengths"),
+                                    pytest.param(LOADS, id="loads")])  # fmt: skip
+def test_large_windows_take_no_more_panels_than_small_ones(
+    record: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Some ten for each wall; their areas are told from wrong ones, of a small region beside a huge one, too."""
+    true = stored(ptmcad.classify(ptmcad.slice_from_mapping({"name": "large", "mechanism": "ptm", **record})))
+    tried = []
+
+    def counted(*given: Any) -> Any:
+        tried.append(given)
+        return integrals_over(*given)
+
+    monkeypatch.setattr(walls, "integrals_over", counted)
+    check_areas(Claims(true))
+    assert len(tried) < 20 * sum(len(stack.walls) for stack in true.stacks)
+    small = min(range(len(true.regions)), key=lambda n: true.regions[n].area[0])
+    low, high = true.regions[small].area
+    for shift in (2 * (high - low), 2 * (low - high)):
+        false = replace(true, regions=put(true.regions, small, area=(low + shift, high + shift)))
+        with pytest.raises(Violation, match="its area is"):
+            check_areas(Claims(false))
 
 
 def test_a_tiny_change_of_an_area_is_rejected(shipped: Callable[..., RegionMap]) -> None:
