@@ -119,7 +119,9 @@ def components_multiplied(r: RegionMap) -> Iterator[Alteration]:
         one, two = r.components[j], r.components[k]
         if one.left_out == two.left_out:
             both = replace(one, polynomial=_times(one.polynomial, two.polynomial))
-            if one.left_out:
+            # no decomposition ends over a line on which a curve is zero that is not said to be a line
+            lines = any(c.polynomial.degrees[1 - r.base] == 0 for c in (one, two))
+            if one.left_out or lines:
                 yield partial(with_plan, replace(r, components=(*drop(drop(r.components, k), j), both)))
             else:
                 yield partial(decomposed, r, (*drop(drop(r.components, k), j), both))
