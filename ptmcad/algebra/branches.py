@@ -35,6 +35,12 @@ PANEL_SEPARATION_BITS = 10
 """The same along the panel."""
 LEAST_SHARE = fmpq(1, 32)
 """A series that is good on a smaller part of the panel is not tried: the branch is nearly singular beside it."""
+_SHORT_SHARE = fmpq(1, 4)
+"""A series that is good on a smaller part only, as it is wanted to very many digits, is tried with a higher degree."""
+_BITS_PER_ORDER = 2
+"""By each degree more the error is smaller by so many bits on about that part."""
+_GAP_BITS = 6
+"""Bits of the distance to the next branch to which the branch is known at the panel's middle."""
 _CLOSE = 0.8
 """How near to the estimated radius of convergence a series is tried."""
 _DIGITS = 50
@@ -113,8 +119,11 @@ def branch_integral(
         When cancellation leaves too few bits.
     """
     root = refine(at_middle, min((fibre[1] - fibre[0]) / 2 ** (ctx.prec // 3), wanted))
+    local = local_coefficients(in_v, *panel, root.low)
+    if (fine := _near_others(local, root)) is not None:
+        root = refine(root, fine)
+        local = local_coefficients(in_v, *panel, root.low)
     origin = root.low
-    local = local_coefficients(in_v, *panel, origin)
     tube = tube_around(local, order, arb(root.high - root.low), arb(wanted))
     if tube is None:
         return None
@@ -128,13 +137,22 @@ def branch_integral(
     )
 
 
+def _near_others(local: Sequence[arb_poly], root: RealRoot) -> fmpq | None:
+    """How much better the branch at the middle has to be known, as the next one seems to be that near; None where it is
+    known well enough."""
+    if len(local) < 3:
+        return None
+    gap = (abs(local[1][0]) / abs(local[2][0]) / 2**_GAP_BITS).lower()
+    return gap.fmpq() if gap.is_finite() and 0 < gap < arb(root.high - root.low) else None
+
+
 def tube_around(local: Sequence[arb_poly], order: int, start: arb, wanted: arb) -> Tube | None:
     """The tube around the root w(h) of sum_i b_i(h) w^i that starts near zero at h = 0, on as much of |h| <= 1 as seems
     to be within the error that is wanted; None when it is not proved.
 
     Parameters
     ----------
-    order : degree of the series.
+    order : degree of the series, or more where very many digits are wanted.
     start : the tube reaches at least so far from w = 0 at h = 0.
 
     Raises
@@ -149,6 +167,9 @@ def tube_around(local: Sequence[arb_poly], order: int, start: arb, wanted: arb) 
         raise PrecisionTooLow  # rounding blurs the branch nearly as far as the next one
     series = _series(local, order)
     part, radius = _usable(series, order, wanted)
+    if part < _SHORT_SHARE and (longer := _bits_wanted(series, wanted) // _BITS_PER_ORDER) > order:
+        series = _series(local, longer)
+        part, radius = _usable(series, longer, wanted)
     share, crowded = fmpq(1), False
     while share * part >= LEAST_SHARE:
         if part < 1:
@@ -176,9 +197,16 @@ def _usable(series: arb_poly, order: int, wanted: arb) -> tuple[fmpq, float]:
     growth = (last / before) ** (1 / third) if before > 0 else 1.0
     growth = max(growth, last ** (1 / len(relative)), 2.0**-_DIGITS)
     allowed = max(float((wanted / largest).mid()), 2.0**-200)
-    part = min((allowed / (4 * last * growth)) ** (1 / (len(relative) + 1)), _CLOSE / growth)
+    # one after the other: the product of two tiny numbers may be none
+    part = min((allowed / last / (4 * growth)) ** (1 / (len(relative) + 1)), _CLOSE / growth)
     # of few bits, as all arithmetic starts from it
     return (fmpq(1) if part >= 1 else fmpq(int(part * 64), 64)), _radius(relative, growth)
+
+
+def _bits_wanted(series: arb_poly, wanted: arb) -> int:
+    """How many bits of the branch's way over the panel are wanted, about."""
+    ratio = (max((abs(c).upper() for c in series.coeffs()[1:]), default=arb(0)) / wanted).mid()
+    return int(ratio.man_exp()[1]) + int(ratio.man_exp()[0]).bit_length() if ratio.is_finite() else 0
 
 
 def _radius(sizes: Sequence[float], growth: float) -> float:

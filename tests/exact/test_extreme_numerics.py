@@ -348,3 +348,47 @@ def test_series_beside_a_critical_abscissa_that_is_found_to_be_rational() -> Non
     wide = ptmcad.classify(slice_from_mapping({"name": "wide", **record, "axes": axes}))
     assert wide.status is Status.EXACT
     assert all(high - low <= high / 10**4 for low, high in (region.area for region in wide.regions))
+
+
+GERMS = {
+    "two cubics": "(b - a^3)*(b - a^3 - a^5)",
+    "a rhamphoid cusp": "(b - a^2 - a^3)^2 - a^7",
+    "two parabolas": "(b - a^2)^2 - 3*a^6 - b^4",
+}
+"""Curves with branches that part slowly at the origin."""
+
+
+@pytest.mark.parametrize("digits", [15, 40])
+@pytest.mark.parametrize("name", GERMS)
+def test_areas_between_branches_that_part_slowly_are_those_in_other_units(name: str, digits: int) -> None:
+    """A window of size 10^-digits, and the unit square with the equation in these units: the thinnest region's share
+    of the window is 10^-200 in one."""
+    found = []
+    for unit in (1, Fraction(1, 10**digits)):
+        germ = GERMS[name].replace("a", f"({unit}*a)").replace("b", f"({unit}*b)") if unit != 1 else GERMS[name]
+        side = [0, str(Fraction(1, 10**digits) / unit)]
+        system = {"unknowns": {"z": "real"}, "equations": [f"z^2 - ({germ})"]}
+        whole = (Fraction(1, 10**digits) / unit) ** 2
+        regions = ptmcad.classify(
+            slice_from_mapping({"name": "germ", "system": system, "axes": {"a": side, "b": side}})
+        ).regions
+        found.append(sorted((r.total, *(bound / whole for bound in r.area)) for r in regions if r.area))
+    tiny, unitary = found
+    assert len(tiny) == len(unitary) > 1
+    for (count, low, high), (other, least, most) in zip(tiny, unitary, strict=True):
+        assert count == other
+        assert max(low, least) <= min(high, most)
+        assert high - low <= low / 1000
+
+
+def test_a_series_whose_last_coefficients_are_nearly_nothing_is_usable() -> None:
+    """Two circles in a window that begins 10^-20 and 10^-30 before their axes: a ratio underflowed in doubles."""
+    equation = "z^2 - ((a^2 + b^2 - 1)*((a - 1/2)^2 + b^2 - 1/4))"
+    system = {"unknowns": {"z": "real"}, "equations": [equation]}
+    axes = {"b": ["-1e-20", 2], "a": ["-1e-30", 1]}
+    regions = ptmcad.classify(slice_from_mapping({"name": "circles", "system": system, "axes": axes})).regions
+    # the quarter disk without the half disk, and the half disk: each pi/8 but for slivers of 1e-20
+    inside = sorted(r.area for r in regions if r.area and r.area[0] > Fraction(1, 100))
+    for low, high in inside[:2]:
+        assert low - Fraction(1, 10**15) < Fraction(39269908169872415, 10**17) < high + Fraction(1, 10**15)
+    assert len(inside) == 3

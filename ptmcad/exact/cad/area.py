@@ -42,6 +42,8 @@ _LEAST_ORDER = 6
 """Of series, besides the tolerance's digits."""
 _LONG_FIBRE, _FIBRE_PER_ORDER = 16, 3
 """Of higher degrees in v fibres and local coefficients cost more than series, so longer ones on fewer panels pay."""
+_SPARE_BITS = 16
+"""Beyond the tolerance's digits: where walls that nearly cancel leave fewer, panels would be cut without end."""
 _CACHED_FIBRES = 1024
 """Fibres whose roots are remembered."""
 
@@ -196,9 +198,12 @@ def _areas(
     spans = _spans(parts.stacks, strips)
     lost = sum((b[0] - a[1] for a, b in pairwise(spans)), fmpq(0)) * parts.height
     borders = list(parts.borders(spans))
-    rough = _rough(spans, parts, borders, effort)
+    rough, sizes = _rough(spans, parts, borders, effort)
     if lost * 4 > from_fraction(tolerance) * min(rough) * _HOPELESS_RATIO:
         raise _Unreachable(strips=True)
+    right = fmpq(2) ** (ctx.prec - _SPARE_BITS) * from_fraction(tolerance)
+    if any(size > area * right for size, area in zip(sizes, rough, strict=True)):
+        raise _Unreachable(strips=False)
     load = Counter(i for row in borders for b in row for i in (b.below, b.above))
     # of a panel's integral: what would do if all were about as bad, with some more panels than borders
     allowed = [from_fraction(tolerance) * rough[i] / (_PANELS * max(load[i], 1)) for i in range(parts.number)]
@@ -248,17 +253,21 @@ def _span(stack: StackData, left_strip: fmpq, right_strip: fmpq) -> Interval:
 
 def _rough(
     spans: Sequence[Interval], parts: RegionStacks, borders: Sequence[Sequence[Border]], effort: Effort
-) -> list[fmpq]:
-    """Each region's area as if its cells were as high everywhere as in the middle; it proves nothing."""
-    total = [fmpq(0)] * parts.number
+) -> tuple[list[fmpq], list[fmpq]]:
+    """Each region's area as if its cells were as high everywhere as in the middle, and how large the integrals of its
+    walls are, which cancel but for that; both prove nothing."""
+    total, sizes = [fmpq(0)] * parts.number, [fmpq(0)] * parts.number
     for (low, high), over, row in zip(spans, borders, parts.regions, strict=True):
         walls = _told_apart([b.over((low + high) / 2, effort) for b in over], parts.height)
         bottom = parts.fibre[0]
         for border, wall in zip(over, walls, strict=True):
             total[border.below] += (wall.high - bottom) * (high - low)
+            size = abs(wall.high) * (high - low)
+            sizes[border.below] += size
+            sizes[border.above] += size
             bottom = wall.low
         total[row[-1]] += (parts.fibre[1] - bottom) * (high - low)
-    return total
+    return total, sizes
 
 
 def _told_apart(roots: Sequence[RealRoot], height: fmpq) -> list[RealRoot]:

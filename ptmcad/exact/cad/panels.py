@@ -30,6 +30,10 @@ _LEAST_BITS = 6
 """At least so many bits of a branch's height are wanted."""
 _HALVING_CUTS = 5
 """Cuts by half towards a turning point before they come faster."""
+_BITS_BY_HALVES = 12
+"""What is worse than wanted by more bits is enclosed at a higher precision: that is sooner done than halving panels."""
+_MAX_RAISE = 8
+"""The highest precision that is tried, in units of the context's."""
 _MAX_CUTS = 10
 """The fastest cut is to the part 2^-32 of a panel."""
 
@@ -204,9 +208,11 @@ def _about_end(
     for precision in (bits, 2 * bits):
         try:
             with ctx.workprec(precision):
-                return enclosed()
+                found = enclosed()
         except PrecisionTooLow:
             continue
+        if found is not None:
+            return found
     return None
 
 
@@ -255,7 +261,7 @@ def _smooth(border: Border, over: Interval, effort: Effort, allowed: fmpq) -> In
 
     series, obstacle = None, False
     try:
-        series = by_series()
+        series = _sharper(by_series, allowed)
     except PrecisionTooLow:
         obstacle = True
     if series is not None and not series.crowded:
@@ -263,14 +269,40 @@ def _smooth(border: Border, over: Interval, effort: Effort, allowed: fmpq) -> In
     # arcs do not mind other branches; they are better, and found sooner, if they start from more digits
     fine = min(wanted, wanted * wanted / (effort.fibre[1] - effort.fibre[0])) / 2
     between = arc_integral(in_v, branch, middle, radius, effort.fibre, fine)
-    if between is not None and (series is None or between.rad() < arb(allowed)):
-        return Integral(between, fmpq(1), 1.0, False)
-    return _more_precisely(by_series) if obstacle else series
+    if between is None:
+        return _more_precisely(by_series) if obstacle else series
+    arcs = Integral(between, fmpq(1), 1.0, False)
+    if obstacle and between.rad() > arb(allowed) * 2**_BITS_BY_HALVES:
+        return _or_else(arcs, lambda: _more_precisely(by_series))
+    return arcs if series is None or between.rad() < arb(allowed) else series
+
+
+def _or_else(arcs: Integral, enclose: Callable[[], Integral | None]) -> Integral:
+    """The enclosure, or that by arcs where there is none."""
+    try:
+        return enclose() or arcs
+    except PrecisionTooLow:
+        return arcs
+
+
+def _sharper(enclose: Callable[[], Integral | None], allowed: fmpq) -> Integral | None:
+    """An enclosure, at a higher precision where it is much wider than what would do and that makes it narrower.
+
+    A stack may be narrower than its distance from the origin by more orders of magnitude than the precision has digits.
+    """
+    found, bits = enclose(), 2 * ctx.prec
+    while found is not None and found.value.rad() > arb(allowed) * 2**_BITS_BY_HALVES and bits <= _MAX_RAISE * ctx.prec:
+        with ctx.workprec(bits):
+            finer = enclose()
+        if finer is None or finer.value.rad() * 2**_BITS_BY_HALVES > found.value.rad():
+            return found
+        found, bits = finer, 2 * bits
+    return found
 
 
 def _more_precisely(enclose: Callable[[], Integral | None]) -> Integral | None:
     """An enclosure at twice to eight times the precision."""
-    bits, most = 2 * ctx.prec, 8 * ctx.prec
+    bits, most = 2 * ctx.prec, _MAX_RAISE * ctx.prec
     while True:
         try:
             with ctx.workprec(bits):
