@@ -33,7 +33,7 @@ SEPARATION_BITS = 40
 """Bits by which rounding has to be smaller than the distance to the next branch at the panel's middle."""
 PANEL_SEPARATION_BITS = 10
 """The same along the panel."""
-LEAST_SHARE = fmpq(1, 32)
+MIN_SHARE = fmpq(1, 32)
 """A series that is good on a smaller part of the panel is not tried: the branch is nearly singular beside it."""
 _SHORT_SHARE = fmpq(1, 4)
 """A series that is good on a smaller part only, as it is wanted to very many digits, is tried with a higher degree."""
@@ -171,7 +171,7 @@ def tube_around(local: Sequence[arb_poly], order: int, start: arb, wanted: arb) 
         series = _series(local, longer)
         part, radius = _usable(series, longer, wanted)
     share, crowded = fmpq(1), False
-    while share * part >= LEAST_SHARE:
+    while share * part >= MIN_SHARE:
         if part < 1:
             shrunk = arb_poly([0, arb(part)])
             series, local = _exact(series(shrunk)), [b(shrunk) for b in local]

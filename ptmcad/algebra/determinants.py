@@ -25,9 +25,9 @@ from ptmcad.algebra.polynomials import (
 )
 from ptmcad.algebra.resultants import interpolate, nothing
 
-LEAST_INTERPOLATED = 12
+MIN_INTERPOLATED = 12
 """Rows; of fewer the elimination is as fast."""
-LEAST_MODULAR = 6
+MIN_MODULAR = 6
 """Rows, likewise for values modulo primes."""
 _MANY_TERMS = 10_000
 """Rows times terms from which on costs are predicted; with fewer the elimination takes some tens of milliseconds."""
@@ -70,10 +70,10 @@ def _primitive_determinant(matrix: list[list[Coefficient]], denominator: Coeffic
     ----------
     denominator : its irreducible factors may divide the determinant to high powers.
     """
-    axis = _only_axis(matrix) if len(matrix) >= LEAST_INTERPOLATED else None
+    axis = _only_axis(matrix) if len(matrix) >= MIN_INTERPOLATED else None
     if axis is not None:
         return _interpolated(matrix, axis)
-    found = _modular(matrix, denominator) if len(matrix) >= LEAST_MODULAR else None
+    found = _modular(matrix, denominator) if len(matrix) >= MIN_MODULAR else None
     return _bareiss(matrix) if found is None else found
 
 

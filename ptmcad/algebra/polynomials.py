@@ -164,16 +164,6 @@ def univariate(coefficients: tuple[fmpz_poly, ...], at: fmpq) -> fmpz_poly:
     return fmpz_poly([int(value.p) * (scale // int(value.q)) for value in values])
 
 
-def to_fraction(value: fmpq) -> Fraction:
-    """A FLINT rational as a Python fraction."""
-    return Fraction(int(value.p), int(value.q))
-
-
-def from_fraction(value: Fraction) -> fmpq:
-    """A Python fraction as a FLINT rational."""
-    return fmpq(value.numerator, value.denominator)
-
-
 def evaluate(p: fmpz_mpoly, x: fmpq, y: fmpq) -> fmpq:
     """The exact value at a rational point."""
     if p.is_constant():  # as most parameters of a slice are

@@ -24,7 +24,7 @@ from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
 
 _STAGES = 4
 """Newton polygons for one branch."""
-_GREATEST = 6
+_MAX_POWER = 6
 """The greatest power of s for u - c; a cusp's is 2 or 3."""
 _NEWTON_RATIO = 8
 """Of the lengths of Newton's steps, at least, from a start near a root of the multiplicity that is supposed."""
@@ -136,7 +136,7 @@ def _blown_up(chart: _Chart, s: arb) -> _Chart | None:
     for upper, lower in _edges(first):
         drop, run = first[lower] - first[upper], upper - lower
         e, q = drop // gcd(drop, run), run // gcd(drop, run)
-        if chart.power * q > _GREATEST:
+        if chart.power * q > _MAX_POWER:
             continue
         edge = [arb(0)] * (run + 1)
         for j in range(lower, upper + 1):

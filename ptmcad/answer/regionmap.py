@@ -184,10 +184,10 @@ class Cell:
 
     def __repr__(self) -> str:
         at = ", ".join(f"{float(value):.6g}" for value in self.sample)
-        return f"<Cell {_told(self)}, in region {self.region}, sample near ({at})>"
+        return f"<Cell {_counts_in_words(self)}, in region {self.region}, sample near ({at})>"
 
 
-def _told(counts: Cell | Region) -> str:
+def _counts_in_words(counts: Cell | Region) -> str:
     """What is known of the counts, in few words."""
     known = ((counts.stable, "stable"), (counts.total, "in all"))
     return " of ".join(f"{number} {word}" for number, word in known if number is not None) or "of unknown count"
@@ -282,7 +282,7 @@ class Region:
 
     def __repr__(self) -> str:
         area = f"{float(self.area[0]):.6g} to {float(self.area[1]):.6g}"
-        return f"<Region {_told(self)}, {len(self.cells)} cells, area {area}>"
+        return f"<Region {_counts_in_words(self)}, {len(self.cells)} cells, area {area}>"
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,6 @@ from itertools import pairwise
 from math import acos, cos, inf, pi
 from typing import Any, NamedTuple
 
-from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.changes import Changes
@@ -27,6 +26,7 @@ from ptmcad.exact.strips import Strips
 from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.doubles import within_doubles
 from ptmcad.text.parsing import number_for
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 TOLERANCE = Fraction(1, 100)
 MAX_MEMBERS = 120

@@ -17,7 +17,6 @@ from typing import Any
 from flint import fmpq
 
 from ptmcad.algebra.numbers import algebraic_number
-from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
 from ptmcad.answer.arrangement import correspondence
 from ptmcad.answer.changes import Change, Changes
@@ -33,6 +32,7 @@ from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.config import Family, family_from
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.numerals import exactly, text_of
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 TOLERANCE = Fraction(1, 10**6)
 """Of the free parameter's range: how wide enclosures are, and how near to a change members are compared in words."""

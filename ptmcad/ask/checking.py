@@ -26,6 +26,7 @@ from ptmcad.process.timed import returns_within
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
 from ptmcad.text.numerals import short_text
+from ptmcad.text.rationals import from_fraction
 
 if TYPE_CHECKING:
     from flint import fmpq
@@ -162,7 +163,6 @@ def _check_bounded(slice: Slice) -> None:
 
 def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tuple[Check, int]:
     """The check of a slice that the exact engine takes, and the bound for its solutions by Bezout's theorem."""
-    from ptmcad.algebra.polynomials import from_fraction
     from ptmcad.exact.point_system import degree_bound
     from ptmcad.exact.stages import point_values, problem_of
     from ptmcad.exact.witness import SHARES, points

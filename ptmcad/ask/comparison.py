@@ -15,7 +15,6 @@ from typing import Any
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.comparison import Change, Comparison
 from ptmcad.answer.counts import counted_by
@@ -29,6 +28,7 @@ from ptmcad.exact.cad.curves import curves_of, lines_of
 from ptmcad.exact.cad.projection import Projection, predicted_cost, project
 from ptmcad.exact.cad.stacks import Avoided, StackData, lift
 from ptmcad.question.slice import Count, Point
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 TOLERANCE = Fraction(1, 10**6)
 """Relative width of the areas' bounds."""

@@ -12,7 +12,6 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.design import BestDesign, Evaluation
 from ptmcad.ask.designing.optimiser import Enough, Point, best_of, within
@@ -22,11 +21,12 @@ from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError
 from ptmcad.exact.design.search import Lengths
 from ptmcad.options import Options, Progress
-from ptmcad.process.extras import require_scipy
+from ptmcad.process.extras import Extra, require
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.designs import design_from
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import number_for
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 TOLERANCE = Fraction(1, 100)
 BOXES = 100_000
@@ -128,7 +128,7 @@ class _Search:
         if maxima is not None:
             self.value_of = evaluator(asked)
             return self._exactly(maxima, evaluations or EVALUATIONS)
-        require_scipy()
+        require(Extra.design)
         self.report("discriminant variety", 0, 1)
         bounder = bounder_of(asked, tolerance)
         space = bounder.space if isinstance(bounder, Lengths) else None

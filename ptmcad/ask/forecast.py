@@ -20,7 +20,7 @@ from ptmcad.algebra.resultants import LONG
 from ptmcad.exact.sizes import Sizes
 from ptmcad.exact.survey import Survey
 
-MOST_DEGREE = 50
+MAX_DEGREE = 50
 """Of the curve in an axis, in the mean of both: beyond, the map may take hours."""
 QUICK = 0.8
 """Seconds for the curve and its discriminant, up to which they are computed to know better what comes after."""
@@ -61,7 +61,7 @@ class Forecast(NamedTuple):
     def reachable(self) -> bool:
         """Whether the curve is of a degree that the exact engine is for."""
         across, up = _powers(self.sizes)
-        return across * up <= MOST_DEGREE**2
+        return across * up <= MAX_DEGREE**2
 
     @property
     def points(self) -> int:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import UnivariatePolynomial, from_fraction
+from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at
 from ptmcad.answer.location import Location
 from ptmcad.answer.regionmap import CriticalValue, RegionMap, Status
@@ -22,6 +22,7 @@ from ptmcad.errors import ConfigError, expect
 from ptmcad.exact.cad.curves import Curve, curves_of
 from ptmcad.question.slice import Point
 from ptmcad.text.parsing import number_for
+from ptmcad.text.rationals import from_fraction
 
 if TYPE_CHECKING:
     from ptmcad.cover.complement import Components

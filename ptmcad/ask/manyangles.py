@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 
 FEW = 3
 """Unknowns of which a basis is computed whatever it takes: there are seldom more than 64 solutions."""
-_LARGEST = 64, 120, 500, 5_000
+_MAX_WORK = 64, 120, 500, 5_000
 """Solutions, and polynomials, terms and bits of a basis, which take about two seconds."""
 
-_MOST_BY_MSOLVE = 150
+_MAX_BY_MSOLVE = 150
 """Solutions, whose algebra takes some tens of seconds: 70 take ten, of which the basis's proof is the half."""
 
 
@@ -41,7 +41,7 @@ def work_for(model: Model) -> Work | None:
     counted_alike = not isinstance(model, System) or (model.potential is not None and not model.inequalities)
     if len(model.unknowns) <= FEW or model.reals or not model.has_potential or not counted_alike:
         return None
-    return Work(*_LARGEST) if find_spec("numba") is not None else None
+    return Work(*_MAX_WORK) if find_spec("numba") is not None else None
 
 
 def work_by_msolve() -> Work | None:
@@ -49,7 +49,7 @@ def work_by_msolve() -> Work | None:
     from ptmcad.algebra.bases import SMALL
     from ptmcad.algebra.msolve import program
 
-    return SMALL._replace(by_msolve=_MOST_BY_MSOLVE) if program() is not None else None
+    return SMALL._replace(by_msolve=_MAX_BY_MSOLVE) if program() is not None else None
 
 
 def counts_by_search(model: Model, point: Mapping[str, Fraction], timeout: float | None) -> Counts:

@@ -13,7 +13,6 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.real_roots import RealRoot, sign_at
 from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.regionmap import Cell, RegionMap
@@ -23,6 +22,7 @@ from ptmcad.cover.subdivision import FREE
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.curves import by_component, curves_of, lines_of
 from ptmcad.question.doubles import within_doubles
+from ptmcad.text.rationals import from_fraction
 
 MAX_PIXELS = 10**8
 

@@ -84,7 +84,7 @@ def poses_at(model: Model, parameters: Mapping[str, Fraction], digits: int) -> P
         with loading("the certified engine"):
             from ptmcad.certified.plain.loops import loop_poses
             from ptmcad.certified.plain.poses import plain_poses
-            from ptmcad.certified.poses import certified_poses
+            from ptmcad.certified.ptm.poses import certified_poses
         check_room("the certified engine")
         if isinstance(model, ClosedMechanism):
             return loop_poses(model, parameters, digits)

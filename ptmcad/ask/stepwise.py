@@ -18,6 +18,7 @@ from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
 from ptmcad.mechanism import Model
 from ptmcad.question.config import point_from_mapping, slice_from
 from ptmcad.question.slice import Point, Slice, without_free_lengths
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 if TYPE_CHECKING:
     from ptmcad.answer.counts import Counts
@@ -74,7 +75,6 @@ def open_cad(question: Question) -> tuple[Point, ...]:
     ----------
     Strzebonski, Solving systems of strict polynomial inequalities, J. Symb. Comp. 29 (2000).
     """
-    from ptmcad.algebra.polynomials import to_fraction
     from ptmcad.exact.stages import problem_of, projection_of, stacks_of, variety_of
     from ptmcad.question.domain import prove_slice
 
@@ -112,7 +112,6 @@ def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object
     if timeout is not None and (isinstance(timeout, bool) or not isinstance(timeout, int | float) or not timeout > 0):
         raise ConfigError(f"{shown(repr(timeout), 60)} is not a positive number of seconds", key="timeout")
     from ptmcad.algebra.bases import MISSING
-    from ptmcad.algebra.polynomials import from_fraction
     from ptmcad.exact.counting import count_by_isolation
     from ptmcad.exact.models import system_from
     from ptmcad.text.expressions import constant

@@ -20,7 +20,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 
 from ptmcad.errors import ConfigError
-from ptmcad.process.extras import NUMBA_MISSING
+from ptmcad.process.extras import Extra
 
 if sys.platform != "win32":
     import fcntl
@@ -33,7 +33,7 @@ try:
 except ImportError as missing:
     if not isinstance(missing, ModuleNotFoundError):  # it is installed, and does not work
         raise
-    raise ConfigError(NUMBA_MISSING) from missing
+    raise ConfigError(Extra.certified.message) from missing
 except ValueError as error:  # numba reads its variables as it loads
     raise ConfigError(
         f"numba, on which the certified engine runs, cannot be loaded: {error} "

@@ -12,8 +12,8 @@ from ptmcad.certified.curve import Curve
 from ptmcad.certified.plain import curves as plain_curves
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.points import PointCount
-from ptmcad.certified.points import point_counter as ptm_counter
 from ptmcad.certified.ptm import curves as ptm_curves
+from ptmcad.certified.ptm.points import point_counter as ptm_counter
 from ptmcad.mechanism import ptm
 from ptmcad.question.slice import Count, Slice
 

@@ -30,11 +30,11 @@ from ptmcad.certified.compiled import compiled
 from ptmcad.certified.evaluation import Floats, Indices
 from ptmcad.certified.system import Arguments
 
-LEAST_GAIN = 0.5
+MIN_GAIN = 0.5
 """A row is solved for an unknown if its slope is at least this part of its error."""
 SHRINKAGE = 0.8
 """A width that is at most this part of what it was is worth another sweep."""
-LEAST_SLOPE = 1e-100
+MIN_SLOPE = 1e-100
 ROUNDS = 2
 
 
@@ -128,7 +128,7 @@ def _eliminate(rows: Rows, equal: int, count: int) -> bool:
     """Solve one more row for the unknown that it knows best, and put that into all others; False if none is left."""
     slopes, centers, errors, pivots = rows.slopes, rows.centers, rows.errors, rows.pivots
     n = slopes.shape[1]
-    best, row, column = LEAST_GAIN, -1, -1
+    best, row, column = MIN_GAIN, -1, -1
     for i in range(equal):
         for j in range(n):
             # of unknowns that have been solved for nothing is left in the other rows
@@ -177,7 +177,7 @@ def _bound(rows: Rows, i: int, nonnegative: bool) -> bool:
         bottom = -(center + (most - max(u, v))) - error
         top = inf if nonnegative else -(center + (least - min(u, v))) + error
         bottom, top = (bottom, top) if slopes[i, j] > 0 else (-top, -bottom)
-        if slope > LEAST_SLOPE:
+        if slope > MIN_SLOPE:
             if bottom > slope * low[j]:
                 low[j] = max(low[j], down(bottom / slope))
             if top < slope * high[j]:

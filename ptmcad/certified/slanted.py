@@ -36,7 +36,7 @@ FINER = 64
 """Boxes over a leaf are bisected until their projection is so many times smaller than the leaf."""
 BUDGET = 2000
 """Boxes that are treated for that, at most."""
-MOST_BOXES = 1500
+MAX_BOXES = 1500
 """A leaf with more is quartered at once."""
 MAX_LEAF = Fraction(1, 4)
 """Of the window's sides: a larger one, too."""
@@ -45,7 +45,7 @@ BISECTIONS, BISECTIONS_PER_BOX = 300, 2
 TUBE_SHARE = Fraction(1, 200)
 """Of the tolerance: half width of tubes, as a part of the window, at most. The curves would have to be fifty times as
 long as the window for tubes to use up half of it."""
-LEAST_HALF = Fraction(1, 2**38)
+MIN_HALF = Fraction(1, 2**38)
 """... and thinner ones are not asked for: doubles have not many digits more."""
 MAX_LEAVES = 20_000
 """That wait: a set of solutions that is no curve would have them without end."""
@@ -126,7 +126,7 @@ class Slanting:
             return None
         leaf = _Leaf(rectangle, boxes, inner)
         small = max(rectangle[1] - rectangle[0], rectangle[3] - rectangle[2]) <= MAX_LEAF * self.lattice.steps
-        if not small or sum(map(len, boxes)) > MOST_BOXES:
+        if not small or sum(map(len, boxes)) > MAX_BOXES:
             return leaf
         wide = inner[1] - inner[0] >= inner[3] - inner[2]
         for along in (0, 1) if wide else (1, 0):
@@ -174,7 +174,7 @@ class Slanting:
     def _patch(self, leaf: _Leaf, along: int, tolerance: Fraction) -> Patch | None:
         """The leaf's tubes along an axis, if they part it as they should."""
         low, high = self.lattice.window[1 - along]
-        most = float((high - low) * max(tolerance * TUBE_SHARE, LEAST_HALF))
+        most = float((high - low) * max(tolerance * TUBE_SHARE, MIN_HALF))
         hulls = [_hull(own) for own in leaf.boxes if len(own)]
         interval = (along, min(float(h[0][along]) for h in hulls), max(float(h[1][along]) for h in hulls))
         order = order_for(tolerance)

@@ -33,7 +33,7 @@ from ptmcad.show.drawable import no_drawing
 from ptmcad.show.style import Style, styled
 
 FORMATS = ("gif", "mp4")
-MOST_FPS = 60
+MAX_FPS = 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,7 @@ def _film(
               help="Which pose is followed, as `ptmcad map` numbers them, at the path's start.")  # fmt: skip
 @click.option("--frames", type=click.IntRange(2, 600), default=90, show_default=True,
               help="Pictures along the path; each fall has a third of that beside.")  # fmt: skip
-@click.option("--fps", type=click.IntRange(1, MOST_FPS), default=20, show_default=True, help="Pictures in a second.")
+@click.option("--fps", type=click.IntRange(1, MAX_FPS), default=20, show_default=True, help="Pictures in a second.")
 @click.option("--size", metavar="WxH", help="Of the film, as 9x5in.  [default: 9x5.1in]")
 @click.option("--dpi", type=click.IntRange(50, 400), default=100, show_default=True, help="Pixels to the inch.")
 @click.option("--palette", metavar="NAME|COLOUR,..", help="As of `ptmcad plot`.  [default: default]")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from importlib.util import find_spec
 from pathlib import Path
 
 import click
@@ -12,6 +11,7 @@ from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import report_written
 from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError
+from ptmcad.process.extras import Extra, require
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import load
 from ptmcad.question.examples import shipped_record
@@ -78,8 +78,7 @@ def command(
             raise ConfigError("measures nothing, so it takes no CONFIG", key="--compare")
         return _compare(*compare)
     slices = _slices(configs)
-    if find_spec("scipy") is None:
-        raise ConfigError("measuring distances needs scipy: pip install scipy", key="bench")
+    require(Extra.bench, key="bench")
     from ptmcad.studies.bench.files import PAGE, SUFFIXES, save, save_page
     from ptmcad.studies.bench.measuring import Settings, measure
     from ptmcad.studies.bench.methods import Method

@@ -10,7 +10,7 @@ import click
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.paths import out_option
 from ptmcad.cli.slices import Asked, slice_options
-from ptmcad.process.extras import require_aiohttp
+from ptmcad.process.extras import Extra, require
 from ptmcad.process.handover import Topic, send
 
 
@@ -39,7 +39,7 @@ def command(
         ptmcad explore configs/fig4.yaml --slider k=50:200 --open
         ptmcad explore --slice rho,L2 --set F3=F --set F4=F --free F=-40:0
     """
-    require_aiohttp()
+    require(Extra.explore)
     record = asked.record(free)
     with held(limits):
         from ptmcad.explore.panel import panel_of

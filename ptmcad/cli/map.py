@@ -121,10 +121,10 @@ def command(
             written = write_files(out, _writers(result, field, names, Figure(contours, style, dpi)))
     for path in written:
         click.echo(shown_path(path))
-    _tell(field)
+    _report(field)
 
 
-def _tell(field: Field) -> None:
+def _report(field: Field) -> None:
     """Say what was found, and what is not to be trusted."""
     click.echo(_summary(field))
     if field.beyond:

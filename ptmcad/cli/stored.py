@@ -145,10 +145,10 @@ def _format_of(text: str) -> Any:
 
 
 def _is_record(text: str) -> bool:
-    from ptmcad.text.yamltree import MAX_BYTES as MOST
+    from ptmcad.text.yamltree import MAX_BYTES as MAX_RECORD_BYTES
     from ptmcad.text.yamltree import read_text as read_yaml
 
-    if len(text) > MOST:
+    if len(text) > MAX_RECORD_BYTES:
         return False
     try:
         tree = read_yaml(text)

@@ -20,7 +20,7 @@ from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.values import files, names
 from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError, shown_path
-from ptmcad.process.extras import require_distributed, require_ffmpeg
+from ptmcad.process.extras import Extra, require, require_ffmpeg
 from ptmcad.process.handover import Topic, send
 from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config.sweeps import Sweeping, load_sweep
@@ -126,7 +126,7 @@ def command(
     """
     question = load_sweep(config)
     if how.scheduler is not None:
-        require_distributed()
+        require(Extra.distributed, key="--scheduler")
     if "mp4" in formats:
         require_ffmpeg()
     folder = Path(f"{question.name}-sweep") if out is None else out

@@ -54,7 +54,7 @@ def command(*, result: Path, seed: int | None, boxes: int | None, effort: int | 
 
             with ProgressBar() as progress:
                 report = verify_design(read_design_file(result), seed, progress)
-            return _told(report)
+            return _report(report)
         if is_family(result):
             family = read_family_file(result, whole=False)
             status = int(max(each_member(family, lambda member: _verified(member, seed, boxes, effort))))
@@ -81,7 +81,7 @@ def _verified_family(family: FamilyMap, seed: int | None) -> int:
         with ProgressBar() as progress:
             checks += verify_changes(family.changes, maps_at, seed, progress)
     click.echo(f"what the members have in common over {family.free.name}")
-    return _told(VerifyReport(tuple(checks)))
+    return _report(VerifyReport(tuple(checks)))
 
 
 def _verified(stored: RegionMap, seed: int | None, boxes: int | None, effort: int | None) -> int:
@@ -91,10 +91,10 @@ def _verified(stored: RegionMap, seed: int | None, boxes: int | None, effort: in
 
     with ProgressBar() as progress:
         report = verify(stored, seed=seed, boxes=boxes, progress=progress, effort=effort)
-    return _told(report)
+    return _report(report)
 
 
-def _told(report: VerifyReport) -> int:
+def _report(report: VerifyReport) -> int:
     """The exit status, after the table of a report has been printed."""
     click.echo(report.table())
     if report.ok:

@@ -30,7 +30,7 @@ HALVINGS = 5
 _DRAWN = 2**13
 """Where it is drawn there are more, until they are narrower than this part of the window, so that long tubes look
 smooth in a zoomed view too."""
-_MOST_HALVINGS = 10
+_MAX_HALVINGS = 10
 _WIDTHS = (Fraction(1, 2), Fraction(1, 8), Fraction(1, 64), Fraction(1, 1024))
 """Of rectangles that are tried within a part of a frame, as parts of the frame's length."""
 
@@ -331,7 +331,7 @@ def stepped(cover: Cover, halvings: int = HALVINGS, narrower: int = 1) -> Cover:
     def enough(patch: Patch) -> int:
         low, high = tubes.ends(patch)
         wanted = -(-(high - low) * narrower // cover.steps)
-        return max(halvings, min(_MOST_HALVINGS, (wanted - 1).bit_length()))
+        return max(halvings, min(_MAX_HALVINGS, (wanted - 1).bit_length()))
 
     steps = (piece for patch in cover.patches for piece in staircase(patch, enough(patch)))
     return Cover(cover.steps, tuple(sorted({*cover.rectangles, *steps})))

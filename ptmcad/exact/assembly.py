@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 
 import flint
 
-from ptmcad.algebra.polynomials import to_fraction
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import (
     Cell,
@@ -36,6 +35,7 @@ from ptmcad.exact.regions import members
 from ptmcad.exact.stages import Areas, Cells, SliceProblem, Variety, segment_of
 from ptmcad.options import Options
 from ptmcad.question.slice import Point
+from ptmcad.text.rationals import to_fraction
 from ptmcad.version import __version__
 
 

@@ -8,7 +8,6 @@ Guarantee: exact. Where a loop folds flat at a point is decided by the ideal of 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from fractions import Fraction
 
 from flint import fmpq
 
@@ -21,6 +20,7 @@ from ptmcad.exact.witness import Point
 from ptmcad.mechanism import ClosedMechanism, Model
 from ptmcad.mechanism.fourbars import IN_TWO_WAYS, closed_by, four_bars
 from ptmcad.text.expressions import Expression, constant
+from ptmcad.text.rationals import to_fraction
 
 Degenerate = DegenerateSliceError | InfiniteSolutionsError
 
@@ -78,5 +78,5 @@ def _values(parameters: Mapping[str, Ratio], at: Point) -> dict[str, Expression]
     found = {}
     for name, (above, below) in parameters.items():
         value = evaluate(above, *at) / evaluate(below, *at)
-        found[name] = constant(Fraction(int(value.p), int(value.q)))
+        found[name] = constant(to_fraction(value))
     return found

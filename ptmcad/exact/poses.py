@@ -17,7 +17,6 @@ from flint import ctx, fmpq
 from ptmcad.algebra.fibre import Fibre, Work
 from ptmcad.algebra.number_field import Element
 from ptmcad.algebra.points import Points, RealPoint, points, real_values
-from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
@@ -30,6 +29,7 @@ from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, mechanism_in
 from ptmcad.mechanism.description import System
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.rationals import from_fraction
 from ptmcad.text.tree import to_text as text_of
 
 BY_MSOLVE = "the Groebner basis was computed by msolve and proved to be one of the equations"

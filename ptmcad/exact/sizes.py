@@ -28,7 +28,7 @@ from ptmcad.exact.models.system import RationalPolynomial
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
 from ptmcad.exact.stages import Sample, SliceProblem, domain_limits, point_values
 
-MOST_POINTS = 256
+MAX_POINTS = 256
 """On a line; they tell degrees of 60 and more, and tell of more that they are more."""
 _FIRST_POINTS = 24
 _GENERIC = fmpq(10_007), fmpq(20_011)
@@ -75,7 +75,7 @@ def _terms(degrees: tuple[int, int], total: int, steps: tuple[int, int]) -> int:
 
 
 def sizes(problem: SliceProblem, solutions: int, seconds: float, most: Work | None = None) -> Sizes | None:
-    """The curve's sizes; None where they are larger than `MOST_POINTS` tell, or take longer.
+    """The curve's sizes; None where they are larger than `MAX_POINTS` tell, or take longer.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def _values(
 ) -> Iterator[_Value]:
     """Values modulo a prime; points over which solutions are lost are left out."""
     prime, (basis, most) = next(primes()), usual
-    for t in range(MOST_POINTS):
+    for t in range(MAX_POINTS):
         s = (t + 1) // 2 * (-1) ** t
         x, y = _place(s, line)
         point = _at(problem, (fmpq(x), fmpq(y)), solutions, most)
@@ -221,4 +221,4 @@ def _sizes_on(values: Iterator[_Value], known: Sequence[LinePolynomial], end: fl
             return norm, len(entries) // 2 if tables is None else tables
         if len(seen) < asked:
             return None
-        asked = min(asked * 3 // 2, MOST_POINTS) if asked < MOST_POINTS else asked + 1
+        asked = min(asked * 3 // 2, MAX_POINTS) if asked < MAX_POINTS else asked + 1

@@ -12,15 +12,7 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import (
-    Coefficient,
-    Ratio,
-    UnivariatePolynomial,
-    evaluate,
-    from_expression,
-    from_fraction,
-    to_fraction,
-)
+from ptmcad.algebra.polynomials import Coefficient, Ratio, UnivariatePolynomial, evaluate, from_expression
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.counts import Counts
@@ -38,6 +30,7 @@ from ptmcad.exact.regions import Link, members, merge
 from ptmcad.exact.variety import Known, check_hypotheses, discriminant_variety
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import decimal, fraction_of, short_text
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 Sample = tuple[fmpq, fmpq]
 Report = Callable[[int, int], None]
@@ -154,12 +147,12 @@ def problem_of(slice: Slice) -> SliceProblem:
     return SliceProblem(slice, system, parameters, (first, second))
 
 
-def variety_of(problem: SliceProblem, keep: frozenset[str] = frozenset(), base: int | None = None) -> Variety:
+def variety_of(problem: SliceProblem, without: frozenset[str] = frozenset(), base: int | None = None) -> Variety:
     """The variety, over a base axis.
 
     Parameters
     ----------
-    keep : names of savings to switch off, of `ptmcad.question.savings`.
+    without : names of savings to switch off, of `ptmcad.question.savings`.
     base : 0 or 1; that of the cheaper decomposition when None.
 
     Raises
@@ -169,13 +162,15 @@ def variety_of(problem: SliceProblem, keep: frozenset[str] = frozenset(), base: 
     """
     system, parameters, window = problem.system, problem.parameters, problem.window
     try:
-        found = discriminant_variety(system, parameters, window, domain_limits(system, parameters), keep, problem.known)
+        found = discriminant_variety(
+            system, parameters, window, domain_limits(system, parameters), without, problem.known
+        )
     except (DegenerateSliceError, InfiniteSolutionsError) as error:
         raise _explained(problem, error) from error
     views = [curves_of(found.components, base) for base in (0, 1)]
     costs = (predicted_cost(views[0]), predicted_cost(views[1]))
     if base is None:
-        base = 1 if costs[1] < costs[0] and "axis-order" not in keep else 0
+        base = 1 if costs[1] < costs[0] and "axis-order" not in without else 0
     lines = lines_of(found.components, base)
     return Variety(found.components, found.complex_solutions, base, views[base], lines, costs, found.excludes)
 
@@ -216,11 +211,11 @@ def domain_limits(system: ParametricSystem, parameters: dict[str, Ratio]) -> lis
 
 
 def projection_of(
-    problem: SliceProblem, variety: Variety, keep: frozenset[str] = frozenset(), check: Check = nothing
+    problem: SliceProblem, variety: Variety, without: frozenset[str] = frozenset(), check: Check = nothing
 ) -> Projection:
     """The abscissae over which the order of the curves can change."""
     window, base = problem.window, variety.base
-    return project(variety.curves, list(variety.lines.values()), window[base], window[1 - base], check, keep)
+    return project(variety.curves, list(variety.lines.values()), window[base], window[1 - base], check, without)
 
 
 def stacks_of(problem: SliceProblem, variety: Variety, projection: Projection) -> Stacks:
@@ -330,7 +325,7 @@ def segment_of(separator: Separator) -> Segment:
 
 
 def areas_of(
-    problem: SliceProblem, variety: Variety, known: Cells, tolerance: Fraction, keep: frozenset[str], check: Check
+    problem: SliceProblem, variety: Variety, known: Cells, tolerance: Fraction, without: frozenset[str], check: Check
 ) -> Areas:
     """Bounds of the regions' areas.
 
@@ -339,7 +334,7 @@ def areas_of(
     tolerance : largest relative width of each region's bounds before they are written in decimals.
     """
     base, region_of = variety.base, known.neighbours.region_of
-    alone = "equal-counts" in keep
+    alone = "equal-counts" in without
     numbers = iter(range(len(region_of)) if alone else region_of)
     stacks = known.stacks.stacks
     rows = [tuple(next(numbers) for _ in stack.heights) for stack in stacks]

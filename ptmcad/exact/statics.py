@@ -18,13 +18,13 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.number_field import Element
 from ptmcad.algebra.points import RealPoint, value_at
-from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.answer.poses import Pose, Spring, TorsionSpring, Vector
 from ptmcad.exact.models.system import RationalPolynomial
 from ptmcad.exact.stiffness import Number, Stiffness, eigenvalues, square_root, stiffness_of
 from ptmcad.mechanism.xjoint import second_bar
 from ptmcad.text.balls import ball_of
 from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.rationals import from_fraction
 
 MAX_BITS = 2**22
 """Parameters of a thousand digits need a hundredth of them: a number that is still open is rational unnoticed."""

@@ -19,6 +19,7 @@ from ptmcad.algebra.number_field import Element
 from ptmcad.algebra.rational_roots import rational_roots
 from ptmcad.text.balls import ball_of, enclosed
 from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.rationals import to_fraction
 
 _Ring = TypeVar("_Ring", fmpq, nmod)
 Matrix = tuple[tuple[Element, ...], ...]
@@ -146,7 +147,7 @@ def _rational_eigenvalue(trace_element: Element, determinant_element: Element) -
     if t is not None and d is not None and any(t[1:]) and _eigenvalue(t, d) is None:
         return None
     q = _eigenvalue(trace_element.coefficients(), determinant_element.coefficients())
-    return None if q is None else Fraction(int(q.p), int(q.q))
+    return None if q is None else to_fraction(q)
 
 
 def _eigenvalue(trace: Sequence[_Ring], determinant: Sequence[_Ring]) -> _Ring | None:

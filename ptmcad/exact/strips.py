@@ -19,7 +19,6 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import refine, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.boundarysurface import ACCURACY
@@ -27,6 +26,7 @@ from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.arrangement import Picture
 from ptmcad.exact.cad.curves import by_component
 from ptmcad.exact.cad.stacks import BaseEnd
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 JUMP = Fraction(1, 2**12)
 """Of the window's height: walls on both sides of a critical abscissa that end no further apart are one wall, and

@@ -258,7 +258,7 @@ def _with_poles(
     algebra: QuotientAlgebra, suspects: Sequence[Coefficient], coordinates: Sequence[int]
 ) -> list[Coefficient]:
     """Those of the polynomials on which some of the coordinates has a pole; none is missed."""
-    if algebra.dimension > MOST_TRACED or table_terms(algebra) > MOST_TERMS:
+    if algebra.dimension > MAX_TRACED or table_terms(algebra) > MAX_TERMS:
         found: list[Coefficient] = []
         for k in coordinates:
             open_ones = [f for f in suspects if f not in found]
@@ -281,9 +281,9 @@ def proved_poles(
     return poles + _with_poles(algebra, [f for f in suspects if f not in poles], equations.unbounded)
 
 
-MOST_TRACED = 8
+MAX_TRACED = 8
 """Solutions up to which power traces show the poles; their degrees grow with the square of the number of solutions."""
-MOST_TERMS = 400
+MAX_TERMS = 400
 """Of the multiplication table, likewise."""
 
 

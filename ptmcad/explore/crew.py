@@ -26,7 +26,7 @@ ANSWER_SECONDS = 180.0
 """After which a worker is ended: FLINT's code, and compiling the certified engine, do not look at any clock."""
 CANCEL_SECONDS = 2.0
 """In which a superseded job has to leave; it is ended then."""
-_LONGEST = 1 << 26
+_MAX_BYTES = 1 << 26
 """Bytes of one answer."""
 
 
@@ -100,7 +100,7 @@ class Worker:
         try:
             self.process = await asyncio.create_subprocess_exec(
                 sys.executable, "-m", "ptmcad.explore.worker", str(read), str(os.getpid()), str(self.folder),
-                stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE, pass_fds=(read,), limit=_LONGEST,
+                stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE, pass_fds=(read,), limit=_MAX_BYTES,
             )  # fmt: skip
         finally:
             os.close(read)

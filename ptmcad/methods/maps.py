@@ -174,9 +174,9 @@ def _map_explore(self: RegionMap) -> Explorer:
         When anywidget is not installed, or the map contradicts itself so that it cannot be drawn.
     """
     from ptmcad.ask.fields.field import exact_at
-    from ptmcad.process.extras import require_anywidget
+    from ptmcad.process.extras import Extra, require
 
-    require_anywidget()
+    require(Extra.notebook)
     from ptmcad.show.widget import Explorer
 
     return Explorer(self, lambda x, y: exact_at(self, x, y))

@@ -1,94 +1,56 @@
 """Packages and programs that only some questions need: asked for before anything is computed, so that no work is lost.
 
-Guarantee: nothing is imported to find out; a package counts as there when Python would find it.
+Guarantee: nothing is imported to find out; a package counts as there when Python would find it. Every message names the
+extra of ptmcad that installs what is missing.
 """
 
 from __future__ import annotations
 
 import shutil
+from enum import Enum
 from importlib.util import find_spec
 
 from ptmcad.errors import ConfigError
 
-NUMBA_MISSING = (
-    "the certified engine, which springs with a free length need, runs on the package numba, "
-    "which is not installed: pip install numba"
-)
 
-ANYWIDGET_MISSING = (
-    "a living map in a notebook needs the package anywidget, which is not installed: pip install 'ptmcad[notebook]'"
-)
+class Extra(Enum):
+    """Optional groups of packages, by their names in pyproject.toml: the package that is asked for, and what needs
+    it."""
 
-DISTRIBUTED_MISSING = (
-    "a scheduler's workers are asked through the package distributed (Dask), which is not installed: "
-    "pip install 'ptmcad[distributed]', here and on every worker"
-)
+    certified = "numba", "the certified engine, which springs with a free length need, runs on the package {}"
+    design = "scipy", "the best design is searched by the package {}"
+    bench = "scipy", "distances are measured with the package {}"  # numba, too, is asked for by what needs it
+    data = "pandas", "a data frame needs the package {}"
+    notebook = "anywidget", "a living map in a notebook needs the package {}"
+    explore = "aiohttp", "the explorer's page is served by the package {}"
+    distributed = "distributed", "a scheduler's workers are asked through the package {} (Dask)"
 
-AIOHTTP_MISSING = (
-    "the explorer's page is served by the package aiohttp, which is not installed: pip install 'ptmcad[explore]'"
-)
+    @property
+    def package(self) -> str:
+        """By the name under which it is imported."""
+        return self.value[0]
 
-SCIPY_MISSING = "the best design is searched by the package scipy, which is not installed: pip install 'ptmcad[design]'"
-
-
-def require_numba() -> None:
-    """Refuse at once what the certified engine would refuse later.
-
-    Raises
-    ------
-    ConfigError
-        When numba is not installed.
-    """
-    if find_spec("numba") is None:
-        raise ConfigError(NUMBA_MISSING)
+    @property
+    def message(self) -> str:
+        """What to do where it is missing."""
+        where = ", here and on every worker" if self is Extra.distributed else ""
+        return f"{self.value[1].format(self.package)}, which is not installed: pip install 'ptmcad[{self.name}]'{where}"
 
 
-def require_anywidget() -> None:
-    """Refuse what a notebook's widget needs.
+def require(extra: Extra, key: str | None = None) -> None:
+    """Refuse at once what would fail later.
+
+    Parameters
+    ----------
+    key : of the option or record that asks for it.
 
     Raises
     ------
     ConfigError
-        When anywidget is not installed.
+        When the package is not installed.
     """
-    if find_spec("anywidget") is None:
-        raise ConfigError(ANYWIDGET_MISSING)
-
-
-def require_distributed() -> None:
-    """Refuse what runs on a cluster.
-
-    Raises
-    ------
-    ConfigError
-        When distributed is not installed.
-    """
-    if find_spec("distributed") is None:
-        raise ConfigError(DISTRIBUTED_MISSING, key="--scheduler")
-
-
-def require_aiohttp() -> None:
-    """Refuse what the explorer needs.
-
-    Raises
-    ------
-    ConfigError
-        When aiohttp is not installed.
-    """
-    if find_spec("aiohttp") is None:
-        raise ConfigError(AIOHTTP_MISSING)
-
-
-def require_scipy() -> None:
-    """Refuse what a global search needs.
-
-    Raises
-    ------
-    ConfigError
-        When scipy is not installed.
-    """
-    if find_spec("scipy") is None:
-        raise ConfigError(SCIPY_MISSING)
+    if find_spec(extra.package) is None:
+        raise ConfigError(extra.message, key=key)
 
 
 def require_ffmpeg() -> str:

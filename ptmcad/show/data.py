@@ -19,6 +19,7 @@ from ptmcad.answer.counts import MorseIndex
 from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
+from ptmcad.process.extras import Extra, require
 from ptmcad.question.doubles import within_doubles
 from ptmcad.show.polynomial_text import Style, polynomial_text
 
@@ -145,10 +146,9 @@ def pandas_frame(rows: Iterable[Row], columns: Sequence[str] | None, whole: Iter
 
 
 def _pandas() -> Any:
-    try:
-        import pandas as pd
-    except ModuleNotFoundError as error:
-        raise ConfigError("a data frame needs the package pandas: pip install pandas") from error
+    require(Extra.data)
+    import pandas as pd
+
     return pd
 
 

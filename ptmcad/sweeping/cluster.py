@@ -17,7 +17,7 @@ from time import monotonic
 from typing import Any
 
 from ptmcad.errors import ConfigError, OutputError, shown
-from ptmcad.process.extras import require_distributed
+from ptmcad.process.extras import Extra, require
 from ptmcad.sweeping.member import Failed
 from ptmcad.sweeping.tasks import Answer, Task
 
@@ -40,7 +40,7 @@ class Cluster:
     """
 
     def __init__(self, work: Task, address: str) -> None:
-        require_distributed()
+        require(Extra.distributed, key="--scheduler")
         import distributed
 
         client: Any = distributed.Client

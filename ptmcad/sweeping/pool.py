@@ -114,16 +114,16 @@ class Pool:
             os.close(lifeline[0])
         worker = _Worker(process, Connection(ours.detach()), lifeline[1], [], monotonic())
         self._workers.append(worker)
-        self._tell(worker, self.work)
+        self._send(worker, self.work)
         return worker
 
     def _give(self, worker: _Worker, number: int) -> None:
         if not worker.numbers:
             worker.since = monotonic()
         worker.numbers.append(number)
-        self._tell(worker, number)
+        self._send(worker, number)
 
-    def _tell(self, worker: _Worker, what: object) -> None:
+    def _send(self, worker: _Worker, what: object) -> None:
         try:
             worker.connection.send(what)
         except OSError:  # it has died: reading its answer says so

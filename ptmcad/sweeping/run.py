@@ -23,7 +23,7 @@ from ptmcad.answer.sweep import Sweep
 from ptmcad.ask.classification import prepare
 from ptmcad.errors import ConfigError, LimitReached, PtmcadError
 from ptmcad.options import Progress
-from ptmcad.process.extras import require_distributed
+from ptmcad.process.extras import Extra, require
 from ptmcad.question.config.sweeps import Sweeping, sweep_from
 from ptmcad.question.slice import Slice
 from ptmcad.sweeping.index import Index, opened, read_sweep
@@ -140,7 +140,7 @@ def _workers(work: Work, jobs: int | None, scheduler: str | None) -> Callable[[]
         return pool
     from ptmcad.sweeping.cluster import Cluster
 
-    require_distributed()  # whether or not there is anything left to compute
+    require(Extra.distributed, key="--scheduler")  # whether or not there is anything left to compute
     return lambda: Cluster(work, scheduler)
 
 

@@ -10,6 +10,7 @@ from fractions import Fraction
 from flint import arb, fmpq
 
 from ptmcad.text.enclosure import Enclosure, settled
+from ptmcad.text.rationals import to_fraction
 
 _GUARD = 6
 """Digits of the enclosure's middle beyond those asked for, at first."""
@@ -77,5 +78,4 @@ def exact(ball: arb) -> Fraction:
     ValueError
         When the radius is not zero, or the ball not finite.
     """
-    value = ball.fmpq()
-    return Fraction(int(value.p), int(value.q))
+    return to_fraction(ball.fmpq())

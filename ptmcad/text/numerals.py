@@ -120,6 +120,16 @@ def short_text(value: Fraction) -> str:
     return text if len(text) <= MAX_SHORT else f"about {approximate_text(value)}"
 
 
+def of_digits(whole: str, decimals: str, exponent: int) -> Fraction:
+    """The number that digits before and after a point stand for, times a power of ten.
+
+    >>> of_digits("1", "50", -1)
+    Fraction(3, 20)
+    """
+    value, scale = integer_of(whole + decimals), exponent - len(decimals)
+    return Fraction(value * 10**scale) if scale >= 0 else Fraction(value, 10**-scale)
+
+
 def fraction_of(text: str) -> Fraction:
     """The number written as ``7/10``, ``-3``, ``0.25`` or ``1.5e-7``.
 
@@ -140,9 +150,7 @@ def fraction_of(text: str) -> Fraction:
     digits = max(len(whole + (decimals or "")), len(denominator_text or ""))
     if digits > MAX_DIGITS or (exponent is not None and abs(int(exponent)) > MAX_EXPONENT):
         raise ValueError(f"the number {text[:20]}... is too long")
-    value = Fraction(integer_of(whole + (decimals or "")))
-    scale = int(exponent or 0) - len(decimals or "")
-    value *= Fraction(10) ** scale
+    value = of_digits(whole, decimals or "", int(exponent or 0))
     if denominator_text is not None:
         if (denominator := integer_of(denominator_text)) == 0:
             raise ValueError(f"{text[:40]!r} has a zero denominator")

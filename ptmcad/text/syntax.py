@@ -18,6 +18,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from ptmcad.errors import ExpressionError
+from ptmcad.text.numerals import of_digits
 from ptmcad.text.tree import (
     BINDING,
     FUNCTIONS,
@@ -231,6 +232,4 @@ def _number(token: _Token) -> Fraction:
     whole, _, decimals = digits.partition(".")
     if len(whole) > 1 and whole.startswith("0"):
         raise ExpressionError(f"'{_short(token.text)}' starts with 0: drop the leading zeros", token.position)
-    scale = int(exponent or "0") - len(decimals)
-    value = int(whole + decimals)
-    return Fraction(value * 10**scale) if scale >= 0 else Fraction(value, 10**-scale)
+    return of_digits(whole, decimals, int(exponent or "0"))

@@ -18,8 +18,9 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.answer.regionmap import Region
 from ptmcad.text.numerals import approximate_text
+from ptmcad.text.rationals import to_fraction
 from ptmcad.verification.branches import Branch, Effort, Part
-from ptmcad.verification.claims import Claims, bracket, fraction
+from ptmcad.verification.claims import Claims, bracket
 from ptmcad.verification.derivation import rational
 from ptmcad.verification.disks import PrecisionTooLow
 from ptmcad.verification.places import at_edge, at_value, beyond
@@ -49,7 +50,7 @@ def check_areas(claims: Claims) -> str:
     """Bounds of each region's area: ordered, within the window, and around a proved enclosure."""
     result = claims.result
     (start, stop), (low, high) = claims.base, claims.height
-    window = fraction((stop - start) * (high - low))
+    window = to_fraction((stop - start) * (high - low))
     for n, region in enumerate(result.regions):
         # bounds are written as decimals, rounded outwards
         if not (0 <= region.area[0] <= region.area[1] <= window * (1 + Fraction(1, 10**15))):
@@ -66,7 +67,7 @@ def check_areas(claims: Claims) -> str:
     scale = (narrowest or window / 10**18) / window
     bits = 96 + 2 * _doublings(scale)
     for ends in (claims.base, claims.height):
-        bits += _doublings(fraction((ends[1] - ends[0]) / max(abs(ends[0]), abs(ends[1]))))
+        bits += _doublings(to_fraction((ends[1] - ends[0]) / max(abs(ends[0]), abs(ends[1]))))
     strip = rational(scale) / (16 * len(result.stacks))
     unconfirmed = "the precision did not suffice to confirm the areas"
     # of the narrowest bounds' width: how far inside of them an area can be proved to be
@@ -95,7 +96,7 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
     result = claims.result
     (start, stop), (low, high) = claims.base, claims.height
     width = stop - start
-    window = fraction(width * (high - low))
+    window = to_fraction(width * (high - low))
     brackets = [bracket(v, strip * width) for v in result.critical_values]
     lost = sum((b - a for a, b in brackets), fmpq(0)) * (high - low)
     bounds = [(arb(rational(r.area[0])), arb(rational(r.area[1]))) for r in result.regions]

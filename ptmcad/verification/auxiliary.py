@@ -20,8 +20,9 @@ from math import gcd, isqrt, prod
 from flint import fmpq
 
 from ptmcad.answer.regionmap import Kind
+from ptmcad.text.rationals import to_fraction
 from ptmcad.verification.algebra import Monomial
-from ptmcad.verification.claims import Claims, fraction
+from ptmcad.verification.claims import Claims
 from ptmcad.verification.fibre import Fibre, standard_monomials
 from ptmcad.verification.plan import switched_off
 from ptmcad.verification.report import Unchecked, Violation
@@ -84,7 +85,10 @@ def _values(claims: Claims, seed: str, savings: Sequence[str]) -> tuple[list[Val
         if not norms:
             monomials = standard_monomials(claims.model, claims.parameters_at(x, y))
         at = tuple(int(c.polynomial(x, y)) for c in claims.result.components)
-        norm, found = fraction(fibre.norm()), {n: fraction(v) for n, v in _functions(savings, fibre, monomials).items()}
+        norm, found = (
+            to_fraction(fibre.norm()),
+            {n: to_fraction(v) for n, v in _functions(savings, fibre, monomials).items()},
+        )
         if 0 in at or 0 in (norm, *found.values()):
             raise Violation(f"a function that defines curves vanishes at the random point {x}, {y}")
         norms.append((norm, at))

@@ -17,6 +17,7 @@ from ptmcad.errors import PoleError
 from ptmcad.mechanism import Model
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.rationals import to_fraction
 from ptmcad.verification.algebra import NotFinite
 from ptmcad.verification.derivation import has_index, rational
 from ptmcad.verification.fibre import Fibre, fibre
@@ -192,14 +193,9 @@ def side(u: fmpq, value: CriticalValue) -> int:
     return 1 if roots_within(p, low, u) > 0 else -1
 
 
-def fraction(value: fmpq) -> Fraction:
-    """A FLINT rational as a Python fraction."""
-    return Fraction(int(value.p), int(value.q))
-
-
 def short(value: fmpq) -> str:
     """A number as a short decimal for messages."""
-    return approximate_text(fraction(value))
+    return approximate_text(to_fraction(value))
 
 
 def is_root(f: fmpz_poly, value: CriticalValue) -> bool:

@@ -15,7 +15,8 @@ from typing import NamedTuple
 from flint import arb, ctx, fmpq
 
 from ptmcad.answer.regionmap import CriticalValue
-from ptmcad.verification.claims import PlaneCurve, ball, bracket, fraction
+from ptmcad.text.rationals import to_fraction
+from ptmcad.verification.claims import PlaneCurve, ball, bracket
 from ptmcad.verification.sturm import isolating_intervals, squarefree
 
 Abscissa = Callable[[fmpq], arb]
@@ -80,7 +81,8 @@ def _poles(curve: PlaneCurve, low: fmpq, high: fmpq) -> tuple[CriticalValue, ...
     leading = squarefree(leading)
     coefficients = tuple(int(c) for c in leading.coeffs())
     return tuple(
-        CriticalValue(coefficients, fraction(a), fraction(b), "") for a, b in isolating_intervals(leading, low, high)
+        CriticalValue(coefficients, to_fraction(a), to_fraction(b), "")
+        for a, b in isolating_intervals(leading, low, high)
     )
 
 

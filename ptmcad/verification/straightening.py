@@ -23,7 +23,7 @@ from ptmcad.verification.disks import recentered
 
 _STAGES = 6
 """Newton polygons for one branch."""
-_GREATEST = 12
+_MAX_POWER = 12
 """The greatest power of s for x."""
 _STEPS = 64
 """Of Newton's method towards a multiple root."""
@@ -93,7 +93,7 @@ def _stage(chart: Chart, x: arb, branches: int, first: bool) -> tuple[Chart, int
     """The chart after one more Newton polygon, and how many branches begin like the wanted one up to there."""
     s = x.root(chart.power)
     for edge in _edges(chart, branches):
-        if not (first or edge.slope > 0) or chart.power * edge.slope.denominator > _GREATEST:
+        if not (first or edge.slope > 0) or chart.power * edge.slope.denominator > _MAX_POWER:
             continue
         a, b = edge.slope.numerator, edge.slope.denominator
         finer = s.root(b)

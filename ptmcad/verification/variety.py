@@ -37,7 +37,8 @@ from ptmcad.answer.regionmap import HARMLESS, Kind
 from ptmcad.mechanism import ClosedMechanism, System
 from ptmcad.text.numerals import text_of
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification.claims import Claims, PlaneCurve, fraction
+from ptmcad.text.rationals import to_fraction
+from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.derivation import coordinates_of
 from ptmcad.verification.fibre import Fibre
 from ptmcad.verification.report import Violation
@@ -114,11 +115,11 @@ class FibrePoint:
 
     def norm(self) -> Fraction:
         """The product of det H over the solutions."""
-        return fraction(self.fibre.norm())
+        return to_fraction(self.fibre.norm())
 
     def condition_norm(self, k: int) -> Fraction:
         """The product of a condition over the solutions at which it is not 0."""
-        return fraction(self.fibre.norm_where_nonzero(self.fibre.conditions[k]))
+        return to_fraction(self.fibre.norm_where_nonzero(self.fibre.conditions[k]))
 
     @cached_property
     def denominator(self) -> int:

@@ -10,7 +10,8 @@ from __future__ import annotations
 from flint import arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly
 
 from ptmcad.answer.regionmap import HARMLESS, NO_POINT, CriticalValue, Kind
-from ptmcad.verification.claims import Claims, PlaneCurve, ball, fraction, short
+from ptmcad.text.rationals import to_fraction
+from ptmcad.verification.claims import Claims, PlaneCurve, ball, short
 from ptmcad.verification.report import Violation
 from ptmcad.verification.structure import points_over, projection_of_one
 from ptmcad.verification.sturm import isolating_intervals, roots_between, separated_points
@@ -57,10 +58,10 @@ def _point_in_window(curve: PlaneCurve, claims: Claims) -> str | None:
     # no branch runs through the window; what is left are isolated points, over roots of the discriminant
     for f in singular:
         for a, b in isolating_intervals(f, *claims.base):
-            place = CriticalValue(tuple(int(c) for c in f.coeffs()), fraction(a), fraction(b), "")
+            place = CriticalValue(tuple(int(c) for c in f.coeffs()), to_fraction(a), to_fraction(b), "")
             points = points_over(curve, place)
             for c, d in isolating_intervals(points, *claims.height):
-                at = CriticalValue(tuple(int(k) for k in points.coeffs()), fraction(c), fraction(d), "")
+                at = CriticalValue(tuple(int(k) for k in points.coeffs()), to_fraction(c), to_fraction(d), "")
                 if not _excluded(curve, place, at):
                     return f"an isolated point near {short(a)}, {short(c)} could not be excluded"
     return None

@@ -14,7 +14,7 @@ from support.examples import examples
 from support.maps import CONFIGS, shipped
 
 from ptmcad import load
-from ptmcad.algebra.determinants import LEAST_INTERPOLATED, determinant
+from ptmcad.algebra.determinants import MIN_INTERPOLATED, determinant
 from ptmcad.algebra.fibre import evaluate as multiplication
 from ptmcad.algebra.fibre import fibre, signature
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
@@ -39,6 +39,7 @@ from ptmcad.exact.models import system_of
 from ptmcad.exact.models.system import SliceSystem, at_point, on_slice
 from ptmcad.exact.stages import problem_of
 from ptmcad.exact.variety import hermite_determinant, proved_poles
+from ptmcad.text.rationals import to_fraction
 
 X, Y = PLANE.gens()
 SYSTEM = system_of("ptm")
@@ -160,7 +161,7 @@ def test_simplest_between(a: Fraction, b: Fraction) -> None:
     low, high = min(a, b), max(a, b)
     assume(low < high)
     found = simplest_between(q(low), q(high))
-    value = Fraction(int(found.p), int(found.q))
+    value = to_fraction(found)
     assert low < value < high
     denominator = 1
     while True:  # the first denominator with a fraction inside
@@ -294,10 +295,10 @@ def test_norm_is_the_product_over_the_fibre(name: str) -> None:
 
 
 @pytest.mark.parametrize("axis", [X, Y], ids=["x", "y"])
-@pytest.mark.parametrize("rank", [LEAST_INTERPOLATED - 1, LEAST_INTERPOLATED])
+@pytest.mark.parametrize("rank", [MIN_INTERPOLATED - 1, MIN_INTERPOLATED])
 def test_determinants_of_many_rows_in_one_axis(axis: fmpz_mpoly, rank: int) -> None:
     """A triangular matrix with its rows mixed, of known determinant, and the same with a row that depends on others."""
-    size = LEAST_INTERPOLATED
+    size = MIN_INTERPOLATED
     diagonal = [(k + 2) * axis ** (k % 3) + k - 7 if k < rank else 0 * axis for k in range(size)]
     rows = [
         [d if i == j else (i * axis - j) ** 2 if j > i else 0 * axis for j in range(size)]
@@ -322,11 +323,11 @@ def test_poles_by_characteristic_polynomials_are_those_by_power_traces(
     suspects = irreducible_factors(multiplication_denominator(algebra))
     by_traces = proved_poles(equations, algebra, suspects)
     assert 0 < len(by_traces) < len(suspects)
-    monkeypatch.setattr(variety, "MOST_TERMS", 10**9)
+    monkeypatch.setattr(variety, "MAX_TERMS", 10**9)
     # nothing is seen at points, so that all is left to the other two ways
     monkeypatch.setattr(variety, "poles_at_points", lambda *_: [])
     assert set(map(str, proved_poles(equations, algebra, suspects))) == set(map(str, by_traces))
-    monkeypatch.setattr(variety, "MOST_TRACED", 0)
+    monkeypatch.setattr(variety, "MAX_TRACED", 0)
     monkeypatch.setattr(variety, "power_trace_denominators", None)
     assert set(map(str, proved_poles(equations, algebra, suspects))) == set(map(str, by_traces))
 

@@ -194,7 +194,7 @@ def test_large_determinants_go_modulo_primes_and_small_ones_do_not(monkeypatch: 
     rows = [[(p, PLANE.constant(1)) for p in row] for row in sample(9)]
     large = determinants.determinant(rows)
     assert asked == [9]
-    monkeypatch.setattr(determinants, "LEAST_MODULAR", 10)
+    monkeypatch.setattr(determinants, "MIN_MODULAR", 10)
     assert determinants.determinant(rows) == large
     determinants.determinant([row[:5] for row in rows[:5]])
     assert asked == [9]

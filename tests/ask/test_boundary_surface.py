@@ -14,7 +14,6 @@ from flint import fmpz_poly
 from support.few import few
 
 import ptmcad
-from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.real_roots import has_root_between, squarefree_part
 from ptmcad.answer.boundarysurface import ACCURACY, BoundarySurface
 from ptmcad.answer.family import FamilyMap, SpaceTerms
@@ -25,6 +24,7 @@ from ptmcad.exact.arrangement import picture_of
 from ptmcad.exact.familyprojection import OutOfReach
 from ptmcad.exact.strips import Strips
 from ptmcad.question.config import family_from, slice_from
+from ptmcad.text.rationals import from_fraction
 
 SQUARE = {"a": [-1, 1], "b": [-1, 1]}
 

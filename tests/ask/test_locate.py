@@ -17,12 +17,13 @@ from support.maps import CONFIGS, shipped
 from support.shipped_records import EXACT
 
 from ptmcad import RegionMap, load
-from ptmcad.algebra.polynomials import from_fraction, from_plane, to_fraction
+from ptmcad.algebra.polynomials import from_plane
 from ptmcad.algebra.real_roots import isolate, refine
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask import location
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.curves import curve
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 TINY = Fraction(1, 10**40)
 SHIPPED = [path.stem for path in EXACT]

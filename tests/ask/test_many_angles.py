@@ -61,7 +61,7 @@ def test_a_chain_of_four_bars_is_counted() -> None:
 def test_algebra_and_search_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     exact = ptmcad.counts_at(pendulums(), F="-3/2")
     assert exact.index == (1, 4, 6, 4, 1)
-    monkeypatch.setattr(manyangles, "_LARGEST", (1, 1, 1, 1))
+    monkeypatch.setattr(manyangles, "_MAX_WORK", (1, 1, 1, 1))
     assert ptmcad.counts_at(pendulums(), F="-3/2") == exact
     assert ptmcad.solve(model=pendulums(), F="-3/2").status is Status.CERTIFIED
 
@@ -70,7 +70,7 @@ def test_a_potential_of_four_angles_is_counted_in_the_same_way(monkeypatch: pyte
     unknowns = dict.fromkeys(("p", "q", "r", "s"), "angle")
     system = ptmcad.System(unknowns=unknowns, potential="cos(p) + b*cos(q) + sin(r) - 2*cos(s) + cos(p - q)/5")
     exact = ptmcad.counts_at(system, b=2)
-    monkeypatch.setattr(manyangles, "_LARGEST", (1, 1, 1, 1))
+    monkeypatch.setattr(manyangles, "_MAX_WORK", (1, 1, 1, 1))
     assert ptmcad.counts_at(system, b=2) == exact
     assert exact.total == 16
 

@@ -28,6 +28,7 @@ from ptmcad.exact.point_system import solutions_at
 from ptmcad.exact.signatures import count_by_signature
 from ptmcad.exact.stages import point_values, problem_of, variety_of
 from ptmcad.question.slice import Count
+from ptmcad.text.rationals import to_fraction
 
 ROOT = Path(__file__).resolve().parents[2]
 VALIDATOR = jsonschema.Draft202012Validator(
@@ -173,7 +174,7 @@ def terms(text: str, names: tuple[str, str]) -> dict[tuple[int, ...], Fraction]:
     """A polynomial, whatever the order of its terms in the text."""
     ring = fmpq_mpoly_ctx.get(names, Ordering.lex)
     value = eval(text.replace("^", "**"), dict(zip(names, ring.gens(), strict=True)))
-    return {tuple(map(int, e)): Fraction(int(c.p), int(c.q)) for e, c in (value + ring.constant(0)).terms()}
+    return {tuple(map(int, e)): to_fraction(c) for e, c in (value + ring.constant(0)).terms()}
 
 
 def test_real_solutions_of_the_stability_pair_on_a_lattice() -> None:

@@ -13,8 +13,9 @@ from support.dense_search import dense_search
 import ptmcad
 from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.parameters import values_at
-from ptmcad.certified.points import PointCount, PointCounter, point_counter
+from ptmcad.certified.points import PointCount
 from ptmcad.certified.ptm.cones import cones
+from ptmcad.certified.ptm.points import PointCounter, point_counter
 from ptmcad.mechanism import ptm
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import axis

@@ -20,10 +20,10 @@ from ptmcad.certified.arb_evaluation import run_arb
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.formula import Graph
 from ptmcad.certified.parameters import parameter_formulas
-from ptmcad.certified.points import point_counter
 from ptmcad.certified.ptm import curves as ptm_curves
 from ptmcad.certified.ptm.curves import QUARTER, curves
 from ptmcad.certified.ptm.mirror import is_own_image, opening
+from ptmcad.certified.ptm.points import point_counter
 from ptmcad.certified.ptm.statics import Angles, statics
 from ptmcad.certified.search import search_curve
 from ptmcad.certified.tape import record

@@ -22,9 +22,10 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified.engine import certified_map
 from ptmcad.certified.formula import Graph
-from ptmcad.certified.points import PointCount, point_counter
+from ptmcad.certified.points import PointCount
 from ptmcad.certified.ptm.cones import cones
 from ptmcad.certified.ptm.curves import curves
+from ptmcad.certified.ptm.points import point_counter
 from ptmcad.certified.ptm.statics import positive_base, slice_statics
 from ptmcad.errors import ConfigError, DegenerateSliceError, LimitReached
 from ptmcad.mechanism import ptm

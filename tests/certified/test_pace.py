@@ -166,7 +166,7 @@ def test_the_time_limit_is_kept_in_every_phase(monkeypatch: pytest.MonkeyPatch, 
 @pytest.mark.slow
 def test_counts_are_left_out_before_the_limit_is_missed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each count at a point takes ten seconds: what is not counted is undetermined, and the map is there in time."""
-    from ptmcad.certified.points import PointCounter
+    from ptmcad.certified.ptm.points import PointCounter
 
     clock = Clock()
     monkeypatch.setattr(engine, "Pace", lambda until: Pace(until, clock, clock))

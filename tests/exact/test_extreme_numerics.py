@@ -26,6 +26,7 @@ from ptmcad.exact.point_system import point_system
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.studies.stress.measure import answer, work_of
 from ptmcad.studies.stress.slices import FIG4, LOADED, SliceQuestion, ten
+from ptmcad.text.rationals import to_fraction
 from ptmcad.verification.sturm import roots_between
 
 
@@ -242,7 +243,7 @@ def test_the_simplest_rational_between_is_the_simplest(a: Fraction, b: Fraction)
         return
     low, high = min(a, b), max(a, b)
     found = simplest_between(fmpq(low.numerator, low.denominator), fmpq(high.numerator, high.denominator))
-    value = Fraction(int(found.p), int(found.q))
+    value = to_fraction(found)
     assert low < value < high
     for q in range(1, min(value.denominator, 40)):  # no smaller denominator fits
         p = (low * q).__floor__() + 1
@@ -259,7 +260,7 @@ def test_arcs_enclose_the_integral_of_branches_that_nearly_meet(e: int, bend: Fr
     # p = (v - arc)^2 - gap, times a number that makes it integral
     square = arc * arc - fmpq(gap.numerator, gap.denominator)
     in_v = [(q * fmpq(scale)).numer() for q in (square, arc * fmpq(-2), fmpq_poly([1]))]
-    integral = sum((Fraction(int(c.p), int(c.q)) * 2 / (k + 1) for k, c in enumerate(arc.coeffs()) if k % 2 == 0))
+    integral = sum((to_fraction(c) * 2 / (k + 1) for k, c in enumerate(arc.coeffs()) if k % 2 == 0))
     fibre = (fmpq(-1), fmpq(5))
     half = Fraction(1, 10 ** (e // 2))
     for side, number in ((-1, 0), (1, 1)):

@@ -16,13 +16,14 @@ from support.structure import check_structure, key
 
 import ptmcad
 from ptmcad import Count, RegionMap, load
-from ptmcad.algebra.polynomials import from_fraction, from_plane, to_fraction
+from ptmcad.algebra.polynomials import from_plane
 from ptmcad.algebra.real_roots import disjoint, isolate, refine, squarefree_part
 from ptmcad.answer.regionmap import Status
 from ptmcad.exact.cad.curves import curve
 from ptmcad.text.expressions import axis
 from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 SLICES = {path.stem: load(path) for path in EXACT}
 LARGE = ("fig5-text", "fig5-caption", "horizontal", "stiffness", "unequal-springs")

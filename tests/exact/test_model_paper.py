@@ -14,6 +14,7 @@ from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 from support.free_length_equilibria import free_length_equilibria
 
 from ptmcad.exact.models import system_of
+from ptmcad.text.rationals import to_fraction
 
 NAMES = ("L1", "L2", "rho", "k", "F3", "F4", "F3x", "F4x", "c1", "s1", "c2", "s2", "t1", "t2")
 RING = fmpq_mpoly_ctx.get(NAMES, Ordering.degrevlex)
@@ -181,7 +182,7 @@ def test_unloaded_angles_9() -> None:
         numbers = [Fraction(at[n]) for n in NAMES]
         zero = [
             sum(
-                (Fraction(int(c.p), int(c.q)) * _power(numbers, e) for e, c in g.terms()), Fraction(0)
+                (to_fraction(c) * _power(numbers, e) for e, c in g.terms()), Fraction(0)
             ) == 0
             for g in (G1, G2)
         ]  # fmt: skip

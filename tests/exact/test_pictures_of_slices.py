@@ -7,12 +7,12 @@ from fractions import Fraction
 import pytest
 
 import ptmcad
-from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.answer.arrangement import correspondence
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Merge
 from ptmcad.errors import ConfigError
 from ptmcad.exact.arrangement import picture_of
+from ptmcad.text.rationals import from_fraction
 
 SLICES = ("fig2", "fig4", "fig5-caption", "rods", "systems/kuramoto", "systems/cubic-and-quadratic")
 

@@ -14,12 +14,12 @@ from support.multistart import Found, model_of, solutions
 from support.random_models import random_mechanism, random_system
 
 import ptmcad
-from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.answer.counts import Counts
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import system_from
 from ptmcad.exact.signatures import count_by_signature
+from ptmcad.text.rationals import from_fraction
 
 POINTS = 200
 STARTS = 400

@@ -18,7 +18,7 @@ from support.random_slices import MODEL, NUMBERS, PAIRS, REFUSED, Draw, drawn
 from support.structure import check_structure
 
 from ptmcad import RegionMap, classify, slice_from_mapping, verify
-from ptmcad.algebra.polynomials import from_fraction, from_plane, to_fraction
+from ptmcad.algebra.polynomials import from_plane
 from ptmcad.algebra.real_roots import isolate, refine, squarefree_part
 from ptmcad.answer.regionmap import Status
 from ptmcad.errors import ConfigError, HypothesisError
@@ -26,6 +26,7 @@ from ptmcad.exact.cad.curves import curve
 from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.exact.signatures import count_by_signature
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 POINTS = 100
 TINY = Fraction(1, 10**40)

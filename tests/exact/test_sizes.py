@@ -120,7 +120,7 @@ def test_a_curve_that_is_too_large_has_no_size(monkeypatch: pytest.MonkeyPatch) 
     assert sizes(problem, 6, 0.0) is None
     # over points at which solutions are lost nothing is learnt
     assert sizes(problem, 7, 60.0) is None
-    monkeypatch.setattr(module, "MOST_POINTS", 30)
+    monkeypatch.setattr(module, "MAX_POINTS", 30)
     assert sizes(problem, 6, 60.0) is None
 
 

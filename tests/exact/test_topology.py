@@ -32,6 +32,7 @@ from ptmcad.exact.cad.panels import Panel
 from ptmcad.exact.cad.projection import project
 from ptmcad.exact.cad.stacks import StackData, lift
 from ptmcad.exact.regions import Link, merge
+from ptmcad.text.rationals import to_fraction
 
 X, Y = PLANE.gens()
 Window = tuple[str, str, str, str]
@@ -345,7 +346,7 @@ def check_area(name: str, base: int, tolerance: Fraction) -> None:
     assert low <= bounds[1]
     assert bounds[1] - bounds[0] <= tolerance * bounds[0]
     whole = (found.base[1] - found.base[0]) * (found.fibre[1] - found.fibre[0])
-    window_area = Fraction(int(whole.p), int(whole.q))
+    window_area = to_fraction(whole)
     assert sum(a for a, _ in areas) <= window_area <= sum(b for _, b in areas)
 
 

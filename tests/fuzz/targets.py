@@ -28,7 +28,7 @@ from ptmcad.question.config import MAX_DEGREE, slice_from_options
 from ptmcad.question.slice import Slice
 from ptmcad.show.report import page
 
-LONGEST_MESSAGE = 1200
+MAX_MESSAGE = 1200
 
 
 class BadMessageError(AssertionError):
@@ -185,7 +185,7 @@ def try_points(data: bytes) -> str:
 
 def check_message(text: str) -> None:
     """Raise unless the text is one line of bounded length that a terminal shows as it is."""
-    if len(text) > LONGEST_MESSAGE:
+    if len(text) > MAX_MESSAGE:
         raise BadMessageError(f"a message of {len(text)} characters: {text[:200]!r}")
     if not text.isprintable():
         raise BadMessageError(f"a message with control characters: {text[:500]!r}")

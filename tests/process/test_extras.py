@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tomllib
 from fractions import Fraction
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from ptmcad.cli import run
+from ptmcad.process.extras import Extra
 from ptmcad.studies.bench import ablation
 from ptmcad.studies.stress import campaign
 from ptmcad.studies.stress.case import Case, PointAnswer
@@ -99,3 +101,12 @@ def test_a_variable_that_numba_refuses() -> None:
     assert "must be > 0" in done.stderr
     assert "NUMBA_" in done.stderr
     assert done.stderr.count("\n") == 1
+
+
+def test_messages_name_an_extra_that_has_the_package() -> None:
+    """As pyproject.toml has them; each package's own name is that under which it is imported."""
+    groups = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    for extra in Extra:
+        assert any(need.startswith(f"{extra.package}>=") for need in groups[extra.name])
+        assert f"the package {extra.package}" in extra.message
+        assert f"pip install 'ptmcad[{extra.name}]'" in extra.message

@@ -107,7 +107,9 @@ def test_unknown_tables_and_options_are_refused(what: str, options: dict[str, ob
 
 def test_without_pandas_the_message_names_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(ConfigError, match="needs the package pandas: pip install pandas"):
+    with pytest.raises(
+        ConfigError, match=r"needs the package pandas, which is not installed: pip install 'ptmcad\[data\]'"
+    ):
         shipped("fig2").to_dataframe()
 
 

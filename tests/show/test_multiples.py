@@ -17,7 +17,7 @@ from ptmcad.answer.family import FamilyMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.multiples import draw_multiples
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.sheets import LONGEST, camera_of, halved
+from ptmcad.show.render.sheets import MAX_SIDE, camera_of, halved
 from ptmcad.show.render.solid import MAX_FLOORS, draw_solid
 from ptmcad.show.style import styled
 
@@ -129,7 +129,7 @@ def test_what_is_in_front_is_painted_last(solid: tuple[FamilyMap, BoundarySurfac
     cut, colours = halved(corners, np.array([[1.0, 0, 0], [0, 1, 0]]))
     sides = np.linalg.norm(np.roll(cut, -1, axis=1) - cut, axis=2)
     areas = np.linalg.norm(np.cross(cut[:, 1] - cut[:, 0], cut[:, 2] - cut[:, 0]), axis=1) / 2
-    assert sides.max() <= LONGEST
+    assert sides.max() <= MAX_SIDE
     assert areas[colours[:, 0] == 1].sum() == pytest.approx(2**0.5 / 2)
     assert (colours[:, 1] == 1).sum() == 1
     axes = solid[0].plot(surface=solid[1]).axes[0]

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from support.maps import shipped
 
 import ptmcad
-from ptmcad.algebra.polynomials import from_fraction, from_plane
+from ptmcad.algebra.polynomials import from_plane
 from ptmcad.exact.cad.curves import curve
 from ptmcad.exact.cad.polyline import FLAT, Branch, Chord, chords
 from ptmcad.exact.cad.stacks import roots_over
@@ -29,6 +29,7 @@ from ptmcad.studies.bench.error import grid_error, wrong_areas
 from ptmcad.studies.bench.methods import question
 from ptmcad.studies.bench.reference import COUNTS, Reference, Walls, centres, reference, regions, shown_count, walls
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.rationals import from_fraction
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 ZERO, ONE = Fraction(0), Fraction(1)

@@ -45,6 +45,7 @@ from ptmcad.studies.paper.claims import (
 from ptmcad.studies.paper.free_lengths import FreeLengthDesign, proved_equilibrium
 from ptmcad.studies.paper.slices import FIGURES, region_map, slice_of
 from ptmcad.studies.paper.squaring.equations import squared_equations
+from ptmcad.text.rationals import to_fraction
 
 SECTIONS = (
     "abstract", "1", "2", "3", "3.1", "3.2", "3.3", "4", "4.1", "4.2", "4.3", "5.1", "5.2", "conclusions",
@@ -164,7 +165,7 @@ def value(expression: Any, p: Point) -> Fraction:
     found = sp.sympify(expression).subs(
         {s: sp.Rational(at[s.name].numerator, at[s.name].denominator) for s in expression.free_symbols}
     )
-    return Fraction(int(found.p), int(found.q))
+    return to_fraction(found)
 
 
 POINTS = [random_point(Random(n)) for n in range(5)]

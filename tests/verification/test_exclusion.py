@@ -23,7 +23,7 @@ pytest.importorskip("numba")
 import numpy as np
 
 from ptmcad.verification.exclusion import check
-from ptmcad.verification.exclusion.check import MOST_EFFORT, check_free_area
+from ptmcad.verification.exclusion.check import MAX_EFFORT, check_free_area
 from ptmcad.verification.exclusion.forms import evaluate
 from ptmcad.verification.exclusion.formulas import Formulas
 from ptmcad.verification.exclusion.holding import holds
@@ -84,7 +84,7 @@ def without(stored: RegionMap, number: int) -> RegionMap:
 @pytest.mark.parametrize("name", RECORDS)
 @pytest.mark.slow_cases("zeeman")
 def test_all_of_a_true_map_is_proved(name: str) -> None:
-    assert check_free_area(MOST_EFFORT, CertifiedClaims(a_map(name))).startswith("100 % of the free area")
+    assert check_free_area(MAX_EFFORT, CertifiedClaims(a_map(name))).startswith("100 % of the free area")
 
 
 def test_more_effort_proves_more(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -103,7 +103,7 @@ def with_one_cell(stored: RegionMap) -> RegionMap:
     return replace(stored, cells=(replace(cell, region=0),))
 
 
-def outcomes(stored: RegionMap, tries: int, effort: int = MOST_EFFORT) -> Iterator[str]:
+def outcomes(stored: RegionMap, tries: int, effort: int = MAX_EFFORT) -> Iterator[str]:
     """What is found without single pieces, which are chosen at random."""
     cover = stored.cover
     assert cover is not None
@@ -150,7 +150,7 @@ def test_a_piece_of_a_billionth_of_the_window_is_found() -> None:
 def test_all_of_a_map_of_the_paper_s_mechanism_is_proved(count: str) -> None:
     stored = a_map(count, 0.05)
     assert len(stored.regions) == 2
-    assert check_free_area(MOST_EFFORT, CertifiedClaims(stored)).startswith("100 % of the free area")
+    assert check_free_area(MAX_EFFORT, CertifiedClaims(stored)).startswith("100 % of the free area")
 
 
 @pytest.mark.slow

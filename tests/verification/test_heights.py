@@ -19,6 +19,7 @@ from ptmcad.answer.regionmap import CriticalValue
 from ptmcad.exact.cad.curves import curve
 from ptmcad.exact.cad.points import PointsOver
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.rationals import to_fraction
 from ptmcad.verification.claims import PlaneCurve
 from ptmcad.verification.heights import Heights
 from ptmcad.verification.sturm import LONG_DEGREE, roots_between
@@ -59,7 +60,7 @@ def test_checker_counts_points_in_open_intervals(known: KnownCurves, ends: list[
 
 @given(known_curves())
 def test_checker_parts_the_points(known: KnownCurves) -> None:
-    heights = [Fraction(int(v.p), int(v.q)) for v in checker(known).separated(LOW, HIGH)]
+    heights = [to_fraction(v) for v in checker(known).separated(LOW, HIGH)]
     assert [sum(a < h < b for h in known.heights) for a, b in pairwise(heights)] == [1] * len(known.heights)
 
 

@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.members import Common, member_map
@@ -24,6 +23,7 @@ from ptmcad.options import Options
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.text.balls import exact
 from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.rationals import from_fraction, to_fraction
 from ptmcad.text.syntax import did_you_mean, parse
 from ptmcad.text.tree import Call, Name, Number, Power, Step, Tree, interpret, names_of
 

@@ -20,7 +20,7 @@ STEPS = 200
 """Of a descent."""
 ASIDE = 1e-2
 """Radians from the saddle, or units, at which a descent begins."""
-LONGEST = 0.3
+MAX_STEP = 0.3
 """Of a step, in the same."""
 NEAR = 0.05
 """Of a stable pose: there the descent ends, where the energy is convex."""
@@ -104,7 +104,7 @@ def _downhill(state: State) -> Floats:
     along = np.einsum("pij,ip->pj", vectors, state.residuals) / size
     step = -np.einsum("pij,pj->ip", vectors, along)
     length = np.sqrt((step**2).sum(axis=0))
-    found: Floats = step * np.minimum(1.0, LONGEST / np.maximum(length, 1e-300))
+    found: Floats = step * np.minimum(1.0, MAX_STEP / np.maximum(length, 1e-300))
     return found
 
 

@@ -17,7 +17,7 @@ from ptmcad.text.parsing import number_for
 
 OPTION = "--path"
 MAX_CORNERS = 100
-SHORTEST = 1e-6
+MIN_LENGTH = 1e-6
 """Of a piece, against the longest: shorter ones are left out."""
 
 
@@ -94,7 +94,7 @@ class Course:
         sides = [axis.high - axis.low for axis in slice.axes]
         lengths = [hypot(*(float((b - a) / side) for a, b, side in zip(p, q, sides, strict=True)))
                    for p, q in pairwise(corners)]  # fmt: skip
-        kept = [k for k, length in enumerate(lengths) if length > SHORTEST * max(lengths)]
+        kept = [k for k, length in enumerate(lengths) if length > MIN_LENGTH * max(lengths)]
         total, done, ends = sum(lengths[k] for k in kept), 0.0, [Fraction(0)]
         for k in kept:
             done += lengths[k]

@@ -27,15 +27,15 @@ from ptmcad.ask.fields.course import Course, corners_of
 from ptmcad.ask.fields.descent import descent, negatives
 from ptmcad.ask.fields.field import Choice, choice_of, complete, exact_at, unknowns_of
 from ptmcad.ask.fields.jets import Floats
-from ptmcad.ask.fields.track import LEAST, Track, followed
+from ptmcad.ask.fields.track import MIN_STEP, Track, followed
 from ptmcad.ask.location import locate
 from ptmcad.errors import ConfigError, PtmcadError, expect
 from ptmcad.options import Progress
 from ptmcad.question.doubles import within_doubles
 from ptmcad.question.examples import FIRST, SECOND
 
-FRAMES, MOST_FRAMES = 90, 600
-MOST_FALLS = 20
+FRAMES, MAX_FRAMES = 90, 600
+MAX_FALLS = 20
 SLIP = 0.05
 """A shorter fall is none to be seen: the pose goes on beside, as where a symmetric one gives way to two."""
 SAME = 1e-6
@@ -69,8 +69,8 @@ def motion_of(
     """
     expect(path, (str, Mapping), "path", f"corners, as '{FIRST}=3/4:6/5,{SECOND}=3/2'")
     expect(pose, str, "pose", "one of the poses as text, such as stable:1")
-    if isinstance(frames, bool) or not isinstance(frames, int) or not 2 <= frames <= MOST_FRAMES:
-        raise ConfigError(f"{frames!r} is not a number of frames from 2 to {MOST_FRAMES}", key="--frames")
+    if isinstance(frames, bool) or not isinstance(frames, int) or not 2 <= frames <= MAX_FRAMES:
+        raise ConfigError(f"{frames!r} is not a number of frames from 2 to {MAX_FRAMES}", key="--frames")
     if not result.cells:
         raise ConfigError(f"the map {result.slice.name} was stopped before it had cells: there is nothing to show")
     choice = choice_of(pose, result.slice.model)
@@ -193,14 +193,14 @@ def _walked(
             at, done = followed(walk, at, done, float(stop.share), own)
             if done >= float(stop.share):
                 break
-            beyond = min(done + LEAST, float(stop.share))
+            beyond = min(done + MIN_STEP, float(stop.share))
             before, after = (walk.cell(walk.course.at(Fraction(share))) for share in (done, beyond))
             if before == after != NONE:
                 raise LostError(f"the pose was lost at {100 * done:.6g} % of the path, in the middle of a region")
             if end := _no_fall(walk, own, done):
                 return steps, falls, end
             way = descent(lambda point, share=beyond: walk.at(share, point), at)  # type: ignore[misc]
-            if way is None or len(falls) == MOST_FALLS:
+            if way is None or len(falls) == MAX_FALLS:
                 return steps, falls, f"at {_where(walk, done)} the pose vanishes, and no other was reached from there"
             if _length(way) > SLIP:
                 fallen = _fallen(walk, beyond, way, fall_frames)

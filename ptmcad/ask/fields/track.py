@@ -16,7 +16,7 @@ from ptmcad.question.slice import Slice
 
 ALONG = 0.08
 """Radians, or units, that a solution may move in a part of a step, in which it is followed without looking again."""
-LEAST = 1e-7
+MIN_STEP = 1e-7
 """Of the course: a solution that cannot be followed so far has vanished."""
 
 
@@ -53,8 +53,8 @@ def followed(track: Track, at: Floats, done: float, to: float, own: int) -> tupl
         found = track.solved(further, at)
         if found and negatives(found[1]) == own and np.linalg.norm(found[0] - at) < ALONG:
             at, done, step = found[0], further, step * 2
-        elif further - done <= LEAST * 1.001:
+        elif further - done <= MIN_STEP * 1.001:
             return at, done
         else:
-            step = max((further - done) / 2, LEAST)
+            step = max((further - done) / 2, MIN_STEP)
     return at, done

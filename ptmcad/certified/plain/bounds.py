@@ -28,13 +28,13 @@ from ptmcad.question.slice import Axis
 
 TURN = (-3.0, -3.0 + 6.2832)
 """A little more than a full turn, cut where no symmetric solution lies."""
-LEAST_POWER, MOST_POWER = -10, 40
+MIN_POWER, MAX_POWER = -10, 40
 """Of two, tried as bounds."""
 MAX_BOXES = 1000
 """For one bound; each is halved along an axis or an unknown where nothing excludes it."""
 MAX_BOXES_HELD = 5_000
 """The same for a length that springs hold together with others, by all parts in which they are regular."""
-LEAST_SHARE = 1e-12
+MIN_SHARE = 1e-12
 """Of a range, or of a number's size, below which it is not halved again."""
 MAX_WEIGHT = 3
 """Unknowns that grow together may grow like powers up to this one."""
@@ -261,9 +261,9 @@ def _subsets(waiting: Sequence[int]) -> Iterator[tuple[int, ...]]:
 
 def _least(holds: Callable[[int], bool]) -> int | None:
     """The least power of two for which something holds that holds for all larger ones; None when for none."""
-    if not holds(MOST_POWER):
+    if not holds(MAX_POWER):
         return None
-    low, high = LEAST_POWER - 1, MOST_POWER
+    low, high = MIN_POWER - 1, MAX_POWER
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if holds(middle) else (middle, high)
@@ -282,7 +282,7 @@ def empty_parts(tape: Tape, box: Floats, most: int = MAX_BOXES) -> list[Floats] 
     used = np.isin(np.arange(len(box)), tape.first[tape.operations == Operation.VARIABLE])
     with np.errstate(invalid="ignore"):
         # what is no more than a rounded number is not halved
-        wide = box[:, 1] - box[:, 0] > LEAST_SHARE * np.abs(box).max(axis=1)
+        wide = box[:, 1] - box[:, 0] > MIN_SHARE * np.abs(box).max(axis=1)
         lengths = np.where(finite & used & wide, box[:, 1] - box[:, 0], inf)
     vanishing, nonnegative = tape.outputs
     waiting, treated = [box], 0
@@ -299,7 +299,7 @@ def empty_parts(tape: Tape, box: Floats, most: int = MAX_BOXES) -> list[Floats] 
         with np.errstate(invalid="ignore"):
             widths = np.where(finite, part[:, 1] - part[:, 0], 0.0) / lengths
         widest = int(np.argmax(widths))
-        if treated >= most or widths[widest] < LEAST_SHARE:
+        if treated >= most or widths[widest] < MIN_SHARE:
             return None
         middle = part[widest].mean()
         for side in (0, 1):

@@ -7,13 +7,13 @@ Guarantee: exact, in Q[x, y]. They are FLINT's, whose types stay in here: the ce
 from __future__ import annotations
 
 from collections.abc import Iterable
-from fractions import Fraction
 from functools import reduce
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from flint.utils.flint_exceptions import DomainError
 
 from ptmcad.text.expressions import Term
+from ptmcad.text.rationals import to_fraction
 
 _PLANE = fmpq_mpoly_ctx.get(("x", "y"), Ordering.lex)
 
@@ -48,4 +48,4 @@ def _polynomial(terms: tuple[Term, ...]) -> fmpq_mpoly:
 
 def _terms(polynomial: fmpq_mpoly) -> tuple[Term, ...]:
     found = polynomial.to_dict().items()
-    return tuple((int(i), int(j), Fraction(int(c.p), int(c.q))) for (i, j), c in sorted(found))
+    return tuple((int(i), int(j), to_fraction(c)) for (i, j), c in sorted(found))

@@ -209,7 +209,7 @@ def settle(
     constants = {n: tape.constants.get(int(k)) for n, k in zip(names, tape.outputs[0], strict=True)}
     for name in numbers.keys() - found.keys():
         exact = constants.get(name)
-        settled = told(numbers[name], digits, attempt) if exact is None else Enclosure(exact, exact)
+        settled = proved_digits(numbers[name], digits, attempt) if exact is None else Enclosure(exact, exact)
         if settled is not None:
             found[name] = settled
 
@@ -231,7 +231,7 @@ def _deflection(found: Mapping[str, Enclosure], number: int, cosine: arb, sine: 
     return {f"torsion deflection {number}": radians, f"torsion degrees {number}": degrees}
 
 
-def told(number: arb, digits: int, attempt: int) -> Enclosure | None:
+def proved_digits(number: arb, digits: int, attempt: int) -> Enclosure | None:
     """An enclosure that settles the digits asked for, or, of a number that is still not told from one halfway between
     two texts of so many after all that may explain it was tried, of one digit more; None of a wider one.
     """

@@ -23,7 +23,7 @@ from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression
 
-MOST = 1
+MAX_DIRECTIONS = 1
 """Directions w that are used: those in which most terms drop out. More of them cost more than they discard."""
 
 
@@ -80,7 +80,7 @@ def turns(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Turn, ...]:
             if gain > 0:
                 found.append((gain, weights))
     found.sort(key=lambda entry: -entry[0])
-    return tuple(_turn(problem, weights, axes) for _, weights in found[:MOST])
+    return tuple(_turn(problem, weights, axes) for _, weights in found[:MAX_DIRECTIONS])
 
 
 def _gain(problem: Problem, weights: Sequence[int]) -> int:

@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 from ptmcad.mechanism import Mechanism
 from ptmcad.text.enclosure import Enclosure
 
-_MOST = 3
+_MAX_NAMED = 3
 """Numbers that are named."""
 _LENGTH = 300
 """Characters of the sentence; a file of poses takes no longer remark."""
@@ -24,14 +24,14 @@ def not_settled(mechanism: Mechanism, found: Mapping[str, Enclosure], missing: C
     missing : the names of those that are not.
     """
     named = list(dict.fromkeys(_named(mechanism, name) for name in sorted(missing)))
-    more = [f"{len(named) - _MOST} more"] if len(named) > _MOST else []
-    *first, last = [*named[:_MOST], *more]
+    more = [f"{len(named) - _MAX_NAMED} more"] if len(named) > _MAX_NAMED else []
+    *first, last = [*named[:_MAX_NAMED], *more]
     what = f"{', '.join(first)} and {last}" if first else last
     which = "they" if len(named) > 1 else "it"
     end = f"{which} may be exactly zero, by a coincidence of which no proof is known"
     at = [f"{a} = {_text(found[f'degrees {a}'])} deg" for a in mechanism.angles if f"degrees {a}" in found]
     at += [f"{name} = {_text(found[f'real {name}'])}" for name in mechanism.reals if f"real {name}" in found]
-    where = f" at {', '.join(at[:_MOST])}" if at else ""
+    where = f" at {', '.join(at[:_MAX_NAMED])}" if at else ""
     said = f"{what} could not be distinguished from zero in the equilibrium{where}: {end}"
     return said if len(said) <= _LENGTH else "a number of an equilibrium could not be distinguished from zero"
 

@@ -17,7 +17,6 @@ from typing import NamedTuple
 from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.branches import PrecisionTooLow
-from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve, by_component, max_height_bits
@@ -25,6 +24,7 @@ from ptmcad.exact.cad.mirrors import Wall, mirrored, wall_of
 from ptmcad.exact.cad.panels import Border, Effort, Panel, halves, panels
 from ptmcad.exact.cad.stacks import StackData
 from ptmcad.text.balls import exact
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 Bounds = tuple[tuple[Fraction, Fraction], ...]
 """Of each region's area, in the product of the axes' units."""
@@ -38,7 +38,7 @@ _PANELS = 16
 """Twice the number of panels that a border may take, about."""
 _HOPELESS_RATIO = 2**8
 """So much larger than allowed are strips against rough areas, when it is pointless to find out about the exact ones."""
-_LEAST_ORDER = 6
+_MIN_ORDER = 6
 """Of series, besides the tolerance's digits."""
 _LONG_FIBRE, _FIBRE_PER_ORDER = 16, 3
 """Of higher degrees in v fibres and local coefficients cost more than series, so longer ones on fewer panels pay."""
@@ -147,7 +147,7 @@ def region_areas(
     bits = 64 + 6 * digits + min(max_height_bits(parts.curves) // 2, _LONG_COEFFICIENT_BITS)
     bits += _bits_lost(parts.base) + _bits_lost(parts.fibre)
     broad, narrowest = width * fmpq(1, 2 ** (3 * digits // 2)), min(map(_isolated, parts.stacks))
-    more = _LEAST_ORDER + max(0, max((len(c.in_v) for c in parts.curves), default=0) - _LONG_FIBRE) // _FIBRE_PER_ORDER
+    more = _MIN_ORDER + max(0, max((len(c.in_v) for c in parts.curves), default=0) - _LONG_FIBRE) // _FIBRE_PER_ORDER
     strips, finer = _Strips(fmpq(1, 10 ** (digits + 3) * 4), own=True), 20
     curve_of = by_component(parts.curves)
     axes = {component: curve.reflection and curve.reflection.axis for component, curve in curve_of.items()}

@@ -24,9 +24,9 @@ from ptmcad.text.balls import exact
 
 _REGULAR = 1.5
 """A branch seems to be regular at the ends of an interval if its series converges so much farther."""
-_MOST = 64
+_MAX_PANELS = 64
 """Panels that an interval is cut into before it is known whether its rest matters."""
-_LEAST_BITS = 6
+_MIN_BITS = 6
 """At least so many bits of a branch's height are wanted."""
 _HALVING_CUTS = 5
 """Cuts by half towards a turning point before they come faster."""
@@ -121,7 +121,7 @@ def panels(border: Border, over: Interval, effort: Effort, allowed: fmpq, singul
     left = [over]
     while left:
         low, high = left.pop()
-        hopeless = len(done) > _MOST or high - low < effort.narrowest
+        hopeless = len(done) > _MAX_PANELS or high - low < effort.narrowest
         middle, radius = (low + high) / 2, (high - low) / 2
         found = None if hopeless else _smooth(border, (low, high), effort, allowed)
         if found is None:
@@ -154,11 +154,11 @@ def _at_end(border: Border, over: Interval, side: int, effort: Effort, allowed: 
     """A panel from an end of the stack as far as a series about that end reaches; a rough one when that fails."""
     end, near, far = border.ends[side], over[side], over[1 - side]
     width = far - near
-    critical, strip = _told(end, near), arb(0)
+    critical, strip = _place_of(end, near), arb(0)
     if critical == near:
         # what is not exactly zero cannot be divided by a power of zero
         bottom, top = effort.fibre
-        left_out = min(abs(width) / 2**_LEAST_BITS, allowed / (top - bottom) / 2) * (1 if width > 0 else -1)
+        left_out = min(abs(width) / 2**_MIN_BITS, allowed / (top - bottom) / 2) * (1 if width > 0 else -1)
         near = simplest_between(*sorted((near + left_out / 2, near + left_out)))
         strip = arb(bottom).union(arb(top)) * arb(abs(near - critical))
     bits = ctx.prec + 3 * int(abs(width / (near - critical)).ceil()).bit_length()
@@ -170,7 +170,7 @@ def _at_end(border: Border, over: Interval, side: int, effort: Effort, allowed: 
     return Panel(border, *ends, value + strip, True, 0)
 
 
-def _told(end: BaseEnd, near: fmpq) -> fmpq:
+def _place_of(end: BaseEnd, near: fmpq) -> fmpq:
     """The end's place as far as it is known, exactly where ``near`` is that place."""
     root = end.root
     if root is None or sign_at(root.polynomial, near):
@@ -251,7 +251,7 @@ def _smooth(border: Border, over: Interval, effort: Effort, allowed: fmpq) -> In
     in_v = border.curve.in_v
     middle, radius = (over[0] + over[1]) / 2, (over[1] - over[0]) / 2
     at_middle = border.over(middle, effort)
-    wanted = min(allowed / (2 * radius), (effort.fibre[1] - effort.fibre[0]) / 2**_LEAST_BITS)
+    wanted = min(allowed / (2 * radius), (effort.fibre[1] - effort.fibre[0]) / 2**_MIN_BITS)
 
     def by_series() -> Integral | None:
         return branch_integral(in_v, at_middle, (middle, radius), effort.fibre, effort.order, wanted)

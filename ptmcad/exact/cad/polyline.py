@@ -20,11 +20,11 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.branches import local_coefficients
 from ptmcad.algebra.chords import slope_over
-from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve
 from ptmcad.text.balls import exact
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 Span = tuple[Fraction, Fraction]
 """A part of a window's side: shares of it, from 0 to 1."""

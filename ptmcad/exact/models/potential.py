@@ -13,13 +13,13 @@ from typing import Any, NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
 from ptmcad.exact.models.system import ParametricSystem, from_equations, from_potential
 from ptmcad.exact.models.turns import with_turns
 from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, System
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.work import split_moments
+from ptmcad.text.rationals import from_fraction
 from ptmcad.text.tree import Tree
 
 Vector = tuple[TrigonometricPolynomial, TrigonometricPolynomial]

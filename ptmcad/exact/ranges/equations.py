@@ -8,12 +8,12 @@ from fractions import Fraction
 
 from flint import arb
 
-from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.exact.models.system import ParametricSystem, Terms, terms_of
 from ptmcad.exact.ranges.matrices import Matrix, Vector, plus, scaled, times
 from ptmcad.mechanism import Model
 from ptmcad.text.expressions import Expression, Term
+from ptmcad.text.rationals import from_fraction
 
 
 @dataclass(frozen=True, slots=True)

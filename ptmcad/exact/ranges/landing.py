@@ -17,7 +17,6 @@ from typing import NamedTuple
 
 from flint import arb, ctx
 
-from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.exact.poses import exact_poses
 from ptmcad.exact.ranges.equations import Family
@@ -26,12 +25,13 @@ from ptmcad.exact.ranges.tracking import BITS, Reached, bridge, enclose, follow
 from ptmcad.question.line import Line
 from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 DIGITS = 12
 _NEAREST = Fraction(1, 2**56)
 """How near to a critical value branches are followed for what holds there, against the window's width."""
 
-_MOST_STEPS = 1000
+_MAX_STEPS = 1000
 """On that way, of which a fold takes some hundred; a pitchfork, of which fewer digits are told, takes them all."""
 
 
@@ -86,7 +86,7 @@ def beside(value: Fraction, side: int, gap: Fraction) -> Fraction:
 
 def _nearer(family: Family, place: Reached, value: Fraction) -> Reached:
     """The branch at a value, or as near to it as it can be followed."""
-    steps, _ = follow(family, place, value, abs(value - place.value), _MOST_STEPS)
+    steps, _ = follow(family, place, value, abs(value - place.value), _MAX_STEPS)
     return steps[-1] if steps else place
 
 

@@ -13,11 +13,11 @@ from flint import fmpq
 
 from ptmcad.algebra.chords import side_of_chord
 from ptmcad.algebra.numbers import as_interval, fibre_roots, refined, root_of
-from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.intervals import End
 from ptmcad.exact.ranges.strips import Branch, Strip, at_abscissa, bound_over
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 
 def ends_of(end: End) -> Interval:

@@ -19,7 +19,7 @@ from typing import Any
 from flint import fmpq
 
 from ptmcad.algebra.numbers import in_order, roots_in
-from ptmcad.algebra.polynomials import Ratio, from_expression, from_fraction, to_fraction
+from ptmcad.algebra.polynomials import Ratio, from_expression
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.counts import Counts, operation_number
 from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, End
@@ -35,6 +35,7 @@ from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.numerals import shortest_text
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 END_WIDTH = Fraction(1, 2**100)
 """Width of the ends' isolating intervals, against the window's."""

@@ -17,7 +17,6 @@ from typing import NamedTuple
 
 from flint import arb, arb_mat, ctx
 
-from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.exact.counting import equilibria
 from ptmcad.exact.models.system import on_slice, polynomial_at
@@ -27,6 +26,7 @@ from ptmcad.exact.ranges.matrices import Vector
 from ptmcad.exact.ranges.symmetry import Mirror, changed, changes, mirror_of, proportional
 from ptmcad.exact.ranges.tracking import BITS, Reached, at_value, bridge
 from ptmcad.question.line import Line
+from ptmcad.text.rationals import from_fraction
 
 _MAX_GROUP = 8
 """Solutions of which all groupings are looked through: of eight there are 4140."""

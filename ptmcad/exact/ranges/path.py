@@ -20,7 +20,6 @@ from typing import Any
 
 from flint import arb, ctx
 
-from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
 from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
@@ -45,6 +44,7 @@ from ptmcad.question.slice import Slice, moved
 from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.parsing import number_for
+from ptmcad.text.rationals import from_fraction
 from ptmcad.text.tree import names_of
 
 _MIN_DISTANCE = Fraction(1, 10**5)

@@ -23,7 +23,8 @@ from typing import NamedTuple
 
 from flint import arb
 
-from ptmcad.algebra.polynomials import Coefficient, UnknownPolynomial, constant_like, from_fraction
+from ptmcad.algebra.polynomials import Coefficient, UnknownPolynomial, constant_like
+from ptmcad.text.rationals import from_fraction
 
 _MAX_SIGNS = 8
 """Coordinates of which all changes of signs, and of order, are tried as symmetries."""

@@ -15,7 +15,6 @@ from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.exact.ranges.equations import Family, Instance
 from ptmcad.exact.ranges.matrices import (
@@ -30,6 +29,7 @@ from ptmcad.exact.ranges.matrices import (
     scaled_rows,
     times,
 )
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 BITS = 160
 _MIN_STEP = Fraction(1, 2**60)

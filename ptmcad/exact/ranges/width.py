@@ -27,7 +27,6 @@ from flint import arb, fmpq
 
 from ptmcad.algebra.chords import slope_over
 from ptmcad.algebra.numbers import algebraic_number
-from ptmcad.algebra.polynomials import to_fraction
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.intervals import End
 from ptmcad.answer.widths import Maximum, OperationWidths, Place, WidthRow
@@ -44,6 +43,7 @@ from ptmcad.exact.ranges.strips import (
 )
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+from ptmcad.text.rationals import to_fraction
 
 ROWS = 41
 """Rows of the table."""

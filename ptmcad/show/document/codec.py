@@ -36,7 +36,7 @@ NATURAL: Codec[int] = Codec(_itself, Node.natural)
 RATIONAL: Codec[Fraction] = Codec(text_of, Node.fraction)
 SHARE: Codec[Fraction] = Codec(text_of, Node.size)
 """A number that is not negative."""
-SHORTEST: Codec[Fraction] = Codec(shortest_text, Node.fraction)
+SHORT_DECIMAL: Codec[Fraction] = Codec(shortest_text, Node.fraction)
 """As a decimal where one is exact."""
 
 

@@ -35,7 +35,7 @@ from ptmcad.show.document.codec import (
     NATURAL,
     RATIONAL,
     SHARE,
-    SHORTEST,
+    SHORT_DECIMAL,
     TEXT,
     TRUTH,
     Codec,
@@ -91,7 +91,7 @@ CRITICAL_VALUE = record(
 )
 WALL: Codec[Wall] = Codec(lambda wall: [wall.component, wall.root], lambda node: Wall(*node.each(Node.natural, 2)))
 STACK = record(Stack, left=COUNT, right=COUNT, sample=RATIONAL, walls=listed(WALL), cells=listed(NATURAL))
-SOLUTION = record(Solution, center=listed(SHORTEST), radius=SHORTEST, signs=TEXT)
+SOLUTION = record(Solution, center=listed(SHORT_DECIMAL), radius=SHORT_DECIMAL, signs=TEXT)
 ADJACENCY = record(
     lambda cells, **rest: Adjacency(cells[0], cells[1], **rest),
     cells=Key(listed(NATURAL, 2), lambda a: (a.first, a.second)),

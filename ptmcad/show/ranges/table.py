@@ -10,7 +10,6 @@ from fractions import Fraction
 
 from flint import arb, ctx
 
-from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.answer.intervals import CountIntervals, CriticalFreeLength, End, Span
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
 from ptmcad.answer.widths import Maximum, OperationWidths, Place
@@ -22,6 +21,7 @@ from ptmcad.text.balls import enclosure_of
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.rationals import from_fraction
 
 MAX_POLYNOMIAL = 60
 """Characters of a polynomial; of longer ones the degree is reported."""

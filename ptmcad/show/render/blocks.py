@@ -24,7 +24,7 @@ from ptmcad.show.style import PAGE_HEIGHT, Place, Style
 
 Point = tuple[Fraction, Fraction]
 
-PANEL, LEAST_PANEL = 138.0, 104.0
+PANEL, MIN_PANEL = 138.0, 104.0
 """Width of a pose in points, and the least at which its letters have room."""
 _TALLEST = 120.0
 _MAP = 5.4, 6.9
@@ -214,10 +214,10 @@ def _page(style: Style, numbers: Sequence[Sequence[int]]) -> _Page:
         # nearly half of the page is the map's; on a large page the poses do not grow beyond what they need
         gaps = sum(_taken(number, 0.0) for number in most)
         room = (_SHARE * width - gaps) * 72 / sum(most)
-        if room >= LEAST_PANEL:
+        if room >= MIN_PANEL:
             height = None if style.wide is not None or style.size is None else style.size[1]
             return _Page(width, height, min(room, PANEL * max(1.0, scale)), across)
-    least = sum(_taken(number, LEAST_PANEL) for number in most) / _SHARE
+    least = sum(_taken(number, MIN_PANEL) for number in most) / _SHARE
     raise ConfigError(
         f"poses beside the map need a width of {least + 0.01:.2f} inches, and there are {width:.2f}", key="size"
     )
@@ -252,4 +252,4 @@ def _head(result: RegionMap, number: int, at: Point, poses: Poses) -> str:
 
 def _lines(head: str, points: float, style: Style) -> Sequence[str]:
     """A head over poses of this width in points, or over the room for one."""
-    return wrapped(head, max(points, LEAST_PANEL) / 72, style.base_font, True)
+    return wrapped(head, max(points, MIN_PANEL) / 72, style.base_font, True)

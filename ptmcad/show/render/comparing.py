@@ -21,7 +21,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.colours import GREYS, HATCHES, Fill, undetermined_fill
-from ptmcad.show.render.fitting import LEAST, Parts, overhang, rewrapped
+from ptmcad.show.render.fitting import MIN_SIDE, Parts, overhang, rewrapped
 from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, Wording, draw_legend, entries, hidden_words
 from ptmcad.show.render.painting import Paint, paint_map, paint_of
 from ptmcad.show.render.printing import save, settings
@@ -141,8 +141,8 @@ def comparison_figure(comparison: Comparison, dpi: int, style: Style) -> Figure:
     legend = max(type.height(panel.legend) for panel in panels)
     rest = head + below + 0.8 * em + legend + 0.6 * em
     tall = style.size[1] - rest if style.size is not None and style.wide is None else side
-    if min(side, tall) < LEAST * em:
-        missing = LEAST * em - side, LEAST * em - tall
+    if min(side, tall) < MIN_SIDE * em:
+        missing = MIN_SIDE * em - side, MIN_SIDE * em - tall
         least = (width + 3 * max(0.0, missing[0]), rest + tall + max(0.0, missing[1]))
         raise ConfigError(
             f"three maps with their legends need at least {least[0] + 0.01:.2f}x{least[1] + 0.01:.2f}in", key="size"
@@ -188,7 +188,7 @@ def _panels(comparison: Comparison, first: Shapes, style: Style, sides: tuple[fl
     for change in comparison.changes:
         names[change.region] = change_text(comparison, change)
     marks = marks_of(whole, sides, dpi, small, names)
-    changes = [*_told(comparison, style), *([Entry((hidden_words(marks.hidden),))] if marks.hidden else [])]
+    changes = [*_differences(comparison, style), *([Entry((hidden_words(marks.hidden),))] if marks.hidden else [])]
     found.append((whole, bare, f"Difference, {' → '.join(LETTERS)}", changes, fills, marks))
     untold = style.legend is Place.NONE
     return [
@@ -236,7 +236,7 @@ def _fills(comparison: Comparison, style: Style) -> dict[int, Fill]:
     return found
 
 
-def _told(comparison: Comparison, style: Style) -> list[Entry]:
+def _differences(comparison: Comparison, style: Style) -> list[Entry]:
     fills, open_part = _fills(comparison, style), _undetermined(comparison)
     if comparison.changes:
         area = _area(comparison, comparison.area)

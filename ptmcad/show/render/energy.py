@@ -15,7 +15,6 @@ from math import radians
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import moments_work
 from ptmcad.exact.models.potential import squared_lengths, system_from
@@ -24,6 +23,7 @@ from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.moments import moments_at
 from ptmcad.text.numerals import magnitude
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 Floats = NDArray[np.float64]
 

@@ -27,7 +27,7 @@ from ptmcad.mechanism import System
 from ptmcad.show.render.axes import Dress, dress, scale_of, symbol
 from ptmcad.show.render.colours import Fill
 from ptmcad.show.render.fieldlines import branch_edges, contour_lines
-from ptmcad.show.render.fitting import LEAST
+from ptmcad.show.render.fitting import MIN_SIDE
 from ptmcad.show.render.legend import INK, STRONG, SWATCH, THIN, Entry, Type, draw_legend, in_rows
 from ptmcad.show.render.textwidth import ALLOWANCE, text_width, wrapped
 from ptmcad.show.render.view import Floats, View
@@ -222,8 +222,8 @@ class _Page:
                 wide, tall = side + rest[0], side + rest[1]
                 self.figure.set_size_inches(wide, tall)
             chart = (wide - rest[0], tall - rest[1])
-            if min(chart) < LEAST * em:
-                least = (rest[0] + max(LEAST * em, chart[0]), rest[1] + max(LEAST * em, chart[1]))
+            if min(chart) < MIN_SIDE * em:
+                least = (rest[0] + max(MIN_SIDE * em, chart[0]), rest[1] + max(MIN_SIDE * em, chart[1]))
                 raise ConfigError(
                     f"the map with its scale does not fit into {wide:.2f}x{tall:.2f}in in text of {font:g} points; "
                     f"it needs at least {least[0] + 0.01:.2f}x{least[1] + 0.01:.2f}in", key="size",

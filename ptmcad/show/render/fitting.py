@@ -27,7 +27,7 @@ from ptmcad.show.render.textwidth import ALLOWANCE, wrapped
 from ptmcad.show.render.view import Same, View
 from ptmcad.show.style import MIN_FONT, Place, Style
 
-LEAST = 11.0
+MIN_SIDE = 11.0
 """Sides of the map, in widths of an m: a smaller one is no picture."""
 _GOOD = (0.5, 0.45, 0.4)
 """Shares of the page's width that the map has if it can."""
@@ -200,7 +200,7 @@ def _placed(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
 def _right(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
     """The legend, and insets below it, at the right of the map."""
     em, (width, _) = page.em, page.size
-    for least in (*(max(share * width, LEAST * em) for share in _GOOD), LEAST * em):
+    for least in (*(max(share * width, MIN_SIDE * em) for share in _GOOD), MIN_SIDE * em):
         for columns in _COLUMNS:
             entries = [rewrapped(entry, columns * em, page.type) for entry in legend]
             column = max((page.type.entry_width(entry) for entry in entries), default=0.0)
@@ -274,7 +274,7 @@ def _over(page: _Page, bottom: float, insets: int) -> tuple[Box, list[Box]] | No
 def _chart(page: _Page, width: float, height: float) -> Box | None:
     """The map's place in a part of the page at its left and top; None where that is too small."""
     em = page.em
-    least = LEAST * em
+    least = MIN_SIDE * em
     inner = (0.8 * width, 0.8 * height)
     for _ in range(3):  # what numbers take depends on how many there are, hence on the sides
         if inner[0] < least or inner[1] < least:

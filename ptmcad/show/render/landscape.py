@@ -46,7 +46,7 @@ SIDE, LEFT, BOTTOM, BAR, KEY, MARGIN = 4.6, 0.85, 0.65, 1.25, 2.2, 0.15
 """In inches: the square's side, the space at its left and below, the colour bar, the legend, the rim."""
 _GRID, _FINE = 145, 433
 """Points along a side for all contours, and for those through saddles, which are narrow crosses near a fold."""
-_EVEN, _LEAST = 16, 4
+_EVEN, _MIN_STEPS = 16, 4
 """Intervals of contours in all, and at least between two neighbouring critical energies."""
 _COLOURS = ("#16324f", "#3d6b8c", "#7fa6b5", "#c3d2c5", "#f3edd3")
 """From low to high energy, rising in lightness."""
@@ -245,7 +245,7 @@ def contour_levels(critical: Sequence[float], low: float, high: float) -> list[f
             marks.append(value)
     levels = [marks[0]]
     for first, last in pairwise(marks):
-        steps = max(_LEAST, round(_EVEN * (last - first) / (high - low)))
+        steps = max(_MIN_STEPS, round(_EVEN * (last - first) / (high - low)))
         levels += [first + (last - first) * k / steps for k in range(1, steps)] + [last]
     return levels
 

@@ -20,7 +20,7 @@ from ptmcad.answer.regionmap import Region
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.colours import Fill, filler, undetermined_fill
-from ptmcad.show.render.fitting import LEAST, Parts, overhang
+from ptmcad.show.render.fitting import MIN_SIDE, Parts, overhang
 from ptmcad.show.render.legend import (
     INK,
     STRONG,
@@ -153,7 +153,7 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     rest = 1.5 * em * len(titles) + 0.4 * em + rows * head + below + (type.line * 1.35) * len(lines) + 0.7 * em
     between = 0.5 * em * (rows - 1)
     tall = (style.size[1] - rest - between) / rows if style.size is not None else side
-    if min(side, tall) < 0.5 * LEAST * em:
+    if min(side, tall) < 0.5 * MIN_SIDE * em:
         raise ConfigError(f"{len(seen)} maps do not fit: make it larger, or draw fewer members", key="size")
     height = rest + between + rows * tall
     figure = Figure(figsize=(wide, height), dpi=dpi, facecolor="white")

@@ -20,13 +20,14 @@ from math import cos, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.algebra.polynomials import coefficients_in, from_fraction, from_plane, to_fraction
+from ptmcad.algebra.polynomials import coefficients_in, from_plane
 from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.answer.regionmap import RegionMap, Stack
 from ptmcad.exact.cad.curves import Curve, by_component, curves_of
 from ptmcad.show.render.simplification import simplified_line
 from ptmcad.show.render.view import Floats, Interval, Same, View
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 TOLERANCE = 1.5e-4
 DEPTH = 7

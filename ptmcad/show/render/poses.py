@@ -27,7 +27,7 @@ from ptmcad.show.render.axes import symbol, with_symbols
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_mark, symbol_mark, torsion_mark
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.sketch import LONGEST_ARROW, SHORTEST_ARROW, Frame, Scene, arrow_lengths, frame_of, load_values
+from ptmcad.show.render.sketch import MAX_ARROW, MIN_ARROW, Frame, Scene, arrow_lengths, frame_of, load_values
 from ptmcad.show.units import energy_unit
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import magnitude, shortest_text
@@ -265,7 +265,7 @@ def legend(poses: Poses, arrows: Mapping[str, float]) -> Iterator[Entry]:
     yield from parts_legend(mechanism)
     if arrows:
         loads = list(_load_texts(mechanism, load_values(poses)))
-        shortened = any(abs(length) == SHORTEST_ARROW < LONGEST_ARROW for length in arrows.values())
+        shortened = any(abs(length) == MIN_ARROW < MAX_ARROW for length in arrows.values())
         lines = ["loads; arrows in proportion to them" if len(loads) > 1 else "load"]
         lines += ["except that short ones are lengthened"] if shortened else []
         yield Entry((*lines, *textwrap.wrap(",  ".join(loads), _KEY_COLUMNS)), symbol_mark("load"))

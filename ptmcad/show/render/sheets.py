@@ -37,7 +37,7 @@ _DARKEST, _FLATTEST = 0.66, 0.25
 """Of a colour's lightness, where a sheet is seen against the light; and of the shading's range, what is never used."""
 _LIFT = 0.018
 """Of the box: how far towards the eye curves are moved, so that the sheets on which they lie do not hide them."""
-LONGEST = 0.03
+MAX_SIDE = 0.03
 """Of the box: sides of triangles as they are painted."""
 _OTHER = 0.15
 """Of a sheet's colour, what comes from the smaller count's."""
@@ -157,13 +157,13 @@ def add_sheets(
 
 
 def halved(corners: Floats, colours: Floats) -> tuple[Floats, Floats]:
-    """Triangles cut in two along their longest sides until none is longer than `LONGEST`, with their colours.
+    """Triangles cut in two along their longest sides until none is longer than `MAX_SIDE`, with their colours.
 
     Pieces are sorted by their middles' distance from the eye, which says little of long ones.
     """
     while True:
         sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
-        long = sides.max(axis=1, initial=0.0) > LONGEST
+        long = sides.max(axis=1, initial=0.0) > MAX_SIDE
         if not long.any():
             return corners, colours
         first = sides[long].argmax(axis=1)

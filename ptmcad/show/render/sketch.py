@@ -26,7 +26,7 @@ from ptmcad.show.spiral import spirals
 BAR_WIDTHS = (5.5, 3.2)
 """Of two bars, which are told apart; more are alike."""
 MANY_BARS = 4.2
-WIDTH, MAX_HEIGHT, LEAST_HEIGHT, MARGIN = 200.0, 210.0, 112.0, 36.0
+WIDTH, MAX_HEIGHT, MIN_HEIGHT, MARGIN = 200.0, 210.0, 112.0, 36.0
 PIN = 2.4
 SUPPORT, GROUND = (7.0, 10.0), 4.0
 SLIDER, RAIL = (7.5, 4.2), 17.0
@@ -37,9 +37,9 @@ stairs."""
 AMPLITUDE = 3.4
 SPIRAL, SPIRAL_GAP = (PIN + 1.3, 8.8), 2.4
 """The inner and the outer radius of a torsion spring, and what is left free between two at one joint."""
-_END, _SHORTEST = 7.0, 19.0
+_END, _MIN_LENGTH = 7.0, 19.0
 _ASIDE = (9.0, -9.0, 15.5, -15.5, 22.0, -22.0)
-LONGEST_ARROW, SHORTEST_ARROW = 27.0, 8.5
+MAX_ARROW, MIN_ARROW = 27.0, 8.5
 _SAME = 2.5
 LABEL_HALF_HEIGHT, LABEL_SIZE = 5.6, 9.0
 
@@ -102,7 +102,7 @@ def frame_of(shown: Sequence[Pose], width: float = WIDTH, most_height: float = M
     wide, tall = (max(side[k] for side in sides) for k in (0, 1))
     room = (Fraction(width - 2 * MARGIN), Fraction(most_height - 2 * MARGIN))
     scale = min((r / side for r, side in zip(room, (wide, tall), strict=True) if side), default=Fraction(1))
-    return Frame(scale, max(LEAST_HEIGHT, float(tall * scale) + 2 * MARGIN), width)
+    return Frame(scale, max(MIN_HEIGHT, float(tall * scale) + 2 * MARGIN), width)
 
 
 def _centers(pose: Pose) -> dict[str, tuple[Fraction, Fraction]]:
@@ -120,7 +120,7 @@ def arrow_lengths(poses: Poses) -> dict[str, float]:
     loads = load_values(poses)
     largest = max(map(abs, loads.values()), default=Fraction(0))
     return {
-        name: (1 if load > 0 else -1) * max(SHORTEST_ARROW, LONGEST_ARROW * float(abs(load) / largest))
+        name: (1 if load > 0 else -1) * max(MIN_ARROW, MAX_ARROW * float(abs(load) / largest))
         for name, load in loads.items()
         if load
     }
@@ -219,7 +219,7 @@ def _spring(start: Position, end: Position, drawn: Sequence[Stroke], turns: int 
     if along[0] < -1e-9 or (abs(along[0]) <= 1e-9 and along[1] < 0):  # aside means above first, not below
         return _spring(end, start, drawn, turns)[::-1]
     straight = _zigzag(start, end, along, 0.0, turns)
-    if length >= _SHORTEST + 2 * _END and not _covered(straight, drawn):
+    if length >= _MIN_LENGTH + 2 * _END and not _covered(straight, drawn):
         return straight
     tried = [_zigzag(start, end, along, aside, turns) for aside in _ASIDE]
     return next((line for line in tried if not _covered(line, drawn)), tried[-1])
@@ -227,7 +227,7 @@ def _spring(start: Position, end: Position, drawn: Sequence[Stroke], turns: int 
 
 def _zigzag(start: Position, end: Position, along: Position, aside: float, turns: int | None) -> tuple[Position, ...]:
     length = hypot(end[0] - start[0], end[1] - start[1])
-    wound = max(_SHORTEST, length - 2 * _END)
+    wound = max(_MIN_LENGTH, length - 2 * _END)
     across = (-along[1], along[0])
     middle = ((start[0] + end[0]) / 2 + across[0] * aside, (start[1] + end[1]) / 2 + across[1] * aside)
     teeth = 2 * (max(MIN_TURNS, round(wound / TURN)) if turns is None else turns)

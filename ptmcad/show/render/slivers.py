@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import Merge, Region, RegionMap
+from ptmcad.cover.graph import connected
 from ptmcad.question.slice import Count
 from ptmcad.show.render.view import Interval, Same, Shapes, View
 
@@ -111,21 +112,18 @@ def told_apart(result: RegionMap) -> RegionMap:
 @lru_cache(maxsize=32)
 def _told_apart(of: Same[RegionMap]) -> RegionMap:
     result = of.it
-    parent = list(range(len(result.cells)))
-
-    def root(n: int) -> int:
-        while parent[n] != n:
-            parent[n] = parent[parent[n]]
-            n = parent[n]
-        return n
-
-    for adjacency in result.adjacencies:
-        a, b = result.cells[adjacency.first], result.cells[adjacency.second]
-        if adjacency.merge is not Merge.SEPARATED and (a.total, a.index) == (b.total, b.index):
-            parent[root(adjacency.first)] = root(adjacency.second)
+    alike = np.array(
+        [
+            (adjacency.first, adjacency.second)
+            for adjacency in result.adjacencies
+            for a, b in [(result.cells[adjacency.first], result.cells[adjacency.second])]
+            if adjacency.merge is not Merge.SEPARATED and (a.total, a.index) == (b.total, b.index)
+        ],
+        dtype=np.int64,
+    ).reshape(-1, 2)
     groups: dict[int, list[int]] = {}
-    for n in range(len(result.cells)):
-        groups.setdefault(root(n), []).append(n)
+    for n, first in enumerate(connected(len(result.cells), alike[:, 0], alike[:, 1]).tolist()):
+        groups.setdefault(first, []).append(n)
     regions: list[Region] = []
     of_cell: dict[int, int] = {}
     for number, members in enumerate(groups.values()):

@@ -35,18 +35,18 @@ from ptmcad.show.render.mechanism import PALE, STRONG, draw_sketch
 from ptmcad.show.render.painting import paint_map, paint_of
 from ptmcad.show.render.regionmap import whole_title
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.sketch import LONGEST_ARROW, SHORTEST_ARROW, Sketch, own_labels, sketched
+from ptmcad.show.render.sketch import MAX_ARROW, MIN_ARROW, Sketch, own_labels, sketched
 from ptmcad.show.render.textwidth import text_width
 from ptmcad.show.render.view import View
 from ptmcad.show.style import Style
 from ptmcad.show.table import count_text
 
 SIZE = (9.0, 5.1)
-LEAST = (6.5, 3.4)
+MIN_SIZE = (6.5, 3.4)
 """Inches in which all parts have room."""
 LEFT, RIGHT, GAP, TOP, BOTTOM, LINE = 0.72, 0.15, 0.42, 0.62, 0.55, 0.19
 """Inches: at the map's left, the rim, between the parts, above them, below the map, a line of the legend."""
-CURVE, LEAST_PANEL = 0.21, 1.4
+CURVE, MIN_PANEL = 0.21, 1.4
 """The energy's chart, against the height, where so many inches are left for the mechanism."""
 RIM = 27.0
 """Points around the mechanism, for supports, loads and labels."""
@@ -95,8 +95,8 @@ class Stage:
     def __init__(self, motion: Motion, style: Style, dpi: int):
         self.motion, self.mechanism = motion, check_drawable(motion)
         size = style.size or SIZE
-        if size[0] < LEAST[0] or size[1] < LEAST[1]:
-            raise ConfigError(f"a film needs at least {LEAST[0]:g}x{LEAST[1]:g}in", key="size")
+        if size[0] < MIN_SIZE[0] or size[1] < MIN_SIZE[1]:
+            raise ConfigError(f"a film needs at least {MIN_SIZE[0]:g}x{MIN_SIZE[1]:g}in", key="size")
         self.figure = Figure(figsize=size, dpi=dpi, facecolor="white")
         self.canvas = _canvas(self.figure)
         width, tall = size
@@ -121,7 +121,7 @@ class Stage:
         width, tall = (float(side) for side in self.figure.get_size_inches())
         wide, chart = width - left - RIGHT, CURVE * tall
         has_energy = all(step.height is not None for step in self.motion.steps)
-        curved = has_energy and top - foot - chart - 0.55 >= LEAST_PANEL
+        curved = has_energy and top - foot - chart - 0.55 >= MIN_PANEL
         low = foot + chart + 0.55 if curved else foot
         sides = (wide * 72, (top - low) * 72)
         self.panel = self._axes((left, low, wide, top - low), "mechanism")
@@ -323,7 +323,7 @@ def _arrows(motion: Motion, mechanism: Mechanism) -> dict[tuple[Fraction, Fracti
     largest = max((abs(v) for own in loads.values() for v in own.values()), default=Fraction(0))
     return {
         at: {
-            name: (1 if v > 0 else -1) * max(SHORTEST_ARROW, LONGEST_ARROW * float(abs(v) / largest))
+            name: (1 if v > 0 else -1) * max(MIN_ARROW, MAX_ARROW * float(abs(v) / largest))
             for name, v in own.items()
             if v
         }

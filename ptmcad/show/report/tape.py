@@ -21,7 +21,7 @@ from ptmcad.mechanism.work import split_moments
 from ptmcad.question.slice import Slice, have_free_lengths
 from ptmcad.text.tree import Tree
 
-LARGEST = 10**100
+MAX_CONSTANT = 10**100
 """Of constants and coefficients: products of a few stay within the range of doubles."""
 MAX_OPERATIONS = 2000
 """The script runs through them for each step of each solution."""
@@ -114,7 +114,7 @@ def tape(result: RegionMap) -> dict[str, Any] | None:
 
 
 def _double(value: Fraction) -> float:
-    return float(value) if abs(value) < LARGEST else inf
+    return float(value) if abs(value) < MAX_CONSTANT else inf
 
 
 def _fits(slice: Slice) -> bool:
@@ -123,7 +123,7 @@ def _fits(slice: Slice) -> bool:
     ]  # fmt: skip
     ends = [end for axis in slice.axes for end in (axis.low, axis.high)]
     return all(name in slice.parameters for name in slice.model.without_free_lengths) and all(
-        abs(value) < LARGEST for value in (*coefficients, *ends)
+        abs(value) < MAX_CONSTANT for value in (*coefficients, *ends)
     )
 
 

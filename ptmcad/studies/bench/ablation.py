@@ -21,7 +21,7 @@ from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import LimitReached, PtmcadError
-from ptmcad.process.extras import require_numba
+from ptmcad.process.extras import Extra, require
 from ptmcad.question.config import load
 from ptmcad.question.savings import ALL, SAVINGS, Engine
 from ptmcad.question.slice import Slice
@@ -66,7 +66,7 @@ def ablation(records: Sequence[Path], number: int = 3, seed: int = 1) -> Record:
     order = random.Random(seed)
     slices = {path: load(path) for path in records}
     if any(slice.name in CERTIFIED for slice in slices.values() if slice.has_free_lengths):
-        require_numba()
+        require(Extra.certified)
     found: Record = {
         "format": FORMAT, **made_with(), "seed": seed, "rounds": number,
         "savings": [{"name": s.name, "engine": s.engine.value, "what": s.what, "why": s.why} for s in SAVINGS],

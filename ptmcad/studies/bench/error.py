@@ -25,9 +25,9 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.studies.bench.distance import Distances, distances, grid_boundary
 from ptmcad.studies.bench.reference import Column, Reference, Walls, regions
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 Counts = NDArray[np.int16]
 Bounds = tuple[Fraction, Fraction]

@@ -117,7 +117,7 @@ def jobs(method: Method, slice: Slice, record: Path, folder: Path, quick: bool, 
     if method not in OURS and slice.mechanism != "ptm":
         return f"the sextic is the paper's mechanism's, not that of {slice.mechanism}"
     if rival.needs and find_spec(rival.needs) is None:
-        return f"{rival.needs} is not installed"
+        return f"{rival.needs} is not installed (make bench installs it)"
     if method is Method.QEPCAD:
         return _qepcad(slice)
     found = []

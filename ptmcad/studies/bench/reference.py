@@ -16,7 +16,7 @@ from typing import Any
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import UnivariatePolynomial, from_fraction
+from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, has_root_between, refine, sign_at
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.regionmap import Cell, RegionMap, Status
@@ -25,6 +25,7 @@ from ptmcad.exact.cad.polyline import ROUNDING, UNPROVED, Branch, Chord, chords,
 from ptmcad.exact.cad.stacks import roots_over
 from ptmcad.exact.regions import Link, merge
 from ptmcad.question.slice import Count
+from ptmcad.text.rationals import from_fraction
 
 MAX_CHORD_DISTANCE = Fraction(1, 2**18)
 """Largest distance between a wall and its chord, as a share of the window's side."""

@@ -18,6 +18,7 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.mechanism import ptm
 from ptmcad.studies.equilibria import balls, guesses, proved
+from ptmcad.text.rationals import to_fraction
 
 STARTS = 48
 """Starts of Newton's method along each angle."""
@@ -75,7 +76,7 @@ def proved_equilibrium(design: FreeLengthDesign, angles: tuple[float, float]) ->
             tense = False
         elif all(square > rest for square in found.squares):
             tense = True
-    first, second = (Fraction(int(m.p), int(m.q)) for m in middle)
+    first, second = (to_fraction(m) for m in middle)
     return ProvedEquilibrium((first, second), found.negative, tense)
 
 

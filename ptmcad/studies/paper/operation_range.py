@@ -19,17 +19,11 @@ from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
 
-from ptmcad.algebra.polynomials import (
-    Coefficient,
-    UnivariatePolynomial,
-    coefficients_in,
-    from_fraction,
-    from_plane,
-    univariate,
-)
+from ptmcad.algebra.polynomials import Coefficient, UnivariatePolynomial, coefficients_in, from_plane, univariate
 from ptmcad.algebra.real_roots import isolate, squarefree_part
 from ptmcad.algebra.slopes import Direction, may_be_tangent, tangent_resultant
 from ptmcad.studies.paper.slices import curves, operation_range
+from ptmcad.text.rationals import from_fraction
 
 FIGURE = "fig4"
 STRIP = (Fraction(1, 10), Fraction(2))

@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import cache
 from itertools import pairwise
 
-from ptmcad.algebra.polynomials import coefficients_in, from_fraction, from_plane, to_fraction, univariate
+from ptmcad.algebra.polynomials import coefficients_in, from_plane, univariate
 from ptmcad.algebra.real_roots import RealRoot, disjoint, isolate, refine, simplest_between, squarefree_part
 from ptmcad.answer.counts import MorseIndex
 from ptmcad.answer.regionmap import Component, RegionMap, Solution
@@ -23,6 +23,7 @@ from ptmcad.exact.models import system_of
 from ptmcad.question.slice import Count, Slice
 from ptmcad.studies.slices import Exact, ptm_slice
 from ptmcad.text.parsing import rational
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 _RECORDS: Mapping[str, tuple[str, Mapping[str, Exact], Mapping[str, tuple[int, int]]]] = {
     "fig2": ("Unloaded mechanism, L1 = 1", {}, {"L2": (0, 4), "rho": (0, 4)}),

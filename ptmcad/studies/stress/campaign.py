@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 
-from ptmcad.process.extras import require_numba
+from ptmcad.process.extras import Extra, require
 from ptmcad.studies.stress.case import Case
 from ptmcad.studies.stress.judgement import judge
 from ptmcad.studies.stress.measure import Outcome, run
@@ -79,7 +79,7 @@ def campaign(
         Before the first case, when one has springs with free lengths and numba is not installed.
     """
     if any(case.has_free_lengths for case in cases):
-        require_numba()
+        require(Extra.certified)
     outcomes = []
     for k, case in enumerate(cases):
         if deadline is not None and perf_counter() > deadline:

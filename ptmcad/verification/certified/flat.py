@@ -24,7 +24,7 @@ _PLACES = ((3, 2), (-2, 3), (2, -1), (-1, -3))
 _NEARLY = Fraction(1, 16)
 _PARTS = 8
 """Of the window's width, half the width of the largest such square: what is nearly flat takes many boxes ..."""
-_LEAST_PARTS = 2**60
+_MIN_PARTS = 2**60
 """... and of the smallest one."""
 
 
@@ -58,7 +58,7 @@ def beside(claims: CertifiedClaims, cell: Cell) -> list[tuple[Fraction, Fraction
         When the sample is so near to a rectangle that no engine would have taken it.
     """
     u, v = claims.on_lattice(*cell.sample)
-    half, least = Fraction(claims.sweep.steps, _PARTS), Fraction(claims.sweep.steps, _LEAST_PARTS)
+    half, least = Fraction(claims.sweep.steps, _PARTS), Fraction(claims.sweep.steps, _MIN_PARTS)
     while not claims.sweep.free_around(u, v, half):
         half /= 2
         if half < least:

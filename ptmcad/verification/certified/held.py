@@ -24,7 +24,7 @@ from ptmcad.verification.certified.field import size
 
 MAX_SHARE = 0.5
 """Of q: a wider box of what A depends on is halved, as bounds grow like 1/(1 - q)."""
-_LEAST = 2.0**-60
+_MIN_SIZE = 2.0**-60
 
 Row = Sequence[arb]
 
@@ -63,7 +63,7 @@ class Linear:
 
     def _reach(self, factors: Row) -> arb:
         """A positive upper bound of the rest and the springs' parts, where the equations are summed up with factors."""
-        total = abs(_dot(factors, self.rest)) + _LEAST
+        total = abs(_dot(factors, self.rest)) + _MIN_SIZE
         for pull, across, up in self.springs:
             total = total + pull * size(_dot(factors, across), _dot(factors, up))
         return total.abs_upper()

@@ -23,7 +23,7 @@ from ptmcad.verification.certified.parameters import exact
 
 NARROW = Fraction(1, 2**20)
 """Half the width of a box up to which one test is tried before a search."""
-_LEAST_BITS, _SPARE_BITS = 128, 64
+_MIN_BITS, _SPARE_BITS = 128, 64
 _DOUBLINGS = 2
 _NARROWINGS = 8
 _MAX_BITS = 2**16
@@ -58,7 +58,7 @@ def judged(function_at: Callable[[], Function], solution: Solution) -> Judgement
     if solution.radius > NARROW:
         return None
     size = max((abs(c) for c in solution.center), default=Fraction(0)) + 1
-    bits = max(_LEAST_BITS, _SPARE_BITS + 2 * int(size / solution.radius).bit_length())
+    bits = max(_MIN_BITS, _SPARE_BITS + 2 * int(size / solution.radius).bit_length())
     for _ in range(_DOUBLINGS + 1):
         if bits > _MAX_BITS:
             break

@@ -26,6 +26,7 @@ from flint import fmpq
 
 from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.text.numerals import text_of
+from ptmcad.text.rationals import to_fraction
 from ptmcad.verification.certified.counted import Counted, differs, stored
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.parameters import exact
@@ -200,7 +201,7 @@ def _along_tubes(cover: Cover, side: int, rng: random.Random) -> dict[tuple[int,
             for _ in range(PLACES_ON_TUBES):
                 s = _uniform(rng)
                 u, value = frame.low + s * (frame.high - frame.low), center(fmpq(s.numerator, s.denominator))
-                v = Fraction(int(value.p), int(value.q))
+                v = to_fraction(value)
                 if not frame.bottom <= v <= frame.top:
                     continue
                 edge = (u, u + 1, v, v) if patch.along == 0 else (v, v, u, u + 1)

@@ -19,6 +19,7 @@ from math import comb
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
 from ptmcad.cover.rectangles import Cover, Patch
+from ptmcad.text.rationals import to_fraction
 from ptmcad.verification.certified.sweep import Sets
 from ptmcad.verification.report import Violation
 from ptmcad.verification.sturm import roots_between
@@ -217,7 +218,7 @@ def _q(value: Fraction | int) -> fmpq:
 
 
 def _fraction(value: fmpq) -> Fraction:
-    return Fraction(int(value.p), int(value.q))
+    return to_fraction(value)
 
 
 @dataclass(frozen=True, slots=True)

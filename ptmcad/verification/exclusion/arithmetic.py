@@ -28,7 +28,7 @@ from ptmcad.verification.exclusion.formulas import (
 )
 
 _LARGE = 1e150
-_PART, _LEAST = 2.0**-52, 1e-300
+_PART, _MIN_ERROR = 2.0**-52, 1e-300
 _TURN = 6.283185307179586
 _SINE_ERROR = 2.0**-50
 
@@ -36,7 +36,7 @@ _SINE_ERROR = 2.0**-50
 @inlined
 def outward(a: float, b: float) -> Any:
     """The interval from a to b, a little wider; the whole line where it is not finite."""
-    low, high = a - (abs(a) * _PART + _LEAST), b + (abs(b) * _PART + _LEAST)
+    low, high = a - (abs(a) * _PART + _MIN_ERROR), b + (abs(b) * _PART + _MIN_ERROR)
     if not (low > -_LARGE and high < _LARGE):
         low, high = -inf, inf
     return low, high
@@ -92,7 +92,7 @@ def reach(a: float, b: float, c: float, d: float) -> Any:
     up = 0.0 if c <= 0.0 <= d else min(abs(c), abs(d))
     low, high = hypot(across, up), hypot(max(abs(a), abs(b)), max(abs(c), abs(d)))
     # the C library's hypot is wrong by one unit in the last place at most
-    return low * (1 - 2.0**-50), high * (1 + 2.0**-50) + _LEAST
+    return low * (1 - 2.0**-50), high * (1 + 2.0**-50) + _MIN_ERROR
 
 
 @compiled

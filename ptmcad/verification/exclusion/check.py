@@ -17,10 +17,10 @@ from ptmcad.verification.certified.points import counting_of
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.report import Unchecked, Violation
 
-EFFORT, MOST_EFFORT = 2, 10
+EFFORT, MAX_EFFORT = 2, 10
 BOXES_AT_FIRST, GROWTH = 10_000, 4
 """Boxes of the first effort, and how many times more each further one has; the last one has no limit."""
-SMALLEST = 2.0**-20
+MIN_BOX = 2.0**-20
 """Share of the window: boxes over less are not halved ..."""
 FINER = 2.0**-28
 """... but for those that are left then, in a further search of some boxes more."""
@@ -42,7 +42,7 @@ def check_free_area(
 
     Parameters
     ----------
-    effort : from 0, nothing, to `MOST_EFFORT`, all.
+    effort : from 0, nothing, to `MAX_EFFORT`, all.
     """
     if not claims.result.cells:
         return "there are no cells"
@@ -61,13 +61,13 @@ def check_free_area(
     wider = claims.sweep.steps >> (BESIDE_AT_FIRST + BESIDE * effort)
     pieces, left, looked = pieces_of(claims, wider), [], 0
     beside = widened(claims, wider)
-    budget = BOXES_AT_FIRST * GROWTH ** (effort - 1) // len(systems) if effort < MOST_EFFORT else 2**62
+    budget = BOXES_AT_FIRST * GROWTH ** (effort - 1) // len(systems) if effort < MAX_EFFORT else 2**62
     for k, system in enumerate(systems):
 
-        def told(share: float, k: int = k) -> None:
+        def progress(share: float, k: int = k) -> None:
             report(int(1000 * (k + share)), 1000 * len(systems))
 
-        rest = search(system, pieces, system.start[None], budget, SMALLEST, told)
+        rest = search(system, pieces, system.start[None], budget, MIN_BOX, progress)
         looked += rest.looked
         if len(rest.stuck):
             _refute(claims, rest.stuck)

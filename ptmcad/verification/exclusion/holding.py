@@ -14,15 +14,15 @@ from typing import Any
 import numpy as np
 
 from ptmcad.verification.exclusion.compiled import compiled
-from ptmcad.verification.exclusion.pieces import MOST_CONTROLS, SLACK
+from ptmcad.verification.exclusion.pieces import MAX_CONTROLS, SLACK
 
-MOST_PIECES = 96
+MAX_PIECES = 96
 """Of the pieces that a strip may meet: with more nothing is decided."""
-MOST_PARTS = 96
+MAX_PARTS = 96
 _BINS_AT_ONCE = 64
 _OUTSIDE = 0.01
 """By how much of its interval a polynomial may be continued."""
-_LEAST_SHARE = 0.02
+_MIN_SHARE = 0.02
 """Of a strip's length: a part that is shorter is not halved."""
 
 
@@ -35,18 +35,18 @@ def holds(pieces: Any, along: int, strip: Any) -> bool:
     along : the axis u.
     strip : a, b, from, middle, slope, low, high, and the least and the most v of it.
     """
-    near = np.empty(MOST_PIECES, dtype=np.int64)
+    near = np.empty(MAX_PIECES, dtype=np.int64)
     number = _near(pieces, along, strip, near)
     if number <= 0:
         return False
-    parts = np.empty((MOST_PARTS + 2, 4))
+    parts = np.empty((MAX_PARTS + 2, 4))
     parts[0, 0], parts[0, 1], parts[0, 2], parts[0, 3] = strip[0], strip[1], strip[7], strip[8]
     waiting, done = 1, 0
     slack = SLACK * pieces.steps
     while waiting > 0:
         waiting -= 1
         done += 1
-        if done > 4 * MOST_PARTS or waiting >= MOST_PARTS:
+        if done > 4 * MAX_PARTS or waiting >= MAX_PARTS:
             return False
         a, b, c, d = parts[waiting, 0], parts[waiting, 1], parts[waiting, 2], parts[waiting, 3]
         least, most = _across(strip, a, b)
@@ -59,7 +59,7 @@ def holds(pieces: Any, along: int, strip: Any) -> bool:
                 if _part(pieces, along, near, number, strip, parts[waiting]):
                     continue
                 upright, at = 0, 0.5 * (a + b)
-                if not a < at < b or b - a < _LEAST_SHARE * (strip[1] - strip[0]):
+                if not a < at < b or b - a < _MIN_SHARE * (strip[1] - strip[0]):
                     return False
         for k in range(4):
             parts[waiting + 1, k] = parts[waiting, k]
@@ -127,7 +127,7 @@ def _part(pieces: Any, along: int, near: Any, number: int, strip: Any, part: Any
     slack = SLACK * pieces.steps
     least, most = _across(strip, a, b)
     least, most = max(least - slack, part[2]), min(most + slack, part[3])
-    low, high = np.empty(MOST_PIECES), np.empty(MOST_PIECES)
+    low, high = np.empty(MAX_PIECES), np.empty(MAX_PIECES)
     line_a, line_b = strip[3] + strip[4] * (a - strip[2]), strip[3] + strip[4] * (b - strip[2])
     for m in range(number):
         n = near[m]
@@ -182,7 +182,7 @@ def _off(controls: Any, bound: Any, p: float, q: float, line_a: float, line_b: f
     start, number = bound[0], bound[1]
     if not (-_OUTSIDE <= p < 1 and q <= 1 + _OUTSIDE):
         return sign * inf
-    c = np.empty(MOST_CONTROLS)
+    c = np.empty(MAX_CONTROLS)
     for k in range(number):
         c[k] = controls[start + k]
     for level in range(1, number):

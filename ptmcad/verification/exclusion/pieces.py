@@ -20,8 +20,8 @@ Bound = tuple[int, tuple[int, ...]] | None
 """A polynomial by its controls, and what is added to them."""
 SLACK = 2.0**-44
 """Share of the window's lattice by which bounds are narrower than they are: far more than what is lost in rounding."""
-MOST_BINS = 512
-MOST_CONTROLS = 64
+MAX_BINS = 512
+MAX_CONTROLS = 64
 """Of a polynomial: pieces with more hold nothing."""
 
 
@@ -76,7 +76,7 @@ def pieces_of(claims: CertifiedClaims, wider: int = 0) -> Pieces:
         rows += [
             Row(frame, patch.along, (-t.half - wider, t.controls), (t.half + wider, t.controls), wider)
             for t in patch.tubes
-            if len(t.controls) <= MOST_CONTROLS
+            if len(t.controls) <= MAX_CONTROLS
         ]
     cells, found = claims.cell_of, claims.sweep
     if isinstance(found, SlantedSweep):
@@ -121,7 +121,7 @@ def _open_in_frames(found: SlantedSweep, cells: dict[int, int]) -> list[Row]:
     for frame, first in zip(found.frames, found.first_part, strict=True):
         patch = frame.patch
         for k in range(len(patch.tubes) + 1):
-            if found.component_of[first + k] not in cells and len(patch.tubes[0].controls) <= MOST_CONTROLS:
+            if found.component_of[first + k] not in cells and len(patch.tubes[0].controls) <= MAX_CONTROLS:
                 rows.append(Row(patch.frame, patch.along, *_between(patch, k)))
     return rows
 
@@ -146,7 +146,7 @@ def _in_arrays(rows: list[Row], steps: int) -> Pieces:
             if bound is not None:
                 bounds[side, n] = len(controls), len(bound[1])
                 controls += [c + bound[0] for c in bound[1]]
-    bins = int(min(max(1, len(rows) ** 0.5), MOST_BINS, steps))
+    bins = int(min(max(1, len(rows) ** 0.5), MAX_BINS, steps))
     low = np.floor(frames[:, ::2] * (bins / steps) - 1e-6).clip(0, bins - 1).astype(np.int64)
     high = np.floor(frames[:, 1::2] * (bins / steps) + 1e-6).clip(0, bins - 1).astype(np.int64)
     held: list[list[int]] = [[] for _ in range(bins * bins)]

@@ -15,7 +15,7 @@ from ptmcad.verification.exclusion.pieces import Pieces
 from ptmcad.verification.exclusion.search import GONE, HALVED, STUCK, look, spread
 from ptmcad.verification.exclusion.systems import System
 
-MOST_WAITING = 1_000_000
+MAX_WAITING = 1_000_000
 """Boxes: with more of them the youngest are looked at first."""
 AT_ONCE = 16_384
 GRID = 512
@@ -53,7 +53,7 @@ def search(
     waiting, stuck, looked, number = [start.copy()], [start[:0]], 0, len(start)
     whole, gone = float(_volumes(start).sum()), 0.0
     while waiting:
-        boxes = waiting.pop(0 if number < MOST_WAITING else -1)
+        boxes = waiting.pop(0 if number < MAX_WAITING else -1)
         if looked + len(boxes) > budget:
             waiting.append(boxes)
             break

@@ -22,15 +22,15 @@ for."""
 _ROUNDS = 3
 _WORTHWHILE = 0.75
 """Another round is made where a side of the box became smaller than this share of it."""
-_LARGEST = 1e100
+_MAX_SLOPE = 1e100
 _ROUNDING = 2.0**-49
 _WIDTH_WEIGHT = 0.6
 """How much a side's width counts, against what the equations change along it, when it is chosen what is halved."""
 _FLAT = 2.0**-60
 """Share of the window: a rectangle that is flatter, as those that are drawn to the window's edge, is not halved."""
-_LEAST_RATIO = 0.5
+_MIN_RATIO = 0.5
 """Of a slope to the error of its row: rows with less are not solved."""
-_LEAST_SHARE = 0.1
+_MIN_SHARE = 0.1
 """Of a slope in all that a row has: variables with less are not narrowed by it."""
 
 
@@ -119,9 +119,9 @@ def _eliminated(system: Any, forms: Any, nv: int, rows: Any, solved_for: Any) ->
         for j in range(nv + 2):
             rows[i, j] = forms[n, j]
     for _ in range(nv - 1):
-        row, column, best = -1, -1, _LEAST_RATIO
+        row, column, best = -1, -1, _MIN_RATIO
         for i in range(zeros):
-            if solved_for[i] < 0 and rows[i, nv + 1] < _LARGEST:
+            if solved_for[i] < 0 and rows[i, nv + 1] < _MAX_SLOPE:
                 for j in range(nv):
                     ratio = abs(rows[i, j]) / (rows[i, nv + 1] + 1e-100)
                     if ratio > best:
@@ -130,7 +130,7 @@ def _eliminated(system: Any, forms: Any, nv: int, rows: Any, solved_for: Any) ->
             break
         solved_for[row] = column
         for i in range(number):
-            if i != row and rows[i, column] != 0.0 and rows[i, nv + 1] < _LARGEST:
+            if i != row and rows[i, column] != 0.0 and rows[i, nv + 1] < _MAX_SLOPE:
                 factor, size = rows[i, column] / rows[row, column], 0.0
                 for j in range(nv + 1):
                     part = factor * rows[row, j]
@@ -147,7 +147,7 @@ def _narrowed(system: Any, number: int, box: Any, before: Any, rows: Any, solved
     nv, zeros = box.shape[0], len(system.zero)
     low, high = np.full(nv, -1.0), np.full(nv, 1.0)
     for k in range(number):
-        if not rows[k, nv + 1] < _LARGEST:
+        if not rows[k, nv + 1] < _MAX_SLOPE:
             continue
         total = rows[k, nv + 1]
         for j in range(nv):
@@ -159,7 +159,7 @@ def _narrowed(system: Any, number: int, box: Any, before: Any, rows: Any, solved
             slope = rows[k, j]
             # what the others can do at most; where this variable alone can do as much, nothing is gained
             rest = total - abs(slope)
-            if not abs(slope) > _LEAST_SHARE * total:
+            if not abs(slope) > _MIN_SHARE * total:
                 continue
             center, reach = -rows[k, nv] / slope, rest / abs(slope) * (1 + _ROUNDING)
             reach += _ROUNDING * (1 + abs(center))
@@ -204,7 +204,7 @@ def _strip_held(pieces: Any, box: Any, before: Any, row: Any, v: int) -> bool:
     slope = -row[u] / pivot * (half_v / half_u)
     reach = reach / abs(pivot) * half_v * (1 + 8 * _ROUNDING) + 8 * _ROUNDING * half_v
     middle = at_v - row[nv] / pivot * half_v
-    if not (reach < half_v and abs(slope) < _LARGEST):
+    if not (reach < half_v and abs(slope) < _MAX_SLOPE):
         return False
     strip = np.empty(9)
     strip[0], strip[1], strip[2], strip[3], strip[4] = box[u, 0], box[u, 1], at_u, middle, slope
@@ -221,7 +221,7 @@ def _widest(system: Any, forms: Any, box: Any) -> int:
         total = forms[n, nv + 1]
         for j in range(nv):
             total += abs(forms[n, j])
-        if 0 < total < _LARGEST:
+        if 0 < total < _MAX_SLOPE:
             for j in range(nv):
                 shares[j] += abs(forms[n, j]) / total
     best, most = -1, 0.0

@@ -11,7 +11,6 @@ from dataclasses import replace
 from fractions import Fraction
 
 from forger.consistency import NO_AREAS, settled, switched_off, with_plan
-from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.answer.regionmap import Component, RegionMap
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.assembly import Reached, assemble
@@ -30,6 +29,7 @@ from ptmcad.exact.stages import (
     with_keys,
 )
 from ptmcad.options import Options
+from ptmcad.text.rationals import from_fraction
 
 
 def decomposed(r: RegionMap, components: Sequence[Component], without: frozenset[str] | None = None) -> RegionMap:

@@ -18,13 +18,14 @@ from forger.consistency import (
     with_plan,
 )
 from forger.decompose import decomposed
-from ptmcad.algebra.polynomials import from_expression, from_fraction
+from ptmcad.algebra.polynomials import from_expression
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.exact.assembly import _solutions
 from ptmcad.exact.models import system_of
 from ptmcad.exact.stages import count_at
 from ptmcad.question.slice import Count, Point
-from ptmcad.verification.claims import Claims, bracket, fraction
+from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.verification.claims import Claims, bracket
 from ptmcad.verification.derivation import rational
 
 
@@ -59,7 +60,7 @@ def other_segments(r: RegionMap) -> Iterator[Alteration]:
         value = r.critical_values[r.cells[a.first].stack or 0]
         width = min(abs(value.low - a.segment[0]), abs(a.segment[1] - value.high)) / 4
         low, high = bracket(value, rational(width)) if width else (rational(value.low), rational(value.high))
-        u, w = (fraction(low) + a.segment[0]) / 2, (fraction(high) + a.segment[1]) / 2
+        u, w = (to_fraction(low) + a.segment[0]) / 2, (to_fraction(high) + a.segment[1]) / 2
         yield partial(replace, r, adjacencies=put(r.adjacencies, k, segment=(u, w, a.segment[2])))
 
 
@@ -101,7 +102,7 @@ def samples_of_other_cells(r: RegionMap) -> Iterator[Alteration]:
 def refined_critical_values(r: RegionMap) -> Iterator[Alteration]:
     for k, v in enumerate(r.critical_values):
         if v.low < v.high:
-            low, high = (fraction(q) for q in bracket(v, rational((v.high - v.low) / 100)))
+            low, high = (to_fraction(q) for q in bracket(v, rational((v.high - v.low) / 100)))
             yield partial(replace, r, critical_values=put(r.critical_values, k, low=low, high=high))
 
 

@@ -20,6 +20,7 @@ from ptmcad.studies.bench.scaling.folds import fold, grid, regions_of_fold, regi
 from ptmcad.studies.bench.scaling.measurement import Run, Stages
 from ptmcad.studies.bench.scaling.slices import digits, loaded, unloaded
 from ptmcad.studies.slices import ptm_slice
+from ptmcad.text.rationals import from_fraction
 
 Measure = Callable[[int, int], Sequence[Run]]
 DESIGNS = 150
@@ -111,7 +112,7 @@ def designs(seed: int) -> tuple[tuple[str, str, str, str], ...]:
 
 def equilibria(size: int, seed: int) -> tuple[Run, ...]:
     """The proved equilibria of every design, each a run; a design that is not decided has no run."""
-    from ptmcad.certified.points import point_counter
+    from ptmcad.certified.ptm.points import point_counter
 
     runs = []
     for rho, bar, free, load in designs(seed):
@@ -125,7 +126,7 @@ def equilibria(size: int, seed: int) -> tuple[Run, ...]:
 
 def fibres(size: int, seed: int) -> tuple[Run, ...]:
     """The equilibria of every design without its free length, by algebra: four or six."""
-    from ptmcad.algebra.polynomials import from_expression, from_fraction
+    from ptmcad.algebra.polynomials import from_expression
     from ptmcad.exact.counting import equilibria as equilibria_at
     from ptmcad.exact.models import system_of
     from ptmcad.exact.stages import point_values
@@ -246,7 +247,7 @@ def warm_up(certified: bool) -> None:
     exact(2, fold(2))
     if certified:
         from ptmcad.certified.engine import certified_map
-        from ptmcad.certified.points import point_counter
+        from ptmcad.certified.ptm.points import point_counter
 
         point_counter(design_slice("1/5", "-10")).at(Fraction(1), Fraction(3, 2), Count.TOTAL)
         certified_map(certified_window(), Options(tolerance=Fraction(1, 4), jobs=1))
@@ -255,7 +256,7 @@ def warm_up(certified: bool) -> None:
 def touch(certified: bool) -> None:
     """A small run of the same code: a forked child gets its pages one by one when it first uses them."""
     if certified:
-        from ptmcad.certified.points import point_counter
+        from ptmcad.certified.ptm.points import point_counter
 
         point_counter(design_slice("1/5", "-10")).at(Fraction(1), Fraction(3, 2), Count.TOTAL)
     else:

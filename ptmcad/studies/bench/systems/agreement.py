@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping, Sequence
-from fractions import Fraction
 from pathlib import Path
 
 from ptmcad.algebra.msolve import MsolveError, Terms, parsed, parsed_basis
@@ -19,6 +18,7 @@ from ptmcad.answer.regionmap import Kind, RegionMap
 from ptmcad.studies.bench.systems.exchange import Answers, Check, Point, Question
 from ptmcad.studies.bench.systems.programs import AnswerError, Tool, msolve_curves
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.rationals import to_fraction
 
 
 def checks(asked: Question, answer: Path | None, given: Answers) -> Mapping[str, Check]:
@@ -125,7 +125,7 @@ def curves(polynomials: Sequence[str], axes: tuple[str, str], *, factors: bool =
 
 def _integral(terms: Terms) -> Coefficient:
     """A multiple with whole coefficients."""
-    return from_terms((i, j, Fraction(int(c.p), int(c.q))) for (i, j), c in terms.items())[0]
+    return from_terms((i, j, to_fraction(c)) for (i, j), c in terms.items())[0]
 
 
 def same_curves(result: RegionMap, found: set[PlanePolynomial]) -> Check:

@@ -51,8 +51,8 @@ gives; neighbours, regions and areas. Its bases over Q are lifted from bases mod
 
 **Singular** is asked for the critical curve and its factors, over Q and without primes. It leaves the same as msolve,
 and the strategy too: without a basis in degree reverse lexicographic order before the elimination, [it takes far
-longer](../crosschecks.md#the-variety). The inverse in the system is dear: without it stiffness takes a tenth of the
-time, but such an elimination may have further lines, over which a bar has no length. Its libraries for real roots
+longer](../crosschecks.md#the-variety). The inverse in the system is expensive: without it stiffness takes a tenth of
+the time, but such an elimination may have further lines, over which a bar has no length. Its libraries for real roots
 were not measured.
 
 **QEPCAD** is asked for the open cells of the window with a rational sample in each. It leaves the curves, which are
@@ -89,7 +89,7 @@ def to_markdown(found: Record) -> str:
         f"Rounds: {found['rounds']}, seed {found['seed']}, limit {found['timeout']:g} s for a program and system, "
         f"at most {found['points']} points{date}.",
         "## Memory",
-        f"Largest resident set in MiB. Less than {floor:.0f}, that of a process that does nothing, can not be seen.",
+        f"Largest resident set in MiB. Less than {floor:.0f}, that of a process that does nothing, cannot be seen.",
         markdown(("system", *titles), peaks),
         "## What was compared",
         _AGREEMENT,

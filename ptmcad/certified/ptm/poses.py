@@ -19,10 +19,10 @@ from ptmcad.answer.regionmap import Solution, Status
 from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.formula import Graph, Operation
-from ptmcad.certified.plain.poses import NOT_TOLD, assembled, point_slice, told
+from ptmcad.certified.plain.poses import NOT_TOLD, assembled, point_slice, proved_digits
 from ptmcad.certified.plain.unsettled import not_settled
-from ptmcad.certified.points import point_counter
 from ptmcad.certified.potential import potential
+from ptmcad.certified.ptm.points import point_counter
 from ptmcad.certified.ptm.statics import TH1, TH2
 from ptmcad.certified.system import System
 from ptmcad.certified.tape import Tape, record
@@ -98,7 +98,7 @@ class _Number:
     exact: Fraction | None = None
 
     def enclosure(self, digits: int, attempt: int) -> Enclosure | None:
-        return told(self.ball, digits, attempt) if self.exact is None else Enclosure(self.exact, self.exact)
+        return proved_digits(self.ball, digits, attempt) if self.exact is None else Enclosure(self.exact, self.exact)
 
 
 def _pose(
