@@ -288,7 +288,7 @@ class Mechanism(Model):
     bodies : to the points fixed to them, for drawings.
     moments : generalised forces that need not come from a potential.
     torsion : springs between directions, in the record's order.
-    closing, xjoints : bars that close loops, and X-joints; with any, `ptmcad.mechanism.closures` makes a
+    closing, xjoints : bars that close loops, and X-joints; with any, `ptmcad.mechanism.closed` makes a
         `ClosedMechanism` of it.
     """
 

@@ -1,6 +1,6 @@
 """Random mechanisms and random systems: counts at random points against Newton's method from many starts.
 
-The oracle (`tests/support.multistart.py`) shares no code with the package, and proves each of its solutions.
+The oracle (`tests/support/multistart.py`) shares no code with the package, and proves each of its solutions.
 """
 
 from __future__ import annotations
