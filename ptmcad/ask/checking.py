@@ -26,7 +26,6 @@ from ptmcad.process.timed import returns_within
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
 from ptmcad.text.numerals import short_text
-from ptmcad.text.rationals import from_fraction
 
 if TYPE_CHECKING:
     from flint import fmpq
@@ -166,6 +165,7 @@ def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tu
     from ptmcad.exact.point_system import degree_bound
     from ptmcad.exact.stages import point_values, problem_of
     from ptmcad.exact.witness import SHARES, points
+    from ptmcad.text.rationals import from_fraction
 
     problem = problem_of(slice)
     values = point_values(problem.parameters, (from_fraction(sample[0]), from_fraction(sample[1])))

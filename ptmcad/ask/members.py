@@ -22,7 +22,6 @@ from ptmcad.options import DEFAULTS, Options
 from ptmcad.question.config import member_like
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.numerals import text_of
-from ptmcad.text.rationals import from_fraction
 
 if TYPE_CHECKING:
     from ptmcad.algebra.polynomials import Ratio
@@ -125,6 +124,7 @@ def member_map(common: Common, value: Fraction, options: Options = DEFAULTS) -> 
     slice = common.family.member(value)
     if common.variety is None or is_certified(slice, options.engine):
         return region_map(slice, options)
+    from ptmcad.text.rationals import from_fraction
 
     return region_map(slice, options, partial(common.variety.at, from_fraction(value)))
 

@@ -18,7 +18,6 @@ from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
 from ptmcad.mechanism import Model
 from ptmcad.question.config import point_from_mapping, slice_from
 from ptmcad.question.slice import Point, Slice, without_free_lengths
-from ptmcad.text.rationals import from_fraction, to_fraction
 
 if TYPE_CHECKING:
     from ptmcad.answer.counts import Counts
@@ -77,6 +76,7 @@ def open_cad(question: Question) -> tuple[Point, ...]:
     """
     from ptmcad.exact.stages import problem_of, projection_of, stacks_of, variety_of
     from ptmcad.question.domain import prove_slice
+    from ptmcad.text.rationals import to_fraction
 
     slice = slice_from(question)
     without_free_lengths(slice.model, slice.parameters, "an open CAD is")
@@ -115,6 +115,7 @@ def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object
     from ptmcad.exact.counting import count_by_isolation
     from ptmcad.exact.models import system_from
     from ptmcad.text.expressions import constant
+    from ptmcad.text.rationals import from_fraction
 
     if isinstance(model, Slice):
         raise ConfigError("a count is of a mechanism or a system: give the slice's model, and all values", key="model")

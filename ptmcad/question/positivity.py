@@ -23,7 +23,6 @@ from typing import NamedTuple
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, Term
 from ptmcad.text.numerals import approximate_text
-from ptmcad.text.rationals import from_fraction, to_fraction
 
 MAX_SPLITS = 400
 MAX_WORK = 2_000_000
@@ -317,6 +316,7 @@ def _by_algebra(terms: tuple[Term, ...], window: Box, strict: bool, left: Undeci
     """The same, for what halving has left."""
     from ptmcad.algebra import definite  # only here: few records need it, and FLINT takes long to load
     from ptmcad.algebra.polynomials import from_terms
+    from ptmcad.text.rationals import from_fraction, to_fraction
 
     x, y = ((from_fraction(low), from_fraction(high)) for low, high in window)
     bound = definite.MAX_WORK if max_work is None else max_work
