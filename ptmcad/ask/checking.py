@@ -14,25 +14,30 @@ from fractions import Fraction
 from time import process_time
 from typing import TYPE_CHECKING
 
+from ptmcad.algebra.bases import plan_text
+from ptmcad.algebra.fibre import Work
 from ptmcad.ask.classification import check_taken, flat_loops
 from ptmcad.ask.engines import is_certified
 from ptmcad.ask.estimate import WORDS, cost
 from ptmcad.ask.forecast import QUICK, Forecast, curve_text, forecast, seconds_to_discriminant, way_text
 from ptmcad.ask.forecast import cost_text as in_figures
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, LimitReached, shown
+from ptmcad.exact.models import ParametricSystem
+from ptmcad.exact.point_system import degree_bound, none_is_stable, solutions_at
+from ptmcad.exact.sizes import sizes
+from ptmcad.exact.stages import SliceProblem, point_values, problem_of, prove_regular
+from ptmcad.exact.survey import Survey, survey
 from ptmcad.mechanism import Mechanism, ptm
 from ptmcad.mechanism.sizes import terms_of
 from ptmcad.process.timed import returns_within
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
 from ptmcad.text.numerals import short_text
+from ptmcad.text.rationals import from_fraction
 
 if TYPE_CHECKING:
     from flint import fmpq
 
-    from ptmcad.exact.models import ParametricSystem
-    from ptmcad.exact.stages import SliceProblem
-    from ptmcad.exact.survey import Survey
 
 MAX_UNKNOWNS = 4
 """Beyond, even one point takes too long for a question that should be answered at once."""
@@ -118,7 +123,6 @@ def check(slice: Slice, sized: bool = True) -> Check:
     if len(slice.model.unknowns) > MAX_UNKNOWNS:
         return Check(slice, at, None, "exact", WORDS[-1])
     found, bound = _counted(slice, at, sized)
-    from ptmcad.algebra.bases import plan_text
 
     return replace(found, bases=plan_text(bound))
 
@@ -162,10 +166,7 @@ def _check_bounded(slice: Slice) -> None:
 
 def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tuple[Check, int]:
     """The check of a slice that the exact engine takes, and the bound for its solutions by Bezout's theorem."""
-    from ptmcad.exact.point_system import degree_bound
-    from ptmcad.exact.stages import point_values, problem_of
     from ptmcad.exact.witness import SHARES, points
-    from ptmcad.text.rationals import from_fraction
 
     problem = problem_of(slice)
     values = point_values(problem.parameters, (from_fraction(sample[0]), from_fraction(sample[1])))
@@ -199,8 +200,6 @@ def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tu
 
 def _foretold(problem: SliceProblem, solutions: int) -> Forecast | None:
     """The forecast for a slice with simple solutions; None where the curve is too large to tell its size at once."""
-    from ptmcad.algebra.fibre import Work
-    from ptmcad.exact.sizes import sizes
 
     found = sizes(problem, solutions, MAX_SIZING, Work(MAX_COUNTED, *MAX_BASIS))
     if found is None:
@@ -211,7 +210,6 @@ def _foretold(problem: SliceProblem, solutions: int) -> Forecast | None:
 
 def _surveyed(problem: SliceProblem) -> Survey | None:
     """The decomposition's sizes; None where it takes much longer than predicted."""
-    from ptmcad.exact.survey import survey
 
     end = process_time() + MAX_SURVEYING
 
@@ -226,7 +224,6 @@ def _surveyed(problem: SliceProblem) -> Survey | None:
 
 
 def _prove(slice: Slice) -> None:
-    from ptmcad.exact.stages import problem_of, prove_regular
 
     prove_regular(problem_of(slice))
 
@@ -239,8 +236,6 @@ def _solutions(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[in
     LimitReached
         When they are not counted within about a second.
     """
-    from ptmcad.algebra.fibre import Work
-    from ptmcad.exact.point_system import none_is_stable, solutions_at
 
     most = Work(MAX_COUNTED, *MAX_BASIS)
     different, multiplicity = solutions_at(system, values, most=most)

@@ -18,6 +18,7 @@ from ptmcad.answer.poses import Poses
 from ptmcad.errors import LimitReached
 from ptmcad.mechanism import Mechanism, Model, System
 from ptmcad.process.memory import check_room, loading
+from ptmcad.question.slice import Count
 
 if TYPE_CHECKING:
     from ptmcad.algebra.fibre import Work
@@ -68,7 +69,6 @@ def counts_by_search(model: Model, point: Mapping[str, Fraction], timeout: float
         from ptmcad.certified.plain.points import plain_counter
         from ptmcad.certified.plain.poses import point_slice
         from ptmcad.certified.plain.problem import MAX_UNKNOWNS_AT_POINTS
-        from ptmcad.question.slice import Count
     check_room("the certified engine")
     tried = "the Groebner basis of the equations grows beyond what is computed at a point"
     if len(model.unknowns) > MAX_UNKNOWNS_AT_POINTS:

@@ -10,17 +10,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from ptmcad.answer.counts import Counts
 from ptmcad.answer.slicevariety import SliceVariety
 from ptmcad.ask.manyangles import counts_by_search, work_by_msolve, work_for
 from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
 from ptmcad.mechanism import Model
 from ptmcad.question.config import point_from_mapping, slice_from
+from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Point, Slice, without_free_lengths
-
-if TYPE_CHECKING:
-    from ptmcad.answer.counts import Counts
+from ptmcad.text.expressions import constant
 
 TIMEOUT = 60.0
 """Seconds for a search where algebra does not count."""
@@ -75,7 +75,6 @@ def open_cad(question: Question) -> tuple[Point, ...]:
     Strzebonski, Solving systems of strict polynomial inequalities, J. Symb. Comp. 29 (2000).
     """
     from ptmcad.exact.stages import problem_of, projection_of, stacks_of, variety_of
-    from ptmcad.question.domain import prove_slice
     from ptmcad.text.rationals import to_fraction
 
     slice = slice_from(question)
@@ -114,7 +113,6 @@ def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object
     from ptmcad.algebra.bases import MISSING
     from ptmcad.exact.counting import count_by_isolation
     from ptmcad.exact.models import system_from
-    from ptmcad.text.expressions import constant
     from ptmcad.text.rationals import from_fraction
 
     if isinstance(model, Slice):

@@ -37,14 +37,14 @@ def test_the_way_of_the_projection_is_told() -> None:
 
 
 def test_a_curve_out_of_reach_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("ptmcad.exact.sizes.sizes", lambda *_: Sizes((60, 50), 70, (1, 1)))
+    monkeypatch.setattr("ptmcad.ask.checking.sizes", lambda *_: Sizes((60, 50), 70, (1, 1)))
     found = checked(load(CONFIGS / "systems" / "kuramoto.yaml"))
     assert "out of the exact map's reach" in found.cost
     assert "--engine certified encloses the map" in found.cost
 
 
 def test_where_the_size_is_not_known_the_cost_is_a_class(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("ptmcad.exact.sizes.sizes", lambda *_: None)
+    monkeypatch.setattr("ptmcad.ask.checking.sizes", lambda *_: None)
     found = checked(load(CONFIGS / "forces.yaml"))
     assert found.forecast is None
     assert found.cost == "about a second"
@@ -76,7 +76,7 @@ def test_cells_are_counted_where_the_curve_is_quick(monkeypatch: pytest.MonkeyPa
         asked.append(True)
         return Survey(1_000_000, 0, 1)
 
-    monkeypatch.setattr("ptmcad.exact.survey.survey", counted)
+    monkeypatch.setattr("ptmcad.ask.checking.survey", counted)
     found = checked(slice).forecast
     assert found is not None and found.seconds > 100 and asked
     monkeypatch.setattr("ptmcad.ask.checking.QUICK", 0.0)
