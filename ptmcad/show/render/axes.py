@@ -43,12 +43,25 @@ class Scale:
         """The name of what is shown, such as ``(k - 1000) / 10⁻³``; an offset of more characters is cut off."""
         if self.offset:
             sign = "−" if self.offset > 0 else "+"
-            digits = _decimal(abs(self.offset))
-            symbol = f"{symbol} {sign} {digits if len(digits) <= most else digits[: most - 1] + '…'}"
+            symbol = f"{symbol} {sign} {_offset_text(abs(self.offset), most)}"
         if self.exponent:
             symbol = f"({symbol})" if self.offset else symbol
             symbol = f"{symbol} / 10{str(self.exponent).translate(_SUPERSCRIPT)}"
         return symbol
+
+
+def _offset_text(value: Fraction, most: int) -> str:
+    """A positive decimal, cut off after so many characters; of a small one its first digits are among them.
+
+    >>> _offset_text(Fraction("0.001953125"), 20), _offset_text(Fraction("0.142857"), 6), _offset_text(Fraction("2.0408163e-53"), 6)
+    ('0.001953125', '0.142…', '2.040…·10⁻⁵³')
+    """
+    digits, power = _decimal(value), magnitude(value)
+    if len(digits) <= most:
+        return digits
+    if power >= -2:
+        return f"{digits[: most - 1]}…"
+    return f"{_decimal(value / Fraction(10) ** power)[: most - 1]}…·10{str(power).translate(_SUPERSCRIPT)}"
 
 
 def scale_of(low: Fraction, high: Fraction, digits: int = 4) -> Scale:
