@@ -53,8 +53,8 @@ class Scale:
 def _offset_text(value: Fraction, most: int) -> str:
     """A positive decimal, cut off after so many characters; of a small one its first digits are among them.
 
-    >>> _offset_text(Fraction("0.001953125"), 20), _offset_text(Fraction("0.142857"), 6), _offset_text(Fraction("2.0408163e-53"), 6)
-    ('0.001953125', '0.142…', '2.040…·10⁻⁵³')
+    >>> [_offset_text(Fraction(text), 6) for text in ("0.25", "0.142857", "2.0408163e-53")]
+    ['0.25', '0.142…', '2.040…·10⁻⁵³']
     """
     digits, power = _decimal(value), magnitude(value)
     if len(digits) <= most:
