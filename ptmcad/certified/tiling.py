@@ -45,30 +45,6 @@ def touching(tree: Subdivision, parts: Integers) -> Touching:
 
 
 @compiled
-def connected(number: int, first: Integers, second: Integers) -> Integers:
-    """For each of so many nodes the smallest node that edges join it to."""
-    label = np.empty(number, np.int64)
-    for k in range(number):
-        label[k] = k
-    for k in range(len(first)):
-        a, b = first[k], second[k]
-        while label[a] != a:
-            label[a] = label[label[a]]
-            a = label[a]
-        while label[b] != b:
-            label[b] = label[label[b]]
-            b = label[b]
-        # the smaller root stays one: labels point downwards
-        if a < b:
-            label[b] = a
-        else:
-            label[a] = b
-    for a in range(number):
-        label[a] = label[label[a]]
-    return label
-
-
-@compiled
 def _with_room(array: Integers, rows: int) -> Integers:
     """The rows of an array with room for more."""
     larger = np.empty((rows, array.shape[1]), np.int64)
@@ -230,4 +206,4 @@ def _touching(
     return pairs[:found].copy()
 
 
-COMPILED = Tiling(subdivide, touching, connected)
+COMPILED = Tiling(subdivide, touching)

@@ -35,15 +35,13 @@ class Tiling:
     ----------
     subdivide : see `ptmcad.cover.subdivision.subdivide`.
     touching : the pairs of leaves of a subdivision that touch, as positions among the leaves' given numbers.
-    connected : see `ptmcad.cover.graph.connected`.
     """
 
     subdivide: Callable[[Integers, int], Subdivision]
     touching: Callable[[Subdivision, Integers], Touching]
-    connected: Callable[[int, Integers, Integers], Integers]
 
 
-PLAIN = Tiling(subdivide, lambda tree, leaves: touching(tree.bounds[leaves]), connected)
+PLAIN = Tiling(subdivide, lambda tree, leaves: touching(tree.bounds[leaves]))
 """Without compiled code."""
 
 
@@ -129,7 +127,7 @@ def components(cover: Cover, tiling: Tiling = PLAIN) -> Components:
     pairs = tiling.touching(tree, parts)
     a_free, b_free = free[pairs.first], free[pairs.second]
     joined = (a_free & b_free & pairs.along) | ~(a_free | b_free)
-    label = tiling.connected(len(leaves), pairs.first[joined], pairs.second[joined])
+    label = connected(len(leaves), pairs.first[joined], pairs.second[joined])
 
     number, areas, thick = _numbered(leaves, label, free)
     clusters, cluster_areas, _ = _numbered(leaves, label, ~free)

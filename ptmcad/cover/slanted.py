@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from ptmcad.cover import tubes
 from ptmcad.cover.complement import Components, Frames, Tiling, as_rectangles, bounding_boxes, grown, sums_of_areas
+from ptmcad.cover.graph import connected
 from ptmcad.cover.rectangles import Cover, Patch, Rectangle
 from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array, subdivide
 
@@ -76,7 +77,7 @@ def slanted_components(cover: Cover, tiling: Tiling) -> Components:
     first, second = _edges(nodes, pairs.first, pairs.second, pairs.along, cover.patches)
     free = nodes.free
     joined = free[first] == free[second]
-    label = tiling.connected(len(free), first[joined], second[joined])
+    label = connected(len(free), first[joined], second[joined])
     return _assembled(cover, tree, parts, nodes, label, (first[~joined], second[~joined]))
 
 
