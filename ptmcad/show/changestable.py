@@ -5,8 +5,6 @@ Guarantee: the digits of an exact value are right; the ends of an enclosure are 
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 from ptmcad.answer.changes import Change, Changes
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.numerals import decimal, shortest_text
@@ -44,12 +42,8 @@ def value_text(change: Change) -> str:
     """The value with ten digits, or the two ends of its enclosure."""
     if isinstance(change.value, AlgebraicNumber):
         return change.value.text()
-    return f"{_rounded(change.value.low, up=False)} to {_rounded(change.value.high, up=True)}"
-
-
-def _rounded(value: Fraction, up: bool) -> str:
-    """An end of an enclosure, rounded outwards."""
-    return f"-{decimal(-value, not up, _DIGITS)}" if value < 0 else decimal(value, up, _DIGITS)
+    low, high = change.value.low, change.value.high
+    return f"{decimal(low, up=False, digits=_DIGITS)} to {decimal(high, up=True, digits=_DIGITS)}"
 
 
 def _kind(change: Change) -> str:

@@ -59,22 +59,19 @@ def value_text(value: Enclosure) -> str:
     for digits in range(DIGITS, 1, -1):
         if value.settles(digits):
             return value.text(digits)
-    return f"{_signed(value.low, up=False)} to {_signed(value.high, up=True)}"
+    low, high = (decimal(end, up, _BOUND_DIGITS) for end, up in ((value.low, False), (value.high, True)))
+    return f"{low} to {high}"
 
 
 def _proof(found: BestDesign) -> str:
     if found.bound is None:
         return f"of the value at this design alone; {found.reason}"
-    bound = _signed(found.bound, up=True)
+    bound = decimal(found.bound, up=True, digits=_BOUND_DIGITS)
     if found.value is None or found.value.low <= 0:
         return f"no design has more than {bound}, {found.reason}"
     excess = found.bound / found.value.low - 1
     if excess < _NOTHING:
         return f"no design has more than {bound}, {found.reason}"
-    share = f"{_signed(excess * 100, up=True, digits=2)} % more"
+    share = f"{decimal(excess * 100, up=True, digits=2)} % more"
     words = f"no design has more than {bound}, {share}, {found.reason}"
     return words if found.proved else f"{words}; not within {shortest_text(found.tolerance * 100)} %"
-
-
-def _signed(value: Fraction, up: bool, digits: int = _BOUND_DIGITS) -> str:
-    return f"-{decimal(-value, not up, digits)}" if value < 0 else decimal(value, up, digits)

@@ -163,11 +163,7 @@ def bounds(low: Fraction, high: Fraction) -> Bounds:
     >>> bounds(Fraction(-1, 3), Fraction(1, 2))
     ('-0.333333333333333334', '0.5')
     """
-    return _outward(low, up=False), _outward(high, up=True)
-
-
-def _outward(value: Fraction, up: bool) -> str:
-    return decimal(value, up) if value >= 0 else f"-{decimal(-value, not up)}"
+    return decimal(low, up=False), decimal(high, up=True)
 
 
 def _widest(slice: Slice, along: str) -> Widest:

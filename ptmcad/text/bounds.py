@@ -10,20 +10,35 @@ from fractions import Fraction
 from ptmcad.text.numerals import decimal, magnitude
 
 
+def nearest_multiple(bounds: tuple[Fraction, Fraction], unit: Fraction) -> int | None:
+    """The multiple of the unit next to the middle, where no number between the bounds is more than a unit from it."""
+    low, high = bounds
+    digits = round((low + high) / 2 / unit)
+    return digits if high - digits * unit <= unit and digits * unit - low <= unit else None
+
+
+def rounded(value: Fraction, unit: Fraction, up: bool) -> Fraction:
+    """The next multiple of the unit above or below, or the value if it is one.
+
+    >>> rounded(Fraction(-1, 3), Fraction(1, 10), up=True), rounded(Fraction(-1, 3), Fraction(1, 10), up=False)
+    (Fraction(-3, 10), Fraction(-2, 5))
+    """
+    return (-(-value // unit) if up else value // unit) * unit
+
+
 def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:
     """The longest decimal, of at most ``most`` digits, that is within one unit of its last digit of both bounds.
 
     Two decimals, joined by "to", when not even two digits are certain (or the one that is asked for).
     """
     low, high = bounds
-    middle = (low + high) / 2
     if high == 0:
         return "0"
-    top = magnitude(middle)
+    top = magnitude((low + high) / 2)
     for exponent in range(top - most, top + (most == 1)):
         unit = Fraction(10) ** exponent
-        digits = round(middle / unit)
-        if len(str(digits)) <= most and digits > 0 and high - digits * unit <= unit and digits * unit - low <= unit:
+        digits = nearest_multiple(bounds, unit)
+        if digits is not None and digits > 0 and len(str(digits)) <= most:
             return decimal(digits * unit, up=False, digits=most)
     return f"{decimal(low, up=False, digits=2)} to {decimal(high, up=True, digits=2)}"
 
@@ -38,13 +53,8 @@ def interval_text(bounds: tuple[Fraction, Fraction]) -> str:
     if low >= high:
         return certified_digits(bounds)
     digits = max(2, magnitude(high) - magnitude(high - low) + 3)
-    return f"{_down_to(low, digits, high)} to {decimal(high, up=True, digits=digits)}"
-
-
-def _down_to(value: Fraction, digits: int, largest: Fraction) -> str:
-    """The value rounded down to the decimal place that ``digits`` digits of the largest end in."""
-    unit = Fraction(10) ** (magnitude(largest) + 1 - digits)
-    return decimal(value // unit * unit, up=False)
+    unit = Fraction(10) ** (magnitude(high) + 1 - digits)
+    return f"{decimal(rounded(low, unit, up=False), up=False)} to {decimal(high, up=True, digits=digits)}"
 
 
 def percent(share: Fraction) -> str:

@@ -178,9 +178,15 @@ def magnitude(value: Fraction) -> int:
 
 
 def decimal(value: Fraction, up: bool, digits: int = 18) -> str:
-    """A decimal text with ``digits`` significant digits that bounds a nonnegative value from the side asked for."""
+    """A decimal text with ``digits`` significant digits that bounds a value from the side asked for.
+
+    >>> decimal(Fraction(-1, 3), up=True, digits=2), decimal(Fraction(2, 3), up=True, digits=2)
+    ('-0.33', '0.67')
+    """
     if value == 0:
         return "0"
+    if value < 0:
+        return f"-{decimal(-value, not up, digits)}"
     exponent = magnitude(value) + 1 - digits
     scaled = value / Fraction(10) ** exponent
     mantissa = -((-scaled.numerator) // scaled.denominator) if up else scaled.numerator // scaled.denominator
@@ -195,8 +201,19 @@ def decimal(value: Fraction, up: bool, digits: int = 18) -> str:
     return f"{text[0]}.{text[1:].rstrip('0') or '0'}e{point - 1}"
 
 
+SUPERSCRIPTS = dict(zip("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹", strict=True))
+"""How a sign and digits are printed in an exponent."""
+
+
+def power_of_ten(exponent: int) -> str:
+    """A power of ten as it is printed.
+
+    >>> power_of_ten(-12)
+    '10⁻¹²'
+    """
+    return "10" + "".join(SUPERSCRIPTS[c] for c in str(exponent))
+
+
 def approximate_text(value: Fraction) -> str:
     """A number for a message: short, rounded towards zero, of any size."""
-    if value < 0:
-        return "-" + approximate_text(-value)
-    return decimal(value, up=False, digits=9)
+    return decimal(value, up=value < 0, digits=9)

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from support.maps import shipped
 
+from ptmcad.errors import ExpressionError
 from ptmcad.text.numerals import (
     MAX_DIGITS,
     MAX_EXPONENT,
@@ -22,6 +27,8 @@ from ptmcad.text.numerals import (
     shortest_text,
     text_of,
 )
+from ptmcad.text.syntax import parse
+from ptmcad.text.tree import Number
 
 
 def test_the_table_of_a_damaged_result_ends() -> None:
@@ -154,3 +161,37 @@ def test_fractions_of_numpys_integers_are_plain_ones() -> None:
     value = exactly(Fraction(np.int64(3), 400))
     assert value == Fraction(3, 400)
     assert type(value.numerator) is int is type(value.denominator)
+
+
+def told(read: Callable[[str], object], text: str) -> object:
+    """What is read of a text, None where it is refused."""
+    try:
+        return read(text)
+    except (ValueError, ExpressionError):
+        return None
+
+
+def number_in(text: str) -> Fraction | None:
+    """The number that the text is as an expression, None of one that is more than a number."""
+    tree = parse(text)
+    return tree.value if isinstance(tree, Number) else None
+
+
+@given(st.from_regex(r"(0|[1-9][0-9]{0,30})(\.[0-9]{1,30})?(e-?[0-9]{1,3})?", fullmatch=True))
+def test_decimals_of_results_and_of_expressions_are_the_same(text: str) -> None:
+    assert fraction_of(text) == number_in(text) == Fraction(text)
+
+
+@given(
+    st.text("0123456789.eE+", min_size=1, max_size=8)
+    | st.from_regex(r"0?[0-9]*\.?[0-9]*([eE][+-]?[0-9])?", fullmatch=True)
+)
+def test_decimals_that_one_of_them_refuses(text: str) -> None:
+    """Results are written without a sign of the exponent and with digits around the point; records without zeros that
+    lead."""
+    stored, expressed = told(fraction_of, text), told(number_in, text)
+    assert {stored, expressed} <= {None, told(Fraction, text)}
+    if stored is not None and expressed is None:
+        assert re.match("0[0-9]", text)
+    if expressed is not None and stored is None:
+        assert re.search(r"[E+]|^\.|\.(?![0-9])", text)

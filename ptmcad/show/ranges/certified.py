@@ -11,6 +11,7 @@ from ptmcad.answer.intervals import CertifiedIntervals
 from ptmcad.answer.widths import CertifiedWidths
 from ptmcad.show.ranges.numbers import known
 from ptmcad.show.ranges.table import aligned, nowhere, working_text
+from ptmcad.text.bounds import rounded
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text
 
@@ -80,7 +81,5 @@ def _text(end: Enclosure, digits: int, up: bool = False) -> str:
     """The end rounded; where its digits are not settled, its outer side, rounded outwards."""
     if end.settles(digits):
         return end.text(digits)
-    value = end.high if up else end.low
-    scale = Fraction(10) ** digits
-    rounded = (-((-value * scale) // 1) if up else (value * scale) // 1) / scale
-    return Enclosure(rounded, rounded).text(digits + 20)
+    outer = rounded(end.high if up else end.low, Fraction(1, 10**digits), up)
+    return Enclosure(outer, outer).text(digits + 20)

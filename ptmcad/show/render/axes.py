@@ -13,7 +13,7 @@ from typing import Any
 
 from ptmcad.question.slice import Slice
 from ptmcad.show.units import unit, with_unit
-from ptmcad.text.numerals import magnitude
+from ptmcad.text.numerals import magnitude, power_of_ten
 
 _GREEK = {
     "rho": "ρ",
@@ -27,7 +27,6 @@ _GREEK = {
     "kappa": "κ",
 }
 _SUBSCRIPT = str.maketrans("0123456789x", "₀₁₂₃₄₅₆₇₈₉ₓ")
-_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +45,7 @@ class Scale:
             symbol = f"{symbol} {sign} {_offset_text(abs(self.offset), most)}"
         if self.exponent:
             symbol = f"({symbol})" if self.offset else symbol
-            symbol = f"{symbol} / 10{str(self.exponent).translate(_SUPERSCRIPT)}"
+            symbol = f"{symbol} / {power_of_ten(self.exponent)}"
         return symbol
 
 

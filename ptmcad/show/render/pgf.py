@@ -19,6 +19,8 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
 
+from ptmcad.text.numerals import SUPERSCRIPTS
+
 _HEAD = r"""%% A figure of ptmcad: {title}
 %%
 %% In the preamble:  \usepackage{{pgf}}   (and \usepackage{{lmodern}} or \usepackage{{fix-cm}} for text of any size)
@@ -44,7 +46,7 @@ _GREEK = {
     "Ω": "Omega",
 }  # fmt: skip
 _SUBSCRIPTS = dict(zip("₀₁₂₃₄₅₆₇₈₉ₓ", "0123456789x", strict=True))
-_SUPERSCRIPTS = dict(zip("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789", strict=True))
+_SUPERSCRIPTS = {above: plain for plain, above in SUPERSCRIPTS.items()}
 _INDICES = "".join(_SUBSCRIPTS)
 _PIECES = re.compile(
     rf"((?<![^\W\d_])[A-Za-z{''.join(_GREEK)}])?([{_INDICES}]+)|([{''.join(_SUPERSCRIPTS)}]+)|(.)", re.S

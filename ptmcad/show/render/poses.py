@@ -30,7 +30,7 @@ from ptmcad.show.render.printing import settings
 from ptmcad.show.render.sketch import MAX_ARROW, MIN_ARROW, Frame, Scene, arrow_lengths, frame_of, load_values
 from ptmcad.show.units import energy_unit
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.numerals import magnitude, shortest_text
+from ptmcad.text.numerals import magnitude, power_of_ten, shortest_text
 from ptmcad.text.tree import to_text
 
 MARGIN, GAP, HEAD, BELOW, KEY, TITLE_LINE = 0.2, 0.14, 0.26, 0.36, 2.75, 0.22
@@ -38,7 +38,6 @@ MARGIN, GAP, HEAD, BELOW, KEY, TITLE_LINE = 0.2, 0.14, 0.26, 0.36, 2.75, 0.22
 _DIGITS = 6
 _MAX_VALUE = 14
 """Longer values of parameters are rounded in the title."""
-_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def draw_poses(poses: Poses) -> Figure:
@@ -157,7 +156,7 @@ def printed_number(text: str) -> str:
     mantissa, _, exponent = text.replace("-", "−").partition("e")
     if not exponent:
         return mantissa
-    power = f"10{str(int(exponent.replace('−', '-'))).translate(_SUPERSCRIPT)}"
+    power = power_of_ten(int(exponent.replace("−", "-")))
     return {"1": power, "−1": f"−{power}"}.get(mantissa, f"{mantissa}·{power}")
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from fractions import Fraction
 from math import atan2, isqrt
 
+from ptmcad.text.bounds import nearest_multiple
 from ptmcad.text.numerals import integer_text, magnitude
 
 Bounds = tuple[Fraction, Fraction]
@@ -116,15 +117,11 @@ def decimal_text(a: Bounds, exponent: int) -> str:
     >>> decimal_text(exactly(123456), 3), decimal_text(exactly(Fraction(1, 10**20)), -22)
     ('123e3', '100e-22')
     """
-    low, high = a
-    width = high - low
+    width = a[1] - a[0]
     if width > 0:
         exponent = max(exponent, magnitude(width))
     unit = Fraction(10) ** exponent
-    while True:
-        digits = round((low + high) / 2 / unit)
-        if high - digits * unit <= unit and digits * unit - low <= unit:
-            break
+    while (digits := nearest_multiple(a, unit)) is None:
         exponent, unit = exponent + 1, unit * 10
     text = integer_text(abs(digits))
     sign = "−" if digits < 0 else ""

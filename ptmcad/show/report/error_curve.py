@@ -16,6 +16,7 @@ from pathlib import Path
 from ptmcad.errors import ConfigError
 from ptmcad.show.document.node import Node
 from ptmcad.show.report.sections import table
+from ptmcad.text.numerals import power_of_ten
 from ptmcad.text.textfile import read_text
 
 FORMAT = "ptmcad-error-time/1"
@@ -113,11 +114,11 @@ def _picture(curve: ErrorCurve) -> Iterator[str]:
     for decade in range(left, right + 1, max(1, (right - left) // 6)):
         x = (decade - left) / (right - left) * _WIDTH
         yield f'<path class="grid" d="M{x:.1f} 0V{_HEIGHT}"/>'
-        yield f'<text class="number x" x="{x:.1f}" y="{_HEIGHT + 14}" dy=".8em">{_power(decade)}</text>'
+        yield f'<text class="number x" x="{x:.1f}" y="{_HEIGHT + 14}" dy=".8em">{power_of_ten(decade)}</text>'
     for decade in range(low, high + 1, max(1, (high - low) // 6)):
         y = _HEIGHT - (decade - low) / (high - low) * _HEIGHT
         yield f'<path class="grid" d="M0 {y:.1f}H{_WIDTH}"/>'
-        yield f'<text class="number y" x="-14" y="{y:.1f}" dy=".36em">{_power(decade)}</text>'
+        yield f'<text class="number y" x="-14" y="{y:.1f}" dy=".36em">{power_of_ten(decade)}</text>'
     yield f'<text class="name" x="{_WIDTH / 2}" y="{_HEIGHT + _BOTTOM - 16}">seconds</text>'
     yield f'<text class="name" transform="translate({36 - _LEFT} {_HEIGHT / 2}) rotate(-90)">error</text>'
     yield f'<rect class="frame" width="{_WIDTH}" height="{_HEIGHT}"/>'
@@ -139,7 +140,3 @@ def _picture(curve: ErrorCurve) -> Iterator[str]:
 def _decades(values: list[float]) -> tuple[int, int]:
     low, high = floor(log10(min(values))), ceil(log10(max(values)))
     return (low, high) if low < high else (low, low + 1)
-
-
-def _power(decade: int) -> str:
-    return f"10{str(decade).translate(str.maketrans('-0123456789', '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'))}"

@@ -20,6 +20,7 @@ from ptmcad.show.render.legend import INK
 from ptmcad.show.render.printing import save, settings
 from ptmcad.studies.bench.study import Study
 from ptmcad.studies.bench.words import Curve, Spot, curves, sentences
+from ptmcad.text.numerals import power_of_ten
 
 WIDE, TALL = 9.2, 6.4
 DPI = 110
@@ -79,7 +80,7 @@ def draw_error_time(title: str, below: Sequence[str], curves: Sequence[Curve]) -
                   ha="left", va="center", fontsize=9, color=INK)  # fmt: skip
         every = max(1, (high - low) // 8)
         axes.set_yticks([10.0**k for k in range(low, high + 1, every)])
-        axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: _power(round(log10(y)))))
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: power_of_ten(round(log10(y)))))
         axes.yaxis.set_minor_locator(NullLocator())
         axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
@@ -127,7 +128,3 @@ def _words(curves: Sequence[Curve]) -> str:
         points = ", ".join(f"{s.seconds.median:.3g} s: {(s.error[0] + s.error[1]) / 2:.3g}" for s in c.spots)
         parts.append(f"{c.name}: {points}.")
     return " ".join(parts)
-
-
-def _power(decade: int) -> str:
-    return f"10{str(decade).translate(str.maketrans('-0123456789', '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'))}"

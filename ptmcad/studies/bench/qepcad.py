@@ -25,6 +25,7 @@ from ptmcad.question.slice import Axis, Slice
 from ptmcad.studies.bench.process import Outcome, Usage
 from ptmcad.studies.sextic import sextic
 from ptmcad.text.expressions import Expression
+from ptmcad.text.terms import signed_terms
 
 _GARBAGE_COLLECTED_CELLS = 20_000_000
 _ANSWER = re.compile(r"An equivalent quantifier-free formula:\s*(.*?)\n\s*\n", re.DOTALL)
@@ -155,18 +156,10 @@ def _terms(polynomial: Sequence[Expression]) -> Terms:
 
 
 def _text(terms: Terms) -> str:
-    text = " ".join(
-        f"{'+' if c > 0 else '-'} {abs(c)}{_power('x', i)}{_power('y', j)}{_power('t', n)}" for i, j, n, c in terms
-    )
-    return text.removeprefix("+ ")
-
-
-def _power(name: str, exponent: int) -> str:
-    if exponent == 0:
-        return ""
-    return f" {name}" if exponent == 1 else f" {name}^{exponent}"
+    return " ".join(signed_terms((((i, j, n), c) for i, j, n, c in terms), "xyt", times=" "))
 
 
 def _line(name: str, end: Fraction) -> str:
     """The line q name - p, positive where ``name > p/q``."""
-    return f"{end.denominator} {name} {'-' if end > 0 else '+'} {abs(end.numerator)}"
+    terms = ((1,), end.denominator), ((0,), -end.numerator)
+    return " ".join(signed_terms((term for term in terms if term[1]), name, times=" "))
