@@ -60,7 +60,7 @@ def _offset_text(value: Fraction, most: int) -> str:
         return digits
     if power >= -2:
         return f"{digits[: most - 1]}…"
-    return f"{_decimal(value / Fraction(10) ** power)[: most - 1]}…·10{str(power).translate(_SUPERSCRIPT)}"
+    return f"{_decimal(value / Fraction(10) ** power)[: most - 1]}…·{power_of_ten(power)}"
 
 
 def scale_of(low: Fraction, high: Fraction, digits: int = 4) -> Scale:
