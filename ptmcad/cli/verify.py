@@ -31,7 +31,7 @@ if TYPE_CHECKING:
               help="Random boxes of the free area of a certified map.  [default: 40]")  # fmt: skip
 @click.option("--effort", type=click.IntRange(0, 10), metavar="N",
               help="How much of a certified map's free area is to be proved free of critical curves: 0 nothing, each "
-                   "number more four times the work, 10 all of it.  [default: 1]")  # fmt: skip
+                   "number more four times the work, 10 all of it.  [default: 2]")  # fmt: skip
 @limit_options
 def command(*, result: Path, seed: int | None, boxes: int | None, effort: int | None, limits: Limits) -> int:
     """Check RESULT, a JSON file of `ptmcad classify` or `design`, without the code that made it.

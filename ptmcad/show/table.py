@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
@@ -49,6 +50,11 @@ def count_text(region: Region, count: Count) -> str:
     if count is Count.ADMISSIBLE:
         return str(region.admissible)
     return f"({', '.join(map(str, region.index))})" if region.index else "?"
+
+
+def _in_order(text: str) -> list[int]:
+    """A count's numbers, by which counts are in order: 10 comes after 2."""
+    return [int(number) for number in re.findall(r"\d+", text)]
 
 
 def area_text(result: RegionMap, bounds: tuple[Fraction, Fraction]) -> str:
@@ -132,7 +138,7 @@ def _by_count(bounds: Sequence[_Bounds], result: RegionMap) -> list[_Bounds]:
     first, second = result.slice.axes
     undetermined = result.undetermined * (first.high - first.low) * (second.high - second.low)
     found: list[_Bounds] = []
-    for text in sorted({text for text, _ in bounds}):
+    for text in sorted({text for text, _ in bounds}, key=_in_order):
         low = sum((area[0] for other, area in bounds if other == text), Fraction(0))
         found.append((text, (low, low + undetermined)))
     return found
@@ -151,7 +157,9 @@ def table(result: RegionMap) -> str:
     """Regions, counts, areas, boundary curves with degrees (or the cover), time and error."""
     count = result.slice.count
     tally = Counter(f"{count_text(r, count)} {_count_name(result, r)}" for r in result.regions)
-    counts = "; ".join(f"{text}: {n} region{'s' * (n > 1)}" for text, n in sorted(tally.items()))
+    counts = "; ".join(
+        f"{text}: {n} region{'s' * (n > 1)}" for text, n in sorted(tally.items(), key=lambda item: _in_order(item[0]))
+    )
     bounds = [(count_text(r, count), r.area) for r in result.regions]
     if result.cover is not None:
         bounds = _by_count(bounds, result)

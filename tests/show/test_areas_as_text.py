@@ -19,7 +19,7 @@ from ptmcad.show.render.regionmap import description
 from ptmcad.show.report import page
 from ptmcad.show.report.sections import regions
 from ptmcad.show.style import DEFAULT
-from ptmcad.show.table import areas_are_known, region_area, table
+from ptmcad.show.table import _in_order, areas_are_known, region_area, table
 from ptmcad.text.bounds import percent, share_text
 
 
@@ -81,3 +81,14 @@ def test_a_comparison_says_its_share_at_the_prompt_as_in_words() -> None:
     assert share_text(found.share, False) == "38.98 %"
     assert "38.98 % differ" in repr(found)
     assert "38.98 % of the window" in in_words(found)[0]
+
+
+@pytest.mark.parametrize(
+    ("texts", "ordered"),
+    [
+        (["10 in all", "2 in all", "4 in all"], ["2 in all", "4 in all", "10 in all"]),
+        (["(2, 10, 1)", "(2, 9, 1)", "?"], ["?", "(2, 9, 1)", "(2, 10, 1)"]),
+    ],
+)
+def test_counts_are_in_the_order_of_numbers(texts: list[str], ordered: list[str]) -> None:
+    assert sorted(texts, key=_in_order) == ordered

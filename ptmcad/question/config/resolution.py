@@ -22,7 +22,7 @@ from ptmcad.question.domain import MAX_DEGREE, fault, fault_of_part, unproved
 from ptmcad.question.examples import AXES
 from ptmcad.question.positivity import READING_WORK
 from ptmcad.question.slice import NOTHING_ADMISSIBLE, Axis, Count, Slice, have_free_lengths
-from ptmcad.text.expressions import Expression, axis
+from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.parsing import names_in
 from ptmcad.text.syntax import did_you_mean, parse
 from ptmcad.text.tree import names_of
@@ -199,7 +199,7 @@ def _slice(record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expre
     """The slice of a record whose entries are right one by one."""
     mechanism = record.model
     given = {*record.values, *record.axes}
-    without_free_lengths = not any(resolved[name].numerator for name in mechanism.free_lengths)
+    without_free_lengths = not _names_free_lengths(mechanism, resolved)
     left_out = {name for name in mechanism.shorthands if _is_left_out(name, mechanism, given)} | {*mechanism.idle}
     if without_free_lengths:
         left_out.update(mechanism.free_lengths)
@@ -279,9 +279,15 @@ def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fracti
 def without_shorthands(values: Mapping[str, Fraction], mechanism: Model) -> dict[str, Fraction]:
     """The values of what a point is told by: no shorthand, nothing idle, and free lengths only if some is not zero."""
     left_out = {*mechanism.shorthands, *mechanism.idle}  # the parameters that they stand for are there
-    if not any(values.get(name) for name in mechanism.free_lengths):
+    if not _names_free_lengths(mechanism, {name: constant(value) for name, value in values.items()}):
         left_out.update(mechanism.free_lengths)
     return {name: value for name, value in values.items() if name not in left_out}
+
+
+def _names_free_lengths(model: Model, values: Mapping[str, Expression]) -> bool:
+    """Whether parameters that are free lengths are told: where one is not zero, or a spring has another free length."""
+    given = (values[name] for name in model.free_lengths if name in values)
+    return any(value.numerator for value in given) or have_free_lengths(model, values)
 
 
 def _is_left_out(name: str, mechanism: Model, given: set[str]) -> bool:
