@@ -15,13 +15,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.multistart import Model, model_of, solutions
 
+from ptmcad.text.balls import ball_of
+
 pytest.importorskip("numba")
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.verification.certified import held, ranges
 from ptmcad.verification.certified.equilibria import Unproved
-from ptmcad.verification.certified.parameters import exact
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.waves import Form, form_of
 
@@ -87,7 +88,7 @@ def form(record: dict[str, Any]) -> Form:
 
 
 def balls(values: dict[str, Fraction]) -> dict[str, arb]:
-    return {name: exact(value) for name, value in values.items()}
+    return {name: ball_of(value) for name, value in values.items()}
 
 
 @cache
