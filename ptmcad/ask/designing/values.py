@@ -15,6 +15,7 @@ from flint import arb, ctx
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.ask.classification import region_map
 from ptmcad.ask.members import Common, member_map
 from ptmcad.ask.quantities import Quantity, named, of_pose, unknown
 from ptmcad.errors import ConfigError, ExpressionError, HypothesisError
@@ -118,8 +119,6 @@ def _range_in(design: Design, space: Space) -> Evaluate:
 
 
 def _area_of(design: Design, common: Common | None) -> Evaluate:
-    from ptmcad.ask.classification import region_map
-
     options = Options(engine="exact", area_tolerance=AREA_TOLERANCE)
 
     def evaluate(values: Mapping[str, Fraction]) -> Value | None:
