@@ -12,7 +12,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from time import process_time
-from typing import TYPE_CHECKING
+
+from flint import fmpq
 
 from ptmcad.algebra.bases import plan_text
 from ptmcad.algebra.fibre import Work
@@ -27,6 +28,7 @@ from ptmcad.exact.point_system import degree_bound, none_is_stable, solutions_at
 from ptmcad.exact.sizes import sizes
 from ptmcad.exact.stages import SliceProblem, point_values, problem_of, prove_regular
 from ptmcad.exact.survey import Survey, survey
+from ptmcad.exact.witness import SHARES, points
 from ptmcad.mechanism import Mechanism, ptm
 from ptmcad.mechanism.sizes import terms_of
 from ptmcad.process.timed import returns_within
@@ -34,10 +36,6 @@ from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
 from ptmcad.text.numerals import short_text
 from ptmcad.text.rationals import from_fraction
-
-if TYPE_CHECKING:
-    from flint import fmpq
-
 
 MAX_UNKNOWNS = 4
 """Beyond, even one point takes too long for a question that should be answered at once."""
@@ -123,7 +121,6 @@ def check(slice: Slice, sized: bool = True) -> Check:
     if len(slice.model.unknowns) > MAX_UNKNOWNS:
         return Check(slice, at, None, "exact", WORDS[-1])
     found, bound = _counted(slice, at, sized)
-
     return replace(found, bases=plan_text(bound))
 
 
@@ -157,17 +154,15 @@ def _check_bounded(slice: Slice) -> None:
     if slice.model == ptm() or not slice.model.reals:
         return
     from ptmcad.certified.plain.infinity import patches
-    from ptmcad.certified.plain.problem import problem_of
+    from ptmcad.certified.plain.problem import problem_of as problem_in_intervals
     from ptmcad.certified.plain.straight import branches
 
-    for branch in branches(problem_of(slice), slice.axes):
+    for branch in branches(problem_in_intervals(slice), slice.axes):
         patches(branch, slice.axes)
 
 
 def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tuple[Check, int]:
     """The check of a slice that the exact engine takes, and the bound for its solutions by Bezout's theorem."""
-    from ptmcad.exact.witness import SHARES, points
-
     problem = problem_of(slice)
     values = point_values(problem.parameters, (from_fraction(sample[0]), from_fraction(sample[1])))
     degree, bound = degree_bound(problem.system, values)
@@ -200,7 +195,6 @@ def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tu
 
 def _foretold(problem: SliceProblem, solutions: int) -> Forecast | None:
     """The forecast for a slice with simple solutions; None where the curve is too large to tell its size at once."""
-
     found = sizes(problem, solutions, MAX_SIZING, Work(MAX_COUNTED, *MAX_BASIS))
     if found is None:
         return None
@@ -210,7 +204,6 @@ def _foretold(problem: SliceProblem, solutions: int) -> Forecast | None:
 
 def _surveyed(problem: SliceProblem) -> Survey | None:
     """The decomposition's sizes; None where it takes much longer than predicted."""
-
     end = process_time() + MAX_SURVEYING
 
     def check() -> None:
@@ -224,7 +217,6 @@ def _surveyed(problem: SliceProblem) -> Survey | None:
 
 
 def _prove(slice: Slice) -> None:
-
     prove_regular(problem_of(slice))
 
 
@@ -236,7 +228,6 @@ def _solutions(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[in
     LimitReached
         When they are not counted within about a second.
     """
-
     most = Work(MAX_COUNTED, *MAX_BASIS)
     different, multiplicity = solutions_at(system, values, most=most)
     if system.inequalities:

@@ -3,6 +3,8 @@
 Guarantee: a count is exact or proved. The basis is tried as long as it stays small; beyond, the certified engine
 searches the torus at the point, which decides everything but a degenerate solution in about a second for four angles
 and half a minute for five. Neither goes on without end.
+
+Algebra is loaded where it is used: who asks for a point with free lengths does without.
 """
 
 from __future__ import annotations

@@ -12,15 +12,21 @@ from pathlib import Path
 from time import monotonic
 from typing import Any
 
+from ptmcad.algebra.bases import MISSING
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.slicevariety import SliceVariety
 from ptmcad.ask.manyangles import counts_by_search, work_by_msolve, work_for
 from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
+from ptmcad.exact.counting import count_by_isolation
+from ptmcad.exact.models import system_from
+from ptmcad.exact.slicevariety import slice_variety
+from ptmcad.exact.stages import problem_of, projection_of, stacks_of, variety_of
 from ptmcad.mechanism import Model
 from ptmcad.question.config import point_from_mapping, slice_from
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Point, Slice, without_free_lengths
 from ptmcad.text.expressions import constant
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 TIMEOUT = 60.0
 """Seconds for a search where algebra does not count."""
@@ -51,8 +57,6 @@ def discriminant_variety(question: Question) -> SliceVariety:
     ----------
     Lazard & Rouillier, Solving parametric polynomial systems, J. Symb. Comp. 42 (2007).
     """
-    from ptmcad.exact.slicevariety import slice_variety
-
     return slice_variety(slice_from(question))
 
 
@@ -74,9 +78,6 @@ def open_cad(question: Question) -> tuple[Point, ...]:
     ----------
     Strzebonski, Solving systems of strict polynomial inequalities, J. Symb. Comp. 29 (2000).
     """
-    from ptmcad.exact.stages import problem_of, projection_of, stacks_of, variety_of
-    from ptmcad.text.rationals import to_fraction
-
     slice = slice_from(question)
     without_free_lengths(slice.model, slice.parameters, "an open CAD is")
     prove_slice(slice)
@@ -110,11 +111,6 @@ def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object
     """
     if timeout is not None and (isinstance(timeout, bool) or not isinstance(timeout, int | float) or not timeout > 0):
         raise ConfigError(f"{shown(repr(timeout), 60)} is not a positive number of seconds", key="timeout")
-    from ptmcad.algebra.bases import MISSING
-    from ptmcad.exact.counting import count_by_isolation
-    from ptmcad.exact.models import system_from
-    from ptmcad.text.rationals import from_fraction
-
     if isinstance(model, Slice):
         raise ConfigError("a count is of a mechanism or a system: give the slice's model, and all values", key="model")
     expect(model, Model, "model", A_MODEL)

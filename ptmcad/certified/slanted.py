@@ -31,6 +31,7 @@ from ptmcad.certified.tubes import Tubes, tubes
 from ptmcad.cover import tubes as exact
 from ptmcad.cover.rectangles import Cover, Patch, Rectangle, Tube
 from ptmcad.cover.rounding import from_boxes
+from ptmcad.text.rationals import from_fraction
 
 FINER = 64
 """Boxes over a leaf are bisected until their projection is so many times smaller than the leaf."""
@@ -201,8 +202,10 @@ class Slanting:
         scale = steps / (top - bottom)
         result = []
         for coefficients, half in zip(found.coefficients.tolist(), found.half.tolist(), strict=True):
-            heights = controls([_q(Fraction(c)) for c in coefficients], _q(start), _q(length))
-            places = tuple(round_half((height - _q(bottom)) * _q(scale)) for height in heights)
+            heights = controls(
+                [from_fraction(Fraction(c)) for c in coefficients], from_fraction(start), from_fraction(length)
+            )
+            places = tuple(round_half((height - from_fraction(bottom)) * from_fraction(scale)) for height in heights)
             result.append(Tube(ceil(Fraction(half) * scale) + 1, places))
         return result
 
@@ -225,10 +228,6 @@ def order_for(tolerance: Fraction) -> int:
 def round_half(value: fmpq) -> int:
     """The nearest integer, or one of two."""
     return int((value + fmpq(1, 2)).floor())
-
-
-def _q(value: Fraction) -> fmpq:
-    return fmpq(value.numerator, value.denominator)
 
 
 def _sorted(boxes: Boxes) -> Boxes:

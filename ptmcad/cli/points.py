@@ -15,6 +15,7 @@ from ptmcad.cli.locate import point_of, rows_of
 from ptmcad.errors import ConfigError, ExpressionError, shown
 from ptmcad.question.config import point_from_mapping
 from ptmcad.question.slice import Count
+from ptmcad.show.table import count_text
 from ptmcad.text.numerals import shortest_text
 from ptmcad.text.parsing import rational
 
@@ -130,7 +131,6 @@ def _count(result: RegionMap, text: str) -> str:
 def _agreement(result: RegionMap, at: Place, count: str) -> Agreement:
     """Whether the map has this count there; untold where it, or the file, has none."""
     from ptmcad.show.render.overlay import Agreement
-    from ptmcad.show.table import count_text
 
     location = result.locate(**dict(zip(result.slice.axis_names, at, strict=True)))
     if not count or location.region is None or location.status in (Status.UNDECIDED, Status.ON_VARIETY):

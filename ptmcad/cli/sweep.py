@@ -24,6 +24,7 @@ from ptmcad.process.extras import Extra, require, require_ffmpeg
 from ptmcad.process.handover import Topic, send
 from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config.sweeps import Sweeping, load_sweep
+from ptmcad.show.style import DEFAULT
 
 FORMATS = ("csv", "html", "gif", "mp4")
 RETRIES = 2
@@ -181,7 +182,6 @@ class Made:
 
         load_matplotlib()
         from ptmcad.show.render.sweepfilm import save_sweep_film
-        from ptmcad.show.style import DEFAULT
 
         done = [member for member in self.sweep if member.state is State.DONE]
         every = -(-len(done) // MAX_FRAMES)

@@ -20,6 +20,7 @@ from ptmcad.algebra.quotient import multiplication_denominator, quotient_algebra
 from ptmcad.errors import DegenerateSliceError, HypothesisError, InfiniteSolutionsError, NothingToCountError
 from ptmcad.exact.models.system import ParametricSystem, on_slice, saturated
 from ptmcad.exact.point_system import solutions_at
+from ptmcad.text.rationals import from_fraction
 
 Point = tuple[fmpq, fmpq]
 Window = tuple[tuple[fmpq, fmpq], tuple[fmpq, fmpq]]
@@ -95,7 +96,7 @@ def points(window: Window) -> Iterator[Point]:
     """Some points of a window."""
     for shares in SHARES:
         x, y = (
-            low + (high - low) * fmpq(s.numerator, s.denominator)
+            low + (high - low) * from_fraction(s)
             for (low, high), s in zip(window, shares, strict=True)
         )  # fmt: skip
         yield x, y

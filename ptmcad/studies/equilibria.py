@@ -19,11 +19,12 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
-from flint import arb, fmpq
+from flint import arb
 from numpy.typing import NDArray
 
 from ptmcad.mechanism import ptm
 from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.text.balls import ball_of
 
 ROUNDS = 60
 RESIDUAL = 1e-9
@@ -189,7 +190,7 @@ def in_balls(parameters: Mapping[str, arb], angles: Sequence[arb]) -> Derivative
 
 def balls(parameters: Mapping[str, Fraction]) -> dict[str, arb]:
     """The parameters at the context's precision."""
-    return {name: arb(fmpq(v.numerator, v.denominator)) for name, v in parameters.items()}
+    return {name: ball_of(v) for name, v in parameters.items()}
 
 
 def sign(value: arb) -> int:

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from flint import arb, fmpq
+from flint import arb
 
 from ptmcad.text.enclosure import Enclosure, settled
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 _GUARD = 6
 """Digits of the enclosure's middle beyond those asked for, at first."""
@@ -62,7 +62,7 @@ def _settles(near: int, far: int, digits: int) -> bool:
 
 def ball_of(value: Fraction) -> arb:
     """A ball that contains the number, at the context's precision."""
-    return arb(fmpq(value.numerator, value.denominator))
+    return arb(from_fraction(value))
 
 
 def enclosure_of(ball: arb) -> Enclosure:

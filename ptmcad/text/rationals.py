@@ -12,6 +12,6 @@ def to_fraction(value: fmpq) -> Fraction:
     return Fraction(int(value.p), int(value.q))
 
 
-def from_fraction(value: Fraction) -> fmpq:
-    """A Python fraction as a FLINT rational."""
+def from_fraction(value: Fraction | int) -> fmpq:
+    """A Python fraction or integer as a FLINT rational."""
     return fmpq(value.numerator, value.denominator)

@@ -10,10 +10,13 @@ from __future__ import annotations
 import errno
 import os
 import stat
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import TypeVar
 
 from ptmcad.errors import ConfigError
+
+T = TypeVar("T")
 
 
 def read_bytes(path: str | Path, most: int, what: str) -> bytes:
@@ -49,6 +52,21 @@ def read_text(path: str | Path, most: int, what: str) -> str:
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise ConfigError("is not UTF-8 text: save it as UTF-8", file=str(path), line=line) from error
+
+
+def read_as(path: str | Path, most: int, kind: str, decode: Callable[[str], T]) -> T:
+    """What ``decode`` makes of a file's text; where that raises a ValueError, the file is said to be no ``kind`` file.
+
+    Raises
+    ------
+    ConfigError
+        As `read_text` does, and for such a text.
+    """
+    text = read_text(path, most, f"a {kind} file")
+    try:
+        return decode(text)
+    except (ValueError, RecursionError) as error:
+        raise ConfigError(f"is not a {kind} file: {error}", file=str(path)) from error
 
 
 def lines_of(path: str | Path, longest: int, what: str) -> Iterator[str]:

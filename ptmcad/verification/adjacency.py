@@ -30,8 +30,8 @@ from itertools import pairwise
 from flint import fmpq
 
 from ptmcad.answer.regionmap import Adjacency, Cell, CriticalValue, NonAdjacency, Reason, Segment
+from ptmcad.text.rationals import from_fraction
 from ptmcad.verification.claims import Claims, is_root, short, side
-from ptmcad.verification.derivation import rational
 from ptmcad.verification.heights import Heights
 from ptmcad.verification.report import Violation
 from ptmcad.verification.structure import inside_stack
@@ -89,7 +89,7 @@ def _check_segment(claims: Claims, number: int, a: Adjacency) -> None:
 
 def _check_free(claims: Claims, what: str, segment: Segment, first: tuple[int, Cell], second: tuple[int, Cell]) -> None:
     """A segment joins two cells of neighbouring stacks and meets no curve."""
-    low, high, v = (rational(q) for q in segment)
+    low, high, v = (from_fraction(q) for q in segment)
     if not (inside_stack(claims, low, _stack(first[1])) and inside_stack(claims, high, _stack(second[1]))):
         raise Violation(f"{what}: the segment from {short(low)} to {short(high)} does not join the cells' stacks")
     if not claims.height[0] < v < claims.height[1]:
@@ -123,7 +123,9 @@ def check_no_adjacency_missing(claims: Claims) -> str:
         marks = [(claims.height[0], 0, 0, True)]
         for a in stored:
             assert a.segment is not None
-            marks.append((rational(a.segment[2]), result.cells[a.first].level, result.cells[a.second].level, False))
+            marks.append(
+                (from_fraction(a.segment[2]), result.cells[a.first].level, result.cells[a.second].level, False)
+            )
         marks.append((claims.height[1], len(left.walls), len(right.walls), True))
         marks.sort(key=lambda m: fmpq(m[0]))
         for (bottom, l0, r0, edge0), (top, l1, r1, edge1) in pairwise(marks):
@@ -185,8 +187,8 @@ def _check_non_adjacency(claims: Claims, number: int, a: NonAdjacency) -> None:
     elif a.reason is Reason.EDGE:
         holds = branches == 1 and len(at_edges) == 1
     else:
-        bottom = claims.height[0] if a.below is None else rational(a.below[2])
-        top_height = claims.height[1] if a.above is None else rational(a.above[2])
+        bottom = claims.height[0] if a.below is None else from_fraction(a.below[2])
+        top_height = claims.height[1] if a.above is None else from_fraction(a.above[2])
         heights = Heights(claims, result.critical_values[a.critical_value])
         # at the window's edge the branches may only run into its corner over the critical value
         holds = len(at_edges) < 2 and heights.between(bottom, top_height) <= 1 - len(at_edges)
@@ -200,7 +202,7 @@ def _search(claims: Claims, s: int, bottom: fmpq, top: fmpq, pairs: set[tuple[in
     value = claims.result.critical_values[s]
     left, right = claims.result.stacks[s], claims.result.stacks[s + 1]
     for v in Heights(claims, value).separated(bottom, top):
-        low, high = rational(left.sample), rational(right.sample)
+        low, high = from_fraction(left.sample), from_fraction(right.sample)
         while claims.free(low, high, v) is not None:
             low, high = _closer(low, high, value)
         pair = (claims.level(low, v), claims.level(high, v))

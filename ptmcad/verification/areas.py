@@ -17,11 +17,11 @@ from typing import NamedTuple
 from flint import arb, ctx, fmpq
 
 from ptmcad.answer.regionmap import Region
+from ptmcad.text.balls import ball_of
 from ptmcad.text.numerals import approximate_text
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.rationals import from_fraction, to_fraction
 from ptmcad.verification.branches import Branch, Effort, Part
 from ptmcad.verification.claims import Claims, bracket
-from ptmcad.verification.derivation import rational
 from ptmcad.verification.disks import PrecisionTooLow
 from ptmcad.verification.places import at_edge, at_value, beyond
 from ptmcad.verification.report import Violation
@@ -68,7 +68,7 @@ def check_areas(claims: Claims) -> str:
     bits = 96 + 2 * _doublings(scale)
     for ends in (claims.base, claims.height):
         bits += _doublings(to_fraction((ends[1] - ends[0]) / max(abs(ends[0]), abs(ends[1]))))
-    strip = rational(scale) / (16 * len(result.stacks))
+    strip = from_fraction(scale) / (16 * len(result.stacks))
     unconfirmed = "the precision did not suffice to confirm the areas"
     # of the narrowest bounds' width: how far inside of them an area can be proved to be
     margin = fmpq(1, 64)
@@ -99,7 +99,7 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
     window = to_fraction(width * (high - low))
     brackets = [bracket(v, strip * width) for v in result.critical_values]
     lost = sum((b - a for a, b in brackets), fmpq(0)) * (high - low)
-    bounds = [(arb(rational(r.area[0])), arb(rational(r.area[1]))) for r in result.regions]
+    bounds = [(ball_of(r.area[0]), ball_of(r.area[1])) for r in result.regions]
     number = max(1, sum(len(s.walls) for s in result.stacks))
     shares = [(b - a).mid() * margin / number for a, b in bounds]
     effort = Effort(min(shares), width / 2**8, width / 2 ** (bits // 3), (low, high), (2,))
@@ -170,7 +170,7 @@ def _borders(
 
 def _scale(claims: Claims, span: tuple[fmpq, fmpq]) -> fmpq:
     """How far from zero a stack begins or something singular is, of what is much nearer to it than the far end."""
-    places = [*span, *(rational(v.low) for v in claims.result.critical_values)]
+    places = [*span, *(from_fraction(v.low) for v in claims.result.critical_values)]
     distance = max(abs(end) for end in span) / LONG
     return max((abs(u) for u in places if 0 < abs(u) < distance), default=fmpq(1))
 

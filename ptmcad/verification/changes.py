@@ -17,7 +17,7 @@ from dataclasses import replace
 from fractions import Fraction
 from hashlib import sha256
 
-from flint import fmpq, fmpz_poly
+from flint import fmpz_poly
 
 from ptmcad.answer.arrangement import Arrangement, correspondence
 from ptmcad.answer.changes import Changes
@@ -27,6 +27,7 @@ from ptmcad.errors import HypothesisError, shown
 from ptmcad.options import Progress
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.numerals import text_of
+from ptmcad.text.rationals import from_fraction
 from ptmcad.verification.report import Check, Unchecked, Violation
 from ptmcad.verification.sturm import roots_within
 
@@ -125,7 +126,7 @@ def _check_numbers(numbers: Sequence[AlgebraicNumber | Enclosure]) -> None:
     for number in numbers:
         if isinstance(number, AlgebraicNumber):
             p = fmpz_poly(list(number.polynomial))
-            low, high = (fmpq(end.numerator, end.denominator) for end in (number.low, number.high))
+            low, high = (from_fraction(end) for end in (number.low, number.high))
             roots = roots_within(p, low, high)
             if roots != 1:
                 raise Violation(f"{roots} roots of a value's polynomial lie between its bounds {text_of(number.low)} "

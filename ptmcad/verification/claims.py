@@ -17,9 +17,9 @@ from ptmcad.errors import PoleError
 from ptmcad.mechanism import Model
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.rationals import from_fraction, to_fraction
 from ptmcad.verification.algebra import NotFinite
-from ptmcad.verification.derivation import has_index, rational
+from ptmcad.verification.derivation import has_index
 from ptmcad.verification.fibre import Fibre, fibre
 from ptmcad.verification.report import Violation
 from ptmcad.verification.sturm import roots_between, roots_within
@@ -109,12 +109,12 @@ class Claims:
     @cached_property
     def base(self) -> tuple[fmpq, fmpq]:
         axis = self.result.slice.axes[self.result.base]
-        return rational(axis.low), rational(axis.high)
+        return from_fraction(axis.low), from_fraction(axis.high)
 
     @cached_property
     def height(self) -> tuple[fmpq, fmpq]:
         axis = self.result.slice.axes[1 - self.result.base]
-        return rational(axis.low), rational(axis.high)
+        return from_fraction(axis.low), from_fraction(axis.high)
 
     def _used(self) -> list[PlaneCurve]:
         return [
@@ -181,7 +181,7 @@ def polynomial(value: CriticalValue) -> fmpz_poly:
 
 def side(u: fmpq, value: CriticalValue) -> int:
     """The sign of u minus the critical value, by a change of sign, or a count of roots where there is none."""
-    low, high = rational(value.low), rational(value.high)
+    low, high = from_fraction(value.low), from_fraction(value.high)
     if u < low or u > high:
         return -1 if u < low else 1
     p = polynomial(value)
@@ -204,12 +204,12 @@ def is_root(f: fmpz_poly, value: CriticalValue) -> bool:
     common = f.gcd(whole)
     if common.degree() == whole.degree():
         return True
-    return common.degree() > 0 and roots_within(common, rational(value.low), rational(value.high)) > 0
+    return common.degree() > 0 and roots_within(common, from_fraction(value.low), from_fraction(value.high)) > 0
 
 
 def bracket(value: CriticalValue, width: fmpq) -> tuple[fmpq, fmpq]:
     """A narrow bracket of a critical value, which halving the stored one comes to."""
-    low, high = rational(value.low), rational(value.high)
+    low, high = from_fraction(value.low), from_fraction(value.high)
     if high - low <= width:
         return low, high
     p = polynomial(value)

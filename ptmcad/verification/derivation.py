@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
 from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, Model, System, ptm
+from ptmcad.text.rationals import from_fraction
 from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Tree, names_of
 from ptmcad.verification import loops, xjoints
 
@@ -97,7 +98,7 @@ class Configuration:
         """The value of a tree of the description."""
         match tree:
             case Number(number):
-                return fmpq(number.numerator, number.denominator)
+                return from_fraction(number)
             case Name(name):
                 return self.parameters[name]
             case Negative(operand):
@@ -271,7 +272,7 @@ def potential(configuration: Configuration, mechanism: Mechanism = MECHANISM) ->
         energy = energy + (across * across + up * up) * (configuration.value(spring.stiffness) * fmpq(1, 2))
     for torsion in mechanism.torsion:
         cosine, sine = configuration.circle(torsion.angle)
-        at_rest = [fmpq(value.numerator, value.denominator) for value in torsion.rest]
+        at_rest = [from_fraction(value) for value in torsion.rest]
         difference = cosine * at_rest[0] + sine * at_rest[1]
         energy = energy + configuration.value(torsion.stiffness) * (fmpq(1) - difference)
     return energy
@@ -320,8 +321,3 @@ def _number(multiples: dict[str, Fraction]) -> Fraction:
     if multiples.keys() != {""}:
         raise NotImplementedError("the checker knows no products of angles")
     return multiples[""]
-
-
-def rational(value: Fraction) -> fmpq:
-    """A Python fraction as a FLINT rational."""
-    return fmpq(value.numerator, value.denominator)

@@ -14,7 +14,8 @@ from typing import Any
 from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.mechanism import Model
-from ptmcad.verification.derivation import Configuration, coordinates_of, formulas, has_index, parameters_of, rational
+from ptmcad.text.rationals import from_fraction
+from ptmcad.verification.derivation import Configuration, coordinates_of, formulas, has_index, parameters_of
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ def equations_at(model: Model, values: Mapping[str, Fraction]) -> PointEquations
     names = tuple(reversed(coordinates_of(model)))
     ring: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(names, Ordering.degrevlex)
     variables = {name: ring.gen(k) for k, name in enumerate(names)}
-    numbers = {name: rational(values[name]) for name in parameters_of(model)}
+    numbers = {name: from_fraction(values[name]) for name in parameters_of(model)}
     circles = {a: (variables[f"cos_{a}"], variables[f"sin_{a}"]) for a in model.angles}
     reals = {name: variables[name] for name in model.reals}
     given = formulas(Configuration(numbers | reals, circles), model)

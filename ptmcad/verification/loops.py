@@ -17,7 +17,37 @@ from flint import fmpq
 from ptmcad.mechanism import Mechanism
 
 
-class Second:
+class Lifting:
+    """What a ring with `_lifted`, sums and products of its elements and of numbers has besides."""
+
+    __slots__ = ()
+
+    def _lifted(self, other: Any) -> Any:
+        raise NotImplementedError
+
+    def __add__(self, other: Any) -> Any:
+        raise NotImplementedError
+
+    def __mul__(self, other: Any) -> Any:
+        raise NotImplementedError
+
+    def __radd__(self, other: Any) -> Any:
+        return self + other
+
+    def __rmul__(self, other: Any) -> Any:
+        return self * other
+
+    def __neg__(self) -> Any:
+        return self * fmpq(-1)
+
+    def __sub__(self, other: Any) -> Any:
+        return self + -self._lifted(other)
+
+    def __rsub__(self, other: Any) -> Any:
+        return self._lifted(other) + -self
+
+
+class Second(Lifting):
     """A function of the unknowns at a place: value, gradient and Hessian, in any numbers."""
 
     __slots__ = ("bends", "slopes", "value")
@@ -36,17 +66,6 @@ class Second:
             {ij: x + b.bends[ij] for ij, x in self.bends.items()},
         )
 
-    __radd__ = __add__
-
-    def __neg__(self) -> Second:
-        return self * fmpq(-1)
-
-    def __sub__(self, other: Any) -> Second:
-        return self + -self._lifted(other)
-
-    def __rsub__(self, other: Any) -> Second:
-        return self._lifted(other) + -self
-
     def __mul__(self, other: Any) -> Second:
         b = self._lifted(other)
         return Second(
@@ -60,8 +79,6 @@ class Second:
                 for (i, j), x in self.bends.items()
             },
         )
-
-    __rmul__ = __mul__
 
 
 def constant(value: Any, unknowns: int) -> Second:

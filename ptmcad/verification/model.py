@@ -18,6 +18,7 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz, fmpz_mpoly
 from ptmcad.answer.regionmap import System
 from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
 from ptmcad.text.numerals import fraction_of
+from ptmcad.text.rationals import from_fraction
 from ptmcad.verification.claims import PLANE, Claims
 from ptmcad.verification.derivation import Configuration, coordinates_of, formulas, has_index, parameters_of
 from ptmcad.verification.report import Violation
@@ -131,7 +132,7 @@ def _parsed(ring: _Ring, text: str, what: str) -> fmpq_mpoly:
             elif name[0].isdigit() and not exponent:
                 if (value := fraction_of(name)) == 0:
                     raise Violation(f"the {what} has a zero coefficient")
-                term *= fmpq(value.numerator, value.denominator)
+                term *= from_fraction(value)
             else:
                 raise Violation(f"the {what} names {name[:40]!r}, which is neither a parameter nor an unknown")
         total += term
@@ -249,7 +250,7 @@ def _on_slice(claims: Claims, ring: _Ring, p: fmpq_mpoly) -> dict[tuple[int, ...
     expressions = claims.result.slice.parameters
 
     def polynomial(terms: object) -> fmpq_mpoly:
-        return _PLANE.from_dict({(i, j): fmpq(c.numerator, c.denominator) for i, j, c in terms})  # type: ignore[attr-defined]
+        return _PLANE.from_dict({(i, j): from_fraction(c) for i, j, c in terms})  # type: ignore[attr-defined]
 
     names = parameters_of(ring.model)
     values = [(polynomial(expressions[n].numerator), polynomial(expressions[n].denominator)) for n in names]

@@ -22,9 +22,11 @@ from flint import arb, arb_mat, ctx
 
 from ptmcad.answer.regionmap import Cell, Solution
 from ptmcad.mechanism import Model
+from ptmcad.text.balls import ball_of
 from ptmcad.text.numerals import approximate_text
+from ptmcad.text.rationals import from_fraction
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import Configuration, formulas, has_index, parameters_of, rational
+from ptmcad.verification.derivation import Configuration, formulas, has_index, parameters_of
 from ptmcad.verification.inertia import bases, leading_minors, negative_eigenvalues
 from ptmcad.verification.jets import circle, jet_of, line
 from ptmcad.verification.report import Violation
@@ -123,7 +125,7 @@ class _Functions:
 
     def __init__(self, model: Model, values: Mapping[str, Fraction]):
         self.model = model
-        self.parameters = {name: arb(rational(values[name])) for name in parameters_of(model)}
+        self.parameters = {name: ball_of(values[name]) for name in parameters_of(model)}
 
     def __call__(self, x: list[arb]) -> _Values:
         angles, reals = self.model.angles, self.model.reals
@@ -209,7 +211,7 @@ def _proved(functions: _Functions, solution: Solution) -> _Values | None:
     (c cos a - s sin a, s cos a + c sin a), so that c^2 + s^2 = 1 holds by construction.
     """
     turning = 2 * len(functions.model.angles)
-    center = _normal([arb(rational(x)) for x in solution.center], turning)
+    center = _normal([ball_of(x) for x in solution.center], turning)
     starts = (_normal(_moved(center, by, turning), turning) for by in _steps_aside(functions, solution))
     reached = next((found for start in starts if (found := _iterated(functions, start)) is not None), None)
     if reached is None:
@@ -224,7 +226,7 @@ def _proved(functions: _Functions, solution: Solution) -> _Values | None:
     if image is None or not all(abs(a) < radius for a in image):
         return None
     inside = all(
-        abs(x - rational(center)) <= rational(solution.radius)
+        abs(x - from_fraction(center)) <= from_fraction(solution.radius)
         for x, center in zip(around, solution.center, strict=True)
     )
     return values if inside else None
@@ -236,7 +238,7 @@ def _steps_aside(functions: _Functions, solution: Solution) -> Iterator[list[arb
     The Jacobian may be singular at the center itself, as at a cusp whose coordinates the box has.
     """
     size = len(functions.model.unknowns)
-    half = arb(rational(solution.radius) / 2)
+    half = arb(from_fraction(solution.radius) / 2)
     yield [arb(0)] * size
     for k in range(size):
         for step in (half, -half):

@@ -17,8 +17,8 @@ from flint import fmpq, fmpz, fmpz_poly
 
 from ptmcad.answer.regionmap import CriticalValue
 from ptmcad.text.numerals import text_of
+from ptmcad.text.rationals import from_fraction
 from ptmcad.verification.claims import Claims, PlaneCurve, polynomial, short, side
-from ptmcad.verification.derivation import rational
 from ptmcad.verification.elimination import discriminant, resultant
 from ptmcad.verification.report import Violation
 from ptmcad.verification.sturm import isolating_intervals, roots_between, roots_within
@@ -93,7 +93,7 @@ def check_critical_values(claims: Claims) -> str:
         if value.polynomial not in factors:
             raise Violation(f"critical value {n}: its polynomial is no irreducible factor of a discriminant, resultant "
                             "or edge value")  # fmt: skip
-        low, high = rational(value.low), rational(value.high)
+        low, high = from_fraction(value.low), from_fraction(value.high)
         interval = f"[{text_of(value.low)}, {text_of(value.high)}]"
         p = polynomial(value)
         if not previous < low <= high < claims.base[1]:
@@ -141,16 +141,16 @@ def check_stacks(claims: Claims) -> str:
     result = claims.result
     walls = 0
     for s, stack in enumerate(result.stacks):
-        u = rational(stack.sample)
+        u = from_fraction(stack.sample)
         if not inside_stack(claims, u, s):
             raise Violation(f"the sample {text_of(stack.sample)} of stack {s} is not between its ends")
-        heights = [rational(result.cells[n].sample[1 - result.base]) for n in stack.cells]
+        heights = [from_fraction(result.cells[n].sample[1 - result.base]) for n in stack.cells]
         levels = [claims.height[0], *heights, claims.height[1]]
         if any(a >= b for a, b in pairwise(levels)):
             raise Violation(f"the samples of stack {s} are not in order inside the window")
         over = {c.number: c.over(u) for c in claims.curves}
         for n, v in zip(stack.cells, heights, strict=True):
-            if rational(result.cells[n].sample[result.base]) != u:
+            if from_fraction(result.cells[n].sample[result.base]) != u:
                 raise Violation(f"the sample of cell {n} is not over the sample of its stack {s}")
             on = next((k for k, p in over.items() if p(v) == 0), None)
             if on is not None:

@@ -14,13 +14,13 @@ from typing import Any, NamedTuple
 
 from flint import fmpq
 
-from ptmcad.verification.loops import Second
+from ptmcad.verification.loops import Lifting, Second
 
 _Complex = tuple[Any, Any]
 """Real and imaginary part."""
 
 
-class Units:
+class Units(Lifting):
     """A Laurent polynomial in the second bars' units: exponents to complex coefficients."""
 
     __slots__ = ("count", "terms")
@@ -38,17 +38,6 @@ class Units:
             terms[key] = a + x, b + y
         return Units(terms, self.count)
 
-    __radd__ = __add__
-
-    def __neg__(self) -> Units:
-        return self * fmpq(-1)
-
-    def __sub__(self, other: Any) -> Units:
-        return self + -self._lifted(other)
-
-    def __rsub__(self, other: Any) -> Units:
-        return self._lifted(other) + -self
-
     def __mul__(self, other: Any) -> Units:
         found = Units({}, self.count)
         for m, one in self.terms.items():
@@ -56,8 +45,6 @@ class Units:
                 key = tuple(i + j for i, j in zip(m, n, strict=True))
                 found = found + Units({key: _product(one, two)}, self.count)
         return found
-
-    __rmul__ = __mul__
 
 
 def unit_circle(number: int, count: int) -> tuple[Units, Units]:

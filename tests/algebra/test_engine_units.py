@@ -39,7 +39,7 @@ from ptmcad.exact.models import system_of
 from ptmcad.exact.models.system import SliceSystem, at_point, on_slice
 from ptmcad.exact.stages import problem_of
 from ptmcad.exact.variety import hermite_determinant, proved_poles
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 X, Y = PLANE.gens()
 SYSTEM = system_of("ptm")
@@ -49,7 +49,7 @@ SYSTEM = system_of("ptm")
 
 def q(value: Fraction | int | str) -> fmpq:
     value = Fraction(value)
-    return fmpq(value.numerator, value.denominator)
+    return from_fraction(value)
 
 
 def with_roots(roots: set[Fraction], squares: list[tuple[int, int]] = []) -> fmpz_poly:  # noqa: B006
@@ -123,11 +123,11 @@ def test_roots_in_intervals_of_any_length(reach: int, unit: Fraction) -> None:
     p = prod((fmpz_poly([-r.numerator, r.denominator]) for r in known), start=fmpz_poly([1]))
     ends = ((-reach, reach), (-reach, 0), (0, reach), (unit * 6, reach), (unit * 3, reach), (-reach, unit * -8))
     for low, high in ((Fraction(a), Fraction(b)) for a, b in ends if a < b):
-        found = isolate(p, fmpq(low.numerator, low.denominator), fmpq(high.numerator, high.denominator))
+        found = isolate(p, from_fraction(low), from_fraction(high))
         inside = [r for r in known if low < r < high]
         assert len(found) == len(inside)
         for root, value in zip(found, inside, strict=True):
-            assert Fraction(int(root.low.p), int(root.low.q)) <= value <= Fraction(int(root.high.p), int(root.high.q))
+            assert to_fraction(root.low) <= value <= to_fraction(root.high)
 
 
 def test_irrational_roots_bracket_their_squares() -> None:

@@ -13,8 +13,9 @@ from ptmcad.algebra import number_field
 from ptmcad.algebra.number_field import Element, Modulus, RealField, polynomial_at
 from ptmcad.algebra.real_roots import isolate
 from ptmcad.exact import stiffness
+from ptmcad.text.rationals import from_fraction
 
-NUMBERS = st.fractions(-4, 4, max_denominator=12).map(lambda q: fmpq(q.numerator, q.denominator))
+NUMBERS = st.fractions(-4, 4, max_denominator=12).map(from_fraction)
 PRIMES = (2, 3, 5, 7, 11, 2**61 - 1)
 """Small ones divide denominators and leading coefficients, and vanish where nothing is zero."""
 
@@ -81,7 +82,7 @@ def test_zero_rational_and_enclosure_agree_with_residues_over_q(prime: int, monk
         assert element.is_zero == (residue == 0)
         assert (element.rational is not None) == (residue.degree() <= 0)
         if element.rational is not None:
-            assert fmpq(element.rational.numerator, element.rational.denominator) == residue[0]
+            assert from_fraction(element.rational) == residue[0]
         with ctx.workprec(128):
             at = field.evaluation()
             assert element.ball(at).overlaps(arb_poly(residue)(at.generator))

@@ -11,6 +11,7 @@ from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 from ptmcad.algebra import puiseux
 from ptmcad.algebra.puiseux import Beside, puiseux_integral
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine
+from ptmcad.text.rationals import from_fraction
 
 FIBRE = (fmpq(-3), fmpq(3))
 BITS = 220
@@ -42,7 +43,7 @@ def root_over(in_v: Sequence[fmpz_poly], u: fmpq, number: int) -> RealRoot:
 def beside(t: fmpz_poly, near: Fraction, far: Fraction) -> Beside:
     (c,) = isolate(t, fmpq(0), fmpq(3))
     c = refine(c, fmpq(1, 2**BITS))
-    numbers = (fmpq(x.numerator, x.denominator) for x in (near, far))
+    numbers = (from_fraction(x) for x in (near, far))
     return Beside(arb(c.low).union(arb(c.high)), *numbers)
 
 
@@ -86,7 +87,7 @@ def test_integrals_beside_a_singular_point(
         assert found is not None
         value, cut = found
         assert value.rad() < arb(fmpq(1, 10**9))
-        low, high = sorted((fmpq(near.numerator, near.denominator), cut))
+        low, high = sorted((from_fraction(near), cut))
         assert high - low > fmpq(1, 50)
         least, most = riemann(in_v, low, high, number)
         assert least < value < most

@@ -14,13 +14,10 @@ from support.examples import examples
 from ptmcad.algebra import reflected_roots
 from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
 from ptmcad.algebra.reflected_roots import isolate_reflected
+from ptmcad.text.rationals import from_fraction
 
 SMALL = st.fractions(min_value=-4, max_value=4, max_denominator=6)
 SQUARES = st.lists(st.fractions(min_value=-9, max_value=30, max_denominator=9), min_size=1, max_size=6, unique=True)
-
-
-def ratio(value: Fraction) -> fmpq:
-    return fmpq(value.numerator, value.denominator)
 
 
 def with_roots(squares: list[Fraction]) -> fmpz_poly:
@@ -65,8 +62,8 @@ def the_same(found: tuple[RealRoot, ...], expected: tuple[RealRoot, ...]) -> boo
 def test_roots_are_those_found_without_the_reflection(
     squares: list[Fraction], middle: Fraction, d: int, low: Fraction, width: Fraction
 ) -> None:
-    q, m = with_roots(squares), ratio(middle)
-    p, window = reflected(q, m, d), (ratio(low), ratio(low + width))
+    q, m = with_roots(squares), from_fraction(middle)
+    p, window = reflected(q, m, d), (from_fraction(low), from_fraction(low + width))
     try:
         expected = isolate(p, *window)
     except ValueError:

@@ -13,6 +13,7 @@ from ptmcad.algebra.slopes import Direction, may_be_tangent, tangent_resultant
 from ptmcad.studies.paper.operation_range import FOLD, HALF, MIDDLE, ONE, STRIP, UPRIGHT, Tangents
 from ptmcad.studies.paper.slices import curves
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.rationals import to_fraction
 
 CIRCLE = from_plane(PlanePolynomial.parse("x^2 + y^2 - 25"))
 PARABOLA = from_plane(PlanePolynomial.parse("x^2 - y"))
@@ -20,7 +21,7 @@ PARABOLA = from_plane(PlanePolynomial.parse("x^2 - y"))
 
 def heights(p: object, direction: Direction) -> list[float]:
     roots = isolate(tangent_resultant(p, direction), fmpq(-10), fmpq(10))  # type: ignore[arg-type]
-    return [float(Fraction(int(r.middle.p), int(r.middle.q))) for r in roots]
+    return [float(to_fraction(r.middle)) for r in roots]
 
 
 @pytest.mark.parametrize(("direction", "expected"), [

@@ -28,7 +28,7 @@ from ptmcad.exact.point_system import solutions_at
 from ptmcad.exact.signatures import count_by_signature
 from ptmcad.exact.stages import point_values, problem_of, variety_of
 from ptmcad.question.slice import Count
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 ROOT = Path(__file__).resolve().parents[2]
 VALIDATOR = jsonschema.Draft202012Validator(
@@ -79,7 +79,7 @@ def mapped(path: Path) -> RegionMap:
 def counts_at(slice: Slice, at: dict[str, Any], signature: bool) -> Counts:
     problem = problem_of(slice)
     x, y = (Fraction(at[name]) for name in slice.axis_names)
-    values = point_values(problem.parameters, (fmpq(x.numerator, x.denominator), fmpq(y.numerator, y.denominator)))
+    values = point_values(problem.parameters, (from_fraction(x), from_fraction(y)))
     return (count_by_signature if signature else count_by_isolation)(problem.system, values)
 
 

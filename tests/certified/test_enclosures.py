@@ -12,6 +12,8 @@ from flint import arb, ctx
 from numpy.typing import NDArray
 from support.few import few
 
+from ptmcad.text.balls import ball_of
+
 pytest.importorskip("numba")
 
 from ptmcad.certified.arb_evaluation import run_arb
@@ -26,7 +28,7 @@ from ptmcad.certified.tape import Tape, record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 from ptmcad.verification.certified.energy import Energy
-from ptmcad.verification.certified.parameters import energy_at, exact
+from ptmcad.verification.certified.parameters import energy_at
 from ptmcad.verification.certified.vectors import NAMES
 
 Floats = NDArray[np.float64]
@@ -89,7 +91,7 @@ def test_a_tape_encloses_all_its_nodes(name: str) -> None:
                 for a, b, s in zip(box_low, box_high, shares, strict=True)
             ]  # fmt: skip
             with ctx.workprec(200):
-                values = run_arb(tape, [exact(p) for p in point], 200)
+                values = run_arb(tape, [ball_of(p) for p in point], 200)
                 for place, value in enumerate(values):
                     if value.is_finite():
                         bounds = float(low[place]), float(high[place])
@@ -111,11 +113,11 @@ def test_formulas_are_those_of_the_verification(name: str) -> None:
         point = [Fraction(rng.randint(60, 1990), 1000) for _ in range(2)]
         point += [Fraction(rng.randint(-3100, 3100), 1000) for _ in range(2)]
         with ctx.workprec(200):
-            values = run_arb(tape, [exact(p) for p in point], 200)
+            values = run_arb(tape, [ball_of(p) for p in point], 200)
             there = energy(slice, point[0], point[1])
-            d = there(exact(point[2]), exact(point[3]))
+            d = there(ball_of(point[2]), ball_of(point[3]))
             expected = [d.e1, d.e2, d.e11, d.e22, d.e12 / there.bars[1], d.e11 * d.e22 - d.e12 * d.e21]
-            lengths = [q.sqrt() for q in there.squares(exact(point[2]), exact(point[3]))]
+            lengths = [q.sqrt() for q in there.squares(ball_of(point[2]), ball_of(point[3]))]
             for place, value in zip(tape.outputs[0][: number + 3], [*expected, *lengths], strict=True):
                 assert abs(values[int(place)] - value) < 1e-40
 
@@ -128,8 +130,8 @@ def test_derivatives_against_divided_differences(name: str) -> None:
     with ctx.workprec(300):
         h = arb(2) ** -70
         for _ in range(5):
-            point = [exact(Fraction(rng.randint(60, 1990), 1000)) for _ in range(2)]
-            point += [exact(Fraction(rng.randint(-3100, 3100), 1000)) for _ in range(2)]
+            point = [ball_of(Fraction(rng.randint(60, 1990), 1000)) for _ in range(2)]
+            point += [ball_of(Fraction(rng.randint(-3100, 3100), 1000)) for _ in range(2)]
             here = run_arb(tape, point, 300)
             for variable in range(4):
                 ends = []

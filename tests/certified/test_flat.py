@@ -12,6 +12,8 @@ from flint import arb, ctx
 from numpy.typing import NDArray
 from support.dense_search import dense_search
 
+from ptmcad.text.balls import ball_of
+
 pytest.importorskip("numba")
 
 import ptmcad
@@ -29,7 +31,7 @@ from ptmcad.certified.tape import record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 from ptmcad.verification.certified.energy import Energy
-from ptmcad.verification.certified.parameters import energy_at, exact
+from ptmcad.verification.certified.parameters import energy_at
 from ptmcad.verification.certified.vectors import NAMES
 
 Floats = NDArray[np.float64]
@@ -100,10 +102,10 @@ def test_the_unfolding_has_the_potentials_derivatives(flat: Flat, changes: dict[
         point = [Fraction(rng.randint(60, 1990), 1000) for _ in range(2)]
         point += [Fraction(rng.randint(100, 1000), 1000), Fraction(rng.randint(-1000, 1000), 1000)]
         with ctx.workprec(600):
-            run = run_arb(tape, [exact(p) for p in point], 600)
+            run = run_arb(tape, [ball_of(p) for p in point], 600)
             found = [run[int(place)] for place in tape.outputs[0]]
             values = dict(zip(names, found[5:], strict=True))
-            v, ratio, step = exact(point[2]) ** 2, exact(point[3]), arb(2) ** -120
+            v, ratio, step = ball_of(point[2]) ** 2, ball_of(point[3]), arb(2) ** -120
             around = {
                 (i, j): potential(values, flat, v + i * step, ratio + j * step) for i in (-1, 0, 1) for j in (-1, 0, 1)
             }
@@ -133,17 +135,17 @@ def test_the_hessian_of_a_flat_configuration_is_the_mechanisms(flat: Flat) -> No
         for _ in range(5):
             x, y = (Fraction(rng.randint(60, 1990), 1000) for _ in range(2))
             with ctx.workprec(100):
-                run = run_arb(tape, [exact(x), exact(y)], 100)
+                run = run_arb(tape, [ball_of(x), ball_of(y)], 100)
                 found = [run[int(place)] for place in tape.outputs[0]]
                 there = energy(slice, x, y)
                 d = there(*(arb(0) if c > 0 else arb.pi() for c in flat))
                 bar1, bar2 = slice.parameters["L1"].evaluate(x, y), y
                 arms = flat.c1 * bar1, flat.c2 * bar2
                 l1, l2, l3 = (
-                    exact(abs(x - away)) if slice.parameters[f"l0_{n}"].numerator else arb(1)
+                    ball_of(abs(x - away)) if slice.parameters[f"l0_{n}"].numerator else arb(1)
                     for n, away in enumerate((arms[1], arms[0], sum(arms)), 1)
                 )
-                true = (d.e11 * d.e22 - d.e12 * d.e21) / (flat.c1 * flat.c2 * exact(x)) * l1 * l2 * l3
+                true = (d.e11 * d.e22 - d.e12 * d.e21) / (flat.c1 * flat.c2 * ball_of(x)) * l1 * l2 * l3
                 assert abs(found[0] - true) < 1e-18
                 assert abs(found[1] - d.e11 * l2 * l3) < 1e-20
                 assert abs(found[2] - d.e22 * l1 * l3) < 1e-20

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.held_sliders import FREE, PAIR, SLANTED, STIFF
 from support.multistart import Found, Model, model_of, solutions
 
 pytest.importorskip("numba")
@@ -26,29 +27,6 @@ from ptmcad.certified.plain.straight import branches
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count, Slice
 
-NUMBERS = ("a", "b", "c", "d", "F", "G")
-STIFF, FREE = ("k", "m", "n"), ("l", "r", "q")
-PAIR: dict[str, Any] = {
-    "name": "pair",
-    "mechanism": {
-        "name": "pair",
-        "parameters": {n: {"kind": "number"} for n in NUMBERS}
-        | {n: {"kind": "stiffness"} for n in STIFF}
-        | {n: {"kind": "free length"} for n in FREE},
-        "unknowns": {"x": "length", "y": "length"},
-        "points": {"S": ["a*x", "b*x"], "T": ["1+c*y", "1/3+d*y"], "A": ["1/5", "-3/7"], "B": ["-1", "2/3"]},
-        "springs": [
-            {"between": ["A", "S"], "k": "k", "free": "l"},
-            {"between": ["B", "T"], "k": "m", "free": "r"},
-            {"between": ["S", "T"], "k": "n", "free": "q"},
-        ],
-        "loads": {"S": ["F", "1/9"], "T": [0, "G"]},
-    },
-    "axes": {"F": [-2, 2], "l": ["1/10", 2]},
-    "parameters": {"a": 1, "b": 2, "c": 3, "d": 1, "G": "1/7", "k": 1, "m": 1, "n": "1/2", "r": 1, "q": "1/4"},
-    "count": "index",
-}
-"""Two sliders, each with a spring to a point beside its guide, and one between them; unknowns are shares of vectors."""
 TURNED: dict[str, Any] = {
     "name": "turned",
     "mechanism": {
@@ -91,20 +69,6 @@ THREE: dict[str, Any] = {
     "count": "index",
 }
 """Three sliders, of which only one is held by a spring from the base."""
-SLANTED: dict[str, Any] = {
-    "name": "slanted",
-    "mechanism": {
-        "name": "slanted",
-        "parameters": {"a": {"kind": "number"}, "F": {"kind": "force"}},
-        "unknowns": {"x": "length", "y": "length"},
-        "points": {"S": ["x", 0], "T": ["y", "1 + a*y"]},
-        "springs": [{"between": ["S", "T"], "k": 1, "free": "1/2"}],
-        "loads": {"S": ["F", 0]},
-    },
-    "axes": {"a": ["-1/4", "3/4"], "F": [1, 2]},
-    "count": "total",
-}
-"""Sliders on two guides with nothing but a spring between them, and a force on one: far away where a is small."""
 
 
 @cache

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from support.dense_search import dense_search
 from support.few import few
 
+from ptmcad.text.balls import ball_of
+
 pytest.importorskip("numba")
 
 import ptmcad
@@ -30,7 +32,7 @@ from ptmcad.certified.tape import record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 from ptmcad.verification.certified.energy import Energy
-from ptmcad.verification.certified.parameters import energy_at, exact
+from ptmcad.verification.certified.parameters import energy_at
 from ptmcad.verification.certified.vectors import NAMES
 
 Floats = NDArray[np.float64]
@@ -78,18 +80,18 @@ def test_derivatives_by_the_opening_are_the_potentials(changes: dict[str, str]) 
         x, y = Fraction(rng.randint(60, 1990), 1000), Fraction(-rng.randint(1, 29000), 1000)
         a = Fraction(rng.randint(-3100, 3100), 1000)
         with ctx.workprec(300):
-            run = run_arb(tape, [exact(v) for v in (x, y, a, step)], 300)
+            run = run_arb(tape, [ball_of(v) for v in (x, y, a, step)], 300)
             u_w, u_ww, u_sw, u_w_on = (run[int(place)] for place in tape.outputs[0])
             there, bar = energy(slice, x, y), energy(slice, x, y).bars[0]
-            at = there(exact(a + step), exact(a - step))
+            at = there(ball_of(a + step), ball_of(a - step))
             # U_1 = L e1 and U_11 = L e11 and so on; d/ds = d/dth1 + d/dth2, d/dd = d/dth1 - d/dth2
             u_d, u_dd = bar * (at.e1 - at.e2), bar * (at.e11 - at.e12 - at.e21 + at.e22)
             u_sd = bar * (at.e11 - at.e12 + at.e21 - at.e22)
-            sine, cosine = exact(step).sin_cos()
+            sine, cosine = ball_of(step).sin_cos()
             assert abs(u_d + sine * u_w) < 1e-60
             assert abs(u_sd + sine * u_sw) < 1e-60
             assert abs(u_dd - sine**2 * u_ww + cosine * u_w) < 1e-60
-            same = there(exact(a), exact(a))
+            same = there(ball_of(a), ball_of(a))
             assert abs(bar * (same.e11 - same.e12 - same.e21 + same.e22) + u_w_on) < 1e-60
 
 

@@ -16,6 +16,7 @@ import ptmcad
 from ptmcad.answer.regionmap import Status
 from ptmcad.certified.plain.spectrum import ordered_eigenvalues
 from ptmcad.text.balls import ball_of
+from ptmcad.text.rationals import from_fraction
 
 SMALL = st.integers(-3, 3)
 NEAR = st.sampled_from([Q(0), Q(1, 10**40), Q(1, 3), Q(-2), Q(10**9)])
@@ -36,7 +37,7 @@ def test_eigenvalues_that_are_known_by_construction(chosen: list[tuple[int, Q]],
     rotation = (one - skew) * (one + skew).inv()
     diagonal = fmpq_mat(size, size)
     for k, value in enumerate(values):
-        diagonal[k, k] = fmpq(value.numerator, value.denominator)
+        diagonal[k, k] = from_fraction(value)
     matrix = rotation * diagonal * rotation.transpose()
     with ctx.workprec(200):
         balls = ordered_eigenvalues(arb_mat(matrix))

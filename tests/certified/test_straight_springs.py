@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from flint import acb, arb, fmpq, fmpq_poly, fmpz_poly
+from flint import acb, arb, fmpq_poly, fmpz_poly
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -29,6 +29,7 @@ from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.straight import branches
 from ptmcad.options import Options
 from ptmcad.question.slice import Count, Slice
+from ptmcad.text.rationals import from_fraction
 
 GUIDES = {"1, 0": 1.0, "3/5, 4/5": 1.0, "1, 1": sqrt(2)}
 """A slider's place over its unknown, and how long that vector is."""
@@ -116,7 +117,7 @@ def test_a_slider_has_the_equilibria_of_every_side(
 def yoke_by_algebra(a: Fraction, free: Fraction, force: Fraction, up: Fraction) -> Iterator[bool]:
     """Of each equilibrium whether it is a minimum: on either side a quartic in t = tan(th/2), its roots in balls."""
     t = fmpq_poly([0, 1])
-    at, length, across, above = (fmpq(v.numerator, v.denominator) for v in (a, free, force, up))
+    at, length, across, above = (from_fraction(v) for v in (a, free, force, up))
     one, c, s = t * t + 1, 1 - t * t, 2 * t
     for side in (1, -1):
         rest = c - (at + side * length) * one  # over 1 + t^2: c - a - side l

@@ -6,7 +6,6 @@ import random
 from fractions import Fraction
 
 import pytest
-from flint import fmpq
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support import oracle
@@ -20,6 +19,7 @@ from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.exact.signatures import count_by_signature
+from ptmcad.text.rationals import from_fraction
 
 SYSTEM = system_of("ptm")
 SHIPPED = [path.stem for path in EXACT]
@@ -29,7 +29,7 @@ Values = dict[str, Fraction]
 def counts(method: object, values: Values) -> tuple[int, int, int] | None:
     """The index counts, None at a degenerate point."""
     try:
-        return method(SYSTEM, {n: fmpq(v.numerator, v.denominator) for n, v in values.items()}).index  # type: ignore
+        return method(SYSTEM, {n: from_fraction(v) for n, v in values.items()}).index  # type: ignore
     except DegeneratePoint:
         return None
 

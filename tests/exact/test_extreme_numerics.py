@@ -26,7 +26,7 @@ from ptmcad.exact.point_system import point_system
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.studies.stress.measure import answer, work_of
 from ptmcad.studies.stress.slices import FIG4, LOADED, SliceQuestion, ten
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.rationals import from_fraction, to_fraction
 from ptmcad.verification.sturm import roots_between
 
 
@@ -52,7 +52,7 @@ def test_clusters_are_isolated(center: Fraction, near: list[tuple[int, int]], ot
     found = isolate(polynomial(roots), low, high)
     assert len(found) == len(inside)
     for root, known in zip(found, inside, strict=True):
-        exact = fmpq(known.numerator, known.denominator)
+        exact = from_fraction(known)
         assert root.low == exact if root.is_rational else root.low < exact < root.high
     for a, b in pairwise(found):
         assert a.high <= b.low
@@ -242,7 +242,7 @@ def test_the_simplest_rational_between_is_the_simplest(a: Fraction, b: Fraction)
     if a == b:
         return
     low, high = min(a, b), max(a, b)
-    found = simplest_between(fmpq(low.numerator, low.denominator), fmpq(high.numerator, high.denominator))
+    found = simplest_between(from_fraction(low), from_fraction(high))
     value = to_fraction(found)
     assert low < value < high
     for q in range(1, min(value.denominator, 40)):  # no smaller denominator fits
@@ -255,10 +255,10 @@ def test_the_simplest_rational_between_is_the_simplest(a: Fraction, b: Fraction)
 def test_arcs_enclose_the_integral_of_branches_that_nearly_meet(e: int, bend: Fraction, slope: Fraction) -> None:
     """(v - s - b u - a u^2)^2 = 10^-e: both branches, whose integrals are known, by a tube that holds both or one."""
     gap = Fraction(1, 10 ** (e // 2 * 2))
-    arc = fmpq_poly([fmpq(2), fmpq(slope.numerator, slope.denominator), fmpq(bend.numerator, bend.denominator)])
+    arc = fmpq_poly([fmpq(2), from_fraction(slope), from_fraction(bend)])
     scale = 64 * 10 ** (e // 2 * 2) * arc.denom() ** 2
     # p = (v - arc)^2 - gap, times a number that makes it integral
-    square = arc * arc - fmpq(gap.numerator, gap.denominator)
+    square = arc * arc - from_fraction(gap)
     in_v = [(q * fmpq(scale)).numer() for q in (square, arc * fmpq(-2), fmpq_poly([1]))]
     integral = sum((to_fraction(c) * 2 / (k + 1) for k, c in enumerate(arc.coeffs()) if k % 2 == 0))
     fibre = (fmpq(-1), fmpq(5))
@@ -276,7 +276,7 @@ def test_arcs_enclose_the_integral_of_branches_that_nearly_meet(e: int, bend: Fr
             found = arc_integral(in_v, branch, fmpq(0), fmpq(1), fibre, fmpq(1, 1000))
             assert found is not None
             known = integral + side * half * 2
-            assert found.contains(arb(fmpq(known.numerator, known.denominator)))
+            assert found.contains(arb(from_fraction(known)))
             assert found.rad() < arb(fmpq(1, 20))
 
 
@@ -339,7 +339,7 @@ def test_multiple_roots_are_refused_at_an_end_of_the_interval_too(roots: tuple[i
             assert max(roots.count(low), roots.count(high)) > 1  # a multiple root at an end may be refused
         else:
             assert len(found) == len(simple)
-            assert all(f.low <= fmpq(r.numerator, r.denominator) <= f.high for f, r in zip(found, simple, strict=True))
+            assert all(f.low <= from_fraction(r) <= f.high for f, r in zip(found, simple, strict=True))
 
 
 def test_series_beside_a_critical_abscissa_that_is_found_to_be_rational() -> None:

@@ -32,7 +32,7 @@ from ptmcad.exact.cad.panels import Panel
 from ptmcad.exact.cad.projection import project
 from ptmcad.exact.cad.stacks import StackData, lift
 from ptmcad.exact.regions import Link, merge
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 X, Y = PLANE.gens()
 Window = tuple[str, str, str, str]
@@ -101,7 +101,7 @@ def same_up_to_sign(p: fmpz_poly, q: fmpz_poly) -> bool:
 
 def rational(text: str) -> fmpq:
     value = Fraction(text)
-    return fmpq(value.numerator, value.denominator)
+    return from_fraction(value)
 
 
 def swapped(p: fmpz_mpoly) -> fmpz_mpoly:

@@ -25,6 +25,7 @@ from ptmcad.exact.stages import problem_of, variety_of
 from ptmcad.mechanism import ClosedMechanism
 from ptmcad.mechanism.derivative import derivative
 from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.text.rationals import from_fraction
 from ptmcad.text.syntax import parse
 from ptmcad.verification.equations import equations_at
 
@@ -182,7 +183,7 @@ def test_two_derivations_are_equal(mechanism: dict[str, Any]) -> None:
     assert isinstance(model, ClosedMechanism)
     values = {n: Fraction(3 + k, 5 + 2 * k) for k, n in enumerate(model.variables)}
     theirs, system = equations_at(model, values), system_from(model)
-    numbers = {n: fmpq(v.numerator, v.denominator) for n, v in values.items()}
+    numbers = {n: from_fraction(v) for n, v in values.items()}
     ours = [*at_point(system, numbers)[0], *(polynomial_at(system, p, numbers) for p in system.stability)]
     assert not system.inequalities
     for t in ((2, 7, 5), (-3, 4, -1)):

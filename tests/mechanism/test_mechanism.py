@@ -10,7 +10,6 @@ from typing import Any, ClassVar
 
 import pytest
 import yaml
-from flint import fmpq
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -19,6 +18,7 @@ from ptmcad.exact.models.potential import geometry_of, squared_lengths, system_f
 from ptmcad.mechanism import Kind, Mechanism, described, mechanism_of, ptm
 from ptmcad.mechanism.evaluate import evaluate, value_at
 from ptmcad.mechanism.ptm import RECORD
+from ptmcad.text.rationals import from_fraction
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Tree, to_text
 
@@ -94,7 +94,7 @@ class InRing:
     ring = system_from(ptm()).ring
 
     def constant(self, value: Fraction) -> Any:
-        return self.ring.context.constant(fmpq(value.numerator, value.denominator))
+        return self.ring.context.constant(from_fraction(value))
 
     def parameter(self, name: str) -> Any:
         return self.ring.parameter(name)

@@ -24,6 +24,7 @@ from ptmcad.exact.point_system import solutions_at
 from ptmcad.exact.stages import point_values, problem_of
 from ptmcad.mechanism import ClosedMechanism
 from ptmcad.mechanism.xjoint import second_bar
+from ptmcad.text.rationals import from_fraction
 from ptmcad.verification.equations import equations_at
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs" / "mechanisms"
@@ -80,14 +81,14 @@ def test_two_derivations_agree(mechanism: dict[str, Any]) -> None:
     assert isinstance(model, ClosedMechanism)
     values = {n: Fraction(30 + 7 * k, 5 + 2 * k) for k, n in enumerate(model.variables)}
     theirs, system = equations_at(model, values), system_from(model)
-    numbers = {n: fmpq(v.numerator, v.denominator) for n, v in values.items()}
+    numbers = {n: from_fraction(v) for n, v in values.items()}
     ours = [*at_point(system, numbers)[0]]
     ours += [polynomial_at(system, p, numbers) for p in (*system.inequalities, *system.stability[:2])]
     for t in ((2, 7, 5), (-3, 4, -1)):
         place: dict[str, fmpq] = {}
         for k, angle in enumerate(model.angles):
             c, s = rational_circle(Fraction(t[k], t[2]))
-            place[f"cos_{angle}"], place[f"sin_{angle}"] = (fmpq(v.numerator, v.denominator) for v in (c, s))
+            place[f"cos_{angle}"], place[f"sin_{angle}"] = (from_fraction(v) for v in (c, s))
         place |= {name: fmpq(t[1], 3) for name in model.reals}
         mine = []
         for p in ours:

@@ -44,8 +44,10 @@ def exact(name: str) -> tuple[Reference, dict[str, Walls]]:
 
 @cache
 def grid(name: str, n: int) -> np.ndarray:
-    values = companion.grid_values(json.loads(question(ptmcad.load(CONFIGS / f"{name}.yaml"), None)), n)
-    return companion.counts(values).reshape(2, n, n).astype(np.int16)
+    asked = json.loads(question(ptmcad.load(CONFIGS / f"{name}.yaml"), None))
+    return (
+        companion.counts(companion.grid_values(asked, n), companion.moments_of(asked)).reshape(2, n, n).astype(np.int16)
+    )
 
 
 def polyline(heights: list[Fraction]) -> Walls:
@@ -270,10 +272,11 @@ def test_distance_without_a_drawn_boundary() -> None:
 
 def test_companion_and_scipy_agree_where_both_are_right() -> None:
     """Two rivals that share no code but the grid; the same seed gives the same counts."""
-    values = companion.grid_values(json.loads(question(ptmcad.load(CONFIGS / "fig4.yaml"), None)), 4)
-    first = multistart.counts(values, 7)
-    assert (first == companion.counts(values)).all()
-    assert (first == multistart.counts(values, 7)).all()
+    asked = json.loads(question(ptmcad.load(CONFIGS / "fig4.yaml"), None))
+    values, moments = companion.grid_values(asked, 4), companion.moments_of(asked)
+    first = multistart.counts(values, moments, 7)
+    assert (first == companion.counts(values, moments)).all()
+    assert (first == multistart.counts(values, moments, 7)).all()
 
 
 @pytest.mark.parametrize(

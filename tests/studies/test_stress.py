@@ -32,6 +32,7 @@ from ptmcad.studies.stress.random_cases import KINDS, mirrored, random_case, sti
 from ptmcad.studies.stress.reference import Degenerate as DegeneratePoint
 from ptmcad.studies.stress.reference import newton_pose, sextic_poses
 from ptmcad.studies.stress.report import markdown, to_csv, to_json
+from ptmcad.text.rationals import from_fraction
 
 CASES = named_cases()
 TWINS = (
@@ -180,13 +181,12 @@ def test_sides_differ_by_one_pair(at: Degenerate, beside: object) -> None:
 @given(st.integers(0, 10**6))
 def test_the_reference_agrees_with_signatures_of_hermite_forms(seed: int) -> None:
     """Counts by the sextic's roots and by Tarski queries on the quotient algebra."""
-    from flint import fmpq
 
     from ptmcad.exact.models import system_of
     from ptmcad.exact.signatures import count_by_signature
 
     p = dict(random_case(seed, 0).sibling.parameters)  # type: ignore[union-attr]
-    counts = count_by_signature(system_of("ptm"), {n: fmpq(v.numerator, v.denominator) for n, v in p.items()})
+    counts = count_by_signature(system_of("ptm"), {n: from_fraction(v) for n, v in p.items()})
     indices = [pose.index for pose in sextic_poses({n: Fraction(v) for n, v in p.items()})]
     assert (indices.count(0), indices.count(1), indices.count(2)) == counts.index
 

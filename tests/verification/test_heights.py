@@ -19,7 +19,7 @@ from ptmcad.answer.regionmap import CriticalValue
 from ptmcad.exact.cad.curves import curve
 from ptmcad.exact.cad.points import PointsOver
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.rationals import from_fraction, to_fraction
 from ptmcad.verification.claims import PlaneCurve
 from ptmcad.verification.heights import Heights
 from ptmcad.verification.sturm import LONG_DEGREE, roots_between
@@ -46,7 +46,7 @@ def checker(known: KnownCurves) -> Heights:
 def test_engine_encloses_each_point_once(known: KnownCurves) -> None:
     found = engine(known).between(LOW, HIGH, [])
     assert len(found) == len(known.heights)
-    assert all(fmpq(h.numerator, h.denominator) >= a and fmpq(h.numerator, h.denominator) <= b
+    assert all(from_fraction(h) >= a and from_fraction(h) <= b
                for h, (a, b) in zip(known.heights, found, strict=True))  # fmt: skip
     assert all(one[1] < other[0] for one, other in pairwise(found))
 
@@ -54,7 +54,7 @@ def test_engine_encloses_each_point_once(known: KnownCurves) -> None:
 @given(known_curves(), st.lists(st.fractions(-3, 3, max_denominator=9), min_size=2, max_size=2, unique=True))
 def test_checker_counts_points_in_open_intervals(known: KnownCurves, ends: list[Fraction]) -> None:
     low, high = sorted(ends)
-    number = checker(known).between(fmpq(low.numerator, low.denominator), fmpq(high.numerator, high.denominator))
+    number = checker(known).between(from_fraction(low), from_fraction(high))
     assert number == sum(low < h < high for h in known.heights)
 
 
@@ -111,7 +111,7 @@ def test_roots_of_long_polynomials_are_counted(roots: list[Fraction], ends: list
         p *= (root.denominator * x - root.numerator) ** power
     assert p.degree() >= LONG_DEGREE
     low, high = sorted(ends)
-    inside = roots_between(p, fmpq(low.numerator, low.denominator), fmpq(high.numerator, high.denominator))
+    inside = roots_between(p, from_fraction(low), from_fraction(high))
     assert inside == sum(low < r < high for r in roots)
     assert roots_between(p, fmpq(5, 2), fmpq(4)) == 2
     assert roots_between(p, fmpq(3), fmpq(4)) == 1

@@ -16,11 +16,11 @@ from support.maps import CONFIGS
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Solution
 from ptmcad.text.balls import exact as exactly
+from ptmcad.text.rationals import from_fraction
 from ptmcad.verification.certified.narrow import NARROW, judged
 from ptmcad.verification.certified.points import check_points
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.vectors import ball, evaluated
-from ptmcad.verification.derivation import rational
 from ptmcad.verification.report import Unchecked, Violation
 
 pytest.importorskip("numba")
@@ -166,7 +166,7 @@ def test_more_digits_are_taken_where_the_first_do_not_do() -> None:
     small, radius = Fraction(1, 2**400), Fraction(1, 10**30)
 
     def function(box: Sequence[arb]) -> tuple[list[arb], list[list[arb]]]:
-        (x, y), tiny = box, arb(rational(small))
+        (x, y), tiny = box, arb(from_fraction(small))
         return [x + y, x + (1 + tiny) * y], [[arb(1), arb(1)], [arb(1), 1 + tiny]]
 
     def shows(off: Fraction) -> bool | None:
@@ -180,6 +180,6 @@ def test_more_digits_are_taken_where_the_first_do_not_do() -> None:
 def test_numbers_of_a_description_are_as_exact_as_the_precision() -> None:
     """They were rounded to doubles, so that narrow boxes beside an equilibrium were confirmed."""
     with ctx.workprec(400):
-        assert ball(((1, 10, ()), (1, 3, ())), {}).overlaps(arb(rational(Fraction(13, 30))))
-        assert ball(((1, 10, ()), (2, 1, ("a",))), {"a": arb(1)}).overlaps(arb(rational(Fraction(21, 10))))
+        assert ball(((1, 10, ()), (1, 3, ())), {}).overlaps(arb(from_fraction(Fraction(13, 30))))
+        assert ball(((1, 10, ()), (2, 1, ("a",))), {"a": arb(1)}).overlaps(arb(from_fraction(Fraction(21, 10))))
     assert evaluated(((1, 10, ()), (1, 3, ("a",))), {"a": Fraction(1)}) == Fraction(13, 30)

@@ -25,6 +25,7 @@ from ptmcad.errors import DegenerateSliceError, HypothesisError
 from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import system_from
 from ptmcad.exact.signatures import count_by_signature
+from ptmcad.text.rationals import from_fraction
 
 POINTS = 30
 SEEDS = range(30)
@@ -84,7 +85,7 @@ def check_points(record: dict[str, Any], result: RegionMap, number: int, seed: i
     source = random.Random(seed)
     for _ in range(number):
         at = {a.name: a.low + (a.high - a.low) * Fraction(source.randint(1, 9972), 9973) for a in slice.axes}
-        values = {name: fmpq(v.numerator, v.denominator) for name, v in at.items()}
+        values = {name: from_fraction(v) for name, v in at.items()}
         try:
             counts = count_by_signature(system, values)
         except HypothesisError:

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from support.examples import examples
 
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.rationals import from_fraction
 from ptmcad.verification import elimination, residues, sturm
 from ptmcad.verification.branches import Branch
 from ptmcad.verification.claims import PlaneCurve
@@ -103,7 +104,7 @@ def with_roots(draw: st.DrawFn) -> tuple[fmpz_poly, list[Fraction]]:
 def test_sequences_in_balls_count_roots(found: tuple[fmpz_poly, list[Fraction]], low: Fraction, high: Fraction) -> None:
     p, roots = found
     assume(low < high)
-    ends = fmpq(low.numerator, low.denominator), fmpq(high.numerator, high.denominator)
+    ends = from_fraction(low), from_fraction(high)
     count = sturm._by_ball_chain(tuple(int(c) for c in p.coeffs()), *ends)
     if len(set(roots)) < len(roots):
         assert count is None  # of multiple roots none, so that the exact sequence of the squarefree part is used

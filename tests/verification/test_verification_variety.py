@@ -15,6 +15,7 @@ from support.shipped_records import EXACT
 import ptmcad
 from ptmcad.answer.regionmap import HARMLESS, Component, Kind, RegionMap
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.rationals import from_fraction
 from ptmcad.verification import variety
 from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.report import Violation
@@ -54,7 +55,7 @@ class KnownFibre:
     conditions: Sequence[fmpq_mpoly] = ()
 
     def norm(self) -> fmpq:
-        return fmpq(self.product.numerator, self.product.denominator)
+        return from_fraction(self.product)
 
     def form_traces(self, form: Sequence[int]) -> list[fmpq]:
         assert all(form)
@@ -68,7 +69,7 @@ class KnownFibre:
         return self
 
     def coeffs(self) -> list[fmpq]:
-        return [fmpq(c.numerator, c.denominator) for c in self.coefficients]
+        return [from_fraction(c) for c in self.coefficients]
 
 
 def lines(*terms: tuple[int, int, int]) -> list[PlanePolynomial]:

@@ -25,9 +25,10 @@ from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.options import Options
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Point
+from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.energy import Energy
 from ptmcad.verification.certified.equilibria import TORUS, Square, Unproved, _halves, equilibria
-from ptmcad.verification.certified.parameters import energy_at, energy_over, exact
+from ptmcad.verification.certified.parameters import energy_at, energy_over
 from ptmcad.verification.certified.points import _only, all_equilibria, counts_of
 from ptmcad.verification.certified.sampling import _beside, _by_area
 from ptmcad.verification.certified.structure import CertifiedClaims
@@ -417,7 +418,7 @@ def test_bars_of_one_length_on_one_point(count: str) -> None:
 def test_derivatives_beside_the_crease_of_spring_3(bar: str) -> None:
     """The crease's formulas and those for all configurations, on either side; th1 + th2 is near pi and -pi."""
     point = creased_values(rho="0", L1=bar, L2=bar, l0_3="1/5", F3="5", F4="-10")
-    balls = {name: exact(value) for name, value in point.items()}
+    balls = {name: ball_of(value) for name, value in point.items()}
     with ctx.workprec(200):
         for th1, th2 in ((1.5, 1.6), (1.5, 1.7), (-1.5, -1.6), (-1.5, -1.7)):
             one, two = energy_at(point)(arb(th1), arb(th2)), Energy(balls)(arb(th1), arb(th2))
@@ -613,12 +614,12 @@ def test_derivatives_are_those_of_the_potential(seed: int) -> None:
     th1, th2 = Fraction(rng.randint(-300, 300), 100), Fraction(rng.randint(-300, 300), 100)
     with ctx.workprec(400):
         h = arb(2) ** -60
-        point = {name: exact(value) for name, value in v.items()}
+        point = {name: ball_of(value) for name, value in v.items()}
 
         def u(i: int, j: int) -> arb:
-            return potential({**point, "th1": exact(th1) + i * h, "th2": exact(th2) + j * h})
+            return potential({**point, "th1": ball_of(th1) + i * h, "th2": ball_of(th2) + j * h})
 
-        d = energy_at(v)(exact(th1), exact(th2))
+        d = energy_at(v)(ball_of(th1), ball_of(th2))
         l1, l2 = point["L1"], point["L2"]
         pairs = [
             (l1 * d.e1, (u(1, 0) - u(-1, 0)) / (2 * h)),
@@ -637,7 +638,7 @@ def test_a_box_of_parameters_has_the_count_of_its_points(seed: int, stable: Regi
     rng = random.Random(seed)
     x, y = Fraction(rng.randint(1050, 1450), 1000), Fraction(rng.randint(800, 1200), 1000)
     half = Fraction(1, 4000)
-    energy = energy_over(stable.slice, exact(x).union(exact(x + half)), exact(y).union(exact(y + half)))
+    energy = energy_over(stable.slice, ball_of(x).union(ball_of(x + half)), ball_of(y).union(ball_of(y + half)))
     found, _ = equilibria(energy, True)
     for _ in range(4):
         a, b = x + half * Fraction(rng.random()), y + half * Fraction(rng.random())
@@ -653,7 +654,7 @@ def test_nothing_is_proved_over_a_fold(stable: RegionMap) -> None:
     assert stable.cover is not None
     left, right, bottom, top = stable.cover.rectangles[40]
     (x0, y0), (x1, y1) = (claims.off_lattice(Fraction(u), Fraction(v)) for u, v in ((left, bottom), (right, top)))
-    energy: Energy = energy_over(stable.slice, exact(x0).union(exact(x1)), exact(y0).union(exact(y1)))
+    energy: Energy = energy_over(stable.slice, ball_of(x0).union(ball_of(x1)), ball_of(y0).union(ball_of(y1)))
     with pytest.raises(Unproved):
         equilibria(energy, True, [TORUS], budget=8000)
 

@@ -27,6 +27,7 @@ from ptmcad.mechanism import Model
 from ptmcad.mechanism.ptm import RECORD
 from ptmcad.options import Options
 from ptmcad.question.slice import Count, Point
+from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import constant
 from ptmcad.text.tree import Chain, Name, Number, Step
 from ptmcad.verification.certified import models, points
@@ -35,7 +36,6 @@ from ptmcad.verification.certified.counted import Counts
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.field import Field, power
 from ptmcad.verification.certified.models import ModelCounting
-from ptmcad.verification.certified.parameters import exact
 from ptmcad.verification.certified.points import PaperCounting
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import zeros
@@ -560,8 +560,8 @@ def test_derivatives_are_those_of_the_stored_potential(name: str) -> None:
     form, rng = form_of(r.slice.model), random.Random(name)
     values = {n: e.evaluate(*r.cells[0].sample) for n, e in r.slice.parameters.items()}
     with ctx.workprec(400):
-        balls = {n: exact(v) for n, v in values.items()}
-        at = [exact(Fraction(rng.randint(-300, 300), 100)) for _ in form.unknowns]
+        balls = {n: ball_of(v) for n, v in values.items()}
+        at = [ball_of(Fraction(rng.randint(-300, 300), 100)) for _ in form.unknowns]
         jet, h = Field(form, balls)(at), arb(2) ** -60
         exactly = re.sub(r"\b(\d+)/", r"ball(\1)/", r.system.potential.replace("^", "**"))  # 1/10 is no double
         code = compile(exactly, "potential", "eval")

@@ -13,7 +13,10 @@ import pytest
 from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.held_sliders import FREE, PAIR, SLANTED, STIFF
 from support.multistart import Model, model_of, solutions
+
+from ptmcad.text.balls import ball_of
 
 pytest.importorskip("numba")
 
@@ -21,46 +24,11 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.verification.certified import held, ranges
 from ptmcad.verification.certified.equilibria import Unproved
-from ptmcad.verification.certified.parameters import exact
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.waves import Form, form_of
 
-STIFF, FREE = ("k", "m", "n"), ("l", "r", "q")
-PAIR: dict[str, Any] = {
-    "name": "pair",
-    "mechanism": {
-        "name": "pair",
-        "parameters": {n: {"kind": "number"} for n in ("a", "b", "c", "d", "F")}
-        | {n: {"kind": "stiffness"} for n in STIFF}
-        | {n: {"kind": "free length"} for n in FREE},
-        "unknowns": {"x": "length", "y": "length"},
-        "points": {"S": ["a*x", "b*x"], "T": ["1+c*y", "1/3+d*y"], "A": ["1/5", "-3/7"], "B": ["-1", "2/3"]},
-        "springs": [
-            {"between": ["A", "S"], "k": "k", "free": "l"},
-            {"between": ["B", "T"], "k": "m", "free": "r"},
-            {"between": ["S", "T"], "k": "n", "free": "q"},
-        ],
-        "loads": {"S": ["F", "1/9"], "T": [0, "1/7"]},
-    },
-    "axes": {"F": [-2, 2], "l": ["1/10", 2]},
-    "parameters": {"a": 1, "b": 2, "c": 3, "d": 1, "k": 1, "m": 1, "n": "1/2", "r": 1, "q": "1/4"},
-    "count": "index",
-}
-"""Two sliders on guides along vectors whose lengths are not rational, and springs to points beside the guides."""
-SLANTED: dict[str, Any] = {
-    "name": "slanted",
-    "mechanism": {
-        "name": "slanted",
-        "parameters": {"a": {"kind": "number"}, "F": {"kind": "force"}},
-        "unknowns": {"x": "length", "y": "length"},
-        "points": {"S": ["x", 0], "T": ["y", "1 + a*y"]},
-        "springs": [{"between": ["S", "T"], "k": 1, "free": "1/2"}],
-        "loads": {"S": ["F", 0]},
-    },
-    "axes": {"a": ["1/4", "3/4"], "F": [1, 2]},
-    "count": "total",
-}
-"""Two sliders with nothing but a spring between them, on guides that are parallel where a is 0."""
+APART: dict[str, Any] = {**SLANTED, "axes": {"a": ["1/4", "3/4"], "F": [1, 2]}}
+"""The same where the guides are not parallel."""
 CURVED: dict[str, Any] = {
     "name": "curved",
     "mechanism": {
@@ -79,7 +47,7 @@ CURVED: dict[str, Any] = {
 
 @cache
 def searched(name: str) -> Model:
-    return model_of({"pair": PAIR, "slanted": SLANTED, "curved": CURVED}[name])
+    return model_of({"pair": PAIR, "slanted": APART, "curved": CURVED}[name])
 
 
 def form(record: dict[str, Any]) -> Form:
@@ -87,7 +55,7 @@ def form(record: dict[str, Any]) -> Form:
 
 
 def balls(values: dict[str, Fraction]) -> dict[str, arb]:
-    return {name: exact(value) for name, value in values.items()}
+    return {name: ball_of(value) for name, value in values.items()}
 
 
 @cache
@@ -138,7 +106,7 @@ def pairs(draw: st.DrawFn) -> dict[str, Fraction]:
     directions = dict(zip("abcd", (*draw(guides), *draw(guides)), strict=True))
     return (
         directions
-        | {"F": draw(coordinates)}
+        | {"F": draw(coordinates), "G": Fraction(1, 7)}
         | {name: draw(stiffnesses) for name in STIFF}
         | {name: draw(lengths) for name in FREE}
     )
@@ -159,10 +127,10 @@ def test_bounds_need_a_dominant_diagonal_in_all_of_the_balls(monkeypatch: pytest
     (found,) = solutions(searched("slanted"), values, 4000, seed=3)
     whole = {"a": arb("1/4", "1/2"), "F": arb(1.5, 0.5)}
     with pytest.raises(Unproved, match="no bound of the unknown x"):
-        half_widths(form(SLANTED), whole)
-    assert abs(found.at[0]) < half_widths(form(SLANTED), balls(values))[0]
+        half_widths(form(APART), whole)
+    assert abs(found.at[0]) < half_widths(form(APART), balls(values))[0]
     monkeypatch.setattr(held, "MAX_SHARE", inf)
-    assert abs(found.at[0]) > half_widths(form(SLANTED), whole)[0]
+    assert abs(found.at[0]) > half_widths(form(APART), whole)[0]
 
 
 def test_bounds_need_equations_that_are_linear(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,17 +11,18 @@ from contextlib import suppress
 from fractions import Fraction
 from typing import NamedTuple
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.ask.classification import region_map
 from ptmcad.ask.members import Common, member_map
 from ptmcad.ask.quantities import Quantity, named, of_pose, unknown
 from ptmcad.errors import ConfigError, ExpressionError, HypothesisError
 from ptmcad.exact.design.cover import Space
 from ptmcad.options import Options
 from ptmcad.question.config.designed import Aim, Design
-from ptmcad.text.balls import exact
+from ptmcad.text.balls import ball_of, exact
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.rationals import from_fraction, to_fraction
 from ptmcad.text.syntax import did_you_mean, parse
@@ -118,8 +119,6 @@ def _range_in(design: Design, space: Space) -> Evaluate:
 
 
 def _area_of(design: Design, common: Common | None) -> Evaluate:
-    from ptmcad.ask.classification import region_map
-
     options = Options(engine="exact", area_tolerance=AREA_TOLERANCE)
 
     def evaluate(values: Mapping[str, Fraction]) -> Value | None:
@@ -269,11 +268,11 @@ class _Balls(NamedTuple):
     known: Mapping[str, Enclosure]
 
     def number(self, number: Number) -> arb:
-        return _ball(number.value)
+        return ball_of(number.value)
 
     def name(self, name: Name) -> arb:
         found = self.known[name.name]
-        return _ball(found.low).union(_ball(found.high))
+        return ball_of(found.low).union(ball_of(found.high))
 
     def call(self, call: Call) -> arb:
         argument = interpret(call.argument, self)
@@ -295,7 +294,3 @@ class _Balls(NamedTuple):
         for _ in range(abs(int(whole))):  # python-flint's ball ** int is not a number when the ball's middle is zero
             found = found * base
         return found if whole >= 0 else 1 / found
-
-
-def _ball(value: Fraction) -> arb:
-    return arb(fmpq(value.numerator, value.denominator))

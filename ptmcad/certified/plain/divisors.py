@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import reduce
 
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 from flint.utils.flint_exceptions import DomainError
 
 from ptmcad.text.expressions import Term
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.rationals import from_fraction, to_fraction
 
 _PLANE = fmpq_mpoly_ctx.get(("x", "y"), Ordering.lex)
 
@@ -43,7 +43,7 @@ def square_root(polynomial: tuple[Term, ...]) -> tuple[Term, ...] | None:
 
 
 def _polynomial(terms: tuple[Term, ...]) -> fmpq_mpoly:
-    return _PLANE.from_dict({(i, j): fmpq(c.numerator, c.denominator) for i, j, c in terms})
+    return _PLANE.from_dict({(i, j): from_fraction(c) for i, j, c in terms})
 
 
 def _terms(polynomial: fmpq_mpoly) -> tuple[Term, ...]:

@@ -21,6 +21,7 @@ from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.points import PlainCounter, plain_counter
 from ptmcad.certified.plain.poses import (
     MAX_DOUBLINGS,
+    all_settled,
     assembled,
     numbers_of,
     point_slice,
@@ -71,13 +72,10 @@ def loop_poses(model: ClosedMechanism, parameters: Mapping[str, Fraction], digit
     found = solutions_at(plain_counter(slice, MAX_UNKNOWNS_AT_POINTS), Count.TOTAL)
     if found is None or not all(solution.signs for _, solution in found):
         return undecided(NOT_TOLD)
-    written, poses, most = tape_of(model.mechanism, parameters), [], 0
-    for counter, solution in found:
-        pose, bits = _pose(model.mechanism, parameters, written, counter, solution, digits)
-        most = max(most, bits)
-        if isinstance(pose, str):
-            return undecided(pose, most)
-        poses.append(pose)
+    written = tape_of(model.mechanism, parameters)
+    poses, most = all_settled(_pose(model.mechanism, parameters, written, at, s, digits) for at, s in found)
+    if isinstance(poses, str):
+        return undecided(poses, most)
     has_energy = model.mechanism.has_potential
     ordered = sorted(poses, key=lambda p: (not p.stable, p.known_energy.center if has_energy else p.angles[0].center))
     return Poses(model, parameters, tuple(ordered), Status.CERTIFIED, digits, most)

@@ -6,7 +6,7 @@ such as a number that is zero without being a constant, makes the whole answer U
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from flint import arb, arb_mat, ctx
@@ -60,15 +60,23 @@ def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits
     found = solutions_at(plain_counter(slice, MAX_UNKNOWNS_AT_POINTS), Count.INDEX)
     if found is None:
         return Poses(mechanism, parameters, (), Status.UNDECIDED, digits, 0, NOT_TOLD)
-    written, poses, most = tape_of(mechanism, parameters), [], 0
-    for counter, solution in found:
-        pose, bits = _pose(mechanism, parameters, written, counter, solution, digits)
-        most = max(most, bits)
-        if isinstance(pose, str):
-            return Poses(mechanism, parameters, (), Status.UNDECIDED, digits, most, pose)
-        poses.append(pose)
+    written = tape_of(mechanism, parameters)
+    poses, most = all_settled(_pose(mechanism, parameters, written, at, solution, digits) for at, solution in found)
+    if isinstance(poses, str):
+        return Poses(mechanism, parameters, (), Status.UNDECIDED, digits, most, poses)
     ordered = sorted(poses, key=_order)
     return Poses(mechanism, parameters, tuple(ordered), Status.CERTIFIED, digits, most)
+
+
+def all_settled(found: Iterable[tuple[Pose | str, int]]) -> tuple[list[Pose] | str, int]:
+    """All poses, or the sentence that says which number of the first of them is not settled; and the most bits."""
+    poses, most = [], 0
+    for pose, bits in found:
+        most = max(most, bits)
+        if isinstance(pose, str):
+            return pose, most
+        poses.append(pose)
+    return poses, most
 
 
 def solutions_at(counter: BranchCounter, count: Count) -> list[tuple[PlainCounter, Solution]] | None:

@@ -19,7 +19,7 @@ from ptmcad.answer.regionmap import Solution, Status
 from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.formula import Graph, Operation
-from ptmcad.certified.plain.poses import NOT_TOLD, assembled, point_slice, proved_digits
+from ptmcad.certified.plain.poses import NOT_TOLD, all_settled, assembled, point_slice, proved_digits
 from ptmcad.certified.plain.unsettled import not_settled
 from ptmcad.certified.potential import potential
 from ptmcad.certified.ptm.points import point_counter
@@ -62,13 +62,9 @@ def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
     if not counts.decided:
         return Poses(MECHANISM, parameters, (), Status.UNDECIDED, digits, 0, NOT_TOLD)
     written, equations = _tape(parameters), counter.equilibria_at(Fraction(0), Fraction(0)).equations
-    poses, most = [], 0
-    for solution in counts.solutions:
-        pose, bits = _pose(parameters, written, equations, solution, digits)
-        most = max(most, bits)
-        if isinstance(pose, str):
-            return Poses(MECHANISM, parameters, (), Status.UNDECIDED, digits, most, pose)
-        poses.append(pose)
+    poses, most = all_settled(_pose(parameters, written, equations, s, digits) for s in counts.solutions)
+    if isinstance(poses, str):
+        return Poses(MECHANISM, parameters, (), Status.UNDECIDED, digits, most, poses)
     peaks = _PEAKS.get(counts.cones or 0, "")
     return Poses(MECHANISM, parameters, tuple(_ordered(poses)), Status.CERTIFIED, digits, most, peaks)
 

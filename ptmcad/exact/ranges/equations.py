@@ -12,8 +12,8 @@ from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.exact.models.system import ParametricSystem, Terms, terms_of
 from ptmcad.exact.ranges.matrices import Matrix, Vector, plus, scaled, times
 from ptmcad.mechanism import Model
+from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import Expression, Term
-from ptmcad.text.rationals import from_fraction
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class Family:
 
     def at(self, low: Fraction, high: Fraction) -> Instance:
         """The equations for all parameters from low to high, with their derivatives by the parameter."""
-        value = arb(from_fraction(low)).union(arb(from_fraction(high)))
+        value = ball_of(low).union(ball_of(high))
         numbers = [_jet(self.parameters[name], value) for name in self.system.ring.parameters]
         equations = [_specialised(g, numbers) for g in self.system.equation_terms]
         jacobian = [[_specialised(h, numbers) for h in row] for row in self.system.jacobian_terms]
@@ -46,7 +46,7 @@ class Family:
 
     def conditions(self, low: Fraction, high: Fraction, point: Vector) -> Vector:
         """The left sides of the inequalities for all parameters from low to high, at balls of the unknowns."""
-        value = arb(from_fraction(low)).union(arb(from_fraction(high)))
+        value = ball_of(low).union(ball_of(high))
         numbers = [_jet(self.parameters[name], value) for name in self.system.ring.parameters]
         coordinates = coordinates_of(point, self.angles)
         terms = (terms_of(self.system.ring, p) for p in self.system.inequalities)
@@ -57,7 +57,7 @@ class Family:
 
         The ring has no unknowns on the line.
         """
-        value = arb(from_fraction(low)).union(arb(from_fraction(high)))
+        value = ball_of(low).union(ball_of(high))
         numbers = [_jet(self.parameters[name], value) for name in self.system.ring.parameters]
         return _evaluated(_specialised(terms_of(self.system.ring, p), numbers)[1], [arb(0, 1)] * (2 * self.angles))
 
@@ -71,7 +71,7 @@ def _jet(expression: Expression, x: arb) -> Jet:
     def of(terms: tuple[Term, ...]) -> Jet:
         total = (arb(0), arb(0), arb(0))
         for i, _, c in terms:
-            power = (arb(from_fraction(c)), arb(0), arb(0))
+            power = (ball_of(c), arb(0), arb(0))
             for _ in range(i):
                 power = _times_jet(power, (x, arb(1), arb(0)))
             total = (total[0] + power[0], total[1] + power[1], total[2] + power[2])

@@ -44,7 +44,6 @@ from ptmcad.question.slice import Slice, moved
 from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.parsing import number_for
-from ptmcad.text.rationals import from_fraction
 from ptmcad.text.tree import names_of
 
 _MIN_DISTANCE = Fraction(1, 10**5)
@@ -122,7 +121,7 @@ def _path(
 
 def _guess(pose: Pose) -> Vector:
     with ctx.workprec(BITS):
-        return tuple(arb(from_fraction(a.center)) for a in (*pose.angles, *pose.reals))
+        return tuple(ball_of(a.center) for a in (*pose.angles, *pose.reals))
 
 
 def _sides(family: Family, low: Fraction, high: Fraction, unknowns: Vector) -> tuple[int, ...]:
@@ -131,7 +130,7 @@ def _sides(family: Family, low: Fraction, high: Fraction, unknowns: Vector) -> t
     if not isinstance(model, Mechanism):
         return ()
     with ctx.workprec(BITS):
-        span = arb(from_fraction(low)).union(arb(from_fraction(high)))
+        span = ball_of(low).union(ball_of(high))
         used = {name for point in model.rising for name in names_of(model.points[point][1])}
         values = {name: value_of(family.parameters[name], span) for name in used & family.parameters.keys()}
         within = _Balls(values, dict(zip((*model.angles, *model.reals), unknowns, strict=True)))
@@ -146,7 +145,7 @@ class _Balls:
         self.parameters, self.unknowns = parameters, unknowns
 
     def constant(self, value: Fraction) -> arb:
-        return arb(from_fraction(value))
+        return ball_of(value)
 
     def parameter(self, name: str) -> arb:
         return self.unknowns[name] if name in self.unknowns else self.parameters[name]

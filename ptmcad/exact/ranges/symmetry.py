@@ -24,7 +24,7 @@ from typing import NamedTuple
 from flint import arb
 
 from ptmcad.algebra.polynomials import Coefficient, UnknownPolynomial, constant_like
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.balls import ball_of
 
 _MAX_SIGNS = 8
 """Coordinates of which all changes of signs, and of order, are tried as symmetries."""
@@ -44,7 +44,7 @@ class Mirror(NamedTuple):
 
         None where its direction may be zero there.
         """
-        value = arb(from_fraction(low)).union(arb(from_fraction(high)))
+        value = ball_of(low).union(ball_of(high))
         x, y = _at(self.x, value), _at(self.y, value)
         if x.contains(0) and y.contains(0):
             return None

@@ -29,6 +29,7 @@ from ptmcad.exact.ranges.matrices import (
     scaled_rows,
     times,
 )
+from ptmcad.text.balls import ball_of
 from ptmcad.text.rationals import from_fraction, to_fraction
 
 BITS = 160
@@ -55,17 +56,17 @@ class Tube:
     def at(self, value: Fraction) -> Vector:
         """An enclosure of the unknowns at one value."""
         with ctx.workprec(BITS):
-            return self._moved(arb(from_fraction(value - self._middle)), self.tight)
+            return self._moved(ball_of(value - self._middle), self.tight)
 
     def hull(self) -> Vector:
         """An enclosure of the unknowns at all values."""
         with ctx.workprec(BITS):
-            return self._moved(arb(from_fraction((self.high - self.low) / 2)) * arb(0, 1), self.tight)
+            return self._moved(ball_of((self.high - self.low) / 2) * arb(0, 1), self.tight)
 
     def holds(self, other: Tube, value: Fraction) -> bool:
         """Whether the other tube's solution at a value lies where this one's is the only one."""
         with ctx.workprec(BITS):
-            mine = self._moved(arb(from_fraction(value - self._middle)), self.unique)
+            mine = self._moved(ball_of(value - self._middle), self.unique)
             return all(a.contains(b) for a, b in zip(mine, other.at(value), strict=True))
 
     @property
@@ -115,7 +116,7 @@ def _krawczyk(
 ) -> tuple[Vector, Vector] | None:
     """Boxes around a moving center: one that holds a single solution at each value, and one in which it lies."""
     unit = arb(0, 1)
-    ahead = arb(from_fraction(at.half)) * unit
+    ahead = ball_of(at.half) * unit
     swept = plus(center, scaled(velocity, ahead))
     start = times(inverse, at.middle.equations(center))
     if centered:
@@ -233,7 +234,7 @@ def bridge(family: Family, start: Reached, value: Fraction) -> Reached | None:
     """The same branch at another value, if one tube proves it for all values between; else None."""
     ahead = start.place.velocity
     with ctx.workprec(BITS):
-        half = arb(from_fraction((value - start.value) / 2))
+        half = ball_of((value - start.value) / 2)
         guess = tuple(a + v * half for a, v in zip(start.point, ahead, strict=True))
     over = enclose(family, min(start.value, value), max(start.value, value), guess)
     if over is None or not over.holds(start.place, start.value):

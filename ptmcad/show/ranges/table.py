@@ -17,11 +17,10 @@ from ptmcad.answer.words import kind_name, noun
 from ptmcad.mechanism import Mechanism, Model, built_in
 from ptmcad.mechanism.moments import acting
 from ptmcad.show.ranges.numbers import end_text, narrowly_known, settled, width_text
-from ptmcad.text.balls import enclosure_of
+from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.text.rationals import from_fraction
 
 MAX_POLYNOMIAL = 60
 """Characters of a polynomial; of longer ones the degree is reported."""
@@ -251,7 +250,7 @@ UNDECIDED = "undecided"
 def degrees(angle: Enclosure, digits: int) -> str:
     """An angle in degrees, with as many digits as are settled; zero where it cannot be told from it."""
     with ctx.workprec(200):
-        ball = arb(from_fraction(angle.low)).union(arb(from_fraction(angle.high))) * 180 / arb.pi()
+        ball = ball_of(angle.low).union(ball_of(angle.high)) * 180 / arb.pi()
         text = narrowly_known(enclosure_of(ball), digits)
     return UNDECIDED if text is None else f"{text}°"
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from matplotlib.lines import Line2D
-from matplotlib.patches import FancyArrowPatch, Polygon, Rectangle
+from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle
 
 from ptmcad.mechanism import Support
 from ptmcad.show.render.clearance import Position
@@ -84,8 +84,6 @@ def _line(axes: Any, points: Sequence[Position], colour: str, width: float, gid:
 
 
 def _pin(x: float, y: float, colour: str, gid: str | None = None) -> Any:
-    from matplotlib.patches import Circle
-
     return Circle((x, y), PIN, facecolor="white", edgecolor=colour, linewidth=0.9, zorder=6, gid=gid, clip_on=False)
 
 

@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.patches import Patch
+from matplotlib.transforms import Affine2D
 
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.poses import Poses
@@ -51,9 +53,6 @@ def draw_on(axes: Any, result: RegionMap, samples: bool, style: Style) -> None:
 
     Without insets and arrows; its legend stands at the axes' right.
     """
-    from matplotlib.patches import Patch
-    from matplotlib.transforms import Affine2D
-
     whole, paint = shapes(result), paint_of(result, style)
     sides = [tuple(float(end) for end in whole.view.along(k)) for k in (0, 1)]
     unit_square = Affine2D().scale(*(high - low for low, high in sides)).translate(*(low for low, _ in sides))

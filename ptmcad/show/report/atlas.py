@@ -14,14 +14,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from html import escape
-from string import Template
 from typing import Any
 
 from ptmcad.answer.sweep import Member, State, Sweep
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import Fill
 from ptmcad.show.report.chart import hatch_id, pattern_defs
-from ptmcad.show.report.page import asset, harmless, policy_of
+from ptmcad.show.report.page import asset, harmless, policy_of, template
 from ptmcad.show.sweeps.sketch import SIDE, Sketch
 from ptmcad.show.sweeps.table import middle
 from ptmcad.text.numerals import fraction_of, shortest_text
@@ -61,7 +60,7 @@ def atlas(sweep: Sweep, frame: Frame, members: Sequence[Member], sketches: Mappi
     fills = {fill for s in sketches.values() for fill in (s.plate, *(fill for fill, _ in s.paths))}
     values = {name: _sorted({member.parameters[name] for member in members}) for name in sweep.names}
     columns = len(values[sweep.names[-1]]) if _is_table(values, members) else 0
-    return Template(asset("atlas.html")).substitute(
+    return template("atlas.html").substitute(
         policy=escape(policy_of(style, script)),
         title=escape(frame.heading or sweep.name),
         name=escape(sweep.name),

@@ -13,11 +13,10 @@ from html import escape
 from math import ceil, floor, log10
 from pathlib import Path
 
-from ptmcad.errors import ConfigError
 from ptmcad.show.document.node import Node
 from ptmcad.show.report.sections import table
 from ptmcad.text.numerals import power_of_ten
-from ptmcad.text.textfile import read_text
+from ptmcad.text.textfile import read_as
 
 FORMAT = "ptmcad-error-time/1"
 MAX_BYTES = 1_000_000
@@ -50,11 +49,7 @@ def read_error_curve(path: Path) -> ErrorCurve:
     ConfigError
         When the file is missing or is no such measurement.
     """
-    text = read_text(path, MAX_BYTES, f"a {FORMAT} file")
-    try:
-        return _decode(json.loads(text))
-    except (ValueError, RecursionError) as error:
-        raise ConfigError(f"is not a {FORMAT} file: {error}", file=str(path)) from error
+    return read_as(path, MAX_BYTES, FORMAT, lambda text: _decode(json.loads(text)))
 
 
 def _decode(data: object) -> ErrorCurve:

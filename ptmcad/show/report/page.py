@@ -64,7 +64,7 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
     seen = _outline(result)
     drawn = chart(seen)
     style, script = asset("page.css"), "".join(asset(name) for name in SCRIPTS)
-    return Template(asset("page.html")).substitute(
+    return template("page.html").substitute(
         policy=escape(policy_of(style, script)),
         title=escape(result.slice.heading),
         name=escape(result.slice.name),
@@ -123,6 +123,11 @@ def _details(drawn: Chart) -> str:
 def asset(name: str) -> str:
     """A file of this package as text."""
     return (files("ptmcad.show.report") / name).read_text(encoding="utf-8")
+
+
+def template(name: str) -> Template:
+    """A page: the head that all have, and its own body."""
+    return Template(asset("head.html") + asset(name))
 
 
 def policy_of(style: str, script: str) -> str:

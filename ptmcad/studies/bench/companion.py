@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -32,6 +32,14 @@ MIN_LEADING = 1e-14
 """A leading coefficient that is relatively smaller everywhere in the window is taken for zero: the degree is lower."""
 
 Values = dict[str, Array]
+Moments = Mapping[str, Callable[..., Any]]
+
+
+def moments_of(question: Mapping[str, Any]) -> Moments:
+    """The mechanism's equations, compiled; they come as text, so that deriving them is no part of what is measured."""
+    functions: dict[str, Any] = {}
+    exec(compile(question["moments"], "moments", "exec"), functions)
+    return functions
 
 
 def grid_values(question: dict[str, Any], n: int) -> Values:
@@ -53,8 +61,13 @@ def grid_values(question: dict[str, Any], n: int) -> Values:
     }
 
 
-def counts(p: Values) -> NDArray[np.int8]:
-    """Stable and total counts at each point, of shape (2, points)."""
+def counts(p: Values, moments: Moments) -> NDArray[np.int8]:
+    """Stable and total counts at each point, of shape (2, points).
+
+    Parameters
+    ----------
+    moments : the functions of `ptmcad.studies.moments`.
+    """
     polynomials: Array = np.stack(sextic(p).coefficients[::-1], axis=1)
     size = np.abs(polynomials).max(axis=1, keepdims=True)
     polynomials = polynomials / np.where(size > 0, size, 1)
@@ -63,11 +76,11 @@ def counts(p: Values) -> NDArray[np.int8]:
     found = np.zeros((2, len(polynomials)), dtype=np.int8)
     for start in range(0, len(polynomials), BATCH_POINTS):
         part = slice(start, start + BATCH_POINTS)
-        found[:, part] = _counts(polynomials[part], {name: values[part] for name, values in p.items()})
+        found[:, part] = _counts(polynomials[part], {name: values[part] for name, values in p.items()}, moments)
     return found
 
 
-def _counts(polynomials: Array, p: Values) -> NDArray[np.int8]:
+def _counts(polynomials: Array, p: Values, moments: Moments) -> NDArray[np.int8]:
     degree = polynomials.shape[1] - 1
     leading = polynomials[:, :1]
     monic = polynomials[:, 1:] / np.where(leading == 0, np.finfo(float).tiny ** 0.25, leading)
@@ -77,7 +90,7 @@ def _counts(polynomials: Array, p: Values) -> NDArray[np.int8]:
     roots = np.linalg.eigvals(companion)
     real = np.abs(roots.imag) < MAX_IMAGINARY * (1 + np.abs(roots.real))
     t = _polished(polynomials, roots.real)
-    stable = real & _stable(t, {name: values[:, None] for name, values in p.items()})
+    stable = real & _stable(t, {name: values[:, None] for name, values in p.items()}, moments)
     return np.stack([stable.sum(axis=1), real.sum(axis=1)]).astype(np.int8)
 
 
@@ -93,23 +106,20 @@ def _polished(polynomials: Array, t: Array) -> Array:
     return t
 
 
-def _stable(t: Array, p: Values) -> NDArray[np.bool_]:
+def _stable(t: Array, p: Values, moments: Moments) -> NDArray[np.bool_]:
     """Whether the Hessian is positive definite at the equilibrium that belongs to t."""
     with np.errstate(all="ignore"):
         c2, s2 = (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
-        b1, b2 = (p["k2"] + p["k3"]) * p["rho"] + p["F3x"], (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
-        along, up = b1 - p["k3"] * p["L2"] * c2, p["k3"] * p["L2"] * s2 + p["F3"]
-        norm = np.hypot(along, up)
-        c1, s1 = along / norm, up / norm
+        a, (first, second) = moments["coefficients"](p), moments["factors"](p)
+        across, along = moments["first"](a, c2, s2)
+        norm = np.hypot(along, across)
+        c1, s1 = along / norm, -across / norm
         # (c1, s1) or its negative: the one that fulfils the second equation better
-        rest, turned = b2 * s2 - p["F4"] * c2, p["k3"] * p["L1"] * (s1 * c2 + c1 * s2)
-        sign = np.where(np.abs(turned - rest) <= np.abs(turned + rest), 1.0, -1.0)
-        c1, s1 = sign * c1, sign * s1
-        c12 = c1 * c2 - s1 * s2
-        h11 = p["L1"] * (up * s1 + along * c1)
-        h22 = p["L2"] * (b2 * c2 + p["F4"] * s2 - p["k3"] * p["L1"] * c12)
-        h12 = -p["k3"] * p["L1"] * p["L2"] * c12
-        answer: NDArray[np.bool_] = (h11 > 0) & (h11 * h22 - h12 * h12 > 0)
+        rest, turned = moments["second"](a, c1, s1, c2, s2)
+        sign = np.where(np.abs(rest + turned) <= np.abs(rest - turned), 1.0, -1.0)
+        h11, h12, h21, h22 = moments["slopes"](a, sign * c1, sign * s1, c2, s2)
+        # the Hessian's rows are these slopes times the factors
+        answer: NDArray[np.bool_] = (first * h11 > 0) & (first * second * (h11 * h22 - h12 * h21) > 0)
         return answer
 
 
@@ -117,7 +127,7 @@ def main(arguments: list[str], answer: Callable[..., NDArray[np.int8]] = counts)
     """Read QUESTION, count on N x N points, save the counts, of shape (2, N, N), as RESULT, and print the seconds."""
     question, n, target = json.loads(Path(arguments[0]).read_text(encoding="utf-8")), int(arguments[1]), arguments[2]
     start = perf_counter()
-    found = answer(grid_values(question, n), *map(int, arguments[3:])).reshape(2, n, n)
+    found = answer(grid_values(question, n), moments_of(question), *map(int, arguments[3:])).reshape(2, n, n)
     seconds = perf_counter() - start
     np.save(target, found)
     print(json.dumps({"computing": seconds}))

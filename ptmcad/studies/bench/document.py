@@ -13,12 +13,11 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import ConfigError
 from ptmcad.show.document.codec import TEXT, TRUTH, Codec, Key, line, listed, named, optional, record
 from ptmcad.show.document.node import Node
 from ptmcad.studies.bench.harness import Times
 from ptmcad.studies.bench.study import FORMAT, Figures, Measurement, Study
-from ptmcad.text.textfile import read_text
+from ptmcad.text.textfile import read_as
 
 MAX_BYTES = 10_000_000
 _COLUMNS = (
@@ -64,11 +63,7 @@ def read_study(path: Path) -> Study:
     ConfigError
         When the file is missing or is no such document.
     """
-    text = read_text(path, MAX_BYTES, f"a {FORMAT} file")
-    try:
-        return study_of(text)
-    except (ValueError, RecursionError) as error:
-        raise ConfigError(f"is not a {FORMAT} file: {error}", file=str(path)) from error
+    return read_as(path, MAX_BYTES, FORMAT, study_of)
 
 
 def study_of(text: str) -> Study:

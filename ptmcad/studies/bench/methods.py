@@ -15,9 +15,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.mechanism import ptm
 from ptmcad.question.slice import Slice
 from ptmcad.studies.bench import qepcad
 from ptmcad.studies.bench.process import Outcome, run
+from ptmcad.studies.moments import source
 
 
 class Method(Enum):
@@ -84,7 +86,7 @@ class Job:
 
 
 def question(slice: Slice, exact: RegionMap | None) -> str:
-    """The slice as JSON for the rivals: floats, and the exact map's curves."""
+    """The slice as JSON for the rivals: floats, the exact map's curves, and the paper's equations as code."""
     curves = () if exact is None else [c.polynomial.terms for c in exact.components if not c.left_out]
     return json.dumps(
         {
@@ -96,6 +98,7 @@ def question(slice: Slice, exact: RegionMap | None) -> str:
                 for name, value in slice.parameters.items()
             },
             "curves": [[[i, j, str(c)] for i, j, c in terms] for terms in curves],
+            "moments": source() if slice.model == ptm() else "",
         }
     )
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root
 
-from ptmcad.studies.bench.companion import Values, main
+from ptmcad.studies.bench.companion import Moments, Values, main
 
 Array = NDArray[np.float64]
 STARTS = 5
@@ -26,8 +26,13 @@ SAME_SOLUTION = 1e-5
 """Two solutions closer than this in both angles are one."""
 
 
-def counts(values: Values, seed: int) -> NDArray[np.int8]:
-    """Stable and total counts at each point, of shape (2, points)."""
+def counts(values: Values, moments: Moments, seed: int) -> NDArray[np.int8]:
+    """Stable and total counts at each point, of shape (2, points).
+
+    Parameters
+    ----------
+    moments : the functions of `ptmcad.studies.moments`.
+    """
     number = len(values["rho"])
     generator = np.random.default_rng(seed)
     found = np.zeros((2, number), dtype=np.int8)
@@ -35,26 +40,18 @@ def counts(values: Values, seed: int) -> NDArray[np.int8]:
     starts = np.stack(np.meshgrid(places, places), axis=-1).reshape(-1, 2)
     for k in range(number):
         moved = starts + generator.uniform(-0.5, 0.5, starts.shape) * (2 * np.pi / STARTS)
-        found[:, k] = _count({name: float(array[k]) for name, array in values.items()}, moved)
+        found[:, k] = _count({name: float(array[k]) for name, array in values.items()}, moments, moved)
     return found
 
 
-def _count(p: dict[str, float], starts: Array) -> tuple[int, int]:
-    l1, l2, k3, f3, f4 = p["L1"], p["L2"], p["k3"], p["F3"], p["F4"]
-    b1, b2 = (p["k2"] + k3) * p["rho"] + p["F3x"], (p["k1"] + k3) * p["rho"] - p["F4x"]
-    scale = abs(k3) * (abs(l1) + abs(l2)) + abs(b1) + abs(b2) + abs(f3) + abs(f4)
+def _count(p: dict[str, float], moments: Moments, starts: Array) -> tuple[int, int]:
+    a, (first, second), equations = moments["coefficients"](p), moments["factors"](p), moments["equations"]
+    scale = sum(map(abs, a))
 
     def gradient(angles: Array) -> tuple[Array, Array]:
         (c1, c2), (s1, s2) = np.cos(angles), np.sin(angles)
-        s12, c12 = s1 * c2 + c1 * s2, c1 * c2 - s1 * s2
-        value = np.array([k3 * l2 * s12 - b1 * s1 + f3 * c1, k3 * l1 * s12 - b2 * s2 + f4 * c2])
-        slope = np.array(
-            [
-                [k3 * l2 * c12 - b1 * c1 - f3 * s1, k3 * l2 * c12],
-                [k3 * l1 * c12, k3 * l1 * c12 - b2 * c2 - f4 * s2],
-            ]
-        )
-        return value, slope
+        e1, e2, e11, e12, e21, e22 = equations(a, c1, s1, c2, s2)
+        return np.array([e1, e2]), np.array([[e11, e12], [e21, e22]])
 
     seen: list[Array] = []
     stable = 0
@@ -67,8 +64,8 @@ def _count(p: dict[str, float], starts: Array) -> tuple[int, int]:
         if any(np.abs(np.remainder(angles - other + np.pi, 2 * np.pi) - np.pi).max() < SAME_SOLUTION for other in seen):
             continue
         seen.append(angles)
-        # the Hessian's rows are -L1 and -L2 times those of the slope
-        stable += bool(-l1 * slope[0, 0] > 0 and np.linalg.det(slope) > 0)
+        # the Hessian's rows are these slopes times the factors
+        stable += bool(first * slope[0, 0] > 0 and first * second * np.linalg.det(slope) > 0)
     return stable, len(seen)
 
 

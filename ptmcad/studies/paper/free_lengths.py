@@ -18,6 +18,7 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.mechanism import ptm
 from ptmcad.studies.equilibria import balls, guesses, proved
+from ptmcad.text.balls import ball_of
 from ptmcad.text.rationals import to_fraction
 
 STARTS = 48
@@ -70,7 +71,7 @@ def proved_equilibrium(design: FreeLengthDesign, angles: tuple[float, float]) ->
         found = proved(balls(design.parameters), [arb(m) for m in middle], arb(RADIUS))
         if found is None:
             return None
-        rest = arb(fmpq(design.free.numerator, design.free.denominator)) ** 2
+        rest = ball_of(design.free) ** 2
         tense = None
         if any(square < rest for square in found.squares):
             tense = False
@@ -85,7 +86,7 @@ def _distinct(a: ProvedEquilibrium, b: ProvedEquilibrium) -> bool:
     with ctx.workprec(BITS):
         for x, y in zip(a.angles, b.angles, strict=True):
             difference = x - y
-            half = arb(fmpq(difference.numerator, difference.denominator)) / 2
+            half = ball_of(difference) / 2
             if abs(half.sin()) > arb(2 * RADIUS):
                 return True
     return False

@@ -17,6 +17,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
+from ptmcad.studies.paper import equations
 from ptmcad.studies.paper.claim import Claim, Verdict
 from ptmcad.studies.paper.claims import all_claims
 from ptmcad.studies.paper.pages import Illustration, Judged, claims_html, claims_markdown, index_html
@@ -105,8 +106,6 @@ def reproduce(folder: Path, progress: Progress | None = None) -> Reproduction:
     done("maps")
     judged = judge_all(progress=progress)
     done("claims")
-    from ptmcad.studies.paper import equations
-
     texts = {"equations.md": equations.as_markdown(), "equations.tex": equations.as_latex()}
     done("equations")
     pictures: dict[str, bytes] = {}

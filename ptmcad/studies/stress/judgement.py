@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, fmpq
+from flint import arb
 
 from ptmcad.answer.intervals import CountIntervals, lower, upper
 from ptmcad.answer.poses import Pose, Poses
@@ -23,6 +23,7 @@ from ptmcad.studies.stress.measure import Verdict, as_float
 from ptmcad.studies.stress.reference import newton_pose, sextic_poses
 from ptmcad.text.balls import exact
 from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.rationals import from_fraction
 
 GRID = 16
 """Points along each axis of a map at which double precision is asked."""
@@ -127,13 +128,9 @@ def _matched(poses: Sequence[Pose], reference: Sequence[IndexedPose]) -> list[tu
 def _contains(enclosure: Enclosure, angle: arb) -> bool:
     """Whether the enclosure meets the ball, which is narrower by tens of digits, modulo full turns."""
     return any(
-        not (moved < _arb(enclosure.low) or moved > _arb(enclosure.high))
+        not (moved < from_fraction(enclosure.low) or moved > from_fraction(enclosure.high))
         for moved in (angle + n * 2 * arb.pi() for n in (-1, 0, 1))
     )
-
-
-def _arb(value: Fraction) -> fmpq:
-    return fmpq(value.numerator, value.denominator)
 
 
 def _distance(pose: Pose, reference: IndexedPose) -> Fraction:

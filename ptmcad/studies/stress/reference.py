@@ -19,6 +19,7 @@ from flint import arb, ctx, fmpq, fmpq_poly
 
 from ptmcad.studies.equilibria import IndexedPose, balls, in_balls, inverse, proved, sign
 from ptmcad.studies.sextic import sextic
+from ptmcad.text.rationals import from_fraction
 
 DIGITS = 100
 """To which the angles of a pose are known, or more."""
@@ -46,7 +47,7 @@ def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...]:
     Degenerate
         When some equilibrium is, or when N has no finite number of roots.
     """
-    p = {name: fmpq(v.numerator, v.denominator) for name, v in parameters.items()}
+    p = {name: from_fraction(v) for name, v in parameters.items()}
     bits = _BITS
     while bits <= _MAX_BITS:
         with ctx.workprec(bits):

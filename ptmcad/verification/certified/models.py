@@ -17,13 +17,14 @@ from flint import arb, ctx
 from ptmcad.answer.regionmap import Cell, Solution
 from ptmcad.mechanism import Model
 from ptmcad.question.slice import Count, Slice
+from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import Box, Zero, disjoint, same
 from ptmcad.verification.certified.counted import MINIMA, Counted, Counts
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.field import Field, Matrix
 from ptmcad.verification.certified.kinks import Sides, sides
 from ptmcad.verification.certified.narrow import Function, judged, no_solution
-from ptmcad.verification.certified.parameters import exact, over
+from ptmcad.verification.certified.parameters import over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import Spent, zeros
 from ptmcad.verification.certified.spectrum import inertia
@@ -245,7 +246,7 @@ def _values_at(claims: Claims, form: Form, x: Fraction, y: Fraction) -> dict[str
 def _field_at(
     form: Form, values: Mapping[str, Fraction], count: Count | None = None, side: Sides | None = None
 ) -> Field:
-    return _field(form, {name: exact(value) for name, value in values.items()}, count, side or {})
+    return _field(form, {name: ball_of(value) for name, value in values.items()}, count, side or {})
 
 
 def _start(field: Field) -> Box:
@@ -328,6 +329,6 @@ def _only(fields: Sequence[Field], solution: Solution, k: int, budget: int) -> Z
 
 def _distances(zero: Zero, solution: Solution, where: str) -> bool:
     """Whether a solution is surely in a stored box, or surely out of it."""
-    radius = exact(solution.radius)
-    away = [abs(x - exact(c)) for x, c in zip(zero.within, solution.center, strict=True)]
+    radius = ball_of(solution.radius)
+    away = [abs(x - ball_of(c)) for x, c in zip(zero.within, solution.center, strict=True)]
     return all(d <= radius for d in away) if where == "in" else any(d > radius for d in away)

@@ -17,9 +17,9 @@ from fractions import Fraction
 from flint import arb, arb_mat, ctx
 
 from ptmcad.answer.regionmap import Solution
+from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import Floats
 from ptmcad.verification.certified.field import Matrix
-from ptmcad.verification.certified.parameters import exact
 
 NARROW = Fraction(1, 2**20)
 """Half the width of a box up to which one test is tried before a search."""
@@ -77,7 +77,7 @@ def no_solution(solution: Solution, k: int) -> str:
 
 
 def _judged(function: Function, solution: Solution) -> Judgement | None:
-    given, radius = [exact(c) for c in solution.center], exact(solution.radius)
+    given, radius = [ball_of(c) for c in solution.center], ball_of(solution.radius)
     middle = [x.mid() for x in given]
     lost = max((x.rad() for x in given), key=float)
     # the first box has the stored one

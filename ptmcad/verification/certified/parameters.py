@@ -13,8 +13,10 @@ from flint import arb
 from ptmcad.errors import ExpressionError
 from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism
 from ptmcad.question.slice import Slice
+from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.parsing import parse
+from ptmcad.text.rationals import from_fraction
 from ptmcad.text.tree import Name, to_text
 from ptmcad.verification.certified.energy import Energy
 from ptmcad.verification.certified.equilibria import Unproved
@@ -22,7 +24,7 @@ from ptmcad.verification.certified.field import power
 from ptmcad.verification.certified.vectors import NAMES, SPRINGS, evaluated
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import MECHANISM, NOT_NEGATIVE, POSITIVE, rational
+from ptmcad.verification.derivation import MECHANISM, NOT_NEGATIVE, POSITIVE
 from ptmcad.verification.parameters import auxiliary, written
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.signs import Sign, Window, has_no_pole, is_in_domain
@@ -40,7 +42,7 @@ def check_domain(claims: Claims) -> str:
     What was proved, and of which parameters it was not.
     """
     slice = claims.result.slice
-    window = [(rational(a.low), rational(a.high)) for a in slice.axes]
+    window = [(from_fraction(a.low), from_fraction(a.high)) for a in slice.axes]
     here, unchecked = (window[0], window[1]), []
     asked = _expressions(slice)
     for name, expression in asked.items():
@@ -113,11 +115,6 @@ def _expressions(slice: Slice) -> dict[str, Expression]:
     return {**named, **written(slice), **slice.parameters}
 
 
-def exact(value: Fraction) -> arb:
-    """The ball of a rational number, as narrow as the precision allows."""
-    return arb(rational(value))
-
-
 def values_at(claims: Claims, x: Fraction, y: Fraction) -> Values:
     """Every parameter at a point.
 
@@ -138,7 +135,7 @@ def values_at(claims: Claims, x: Fraction, y: Fraction) -> Values:
 
 def energy_at(values: Mapping[str, Fraction]) -> Energy:
     """The energy at exact parameters."""
-    return Energy({name: exact(values[name]) for name in NAMES}, tuple(s.has_crease(values) for s in SPRINGS))
+    return Energy({name: ball_of(values[name]) for name in NAMES}, tuple(s.has_crease(values) for s in SPRINGS))
 
 
 def energy_over(slice: Slice, x: arb, y: arb) -> Energy:
@@ -174,4 +171,4 @@ def over(expression: Expression, x: arb, y: arb) -> arb:
 
 
 def _sum(terms: Sequence[tuple[int, int, Fraction]], x: arb, y: arb) -> arb:
-    return sum((exact(c) * power(x, i) * power(y, j) for i, j, c in terms), arb(0))
+    return sum((ball_of(c) * power(x, i) * power(y, j) for i, j, c in terms), arb(0))

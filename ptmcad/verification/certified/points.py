@@ -17,6 +17,7 @@ from flint import arb, ctx
 from ptmcad.answer.regionmap import Cell, Solution
 from ptmcad.mechanism import Kind
 from ptmcad.question.slice import Count, Slice
+from ptmcad.text.balls import ball_of
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.counted import MINIMA, Counted, Counting, Counts, Enclosed, differs, stored
 from ptmcad.verification.certified.energy import Energy
@@ -33,7 +34,7 @@ from ptmcad.verification.certified.field import Matrix
 from ptmcad.verification.certified.flat import beside, is_flat, is_nearly_flat
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.narrow import Function, judged, no_solution
-from ptmcad.verification.certified.parameters import Values, energy_at, energy_over, exact, values_at
+from ptmcad.verification.certified.parameters import Values, energy_at, energy_over, values_at
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.vectors import CROSSING, SPRINGS, TURNED, evaluated
 from ptmcad.verification.certified.waves import form_of
@@ -305,7 +306,7 @@ def cones(energy: Energy, values: Mapping[str, Fraction]) -> int:
     if base == 0:
         raise Unproved(f"{_BASE} is zero and the bars are equally long, where "
                        f"spring {SPRINGS.index(CROSSING) + 1} has no length on a circle")  # fmt: skip
-    angles = [exact((z**2 - y**2 - fixed**2) / (2 * fixed * y)).acos() for y, z in (arms, arms[::-1])]
+    angles = [ball_of((z**2 - y**2 - fixed**2) / (2 * fixed * y)).acos() for y, z in (arms, arms[::-1])]
     peaks = 0
     for side in (1, -1):
         at = side * angles[0], side * angles[1]
@@ -370,16 +371,16 @@ def _only(energy: Energy, solution: Solution, k: int) -> Equilibrium:
 
 
 def _in(e: Equilibrium, solution: Solution) -> bool:
-    radius = exact(solution.radius)
+    radius = ball_of(solution.radius)
     return all(
-        bool(abs(angle - exact(center)) <= radius) for angle, center in zip(e.within, solution.center, strict=True)
+        bool(abs(angle - ball_of(center)) <= radius) for angle, center in zip(e.within, solution.center, strict=True)
     )
 
 
 def _out(e: Equilibrium, solution: Solution) -> bool:
-    radius = exact(solution.radius)
+    radius = ball_of(solution.radius)
     return any(
-        bool(abs(angle - exact(center)) > radius) for angle, center in zip(e.within, solution.center, strict=True)
+        bool(abs(angle - ball_of(center)) > radius) for angle, center in zip(e.within, solution.center, strict=True)
     )
 
 

@@ -22,14 +22,12 @@ from fractions import Fraction
 from itertools import accumulate
 from math import ceil, isqrt
 
-from flint import fmpq
-
 from ptmcad.cover.rectangles import Cover, Rectangle
+from ptmcad.text.balls import ball_of
 from ptmcad.text.numerals import text_of
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.rationals import from_fraction, to_fraction
 from ptmcad.verification.certified.counted import Counted, differs, stored
 from ptmcad.verification.certified.equilibria import Unproved
-from ptmcad.verification.certified.parameters import exact
 from ptmcad.verification.certified.points import HOPELESS, counting_of
 from ptmcad.verification.certified.slanted import Frame
 from ptmcad.verification.certified.structure import CertifiedClaims
@@ -200,7 +198,7 @@ def _along_tubes(cover: Cover, side: int, rng: random.Random) -> dict[tuple[int,
         for center in frame.centers:
             for _ in range(PLACES_ON_TUBES):
                 s = _uniform(rng)
-                u, value = frame.low + s * (frame.high - frame.low), center(fmpq(s.numerator, s.denominator))
+                u, value = frame.low + s * (frame.high - frame.low), center(from_fraction(s))
                 v = to_fraction(value)
                 if not frame.bottom <= v <= frame.top:
                     continue
@@ -284,6 +282,6 @@ def _prove(claims: CertifiedClaims, box: SampleBox, half: Fraction, there: Count
         When the box is too large, or the counts change in it.
     """
     low, high = (claims.off_lattice(box.u + d, box.v + d) for d in (-half, half))
-    x, y = (exact(low[i]).union(exact(high[i])) for i in (0, 1))
+    x, y = (ball_of(low[i]).union(ball_of(high[i])) for i in (0, 1))
     true = counting_of(claims).over(claims.result.slice, x, y, there)
     assert not differs(claims.result.cells[box.cell], true), "the box holds its middle, whose counts are the cell's"

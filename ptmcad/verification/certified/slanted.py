@@ -19,7 +19,7 @@ from math import comb
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
 from ptmcad.cover.rectangles import Cover, Patch
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.rationals import from_fraction, to_fraction
 from ptmcad.verification.certified.sweep import Sets
 from ptmcad.verification.report import Violation
 from ptmcad.verification.sturm import roots_between
@@ -72,9 +72,9 @@ class Frame:
 
     def place(self, u: Fraction, v: Fraction) -> int | None:
         """How many tubes are below a point of the frame; None in a tube. u is along the tubes."""
-        s = _q((u - self.low) / (self.high - self.low))
+        s = from_fraction((u - self.low) / (self.high - self.low))
         for k, (center, half) in enumerate(zip(self.centers, self.halves, strict=True)):
-            away = _q(v) - center(s)
+            away = from_fraction(v) - center(s)
             if away <= half:
                 return k if away < -half else None
         return len(self.centers)
@@ -95,7 +95,7 @@ class Frame:
         number = 0
         for k, (center, half) in enumerate(zip(self.centers, self.halves, strict=True)):
             value = center(fmpq(end))
-            first, last = _fraction(value - half).__floor__(), _fraction(value + half).__ceil__()
+            first, last = to_fraction(value - half).__floor__(), to_fraction(value + half).__ceil__()
             if last < self.bottom:
                 number = k + 1
                 continue
@@ -168,7 +168,7 @@ class Frame:
         center, turn, width = self.centers[k] + shift, self.turns[k], self.high - self.low
         primitive = center.integral()
         if turn == 0:
-            value = _fraction(primitive(ONE) * width)
+            value = to_fraction(primitive(ONE) * width)
             return value, value
         marks = [Fraction(0)]
         for level in (self.bottom, self.top)[::turn]:
@@ -176,7 +176,7 @@ class Frame:
             marks.append(min(max((at - self.low) / width, Fraction(0)), Fraction(1)))
         marks.append(Fraction(1))
         before, after = (self.bottom, self.top)[::turn]
-        middle = _fraction(primitive(_q(marks[2])) - primitive(_q(marks[1])))
+        middle = to_fraction(primitive(from_fraction(marks[2])) - primitive(from_fraction(marks[1])))
         total = width * (before * marks[1] + middle + after * (1 - marks[2]))
         # outside of the frame, or from one end of it to the other, nothing was rounded
         rounded = not {marks[1], marks[2]} <= {Fraction(0), Fraction(1)}
@@ -188,10 +188,10 @@ class Frame:
         a, width = self.patch.along, self.high - self.low
         start = (max(low[a], Fraction(self.low)) - self.low) / width
         end = (min(high[a], Fraction(self.high)) - self.low) / width
-        s = arb(_q((start + end) / 2), arb(_q((end - start) / 2)).upper())
+        s = arb(from_fraction((start + end) / 2), arb(from_fraction((end - start) / 2)).upper())
         for center, half in zip(self.centers, self.halves, strict=True):
             value = arb_poly(center)(s)
-            if not (value - half > arb(_q(high[1 - a])) or value + half < arb(_q(low[1 - a]))):
+            if not (value - half > arb(from_fraction(high[1 - a])) or value + half < arb(from_fraction(low[1 - a]))):
                 return False
         return True
 
@@ -211,14 +211,6 @@ def _positive(p: fmpq_poly) -> bool:
     if p(fmpq(0)) <= 0 or p(ONE) <= 0:
         return False
     return p.degree() < 1 or roots_between(p.numer(), fmpq(0), ONE) == 0
-
-
-def _q(value: Fraction | int) -> fmpq:
-    return fmpq(value.numerator, value.denominator)
-
-
-def _fraction(value: fmpq) -> Fraction:
-    return to_fraction(value)
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,6 +20,7 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz
 
 from ptmcad.answer.regionmap import System
 from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
+from ptmcad.text.rationals import from_fraction
 from ptmcad.text.tree import names_of
 from ptmcad.verification.certified.decimals import in_quotients
 from ptmcad.verification.certified.refutation import differs_somewhere
@@ -356,7 +357,7 @@ def _energy(model: Model) -> fmpq_mpoly:
         energy = energy + stretch * stretch * (here.value(spring.stiffness) * fmpq(1, 2))
     for torsion in model.torsion:
         cosine, sine = here.circle(torsion.angle)
-        at_rest = [fmpq(value.numerator, value.denominator) for value in torsion.rest]
+        at_rest = [from_fraction(value) for value in torsion.rest]
         energy = energy + here.value(torsion.stiffness) * (1 - cosine * at_rest[0] - sine * at_rest[1])
     for unknown, tree in model.moments if model.has_potential else ():
         if unknown in text.varying:

@@ -17,7 +17,9 @@ from typing import Any, NamedTuple
 from flint import Ordering, arb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.mechanism import description
-from ptmcad.verification.derivation import ANGLES, MECHANISM, POSITIVE, Configuration, rational
+from ptmcad.text.balls import ball_of
+from ptmcad.text.rationals import from_fraction
+from ptmcad.verification.derivation import ANGLES, MECHANISM, POSITIVE, Configuration
 
 NAMES = MECHANISM.variables
 Frequency = tuple[int, int]
@@ -191,13 +193,13 @@ def evaluated(terms: Terms, values: Mapping[str, Any]) -> Any:
             number += Fraction(numerator, denominator)
     if not number:
         return total
-    return total + (rational(number) if isinstance(total, arb) else number)
+    return total + (from_fraction(number) if isinstance(total, arb) else number)
 
 
 def ball(terms: Terms, values: Mapping[str, Any]) -> arb:
     """The value of a polynomial for balls, also of one without names."""
     found = evaluated(terms, values)
-    return found if isinstance(found, arb) else arb(rational(Fraction(found)))
+    return found if isinstance(found, arb) else ball_of(Fraction(found))
 
 
 _POINTS = _CONFIGURATION.points()

@@ -17,10 +17,11 @@ import numpy as np
 from flint import arb
 
 from ptmcad.question.slice import Count
+from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.counted import MINIMA
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.kinks import sides
-from ptmcad.verification.certified.parameters import exact, over
+from ptmcad.verification.certified.parameters import over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.vectors import SPRINGS
@@ -224,7 +225,7 @@ class _Systems:
         if all(self.form.is_circle):
             return (_ANGLE[1],) * self.form.size
         slice = self.claims.result.slice
-        x, y = (exact(a.low).union(exact(a.high)) for a in slice.axes)
+        x, y = (ball_of(a.low).union(ball_of(a.high)) for a in slice.axes)
         values = {n: arb(0) for n in slice.model.free_lengths}
         values |= {n: over(e, x, y) for n, e in slice.parameters.items()}
         return half_widths(self.form, values)

@@ -26,7 +26,6 @@ from ptmcad.exact.stages import count_at
 from ptmcad.question.slice import Count, Point
 from ptmcad.text.rationals import from_fraction, to_fraction
 from ptmcad.verification.claims import Claims, bracket
-from ptmcad.verification.derivation import rational
 
 
 def regions_in_another_order(r: RegionMap) -> Iterator[Alteration]:
@@ -59,7 +58,9 @@ def other_segments(r: RegionMap) -> Iterator[Alteration]:
             continue
         value = r.critical_values[r.cells[a.first].stack or 0]
         width = min(abs(value.low - a.segment[0]), abs(a.segment[1] - value.high)) / 4
-        low, high = bracket(value, rational(width)) if width else (rational(value.low), rational(value.high))
+        low, high = (
+            bracket(value, from_fraction(width)) if width else (from_fraction(value.low), from_fraction(value.high))
+        )
         u, w = (to_fraction(low) + a.segment[0]) / 2, (to_fraction(high) + a.segment[1]) / 2
         yield partial(replace, r, adjacencies=put(r.adjacencies, k, segment=(u, w, a.segment[2])))
 
@@ -80,8 +81,8 @@ def _sampled(r: RegionMap, s: int) -> RegionMap:
         cell = cells[n]
         u, v = cell.sample[r.base], cell.sample[1 - r.base]
         by = (other.high - v) / 7
-        while claims.level(rational(u), rational(v + by)) != level or any(
-            c.over(rational(u))(rational(v + by)) == 0 for c in claims.curves
+        while claims.level(from_fraction(u), from_fraction(v + by)) != level or any(
+            c.over(from_fraction(u))(from_fraction(v + by)) == 0 for c in claims.curves
         ):
             by /= 2
         at = (u, v + by) if r.base == 0 else (v + by, u)
@@ -102,7 +103,7 @@ def samples_of_other_cells(r: RegionMap) -> Iterator[Alteration]:
 def refined_critical_values(r: RegionMap) -> Iterator[Alteration]:
     for k, v in enumerate(r.critical_values):
         if v.low < v.high:
-            low, high = (to_fraction(q) for q in bracket(v, rational((v.high - v.low) / 100)))
+            low, high = (to_fraction(q) for q in bracket(v, from_fraction((v.high - v.low) / 100)))
             yield partial(replace, r, critical_values=put(r.critical_values, k, low=low, high=high))
 
 

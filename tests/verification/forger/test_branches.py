@@ -35,13 +35,13 @@ from ptmcad.question.slice import Axis, Count, Point
 from ptmcad.text.expressions import axis, constant
 from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.rationals import from_fraction
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas
 from ptmcad.verification.auxiliary import check_auxiliary
 from ptmcad.verification.branches import Effort, _along
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
-from ptmcad.verification.derivation import rational
 from ptmcad.verification.disks import PrecisionTooLow, _series
 from ptmcad.verification.fibre import Counts, Fibre
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
@@ -125,7 +125,7 @@ def height_on_the_way(r: RegionMap) -> RegionMap:
             low, high = (r.cells[n].sample[r.base] for n in (a.first, a.second))
             for step in range(1, 40):
                 v = other.low + (other.high - other.low) * Fraction(step, 40)
-                if claims.free(rational(low), rational(high), rational(v)) is not None:
+                if claims.free(from_fraction(low), from_fraction(high), from_fraction(v)) is not None:
                     return replace(r, adjacencies=put(r.adjacencies, k, segment=(low, high, v)))
     raise AssertionError("no curve runs to a critical value")
 

@@ -37,12 +37,13 @@ from ptmcad.answer.regionmap import (
 from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.mechanism import known_of
 from ptmcad.question.slice import Count, Point
+from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import axis
 from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.certified import points
 from ptmcad.verification.certified.equilibria import Square, Unproved, equilibria
-from ptmcad.verification.certified.parameters import check_domain, energy_at, energy_over, exact, values_at
+from ptmcad.verification.certified.parameters import check_domain, energy_at, energy_over, values_at
 from ptmcad.verification.certified.points import all_equilibria, check_points, cones, counts_of
 from ptmcad.verification.certified.sampling import check_boxes
 from ptmcad.verification.certified.structure import CertifiedClaims, check_components, check_form, check_regions
@@ -378,7 +379,7 @@ def test_a_cone_that_can_not_be_told(changes: dict[str, int], words: str) -> Non
 def test_no_box_is_proved_outside_of_the_domain(name: str, text: str, words: str) -> None:
     """And a place where all boxes are like that is counted as not checked."""
     r = with_parameter(name, text)(springs())
-    x, y = (exact(a.low).union(exact(a.high)) for a in r.slice.axes)
+    x, y = (ball_of(a.low).union(ball_of(a.high)) for a in r.slice.axes)
     with pytest.raises(Unproved, match=words):
         energy_over(r.slice, x, y)
 

@@ -8,11 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from itertools import product
 from typing import Any
 
-from flint import acb, acb_poly, arb, fmpq, fmpz_poly
+from flint import acb, acb_poly, arb, fmpz_poly
 
 
 def complex_roots(p: fmpz_poly) -> list[acb]:
@@ -29,11 +28,6 @@ def vanishes(p: Sequence[acb], at: acb) -> bool:
     """Whether a polynomial may vanish in a ball; False is a proof that it does not."""
     value: acb = acb_poly(p)(at)
     return bool(value.contains(0))
-
-
-def ball(x: Fraction) -> arb:
-    """A rational in the precision of the context."""
-    return arb(fmpq(x.numerator, x.denominator))
 
 
 def directions(*tangents: acb) -> tuple[tuple[acb, acb], ...]:

@@ -16,7 +16,8 @@ from ptmcad.algebra.elimination import squarefree_factors
 from ptmcad.algebra.polynomials import Coefficient, coefficients_in
 from ptmcad.algebra.real_roots import squarefree_part
 from ptmcad.algebra.resultants import resultant
-from ptmcad.studies.paper.squaring.signed import SignedEquations, ball, complex_roots, value_at, vanishes
+from ptmcad.studies.paper.squaring.signed import SignedEquations, complex_roots, value_at, vanishes
+from ptmcad.text.balls import ball_of
 
 _CIRCLE = fmpz_poly([1, 0, 1])
 
@@ -76,7 +77,7 @@ def _spring_three_vanishes(
     norms = (resultant(over, coefficients_in(p, 1)) for p in (first, second))
     candidates = squarefree_part(next(norms).gcd(next(norms)))
     rows = coefficients_in(first, 0), coefficients_in(second, 0)
-    equations = SignedEquations(*(ball(x) for x in (base, *rods, *(Fraction(0),) * 3)))
+    equations = SignedEquations(*(ball_of(x) for x in (base, *rods, *(Fraction(0),) * 3)))
     for t2 in complex_roots(cone):
         if all(value_at(row[-1], t2).contains(0) for row in rows):
             return False  # a common root may be infinite

@@ -23,8 +23,9 @@ from flint import acb, acb_poly, arb, ctx, fmpq, fmpz_poly
 from ptmcad.algebra.polynomials import coefficients_in
 from ptmcad.algebra.resultants import resultant
 from ptmcad.studies.paper.squaring.equations import squared_equations
-from ptmcad.studies.paper.squaring.signed import SignedEquations, ball, complex_roots, value_at, vanishes
+from ptmcad.studies.paper.squaring.signed import SignedEquations, complex_roots, value_at, vanishes
 from ptmcad.studies.paper.squaring.simple_roots import SpecialDesignError, flat_poses, simple_part
+from ptmcad.text.balls import ball_of
 
 BITS = 400
 TOLERANCE = fmpq(1, 10**60)
@@ -123,7 +124,7 @@ def _problem(design: Design) -> _Problem:
     return _Problem(
         simple_part(eliminated, first, second, base, rods, unloaded),
         rows,
-        SignedEquations(*(ball(x) for x in (base, *rods, free, *loads))),
+        SignedEquations(*(ball_of(x) for x in (base, *rods, free, *loads))),
         flat_poses(base, rods, free) if unloaded else 0,
     )
 
