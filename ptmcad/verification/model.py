@@ -23,7 +23,7 @@ from ptmcad.verification.claims import PLANE, Claims
 from ptmcad.verification.derivation import Configuration, coordinates_of, formulas, has_index, parameters_of
 from ptmcad.verification.report import Violation
 
-_FACTOR = r"(?:[0-9]{1,40}(?:/[1-9][0-9]{0,39})?|[A-Za-z][A-Za-z_0-9]{0,44}(?:\^[0-9]{1,2})?)"
+_FACTOR = r"(?:[0-9]{1,4000}(?:/[1-9][0-9]{0,3999})?|[A-Za-z][A-Za-z_0-9]{0,44}(?:\^[0-9]{1,2})?)"
 _SUM = re.compile(rf"-?{_FACTOR}(?:\*{_FACTOR})*(?: [+-] {_FACTOR}(?:\*{_FACTOR})*)*", re.ASCII)
 
 _Ratio = tuple[fmpq_mpoly, fmpq_mpoly]

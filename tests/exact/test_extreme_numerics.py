@@ -393,3 +393,10 @@ def test_a_series_whose_last_coefficients_are_nearly_nothing_is_usable() -> None
     for low, high in inside[:2]:
         assert low - Fraction(1, 10**15) < Fraction(39269908169872415, 10**17) < high + Fraction(1, 10**15)
     assert len(inside) == 3
+
+
+def test_verify_reads_coefficients_of_fifty_digits() -> None:
+    """A true map was called violated: its equations were said to be no formulas."""
+    system = {"unknowns": {"z": "real"}, "equations": [f"z^2 - (a^2 + b^2 - {10**50 + 1}/{10**50})"]}
+    stored = ptmcad.classify(slice_from_mapping({"name": "long", "system": system, "axes": {"a": [0, 2], "b": [0, 2]}}))
+    assert ptmcad.verify(stored).ok
