@@ -9,7 +9,7 @@ apart has the energy k |d|^2/2 - k l0 |d| + k l0^2/2, so that K = k l0.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from itertools import combinations
@@ -49,10 +49,11 @@ Vector = tuple[TrigonometricPolynomial, TrigonometricPolynomial]
 
 @dataclass(frozen=True, slots=True)
 class Cone:
-    """A spring with a free length: its name, K, and the difference d of its ends' coordinates.
+    """A spring with a free length, or several side by side: K, and the difference d of the ends' coordinates.
 
     Attributes
     ----------
+    name : of the spring, or of each.
     weights : one vector w_i for each equation, from which it takes K u . w_i, u = d/|d|: the derivatives of d by the
         unknowns; with closed loops that along them, in the last equation, and zero in the others.
     """
@@ -180,8 +181,7 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
     if isinstance(model, System):
         return _of_system(model, ring)
     assert isinstance(model, Mechanism)
-    cones = tuple(_cones(model, ring))
-    _check_pulls(model, cones, slice.axes)
+    cones = _checked(model, _cones(model, ring), slice.axes)
     equations = list(_gradient(_energy(model, ring), ring))
     for unknown, tree in split_moments(model).steady:
         k = ring.unknowns.index(unknown)
@@ -189,12 +189,36 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
     return Problem(ring.unknowns, ring.reals, tuple(equations), cones, model.has_potential)
 
 
-def _check_pulls(mechanism: Mechanism, cones: Sequence[Cone], axes: tuple[Axis, Axis]) -> None:
+def _checked(mechanism: Mechanism, cones: Iterable[Cone], axes: tuple[Axis, Axis]) -> tuple[Cone, ...]:
+    """The cones of a mechanism, no K of which is negative anywhere in the window; those side by side are one."""
+    found: list[Cone] = []
     for cone in cones:
         asked = f"stiffness times free length of spring {cone.name}", Kind.FREE_LENGTH, cone.pull, axes
         if problem := fault(*asked) or unproved(*asked):
             number = next(n for n, spring in enumerate(mechanism.springs, 1) if spring.name == cone.name)
             raise GeometryError(problem, part=f"springs.{number}")
+        for k, other in enumerate(found):
+            if ratio := _ratio(cone.difference, other.difference):
+                name, pull = f"{other.name} + {cone.name}", other.pull + cone.pull * abs(ratio)
+                found[k] = replace(other, name=name, pull=pull)
+                break
+        else:
+            found.append(cone)
+    return tuple(found)
+
+
+def _ratio(d: Vector, other: Vector) -> Fraction | None:
+    """The number c for which d is c times another vector, other than zero: then so are all derivatives.
+
+    Each of K|d| and K'|d'| alone has a cone, and where both are short at once neither direction would be balanced by
+    the rest; but |d| = |c| |d'| makes them one (K |c| + K') |d'|.
+    """
+    key, k = next((key, k) for k in (0, 1) for key in other[k].terms)
+    pairs = zip(d[k].terms.get(key, ()), other[k].terms[key], strict=False)
+    ratio = next((a / b for a, b in pairs if b.numerator), None)
+    if ratio is None or not ratio.is_constant or not (c := ratio.constant()):
+        return None
+    return None if any((f - g.scaled(c)).terms for f, g in zip(d, other, strict=True)) else c
 
 
 def _check_loops(model: ClosedMechanism, slice: Slice) -> None:
@@ -226,9 +250,8 @@ def _of_loops(model: ClosedMechanism, ring: Harmonics, axes: tuple[Axis, Axis]) 
     bars = len(model.equations) - 1
     cones = tuple(
         replace(cone, weights=(*[(nothing, nothing)] * bars, (along(cone.difference[0]), along(cone.difference[1]))))
-        for cone in _cones(model.mechanism, ring)
+        for cone in _checked(model.mechanism, _cones(model.mechanism, ring), axes)
     )
-    _check_pulls(model.mechanism, cones, axes)
     *closed, slope = (evaluate(tree, ring) for tree in model.equations)
     return Problem(ring.unknowns, ring.reals, (*closed, slope.scaled(sign)), cones, False, closing=bars)
 

@@ -1,12 +1,12 @@
-"""Equilibria that are their own images in a mirror along any line whose direction has a rational tangent.
+"""Equilibria that are their own images in a mirror along any line whose direction has a rational tangent, or rational.
 
 Such as a chain that lies along the line from its pivot to where all its springs are held: the cosines are multiples of
 one square root, and a point in which it ends may be exactly the pivot.
 
 Guarantee: exact. The tangents are a guess, by balls. With u = p for all these angles at the guess, the reflection
 u -> 2 p - u, whose 2 p have rational cosines and sines, is proved to leave the energy as it is, and the image of the
-equilibrium to lie in a box that holds no other one: then it is its own image, and u = p. Or all cosines and sines are
-rational, and the gradient is zero there.
+equilibrium to lie in a box that holds no other one: then it is its own image, and u = p. Or all cosines, sines and
+real unknowns of the guess are rational, it is in such a box, and the gradient is zero there.
 """
 
 from __future__ import annotations
@@ -21,7 +21,6 @@ from ptmcad.certified.plain.symmetric import (
     NO_SURDS,
     Point,
     Surds,
-    fixed_place,
     is_equilibrium,
     is_symmetry,
 )
@@ -50,22 +49,29 @@ def with_slanted(
     if len(at) == len(mechanism.angles) + len(mechanism.unknowns):
         return at, NO_SURDS
     doubled: dict[str, Direction] = {}
-    zeros: list[str] = []
+    reals: Point = {}
     for name, ball in held.items():
         double = _double(ball) if name in mechanism.angles else None
-        place = fixed_place(mechanism, name, ball) if double is None else _place(double, ball)
-        if not (ball.overlaps(place) and boxes[name].contains(2 * place - ball)):
+        place = _place(double, ball) if double else ball_of(_rational(ball)) if name in mechanism.reals else None
+        if place is None or not (ball.overlaps(place) and boxes[name].contains(2 * place - ball)):
             continue
         if double is not None:
             doubled[name] = double
-        elif name in mechanism.reals:
-            zeros.append(name)
-    if not doubled:
-        return at, NO_SURDS
+        else:
+            reals[name] = _rational(ball)
     fixed, surds = _values(doubled, held)
-    fixed |= dict.fromkeys(zeros, Fraction(0))
-    proved = is_symmetry(mechanism, parameters, (*doubled, *zeros), doubled)
-    return (at | fixed, surds) if proved or is_equilibrium(mechanism, parameters, fixed) else (at, NO_SURDS)
+    fixed |= reals
+    if is_equilibrium(mechanism, parameters, fixed):
+        return fixed, surds
+    zeros = {name: value for name, value in reals.items() if not value}
+    if doubled and is_symmetry(mechanism, parameters, (*doubled, *zeros), doubled):
+        return at | _values(doubled, held)[0] | zeros, surds
+    return at, NO_SURDS
+
+
+def _rational(ball: arb) -> Fraction:
+    """The fraction near a ball's middle that it seems to be: nearly no other number has one so near."""
+    return exact(ball.mid()).limit_denominator(2 ** (ctx.prec // 4))
 
 
 def _double(angle: arb) -> Direction | None:
@@ -74,7 +80,7 @@ def _double(angle: arb) -> Direction | None:
     slope = angle.cot() if steep else angle.tan()
     if not slope.is_finite():
         return None
-    t = exact(slope.mid()).limit_denominator(2 ** (ctx.prec // 4))  # nearly no other number has one so near
+    t = _rational(slope)
     if not slope.overlaps(ball_of(t)):
         return None
     cosine = (1 - t * t) / (1 + t * t)

@@ -26,12 +26,12 @@ _Polynomials = dict[Key, fmpq_mpoly]
 
 
 class Cone(NamedTuple):
-    """A spring with a free length, which takes K times the length of a vector off the potential.
+    """A spring with a free length, or several side by side, which take K times a vector's length off the potential.
 
     Attributes
     ----------
-    name : of the spring.
-    pull : K, the stiffness times the free length.
+    name : of the spring, or of each.
+    pull : K, the stiffness times the free length; of several the sum, each by how much longer it is than the first.
     vector : between the spring's ends.
     slopes : first derivatives of both by the unknowns.
     weights : for each equation the vector whose product with the spring's direction, times K, it lacks: the slopes, but
@@ -230,7 +230,7 @@ def _divided(f: _Polynomials, inequalities: Iterable[_Polynomials]) -> _Polynomi
 
 
 def _cones(ring: _Ring, mechanism: Mechanism, along: Sequence[list[_Polynomials]] = ()) -> Iterable[Cone]:
-    """The springs with a free length.
+    """The springs with a free length; those that are always parallel, and a fixed number of times as long, as one.
 
     Parameters
     ----------
@@ -238,15 +238,27 @@ def _cones(ring: _Ring, mechanism: Mechanism, along: Sequence[list[_Polynomials]
     """
     points = ring.configuration.points(mechanism)
     everything = range(len(ring.unknowns))
+    sides: list[_Side] = []
     for n, spring in enumerate(mechanism.springs):
-        pull = ring.configuration.value(spring.stiffness) * ring.configuration.value(spring.free)
+        pull = ring.waves(ring.configuration.value(spring.stiffness) * ring.configuration.value(spring.free))
         vector = [ring.waves(points[spring.end][i] - points[spring.start][i]) for i in (0, 1)]
+        if not pull or not any(_by(d, k) for d in vector for k in everything):
+            continue
+        for k, (name, other, force, of_spring) in enumerate(sides):
+            if multiple := _multiple(vector, other):  # K |d| + K' |c d| = (K + |c| K') |d|
+                part = _scaled(pull, fmpq(abs(multiple.p), multiple.q))
+                whole = _collected([*force.items(), *part.items()])
+                sides[k] = _Side(f"{name} + {spring.name}", other, whole, of_spring)
+                break
+        else:
+            sides.append(_Side(spring.name, vector, pull, n))
+    for name, vector, pull, n in sides:
         slopes = [[_by(d, k) for d in vector] for k in everything]
         nothing: list[_Polynomials] = [{}, {}]
         weights = [*[nothing] * (len(ring.unknowns) - 1), along[n]] if along else slopes
         bends = [[_by(d, j) for d in weight] for weight in weights for j in everything]
-        strength = _kept(ring.waves(pull), ring.parameters)
-        if not strength or not any(d for slope in slopes for d in slope):
+        strength = _kept(pull, ring.parameters)
+        if not strength:
             continue
 
         def pair(found: list[_Polynomials]) -> tuple[Waves, Waves]:
@@ -254,7 +266,30 @@ def _cones(ring: _Ring, mechanism: Mechanism, along: Sequence[list[_Polynomials]
             return across, up
 
         ((_, terms),) = strength.items()
-        yield Cone(spring.name, terms, pair(vector), *(tuple(map(pair, some)) for some in (slopes, weights, bends)))
+        yield Cone(name, terms, pair(vector), *(tuple(map(pair, some)) for some in (slopes, weights, bends)))
+
+
+class _Side(NamedTuple):
+    """Springs side by side: their names, the vector of the first of them, the K of all, and the first one's number."""
+
+    names: str
+    vector: list[_Polynomials]
+    pull: _Polynomials
+    first: int
+
+
+def _scaled(f: _Polynomials, factor: fmpq) -> _Polynomials:
+    return {key: c * factor for key, c in f.items()}
+
+
+def _multiple(vector: Sequence[_Polynomials], other: Sequence[_Polynomials]) -> fmpq | None:
+    """The number c, other than zero, for which one vector is c times the other; None where there is none."""
+    lead = next((k, key) for k in (0, 1) for key in other[k])
+    given = vector[lead[0]].get(lead[1])
+    if given is None:
+        return None
+    c: fmpq = given.leading_coefficient() / other[lead[0]][lead[1]].leading_coefficient()
+    return c if all(not _less(f, _scaled(g, c)) for f, g in zip(vector, other, strict=True)) else None
 
 
 def _kept(f: _Polynomials, parameters: tuple[str, ...]) -> Waves:
