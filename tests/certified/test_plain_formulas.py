@@ -16,6 +16,7 @@ import ptmcad
 from ptmcad.answer.regionmap import Status
 from ptmcad.certified.formulation import curves, point_counter
 from ptmcad.certified.intervals import certified_intervals
+from ptmcad.certified.plain import slanted
 from ptmcad.certified.plain.bounds import ranges
 from ptmcad.certified.plain.points import inertia, plain_counter
 from ptmcad.certified.plain.problem import problem_of
@@ -320,12 +321,18 @@ def test_poses_by_plain_and_refined_formulas_agree() -> None:
             assert first.text(10) == second.text(10)
 
 
-def test_a_number_that_is_zero_without_a_reason_makes_poses_undecided() -> None:
-    """A third spring, from the side, is relaxed at h = 4/5 with the others, by another equation."""
+def test_a_number_that_is_zero_without_a_reason_makes_poses_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A third spring, from the side, is relaxed at h = 4/5 with the others, by another equation.
+
+    That h is rational and all slopes vanish is the only proof.
+    """
     record = deepcopy(VON_MISES)
     record["mechanism"]["points"]["C"] = ["27/20", -1]
     record["mechanism"]["springs"].append({"between": ["C", "P"], "k": 1, "free": "9/4"})
     model = _slice(record).model
+    found = ptmcad.solve(model=model, l0=1, a="3/5", f=0)
+    assert [0, 0, 0] in [[spring.force.exact for spring in pose.springs] for pose in found.equilibria]
+    monkeypatch.setattr(slanted, "_rational", lambda _: Fraction(1))
     assert ptmcad.solve(model=model, l0=1, a="3/5", f=0).status is Status.UNDECIDED
     assert ptmcad.solve(model=model, l0=1, a="3/5", f="1/100").status is Status.CERTIFIED
 
