@@ -16,7 +16,7 @@ from ptmcad.verification.certified.checks import verify_certified
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
-from ptmcad.verification.exclusion.check import EFFORT, check_free_area
+from ptmcad.verification.exclusion.check import EFFORT, check_free_area, places_of
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.model import check_system
 from ptmcad.verification.parameters import check_boundary, check_text
@@ -76,7 +76,7 @@ def verify(
     expect(result, RegionMap, "result", A_MAP)
     if result.cover is not None or result.status is Status.CERTIFIED:
         free_area = partial(check_free_area, EFFORT if effort is None else effort)
-        return verify_certified(result, seed, boxes, free_area, progress)
+        return verify_certified(result, seed, boxes, free_area, places_of, progress)
     steps = checks_of(result, seed)
     missing: set[str] = set()
     if result.status is Status.PARTIAL:

@@ -15,6 +15,7 @@ from support.records import TRUSS
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.question.config import load
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.report import Unchecked, Violation
 
@@ -58,7 +59,8 @@ PAPER = {
     "admissible": paper("admissible", "1/2", ["7/5", "3/2"], ["21/20", "23/20"]),
 }
 """Windows with one curve each: of admissible counts the one where a spring has its free length."""
-RECORDS = {"zeeman": ZEEMAN, "truss": TRUSS}
+LOOP = load("configs/mechanisms/four-bar-free.yaml")
+RECORDS = {"zeeman": ZEEMAN, "truss": TRUSS, "loop": LOOP}
 
 
 @cache

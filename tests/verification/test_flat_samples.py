@@ -19,7 +19,7 @@ from ptmcad.answer.regionmap import RegionMap, Solution
 from ptmcad.ask.fields.equations import newton_step, state_at
 from ptmcad.cover.rectangles import Cover
 from ptmcad.question.slice import Point
-from ptmcad.verification.certified.counted import Counted
+from ptmcad.verification.certified.counted import Counted, Where
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.flat import beside, is_flat, parameters_at
 from ptmcad.verification.certified.points import PaperCounting, apart
@@ -46,12 +46,12 @@ def counted_once() -> Iterator[None]:
     """What the checker finds at a point does not depend on what is claimed there."""
     own, found = PaperCounting.at, dict[tuple[str, Fraction, Fraction], Counted | Unproved]()
 
-    def at(counting: PaperCounting, claims: Claims, x: Fraction, y: Fraction) -> Counted:
+    def at(counting: PaperCounting, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> Counted:
         slice = claims.result.slice
         key = (f"{slice.parameters} {slice.count}", x, y)
         if key not in found:
             try:
-                found[key] = own(counting, claims, x, y)
+                found[key] = own(counting, claims, x, y, where)
             except Unproved as reason:
                 found[key] = reason
         if isinstance(there := found[key], Unproved):

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from functools import cache
 from hashlib import sha256
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.options import Progress
 from ptmcad.text.numerals import text_of
+from ptmcad.verification.certified.counted import Places
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.certified.points import check_points
 from ptmcad.verification.certified.sampling import check_boxes
@@ -17,7 +18,7 @@ from ptmcad.verification.certified.system import check_potential
 from ptmcad.verification.parameters import check_text
 from ptmcad.verification.report import Check, Headway, VerifyReport, Violation, checked
 
-BOXES = 40
+BOXES = 16
 NOT_CHECKED = (
     ("plan", "what it says of curves and unknowns is no claim about the regions"),
     ("provenance", "name, title, reference, versions, precision, timings: no claims about the regions"),
@@ -28,15 +29,28 @@ FreeArea = Callable[[CertifiedClaims, Callable[[int, int], None]], str]
 """What proves a share of the free area, and tells how far it is."""
 
 
+PlacesOf = Callable[[CertifiedClaims], Places | None]
+"""What tells where solutions may be, if anything does."""
+
+
 def verify_certified(
-    result: RegionMap, seed: int | None, boxes: int | None, free_area: FreeArea, progress: Progress | None = None
-) -> VerifyReport:
-    """Check a map with a cover; see `ptmcad.verification.verify`."""
+    result: RegionMap, seed: int | None, boxes: int | None, free_area: FreeArea, places_of: PlacesOf,
+    progress: Progress | None = None,
+) -> VerifyReport:  # fmt: skip
+    """Check a map with a cover; see `ptmcad.verification.verify`.
+
+    Solutions are looked for in balls where compiled code leaves places, if that is installed.
+    """
     claims = CertifiedClaims(result)
     drawn = fingerprint(result) if seed is None else str(seed)
     number = BOXES if boxes is None else boxes
     headway = Headway(progress)
     within = headway.within
+
+    @cache
+    def places() -> Places | None:
+        return places_of(claims)
+
     steps: tuple[tuple[str, str, Callable[[CertifiedClaims], str]], ...] = (
         ("form", "comparison", check_form),
         ("parameters as written", "expressions compared", check_text),
@@ -44,9 +58,10 @@ def verify_certified(
         ("equations", "potential from the nodes", check_potential),
         ("components", "sweep over the rectangles", check_components),
         ("regions and areas", "sweep, breadth-first search", check_regions),
-        ("counts and solutions", "Krawczyk's test and exclusion in balls", partial(check_points, report=within)),
+        ("counts and solutions", "Krawczyk's test and exclusion in balls",
+         lambda of: check_points(of, places(), within)),
         ("random boxes", "Krawczyk's test over boxes of parameters",
-         partial(check_boxes, seed=drawn, number=number, report=within)),
+         lambda of: check_boxes(of, drawn, number, places(), within)),
         ("the whole free area", "exclusion of critical points", lambda of: free_area(of, within)),
     )  # fmt: skip
     checks = checked(claims, steps, headway=headway)

@@ -5,7 +5,7 @@ Guarantee: data and a protocol only.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Protocol
@@ -15,6 +15,7 @@ from flint import arb
 from ptmcad.answer.counts import MorseIndex
 from ptmcad.answer.regionmap import Cell, Solution
 from ptmcad.question.slice import Count, Slice
+from ptmcad.verification.certified.boxes import Box, Floats
 from ptmcad.verification.claims import Claims
 
 MINIMA = (Count.STABLE, Count.ADMISSIBLE)
@@ -66,6 +67,24 @@ class Counted:
     values: Any
 
 
+@dataclass(frozen=True, slots=True)
+class Where:
+    """Boxes in which all solutions are that are asked for, in place of all configurations.
+
+    Attributes
+    ----------
+    boxes : for each choice of sides of springs on one line each, in the order of `kinks.sides`.
+    whole : half the width of all configurations, in each unknown.
+    """
+
+    boxes: Sequence[Sequence[Box]]
+    whole: Floats
+
+
+Places = Callable[[tuple[Fraction, Fraction], tuple[Fraction, Fraction]], Where]
+"""Where the solutions may be over a rectangle of the window, in lattice steps."""
+
+
 class Counting(Protocol):
     """A way of counting the solutions of one model. What it cannot prove raises `Unproved`."""
 
@@ -74,7 +93,7 @@ class Counting(Protocol):
         """Whether it decides every true map's samples, so that an undecided one counts as false."""
         ...
 
-    def at(self, claims: Claims, x: Fraction, y: Fraction) -> Counted:
+    def at(self, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> Counted:
         """At a point of the window; a parameter outside of its domain is a `Violation`."""
         ...
 
@@ -86,6 +105,6 @@ class Counting(Protocol):
         """Whether a solution is another one."""
         ...
 
-    def over(self, slice: Slice, x: arb, y: arb, there: Counted) -> Counts:
+    def over(self, slice: Slice, x: arb, y: arb, there: Counted, where: Where | None = None) -> Counts:
         """At all points of a box around one at which the solutions are known."""
         ...

@@ -23,7 +23,8 @@ _MAX_TURN = 3.0
 _NEWTON_STEPS = 12
 _CLOSE = 2.0**-20
 """Of a box's width: where Newton's method does not come closer to rest, nothing is to be proved."""
-_NARROWING = 40
+_NARROWING, _WORTHWHILE = 40, 0.999
+"""Steps by which a box is made narrower at most, while one makes it so much narrower."""
 
 
 def inverse_of(jacobian: Matrix) -> arb_mat | None:
@@ -47,10 +48,15 @@ def _rest(jacobian: Matrix, inverse: arb_mat) -> Matrix:
     return [[(i == j) - whole[i * n + j] for j in range(n)] for i in range(n)]
 
 
-def _steps(field: Field, center: Floats, inverse: arb_mat) -> list[arb]:
-    """C f at a point."""
+def _at(field: Field, center: Floats) -> arb_mat:
+    """f at a point."""
     values = field([arb(x) for x in center]).values
-    steps: list[arb] = (inverse * arb_mat(len(values), 1, values)).entries()
+    return arb_mat(len(values), 1, values)
+
+
+def _steps(values: arb_mat, inverse: arb_mat) -> list[arb]:
+    """C f"""
+    steps: list[arb] = (inverse * values).entries()
     return steps
 
 
@@ -62,7 +68,7 @@ def image_of(field: Field, box: Box, jet: Jet) -> list[arb] | None:
     reach = [arb(0, r) for r in box[1]]
     return [
         sum((entry * x for entry, x in zip(row, reach, strict=True)), arb(0)) - step
-        for row, step in zip(_rest(jet.jacobian, inverse), _steps(field, box[0], inverse), strict=True)
+        for row, step in zip(_rest(jet.jacobian, inverse), _steps(_at(field, box[0]), inverse), strict=True)
     ]
 
 
@@ -86,6 +92,7 @@ def newton(field: Field, box: Box) -> Floats | None:
 
 def proved(field: Field, center: Floats, shapes: Iterable[Floats]) -> Zero | None:
     """The solution around a point that is alone in a box of some shape; None when it is not proved, nor its signs."""
+    values = _at(field, center)
     for shape, power in product(shapes, _SHRINKINGS):
         sizes = tuple(r * 2.0**power for r in shape)
         if any(circle and r > _MAX_TURN for circle, r in zip(field.form.is_circle, sizes, strict=True)):
@@ -95,28 +102,33 @@ def proved(field: Field, center: Floats, shapes: Iterable[Floats]) -> Zero | Non
         if inverse is None:
             continue
         rest = [[x.abs_upper() for x in row] for row in _rest(jet.jacobian, inverse)]
-        off = [s.abs_upper() for s in _steps(field, center, inverse)]
+        off = [s.abs_upper() for s in _steps(values, inverse)]
         if not all(reach < r for reach, r in zip(_image(sizes, rest, off), sizes, strict=True)):
             continue
-        radii = _narrowed(field, center, sizes)
+        radii = _narrowed(field, center, values, sizes)
         near = field(list(map(arb, center, radii)))
         signs = "" if not field.form.is_gradient else None if near.short else inertia(near.jacobian)
         return None if signs is None else Zero(center, radii, sizes, signs)
     return None
 
 
-def _narrowed(field: Field, center: Floats, radii: Floats) -> Floats:
-    """A smaller box that has the only solution of a box, too: its image, and that of that, while it gets narrower."""
+def _narrowed(field: Field, center: Floats, values: arb_mat, radii: Floats) -> Floats:
+    """A smaller box that has the only solution of a box, too: its image, and that of that, while it gets narrower.
+
+    Parameters
+    ----------
+    values : of the equations at the center.
+    """
     for _ in range(_NARROWING):
         jet = field(list(map(arb, center, radii)))
         inverse = None if jet.short else inverse_of(jet.jacobian)
         if inverse is None:
             break
         rest = [[x.abs_upper() for x in row] for row in _rest(jet.jacobian, inverse)]
-        off = [s.abs_upper() for s in _steps(field, center, inverse)]
+        off = [s.abs_upper() for s in _steps(values, inverse)]
         reaches = [float(reach.upper()) * 1.0001 + 2.0**-1000 for reach in _image(radii, rest, off)]
         before, radii = radii, tuple(map(min, radii, reaches))
-        if all(r > 0.999 * b for r, b in zip(radii, before, strict=True)):
+        if all(r > _WORTHWHILE * b for r, b in zip(radii, before, strict=True)):
             break
     return radii
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -19,7 +20,7 @@ from ptmcad.mechanism import Model
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import Box, Zero, disjoint, same
-from ptmcad.verification.certified.counted import MINIMA, Counted, Counts
+from ptmcad.verification.certified.counted import MINIMA, Counted, Counts, Where
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.field import Field, Matrix
 from ptmcad.verification.certified.kinks import Sides, sides
@@ -53,27 +54,38 @@ class ModelCounting:
     form: Form
     is_complete = False
 
-    def at(self, claims: Claims, x: Fraction, y: Fraction) -> Counted:
+    def at(self, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> Counted:
         """At a point of the window."""
         values, count = _values_at(claims, self.form, x, y), claims.result.slice.count
         reason: Unproved | None = None
+        if where is not None:
+            with suppress(Unproved):  # then all configurations are searched
+                return self._at(values, count, where)
         for bits in PRECISIONS:
             with ctx.workprec(bits):
                 try:
-                    found = [zero for side in sides(self.form) for zero in self._on_side(values, count, side)]
+                    return self._at(values, count)
                 except Spent:
                     raise  # more digits would not make them fewer
                 except Unproved as unproved:
                     reason = unproved
-                else:
-                    return Counted(counts_of(self.form, found, count), found, values)
         assert reason is not None
         raise reason
 
-    def _on_side(self, values: Mapping[str, Fraction], count: Count, side: Sides) -> list[Zero]:
+    def _at(self, values: Mapping[str, Fraction], count: Count, where: Where | None = None) -> Counted:
+        """At the context's precision."""
+        found = [
+            zero for k, side in enumerate(sides(self.form)) for zero in self._on_side(values, count, side, where, k)
+        ]
+        return Counted(counts_of(self.form, found, count), found, values)
+
+    def _on_side(
+        self, values: Mapping[str, Fraction], count: Count, side: Sides, where: Where | None, k: int
+    ) -> list[Zero]:
         """The solutions that count at a point, with springs on one line each on one side of length zero."""
         field = _field_at(self.form, values, count, side)
-        all_found, _ = zeros(field, _only_minima(self.form, count), [_start(field)], self._budget)
+        start, whole = ([_start(field)], None) if where is None else (where.boxes[k], where.whole)
+        all_found, _ = zeros(field, _only_minima(self.form, count), start, self._budget, whole=whole)
         found = _counted(field, all_found, count)
         if count is Count.TOTAL and self.form.conditions_for_stability:
             found = _with_signs(_field_at(self.form, values, Count.STABLE, side), self.form, found)
@@ -131,7 +143,7 @@ class ModelCounting:
             return False
         raise Unproved("a stored box may have one of two solutions")
 
-    def over(self, slice: Slice, x: arb, y: arb, there: Counted) -> Counts:
+    def over(self, slice: Slice, x: arb, y: arb, there: Counted, where: Where | None = None) -> Counts:
         """At all points of a box."""
         values = {name: over(expression, x, y) for name, expression in slice.parameters.items()}
         for name, value in values.items():
@@ -145,10 +157,11 @@ class ModelCounting:
         minima = _only_minima(self.form, slice.count)
         budget = self._budget // BOX_BUDGET_SHARE
         counted = list[Zero]()
-        for side in sides(self.form):
+        for k, side in enumerate(sides(self.form)):
             field = _field(self.form, values, slice.count, side)
             near = [zero for zero in there.found if _may_be_on_side(field, zero)]
-            found, _ = zeros(field, minima, [_start(field)], budget, smallest, near)
+            start, whole = ([_start(field)], None) if where is None else (where.boxes[k], where.whole)
+            found, _ = zeros(field, minima, start, budget, smallest, near, whole)
             counted += _counted(field, found, slice.count)
         return counts_of(self.form, counted, slice.count)
 

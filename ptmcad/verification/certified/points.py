@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
@@ -19,7 +20,17 @@ from ptmcad.mechanism import Kind
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.balls import ball_of
 from ptmcad.text.numerals import text_of
-from ptmcad.verification.certified.counted import MINIMA, Counted, Counting, Counts, Enclosed, differs, stored
+from ptmcad.verification.certified.counted import (
+    MINIMA,
+    Counted,
+    Counting,
+    Counts,
+    Enclosed,
+    Places,
+    Where,
+    differs,
+    stored,
+)
 from ptmcad.verification.certified.energy import Energy
 from ptmcad.verification.certified.equilibria import (
     MIN_HALF_WIDTH,
@@ -57,11 +68,18 @@ class _InBoxes(Unproved):
     """The counts are true, but not that each stored box holds one solution: other cells' counts tell more."""
 
 
-def check_points(claims: CertifiedClaims, report: Callable[[int, int], None] = lambda _done, _total: None) -> str:
+def check_points(
+    claims: CertifiedClaims, places: Places | None = None,
+    report: Callable[[int, int], None] = lambda _done, _total: None,
+) -> str:  # fmt: skip
     """Counts and stored solutions of every cell; and for how many cells nothing was proved.
 
     Of the paper's mechanism all cells can be decided, so one that cannot is a fault of the map. Samples that are flat
     or nearly so (`ptmcad.verification.certified.flat`) are by the counts beside them, unless the whole slice is flat.
+
+    Parameters
+    ----------
+    places : as `ptmcad.verification.certified.sampling.check_boxes` has them.
     """
     counting, number, uncounted = counting_of(claims), 0, 0
     undecided: list[str] = []
@@ -69,7 +87,7 @@ def check_points(claims: CertifiedClaims, report: Callable[[int, int], None] = l
         report(n, len(claims.result.cells))
         where = _where(claims, *cell.sample)
         try:
-            found = _check_cell(claims, counting, cell)
+            found = _check_cell(claims, counting, cell, places)
         except Unproved as reason:
             if counting.is_complete and not _is_all_flat(claims, cell):
                 raise Violation(f"cell {n}: the counts {where} could not be confirmed: {reason}") from None
@@ -98,9 +116,10 @@ def _where(claims: Claims, x: Fraction, y: Fraction) -> str:
     return f"at {one}={text_of(x)}, {two}={text_of(y)}"
 
 
-def _check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell) -> int:
+def _check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell, places: Places | None) -> int:
     try:
-        there = counting.at(claims, *cell.sample)
+        u, v = claims.on_lattice(*cell.sample)
+        there = counting.at(claims, *cell.sample, places and places((u, u), (v, v)))
     except Unproved as reason:
         if isinstance(counting, ModelCounting):
             counting.check_list(claims, cell)
@@ -199,11 +218,13 @@ class PaperCounting:
 
     is_complete = True
 
-    def at(self, claims: Claims, x: Fraction, y: Fraction) -> Counted:
+    def at(self, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> Counted:
         """At a point of the window."""
         values, count = values_at(claims, x, y), claims.result.slice.count
-        energy, found = all_equilibria(values, count)
-        return Counted(counts_of(energy, values, found, count), found, values)
+        if where is not None:
+            with suppress(Unproved):  # then the whole torus is searched
+                return _counted(values, count, _start(where))
+        return _counted(values, count, (TORUS,))
 
     def within(self, there: Counted, boxes: Sequence[Solution]) -> Sequence[Enclosed]:
         """The only equilibrium in each of the stored boxes."""
@@ -216,12 +237,13 @@ class PaperCounting:
         """Whether an equilibrium lies where another one is alone."""
         return _same(one, two)
 
-    def over(self, slice: Slice, x: arb, y: arb, there: Counted) -> Counts:
+    def over(self, slice: Slice, x: arb, y: arb, there: Counted, where: Where | None = None) -> Counts:
         """At all points of a box."""
         energy = energy_over(slice, x, y)
         # squares much smaller than the box of parameters are excluded no better than larger ones
         smallest = energy.resolution(max(float(max(x.rad(), y.rad())) / 64, 2.0**-30))
-        found, _ = equilibria(energy, slice.count in MINIMA, budget=BUDGET, smallest=smallest, near=there.found)
+        minima = slice.count in MINIMA
+        found, _ = equilibria(energy, minima, _start(where), budget=BUDGET, smallest=smallest, near=there.found)
         kinds = [e.signs for e in found]
         stable = kinds.count("++")
         if slice.count is Count.STABLE:
@@ -231,8 +253,26 @@ class PaperCounting:
         return Counts(len(kinds), stable, (stable, kinds.count("+-"), kinds.count("--")), None)
 
 
-def all_equilibria(values: Values, count: Count) -> tuple[Energy, list[Equilibrium]]:
+def _counted(values: Values, count: Count, start: Sequence[Square]) -> Counted:
+    energy, found = all_equilibria(values, count, start)
+    return Counted(counts_of(energy, values, found, count), found, values)
+
+
+def _start(where: Where | None) -> Sequence[Square]:
+    """Squares in which all equilibria are that are asked for."""
+    if where is None:
+        return (TORUS,)
+    return [(m1, r1, m2, r2) for (m1, m2), (r1, r2) in where.boxes[0]]
+
+
+def all_equilibria(
+    values: Values, count: Count, start: Sequence[Square] = (TORUS,)
+) -> tuple[Energy, list[Equilibrium]]:
     """All equilibria at exact parameters, or all minima where no more is asked for; with rising precision.
+
+    Parameters
+    ----------
+    start : squares that have all of them.
 
     Raises
     ------
@@ -246,9 +286,7 @@ def all_equilibria(values: Values, count: Count) -> tuple[Energy, list[Equilibri
         with ctx.workprec(bits):
             energy = energy_at(values)
             try:
-                return energy, equilibria(
-                    energy, count in MINIMA, (TORUS,), smallest=energy.resolution(MIN_HALF_WIDTH)
-                )[0]
+                return energy, equilibria(energy, count in MINIMA, start, smallest=energy.resolution(MIN_HALF_WIDTH))[0]
             except Unproved as unproved:
                 reason = unproved
     assert reason is not None

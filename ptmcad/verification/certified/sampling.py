@@ -26,7 +26,7 @@ from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.text.balls import ball_of
 from ptmcad.text.numerals import text_of
 from ptmcad.text.rationals import from_fraction, to_fraction
-from ptmcad.verification.certified.counted import Counted, differs, stored
+from ptmcad.verification.certified.counted import Counted, Places, differs, stored
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.points import HOPELESS, counting_of
 from ptmcad.verification.certified.slanted import Frame
@@ -70,12 +70,14 @@ class GridSquare:
 
 
 def check_boxes(
-    claims: CertifiedClaims, seed: str, number: int, report: Callable[[int, int], None] = lambda _done, _total: None
-) -> str:
+    claims: CertifiedClaims, seed: str, number: int, places: Places | None = None,
+    report: Callable[[int, int], None] = lambda _done, _total: None,
+) -> str:  # fmt: skip
     """Try so many random boxes, and more points; what was found, and for how many points nothing was proved.
 
     Parameters
     ----------
+    places : tells where solutions may be, which saves balls the search; without, all configurations are searched.
     report : called with the numbers of points that are done, and of all.
     """
     if not claims.result.cells:
@@ -95,13 +97,13 @@ def check_boxes(
         report(k, len(tried))
         if not points and missing == HOPELESS:
             return Unchecked(f"none of the first {missing} points could be decided; seed {seed}")
-        there = _check_point(claims, box, box.u, box.v)
+        there = _check_point(claims, places, box, box.u, box.v)
         if there is not None:
             points += 1
         if not with_box:
             missing += there is None
             continue
-        half = None if there is None else _constant_over(claims, box, there)
+        half = None if there is None else _constant_over(claims, places, box, there)
         if half is not None:
             proved += 1
             area += (2 * half / claims.sweep.steps) ** 2
@@ -109,7 +111,7 @@ def check_boxes(
         # where constancy is not proved, a change of the count would show in a corner
         for side1 in (-1, 1):
             for side2 in (-1, 1):
-                _check_point(claims, box, box.u + side1 * box.half, box.v + side2 * box.half)
+                _check_point(claims, places, box, box.u + side1 * box.half, box.v + side2 * box.half)
         missing += 1
     text = f"{proved} boxes, {100 * float(area):.2g} % of the window, {points} points; seed {seed}"
     if missing:
@@ -243,12 +245,14 @@ def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> SampleBox | None
     return SampleBox(u, v, half, claims.cell_of[component])
 
 
-def _check_point(claims: CertifiedClaims, box: SampleBox, u: Fraction, v: Fraction) -> Counted | None:
+def _check_point(
+    claims: CertifiedClaims, places: Places | None, box: SampleBox, u: Fraction, v: Fraction
+) -> Counted | None:
     """The counts at a point are those of the cell; its equilibria, None if they were not proved."""
     x, y = claims.off_lattice(u, v)
     cell = claims.result.cells[box.cell]
     try:
-        there = counting_of(claims).at(claims, x, y)
+        there = counting_of(claims).at(claims, x, y, places and places((u, u), (v, v)))
     except Unproved:
         return None
     if differs(cell, there.counts):
@@ -258,14 +262,14 @@ def _check_point(claims: CertifiedClaims, box: SampleBox, u: Fraction, v: Fracti
     return there
 
 
-def _constant_over(claims: CertifiedClaims, box: SampleBox, there: Counted) -> Fraction | None:
+def _constant_over(claims: CertifiedClaims, places: Places | None, box: SampleBox, there: Counted) -> Fraction | None:
     """Half the width of the box over which the counts were proved; None when none was small enough."""
     half = box.half
     for _ in range(ATTEMPTS):
         if half == 0:
             return None
         try:
-            _prove(claims, box, half, there)
+            _prove(claims, places, box, half, there)
         except Unproved:
             half /= 4
             continue
@@ -273,7 +277,7 @@ def _constant_over(claims: CertifiedClaims, box: SampleBox, there: Counted) -> F
     return None
 
 
-def _prove(claims: CertifiedClaims, box: SampleBox, half: Fraction, there: Counted) -> None:
+def _prove(claims: CertifiedClaims, places: Places | None, box: SampleBox, half: Fraction, there: Counted) -> None:
     """Prove the cell's counts for every point of the box.
 
     Raises
@@ -283,5 +287,6 @@ def _prove(claims: CertifiedClaims, box: SampleBox, half: Fraction, there: Count
     """
     low, high = (claims.off_lattice(box.u + d, box.v + d) for d in (-half, half))
     x, y = (ball_of(low[i]).union(ball_of(high[i])) for i in (0, 1))
-    true = counting_of(claims).over(claims.result.slice, x, y, there)
+    where = places and places((box.u - half, box.u + half), (box.v - half, box.v + half))
+    true = counting_of(claims).over(claims.result.slice, x, y, there, where)
     assert not differs(claims.result.cells[box.cell], true), "the box holds its middle, whose counts are the cell's"

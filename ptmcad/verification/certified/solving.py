@@ -28,6 +28,8 @@ _NEAR = 4.0
 """Balances are looked at where a spring may be shorter than so many times what it changes by in the box."""
 _PROMISING = 1.0
 """The width of Krawczyk's image, as a share of the box's, below which Newton's method is tried."""
+_FIRST_SHARE = 2.0**-5
+"""Of the start's widths: the first box that is tried around a solution is not narrower."""
 _WORTH = 0.6
 """A box is replaced by Krawczyk's image when that has less than this share of it."""
 
@@ -43,6 +45,7 @@ def zeros(
     budget: int,
     smallest: float = MIN_HALF_WIDTH,
     near: Iterable[Zero] = (),
+    whole: Floats | None = None,
 ) -> tuple[list[Zero], int]:
     """The solutions in the boxes, and how many boxes were looked at.
 
@@ -52,6 +55,7 @@ def zeros(
     budget : number of boxes after which the search gives up.
     smallest : share of the first boxes' widths below which one is not halved again.
     near : solutions for one choice of the parameters; those near them are proved first, which saves a hopeless search.
+    whole : half the width of the box that those of the start are parts of; of the first of these where it is None.
 
     Raises
     ------
@@ -60,7 +64,7 @@ def zeros(
     """
     circles = field.form.is_circle
     waiting = list(start)
-    whole = waiting[0][1]
+    whole = whole or waiting[0][1]
     least = [smallest * w for w in whole]
     found = [_persisting(field, zero, whole) for zero in near]
     if not all(disjoint(one, two, circles) for one, two in combinations(found, 2)):
@@ -154,7 +158,7 @@ def _persisting(field: Field, zero: Zero, whole: Floats) -> Zero:
 
 def _shapes(radii: Floats, whole: Floats) -> tuple[Floats, Floats]:
     """Half widths of boxes that are tried around a solution: of the start's shape, which a box in it need not have."""
-    share = max(r / w for r, w in zip(radii, whole, strict=True))
+    share = max(_FIRST_SHARE, *(r / w for r, w in zip(radii, whole, strict=True)))
     return tuple(share * w for w in whole), radii
 
 

@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.text.numerals import text_of
-from ptmcad.verification.certified.counted import differs, stored
+from ptmcad.verification.certified.counted import Where, differs, stored
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.points import counting_of
 from ptmcad.verification.certified.structure import CertifiedClaims
@@ -32,6 +32,7 @@ _PLACES = 12
 _STEPS_AWAY = (4, 64)
 _SQUARES = 1024
 """Of the window's width: boxes that are left in one square are one place."""
+Range = tuple[Fraction, Fraction]
 NUMBA_NEEDED = "compiled code is needed for it: install numba (ptmcad[certified])"
 
 
@@ -90,6 +91,18 @@ def check_free_area(
         where = _where(claims, *_middle(largest[(largest[:, 0, 1] - largest[:, 0, 0]).argmax()]))
         text += f"; not, among others, around {where}"
     return Unchecked(text)
+
+
+def places_of(claims: CertifiedClaims) -> Callable[[Range, Range], Where] | None:
+    """Where a map's solutions may be over a rectangle of the window; None without compiled code, or without bounds."""
+    try:
+        from ptmcad.verification.exclusion.places import Places
+    except ImportError:
+        return None
+    try:
+        return Places(claims)
+    except Unproved:
+        return None
 
 
 def _percent(share: float) -> str:

@@ -26,12 +26,16 @@ class Spring(NamedTuple):
 
     Attributes
     ----------
-    slopes, bends : divided by the equations' factors, the second ones by that of the first unknown.
+    slopes : its derivatives by the unknowns, divided by the factors of these.
+    weights : for each equation what the spring's direction is multiplied by in it, divided by the equation's factor:
+        the slopes, but with closed loops the derivative along them in the last equation, and nothing in the others.
+    bends : the weights' derivatives, divided by the factors of the equations.
     """
 
     pull: int
     vector: Pair
     slopes: tuple[Pair, ...]
+    weights: tuple[Pair, ...]
     bends: tuple[Pair, ...]
     name: str
 
@@ -72,10 +76,11 @@ class Equations:
         self.jacobian = [entries[n * i : n * i + n] for i in range(n)]
 
     def _in_all(self, i: int) -> tuple[str, ...]:
-        """The positive parameters that are in every term of an equation and of the springs' slopes next to it."""
+        """The positive parameters that are in every term of an equation and of the springs' parts in it."""
         rows = [_combined(self.basis[i], self.form.equations)]
         for cone in self.form.cones:
-            rows += [_combined(self.basis[i], [slope[k] for slope in cone.slopes]) for k in (0, 1)]
+            for some in (cone.slopes, cone.weights):
+                rows += [_combined(self.basis[i], [vector[k] for vector in some]) for k in (0, 1)]
         found = [set(names) for row in rows for terms in row.values() for _, _, names in terms]
         common = set.intersection(*found) if found else set()
         return tuple(sorted(common & set(self.claims.model.positive)))
@@ -127,14 +132,17 @@ class Equations:
         return total
 
     def _spring(self, cone: Cone) -> Spring:
-        slopes = [self._turned([slope[k] for slope in cone.slopes]) for k in (0, 1)]
+        slopes, weights = (
+            [self._turned([vector[k] for vector in some]) for k in (0, 1)] for some in (cone.slopes, cone.weights)
+        )
         bends = [self._turned_twice([bend[k] for bend in cone.bends]) for k in (0, 1)]
-        across, up = ([self.waves(row) for row in some] for some in slopes)
-        bent_across, bent_up = ([self.waves(row) for row in some] for some in bends)
-        return Spring(
-            self.terms(cone.pull), (self.waves(cone.vector[0]), self.waves(cone.vector[1])),
-            tuple(zip(across, up, strict=True)), tuple(zip(bent_across, bent_up, strict=True)), cone.name,
-        )  # fmt: skip
+
+        def pairs(of: Sequence[Sequence[Waves]]) -> tuple[Pair, ...]:
+            across, up = ([self.waves(row) for row in some] for some in of)
+            return tuple(zip(across, up, strict=True))
+
+        vector = self.waves(cone.vector[0]), self.waves(cone.vector[1])
+        return Spring(self.terms(cone.pull), vector, pairs(slopes), pairs(weights), pairs(bends), cone.name)
 
     def equations(self, directions: Mapping[int, Pair]) -> list[int]:
         """The equations, with the directions of the springs."""
@@ -142,7 +150,7 @@ class Equations:
         return [
             f.subtract(
                 smooth,
-                f.sum(f.multiply(s.pull, f.dot(directions[k], s.slopes[i])) for k, s in enumerate(self.springs)),
+                f.sum(f.multiply(s.pull, f.dot(directions[k], s.weights[i])) for k, s in enumerate(self.springs)),
             )
             for i, smooth in enumerate(self.smooth)
         ]
@@ -153,14 +161,14 @@ class Equations:
         rows = [list(row) for row in self.jacobian]
         for k, s in enumerate(self.springs):
             u = directions[k]
-            turning = [f.cross(u, g) for g in s.slopes]
+            turning, pushed = ([f.cross(u, g) for g in some] for some in (s.slopes, s.weights))
             for i in range(n):
                 for j in range(n):
                     part = f.dot(u, s.bends[i * n + j])
                     if k != without and s.name not in self.sides:
                         inverse = f.inverse_length(*s.vector)
                         whole = f.multiply(turning[j], self.factors[j])
-                        part = f.add(part, f.multiply(f.multiply(turning[i], whole), inverse))
+                        part = f.add(part, f.multiply(f.multiply(pushed[i], whole), inverse))
                     rows[i][j] = f.subtract(rows[i][j], f.multiply(s.pull, part))
         return rows
 
@@ -203,7 +211,7 @@ class Equations:
         f, directions = self.list, self.directions()
         others = [(m, s) for m, s in enumerate(self.springs) if m != k]
         return [
-            f.subtract(smooth, f.sum(f.multiply(s.pull, f.dot(directions[m], s.slopes[i])) for m, s in others))
+            f.subtract(smooth, f.sum(f.multiply(s.pull, f.dot(directions[m], s.weights[i])) for m, s in others))
             for i, smooth in enumerate(self.smooth)
         ]
 
@@ -212,7 +220,7 @@ class Equations:
         f, s, rest = self.list, self.springs[k], self.without(k)
         u, found = self.directions()[k], []
         for i, j in combinations(range(self.form.size), 2):
-            (ai, bi), (aj, bj) = s.slopes[i], s.slopes[j]
+            (ai, bi), (aj, bj) = s.weights[i], s.weights[j]
             z = f.multiply(s.pull, f.cross((ai, bi), (aj, bj)))
             x = f.subtract(f.multiply(bj, rest[i]), f.multiply(bi, rest[j]))
             y = f.subtract(f.multiply(ai, rest[j]), f.multiply(aj, rest[i]))
@@ -224,7 +232,7 @@ class Equations:
         f, s, rest = self.list, self.springs[k], self.without(k)
         found = []
         for i, j in combinations(range(self.form.size), 2):
-            (ai, bi), (aj, bj) = s.slopes[i], s.slopes[j]
+            (ai, bi), (aj, bj) = s.weights[i], s.weights[j]
             x = f.subtract(f.multiply(bj, rest[i]), f.multiply(bi, rest[j]))
             y = f.subtract(f.multiply(ai, rest[j]), f.multiply(aj, rest[i]))
             z = f.multiply(s.pull, f.cross((ai, bi), (aj, bj)))
@@ -234,13 +242,14 @@ class Equations:
     def outweighs(self, k: int, i: int) -> int:
         """(K |g|)^2 - r^2 for the i-th unknown: not negative where a spring without length balances the rest."""
         f, s = self.list, self.springs[k]
-        return f.subtract(f.multiply(f.power(s.pull, 2), f.dot(s.slopes[i], s.slopes[i])),
+        return f.subtract(f.multiply(f.power(s.pull, 2), f.dot(s.weights[i], s.weights[i])),
                           f.power(self.without(k)[i], 2))  # fmt: skip
 
     def balanced(self, k: int) -> tuple[int, list[int]]:
         """The determinant, and |d| times the diagonal, of the Hessian as they are at equilibria.
 
-        There K u.g_i = r_i, so that (u x g_i)(u x g_j) = g_i.g_j - r_i r_j/K^2, with nothing of the direction.
+        There K u.g_i = r_i, so that (u x g_i)(u x g_j) = g_i.g_j - r_i r_j/K^2, with nothing of the direction; the
+        slopes g_i are the weights w_i here, as they are without closed loops.
         """
         f, s, n = self.list, self.springs[k], self.form.size
         cosines = [f.divide(r, s.pull) for r in self.without(k)]

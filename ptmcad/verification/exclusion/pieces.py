@@ -86,6 +86,11 @@ def pieces_of(claims: CertifiedClaims, wider: int = 0) -> Pieces:
     return _in_arrays(rows, cover.steps)
 
 
+def no_pieces(steps: int) -> Pieces:
+    """Of a window of which nothing is held."""
+    return _in_arrays([], steps)
+
+
 def widened(claims: CertifiedClaims, wider: int) -> float:
     """At most this share of the window is added to tubes by making them wider."""
     cover = claims.result.cover

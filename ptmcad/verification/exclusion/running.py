@@ -49,7 +49,7 @@ def search(
     smallest : share of the window's width; boxes over less than that are stuck.
     report : called with the share of the start's volume that is done with.
     """
-    compiled = system.compiled(smallest)
+    compiled = system.over_window(smallest)
     waiting, stuck, looked, number = [start.copy()], [start[:0]], 0, len(start)
     whole, gone = float(_volumes(start).sum()), 0.0
     while waiting:

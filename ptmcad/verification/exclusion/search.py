@@ -64,6 +64,45 @@ def look(system: Any, tape: Any, pieces: Any, boxes: Any, outcome: Any, rest: An
 
 
 @compiled
+def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int:
+    """Look at one box and its parts, the youngest first, until none waits or so many were looked at.
+
+    Parameters
+    ----------
+    boxes : (most, variables, 2), of which the first one is the box; at the end those that are left come first.
+
+    Returns
+    -------
+    The number of boxes that are left. All solutions in the box are in them.
+    """
+    most, nv = boxes.shape[0], boxes.shape[1]
+    forms = np.empty((len(tape.code), nv + 4))
+    number = len(system.zero) + len(system.not_negative)
+    rows, solved_for = np.empty((number, nv + 2)), np.empty(number, dtype=np.int64)
+    box, stuck, waiting = np.empty((nv, 2)), 0, 1  # those that are stuck come first, then those that wait
+    for _ in range(budget):
+        if waiting == 0 or stuck + waiting == most:
+            break
+        waiting -= 1
+        box[:] = boxes[stuck + waiting]
+        outcome = _look_at(system, tape, pieces, box, forms, rows, solved_for)
+        if outcome == GONE:
+            continue
+        k = _widest(system, forms, box) if outcome == HALVED else -1
+        half = 0.5 * (box[k, 0] + box[k, 1])
+        if k >= 0 and box[k, 0] < half < box[k, 1]:
+            for side in range(2):
+                boxes[stuck + waiting] = box
+                boxes[stuck + waiting, k, 1 - side] = half
+                waiting += 1
+        else:
+            boxes[stuck + waiting] = boxes[stuck]
+            boxes[stuck] = box
+            stuck += 1
+    return stuck + waiting
+
+
+@compiled
 def _look_at(system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: Any, solved_for: Any) -> int:
     """What becomes of one box."""
     nv = box.shape[0]
@@ -88,8 +127,12 @@ def _look_at(system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: An
     for row in range(len(system.zero)):
         if 0 <= solved_for[row] < 2 and _strip_held(pieces, box, before, rows[row], solved_for[row]):
             return GONE
-    one, two = (box[0, 1] - box[0, 0]) / pieces.steps, (box[1, 1] - box[1, 0]) / pieces.steps
-    return STUCK if max(one, two) < system.smallest or min(one, two) < _FLAT else HALVED
+    if system.halved == 0 and min(box[0, 1] - box[0, 0], box[1, 1] - box[1, 0]) < _FLAT * pieces.steps:
+        return STUCK
+    for j in range(nv):
+        if not box[j, 1] - box[j, 0] < system.least[j]:
+            return HALVED
+    return STUCK
 
 
 @compiled
@@ -225,7 +268,7 @@ def _widest(system: Any, forms: Any, box: Any) -> int:
             for j in range(nv):
                 shares[j] += abs(forms[n, j]) / total
     best, most = -1, 0.0
-    for j in range(nv):
+    for j in range(system.halved, nv):
         share = (1 - _WIDTH_WEIGHT) * shares[j] / m + _WIDTH_WEIGHT * (box[j, 1] - box[j, 0]) / system.units[j]
         if share > most:
             best, most = j, share

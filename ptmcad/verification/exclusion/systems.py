@@ -42,7 +42,8 @@ class Compiled(NamedTuple):
     early : how many of ``zero`` are known after the first operations, ``first`` many.
     measured : those by which it is chosen what is halved.
     units : of each variable a length that is large.
-    smallest : share of the window; boxes of less are not halved.
+    least : of each variable; a box that is narrower in all of them is not halved.
+    halved : the first variable along which boxes are halved: 0, or 2 where the window's are only looked at.
     """
 
     zero: Any
@@ -51,7 +52,8 @@ class Compiled(NamedTuple):
     early: int
     first: int
     units: Any
-    smallest: float
+    least: Any
+    halved: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,12 +73,22 @@ class System:
     first: int
     start: Any
 
-    def compiled(self, smallest: float) -> Compiled:
-        """In arrays."""
+    def over_window(self, smallest: float) -> Compiled:
+        """In arrays, to be looked at over boxes of the window that are wider than a share of it."""
+        units = self.start[:, 1] - self.start[:, 0]
+        least = np.where(np.arange(len(units)) < 2, smallest * units, np.inf)
+        return self._compiled(len(self.start) - 1, least, 0)
+
+    def over_place(self, smallest: float) -> Compiled:
+        """The same over one box of the window, and boxes of the unknowns that are wider than a share of all."""
+        units = self.start[:, 1] - self.start[:, 0]
+        least = np.where(np.arange(len(units)) < 2, np.inf, smallest * units)
+        return self._compiled(len(self.start) - 2, least, 2)
+
+    def _compiled(self, measured: int, least: Any, halved: int) -> Compiled:
         zero, not_negative = (np.array(some, dtype=np.int64) for some in (self.zero, self.not_negative))
         units = self.start[:, 1] - self.start[:, 0]
-        measured = zero[: len(self.start) - 1]
-        return Compiled(zero, not_negative, measured, self.early, self.first, units, smallest)
+        return Compiled(zero, not_negative, zero[:measured], self.early, self.first, units, least, halved)
 
 
 _ANGLE = (-pi - 1e-6, pi + 1e-6)
@@ -91,6 +103,20 @@ def systems_of(claims: CertifiedClaims) -> list[System]:
         When real unknowns have no bound over the window that can be proved, or where the systems are not known.
     """
     return list(_Systems(claims).all())
+
+
+def solutions_of(claims: CertifiedClaims) -> list[System]:
+    """What is zero at the solutions that a map counts: a system for each choice of sides, in the order of these.
+
+    Guarantee: over each point of the window all that are counted are solutions of it, in the box of its start; it may
+    have others, and configurations without solution.
+
+    Raises
+    ------
+    Unproved
+        As above.
+    """
+    return list(_Systems(claims).solutions())
 
 
 class _Systems:
@@ -108,6 +134,20 @@ class _Systems:
 
     def all(self) -> Iterator[System]:
         """All of them, for springs on one line each on all sides of length zero."""
+        for _ in self._sides():
+            yield from self._on_side()
+
+    def solutions(self) -> Iterator[System]:
+        """The solutions that are counted, or minima where no others are; by few formulas, as windows are points."""
+        m = self.model
+        for _ in self._sides():
+            equations, rows = m.equations(m.directions()), m.hessian(m.directions())
+            others = [e for k in self.turning for e in (*m.balances(k), *m.directed(k))]
+            minors = [*self._minors(rows), m.list.determinant(rows)] if self.minima else []
+            yield self._system("solutions", equations, list(dict.fromkeys(others)), [*self.positive, *minors])
+
+    def _sides(self) -> Iterator[None]:
+        """Springs on one line each on all sides of length zero, one choice after the other."""
         m = self.model
         for side in sides(self.form):
             m.sides = side
@@ -115,7 +155,7 @@ class _Systems:
             self.turning = [k for k in range(len(m.springs)) if k not in straight]
             self.positive = [*self.asked, *map(m.ahead, straight)]
             self.where = "".join(f", {name} {'ahead' if sign > 0 else 'behind'}" for name, sign in side.items())
-            yield from self._on_side()
+            yield
 
     def _on_side(self) -> Iterator[System]:
         m, f, springs = self.model, self.model.list, self.turning
@@ -125,7 +165,7 @@ class _Systems:
         for basis in (*bases(self.form), plain):
             m.turn_to(basis)
             equations, rows = m.equations(m.directions()), m.hessian(m.directions())
-            balanced = [m.balanced(k) for k in springs]
+            balanced = [] if self.form.closing else [m.balanced(k) for k in springs]
             determinant = f.determinant(rows)
             at_solutions += [*equations, *(e for k in springs for e in (*m.balances(k), *m.directed(k)))]
             degenerate += [determinant, *(d for d, _ in balanced)]
@@ -160,16 +200,17 @@ class _Systems:
     def _short_folds(self, k: int) -> System:
         """Folds at which one spring is short, with its direction as one more unknown: |d| det H is a polynomial.
 
-        |d| det (M - K/|d| v v^T) = |d| det M + K det of M with v as one more row and column.
+        |d| det (M - K/|d| w v^T) = |d| det M + K det of M with w as one more column and v as one more row; w is v but
+        with closed loops.
         """
         m, f, n = self.model, self.model.list, self.form.size
         s, angle = m.springs[k], self.model.list.variable(n + 2)
         u: Pair = f.cosine(angle), f.sine(angle)
         directions = m.directions() | {k: u}
         rows = m.hessian(directions, without=k)
-        length, turning = f.dot(s.vector, u), [f.cross(u, g) for g in s.slopes]
+        length, turning, pushed = f.dot(s.vector, u), *([f.cross(u, g) for g in some] for some in (s.slopes, s.weights))
         whole = [f.multiply(c, v) for c, v in zip(m.factors, turning, strict=True)]
-        bordered = [[*row, v] for row, v in zip(rows, turning, strict=True)] + [[*whole, f.number(0)]]
+        bordered = [[*row, v] for row, v in zip(rows, pushed, strict=True)] + [[*whole, f.number(0)]]
         determinant = f.add(f.multiply(length, f.determinant(rows)), f.multiply(s.pull, f.determinant(bordered)))
         equations = [*m.equations(directions), f.cross(s.vector, u)]
         short = f.subtract(self._short(k), f.length(*s.vector))
@@ -186,7 +227,7 @@ class _Systems:
             angle = f.variable(n + 2)
             equations = m.equations(m.directions() | {k: (f.cosine(angle), f.sine(angle))})
             return self._system(name, [*s.vector, *equations], m.balances(k), self.positive, unknowns=n + 1)
-        fixed = [i for i, g in enumerate(s.slopes) if f.constant(g[0]) == 0 == f.constant(g[1])]
+        fixed = [i for i, g in enumerate(s.weights) if f.constant(g[0]) == 0 == f.constant(g[1])]
         if fixed:
             i = fixed[0]
             signs = [*self.positive, m.outweighs(k, 1 - i)]
@@ -231,4 +272,4 @@ class _Systems:
         return half_widths(self.form, values)
 
 
-__all__ = ["Compiled", "System", "systems_of"]
+__all__ = ["Compiled", "System", "solutions_of", "systems_of"]

@@ -1,0 +1,74 @@
+"""Where the solutions over a point or a box of the window may be, by compiled code: where balls begin to look.
+
+Guarantee: all solutions that the map counts are in the boxes. Nothing else is claimed: which of the boxes have one is
+proved elsewhere.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+
+from ptmcad.verification.certified.boxes import Box, Floats
+from ptmcad.verification.certified.counted import Where
+from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.exclusion.formulas import enclosing
+from ptmcad.verification.exclusion.pieces import no_pieces
+from ptmcad.verification.exclusion.search import isolate
+from ptmcad.verification.exclusion.systems import solutions_of
+
+BUDGET = 4000
+"""Boxes that are looked at for one place and one choice of sides ..."""
+MAX_LEFT = 512
+"""... and that may be left."""
+MIN_WIDTH = 2.0**-24
+"""Share of all configurations' width: boxes that are narrower are not halved."""
+PER_SHARE = 2.0
+"""The same for each share of the window's width that the rectangle has: solutions are in boxes of such a width."""
+_ROOM = 2.0**-16
+"""Of the same, at least half the width of a box that is left: balls prove nothing in one that is nearly a point."""
+_ROUNDED_UP = 1 + 2.0**-50
+
+Range = tuple[Fraction, Fraction]
+
+
+class Places:
+    """The boxes of a map's solutions.
+
+    Raises
+    ------
+    Unproved
+        When real unknowns have no bound over the window that can be proved.
+    """
+
+    def __init__(self, claims: CertifiedClaims):
+        assert claims.result.cover is not None
+        self._systems = solutions_of(claims)
+        self._steps = claims.result.cover.steps
+        self._pieces = no_pieces(self._steps)
+
+    def __call__(self, u: Range, v: Range) -> Where:
+        """Over a rectangle of the window, in lattice steps."""
+        whole = tuple(high for _, high in self._systems[0].start[2:].tolist())
+        share = max(high - low for low, high in (u, v)) / self._steps
+        smallest = max(MIN_WIDTH, PER_SHARE * float(share))
+        found = []
+        for system in self._systems:
+            boxes = np.empty((MAX_LEFT, *system.start.shape))
+            boxes[0] = system.start
+            for k, (low, high) in enumerate((u, v)):
+                boxes[0, k] = enclosing(low)[0], enclosing(high)[1]
+            left = isolate(system.over_place(smallest), system.tape, self._pieces, boxes, BUDGET)
+            found.append([_box(rows, whole) for rows in boxes[:left, 2:].tolist()])
+        return Where(found, whole)
+
+
+def _box(rows: list[list[float]], whole: Floats) -> Box:
+    """A box by its middle and half widths, which are made larger than some share of all configurations."""
+    middle = tuple(0.5 * (low + high) for low, high in rows)
+    halves = (
+        max((high - m) * _ROUNDED_UP, (m - low) * _ROUNDED_UP, w * _ROOM)
+        for m, (low, high), w in zip(middle, rows, whole, strict=True)
+    )
+    return middle, tuple(halves)

@@ -1,0 +1,183 @@
+"""Where compiled code leaves solutions: none that balls find is outside, and formulas are those of the balls."""
+
+from __future__ import annotations
+
+import random
+import sys
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from math import pi
+from typing import Any
+
+import pytest
+from flint import arb
+from support.held_sliders import PAIR
+from support.maps import once_per_run
+from support.records import TRUSS
+
+import ptmcad
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.question.config import load
+from ptmcad.question.slice import Count
+from ptmcad.verification.certified.boxes import Box
+from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.field import Field
+from ptmcad.verification.certified.kinks import sides
+from ptmcad.verification.certified.parameters import over
+from ptmcad.verification.certified.points import check_points, counting_of
+from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.certified.waves import form_of
+
+pytest.importorskip("numba")
+
+import numpy as np
+
+from ptmcad.verification.exclusion import places
+from ptmcad.verification.exclusion.check import places_of
+from ptmcad.verification.exclusion.equations import Equations
+from ptmcad.verification.exclusion.forms import evaluate
+from ptmcad.verification.exclusion.places import Places
+
+PAPER: dict[str, Any] = {
+    "mechanism": "ptm",
+    "parameters": {"L1": 1, "k": 100, "F3": -10, "F4": -10, "l0": "1/5"},
+    "axes": {"rho": [0, "3/2"], "L2": [0, 2]},
+}
+SLIDING: dict[str, Any] = {
+    "name": "sliding",
+    "mechanism": {
+        "name": "sliding",
+        "parameters": {"F": {"kind": "force"}, "l": {"kind": "free length"}},
+        "unknowns": {"x": "length"},
+        "points": {"O": [0, 0], "B": [0, 1], "S": ["x", 0]},
+        "springs": [{"between": ["O", "S"], "k": 1, "free": "l"}, {"between": ["B", "S"], "k": 1, "free": "l"}],
+        "loads": {"S": ["F", 0]},
+    },
+    "axes": {"F": [-2, 2], "l": ["1/10", 2]},
+}
+"""One spring along the slider's guide, and one from its side."""
+RECORDS: dict[str, dict[str, Any]] = {"paper": PAPER, "pair": PAIR, "sliding": SLIDING, "truss": TRUSS}
+LOOP = "configs/mechanisms/four-bar-free.yaml"
+CASES = [(name, count) for name in RECORDS for count in ("stable", "index")] + [("loop", "stable"), ("loop", "total")]
+
+
+@cache
+def a_map(name: str, count: str) -> RegionMap:
+    def made() -> RegionMap:
+        record = replace(load(LOOP), count=Count(count)) if name == "loop" else RECORDS[name] | {"count": count}
+        return ptmcad.classify(record, engine="certified", tolerance="1/10")
+
+    found: RegionMap = once_per_run(f"places-{name}-{count}", made)
+    return found
+
+
+def at_random(claims: CertifiedClaims, rng: random.Random) -> tuple[Fraction, Fraction]:
+    one, two = (Fraction(rng.randrange(1, 2**16) * claims.sweep.steps, 2**16) for _ in "uv")
+    return one, two
+
+
+@pytest.mark.parametrize(("name", "count"), CASES)
+def test_places_have_all_solutions(name: str, count: str) -> None:
+    """That balls alone find; and with places they find the same ones."""
+    claims, rng, told = CertifiedClaims(a_map(name, count)), random.Random(name + count), 0
+    found, counting = Places(claims), counting_of(claims)
+    for _ in range(12):
+        u, v = at_random(claims, rng)
+        where = found((u, u), (v, v))
+        try:
+            alone = counting.at(claims, *claims.off_lattice(u, v))
+        except Unproved:
+            continue
+        told += 1
+        kept = [e for e in alone.found if count != "stable" or "-" not in e.signs]
+        for e in kept:
+            assert any(inside(e.center, box) for boxes in where.boxes for box in boxes)
+        assert counting.at(claims, *claims.off_lattice(u, v), where).counts == alone.counts
+    assert told > 8
+
+
+@pytest.mark.parametrize(("name", "count"), CASES)
+def test_places_over_a_box_have_those_over_its_points(name: str, count: str) -> None:
+    claims, rng, told = CertifiedClaims(a_map(name, count)), random.Random(name), 0
+    found, counting = Places(claims), counting_of(claims)
+    half = Fraction(claims.sweep.steps, 4096)
+    for _ in range(6):
+        u, v = at_random(claims, rng)
+        whole = found((u - half, u + half), (v - half, v + half))
+        for du, dv in ((1, 1), (-1, 1), (0, -1)):
+            try:
+                there = counting.at(claims, *claims.off_lattice(u + du * half, v + dv * half))
+            except Unproved:
+                continue
+            told += 1
+            kept = [e for e in there.found if count != "stable" or "-" not in e.signs]
+            assert all(any(inside(e.center, box) for boxes in whole.boxes for box in boxes) for e in kept)
+    assert told > 8
+
+
+def inside(at: tuple[float, ...], box: Box) -> bool:
+    """Whether a point is in a box, but for whole turns and rounding."""
+    turned = [min(abs(x - m + 2 * k * pi) for k in (-1, 0, 1)) for x, m in zip(at, box[0], strict=True)]
+    return all(d <= r + 1e-9 for d, r in zip(turned, box[1], strict=True))
+
+
+@pytest.mark.parametrize(("name", "count"), CASES)
+def test_formulas_are_those_of_the_balls(name: str, count: str) -> None:
+    """Equations and Jacobian at random configurations, by compiled forms and by balls, which share the waves alone."""
+    claims, rng = CertifiedClaims(a_map(name, count)), random.Random(count)
+    form, slice = form_of(claims.model), claims.result.slice
+    for side in sides(form):
+        equations = Equations(claims)
+        equations.sides = side
+        rows = equations.hessian(equations.directions())
+        wanted = [*equations.equations(equations.directions()), *(entry for row in rows for entry in row)]
+        tape, _, places = equations.list.tape(wanted, [])
+        factors = [equations.list.tape([f], []) for f in equations.factors]
+        for _ in range(8):
+            u, v = at_random(claims, rng)
+            at = [rng.uniform(-2, 2) for _ in range(form.size)]
+            x, y = (arb(str(float(c))) for c in claims.off_lattice(u, v))
+            values = {n: arb(0) for n in slice.model.free_lengths}
+            jet = Field(form, values | {n: over(e, x, y) for n, e in slice.parameters.items()}, sides=side)(
+                [arb(c) for c in at]
+            )
+            box = np.array([[float(c)] * 2 for c in (u, v)] + [[c, c] for c in at])
+            numbers = numbers_of(tape, box)[places]
+            scale = [numbers_of(t, box)[p[0]] for t, _, p in factors]
+            n = form.size
+            true = [float(value.mid()) / s for value, s in zip(jet.values, scale, strict=True)]
+            true += [float(jet.jacobian[i][j].mid()) / scale[i] for i in range(n) for j in range(n)]
+            assert numbers == pytest.approx(true, rel=1e-9, abs=1e-9)
+
+
+def numbers_of(tape: Any, box: Any) -> Any:
+    forms = np.empty((len(tape.code), len(box) + 4))
+    evaluate(tape, box, forms, 0, len(tape.code))
+    return forms[:, len(box)]
+
+
+def test_a_search_that_is_spent_leaves_what_it_has(monkeypatch: pytest.MonkeyPatch) -> None:
+    claims = CertifiedClaims(a_map("paper", "index"))
+    at = at_random(claims, random.Random(1))
+    true = counting_of(claims).at(claims, *claims.off_lattice(*at))
+    for budget, left in ((1, 512), (5, 512), (40, 512), (4000, 6)):
+        monkeypatch.setattr(places, "BUDGET", budget)
+        monkeypatch.setattr(places, "MAX_LEFT", left)
+        where = Places(claims)((at[0],) * 2, (at[1],) * 2)
+        assert len(where.boxes[0]) <= left
+        assert all(any(inside(e.center, box) for box in where.boxes[0]) for e in true.found)
+
+
+def test_without_compiled_code_balls_search_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    claims = CertifiedClaims(a_map("sliding", "index"))
+    with_places = check_points(claims, places_of(claims))
+    monkeypatch.setitem(sys.modules, "ptmcad.verification.exclusion.places", None)
+    assert places_of(claims) is None
+    assert check_points(claims, None) == with_places
+
+
+def test_forged_counts_are_refused_with_places() -> None:
+    true = a_map("pair", "stable")
+    wrong = replace(true, cells=tuple(replace(c, stable=(c.stable or 0) + (k == 0)) for k, c in enumerate(true.cells)))
+    assert not ptmcad.verify(wrong).ok
