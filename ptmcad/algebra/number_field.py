@@ -19,7 +19,7 @@ from itertools import repeat
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly, nmod, nmod_poly
 
 from ptmcad.algebra.real_roots import RealRoot, refine
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.flint_numbers import to_fraction
 
 PRIME = 2**61 - 1
 """Any prime gives the same answers; a large one seldom divides what is not zero."""

@@ -13,8 +13,8 @@ from flint import fmpq
 from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_plane
 from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, refine, sign_at
 from ptmcad.text.enclosure import AlgebraicNumber
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.text.rationals import from_fraction, to_fraction
 
 
 def algebraic_number(root: RealRoot) -> AlgebraicNumber:

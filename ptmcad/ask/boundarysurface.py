@@ -25,8 +25,8 @@ from ptmcad.errors import ConfigError
 from ptmcad.exact.strips import Strips
 from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.doubles import within_doubles
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.parsing import number_for
-from ptmcad.text.rationals import from_fraction, to_fraction
 
 TOLERANCE = Fraction(1, 100)
 MAX_MEMBERS = 120

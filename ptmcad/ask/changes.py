@@ -31,8 +31,8 @@ from ptmcad.exact.surfaces import surfaces_of
 from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.config import Family, family_from
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import exactly, text_of
-from ptmcad.text.rationals import from_fraction, to_fraction
 
 TOLERANCE = Fraction(1, 10**6)
 """Of the free parameter's range: how wide enclosures are, and how near to a change members are compared in words."""

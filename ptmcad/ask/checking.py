@@ -34,8 +34,8 @@ from ptmcad.mechanism.sizes import terms_of
 from ptmcad.process.timed import returns_within
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import short_text
-from ptmcad.text.rationals import from_fraction
 
 MAX_UNKNOWNS = 4
 """Beyond, even one point takes too long for a question that should be answered at once."""

@@ -28,7 +28,7 @@ from ptmcad.exact.cad.curves import curves_of, lines_of
 from ptmcad.exact.cad.projection import Projection, predicted_cost, project
 from ptmcad.exact.cad.stacks import Avoided, StackData, lift
 from ptmcad.question.slice import Count, Point
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 TOLERANCE = Fraction(1, 10**6)
 """Relative width of the areas' bounds."""

@@ -24,9 +24,9 @@ from ptmcad.options import Options, Progress
 from ptmcad.process.extras import Extra, require
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.designs import design_from
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import number_for
-from ptmcad.text.rationals import from_fraction, to_fraction
 
 TOLERANCE = Fraction(1, 100)
 BOXES = 100_000

@@ -21,8 +21,8 @@ from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError, expect
 from ptmcad.exact.cad.curves import Curve, curves_of
 from ptmcad.question.slice import Point
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.parsing import number_for
-from ptmcad.text.rationals import from_fraction
 
 if TYPE_CHECKING:
     from ptmcad.cover.complement import Components

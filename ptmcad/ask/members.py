@@ -124,7 +124,7 @@ def member_map(common: Common, value: Fraction, options: Options = DEFAULTS) -> 
     slice = common.family.member(value)
     if common.variety is None or is_certified(slice, options.engine):
         return region_map(slice, options)
-    from ptmcad.text.rationals import from_fraction
+    from ptmcad.text.flint_numbers import from_fraction
 
     return region_map(slice, options, partial(common.variety.at, from_fraction(value)))
 

@@ -22,7 +22,7 @@ from ptmcad.cover.subdivision import FREE
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.curves import by_component, curves_of, lines_of
 from ptmcad.question.doubles import within_doubles
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 MAX_PIXELS = 10**8
 

@@ -26,7 +26,7 @@ from ptmcad.question.config import point_from_mapping, slice_from
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Point, Slice, without_free_lengths
 from ptmcad.text.expressions import constant
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 TIMEOUT = 60.0
 """Seconds for a search where algebra does not count."""

@@ -31,7 +31,7 @@ from ptmcad.certified.tubes import Tubes, tubes
 from ptmcad.cover import tubes as exact
 from ptmcad.cover.rectangles import Cover, Patch, Rectangle, Tube
 from ptmcad.cover.rounding import from_boxes
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 FINER = 64
 """Boxes over a leaf are bisected until their projection is so many times smaller than the leaf."""

@@ -8,24 +8,55 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
+from fractions import Fraction
 from typing import Any, NamedTuple, TypeVar
 
 import click
 
 from ptmcad.cli.gathering import gathered
+from ptmcad.errors import ConfigError
 from ptmcad.process.handover import Topic, send, watched
-from ptmcad.process.memory import Bound, bound_of, bounded, default_bound
+from ptmcad.process.memory import MIN_BOUND, Bound, bounded, default_bound
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+_SIZE = re.compile(r"([0-9]{1,12}(?:\.[0-9]{1,12})?)\s*([KMGT])(?:I?B)?", re.IGNORECASE)
+_UNITS = {"K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 
 
 def _seconds(_context: click.Context, _parameter: click.Parameter, value: float | None) -> float | None:
     if value is not None and not 0 < value < 1e9:
         raise click.BadParameter(f"{value} is not a positive number of seconds")
     return value
+
+
+def bound_of(text: str) -> Bound:
+    """A bound as it is written: a number and a unit K, M, G or T (powers of 1024).
+
+    Raises
+    ------
+    ConfigError
+        When it is not of that form, or no sensible size.
+
+    Examples
+    --------
+    >>> bound_of("500M").size, bound_of("1.5 GiB").size
+    (524288000, 1610612736)
+    """
+    match = _SIZE.fullmatch(text.strip())
+    shown = text if len(text) <= 30 else f"{text[:30]}..."
+    if match is None:
+        raise ConfigError(f"'{shown}' is not a size: write a number and a unit, such as 500M or 2G", key="--max-memory")
+    size = int(Fraction(match[1]) * _UNITS[match[2].upper()])
+    if size < MIN_BOUND:
+        raise ConfigError(f"{shown} is too little to start with: at least {MIN_BOUND >> 20}M", key="--max-memory")
+    if size >= 1 << 60:
+        raise ConfigError(f"{shown} is more than any machine has", key="--max-memory")
+    return Bound(size, text.strip())
 
 
 def _bound(_context: click.Context, _parameter: click.Parameter, value: str | None) -> Bound | None:

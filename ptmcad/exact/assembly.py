@@ -35,7 +35,7 @@ from ptmcad.exact.regions import members
 from ptmcad.exact.stages import Areas, Cells, SliceProblem, Variety, segment_of
 from ptmcad.options import Options
 from ptmcad.question.slice import Point
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.version import __version__
 
 

@@ -20,7 +20,7 @@ from ptmcad.exact.witness import Point
 from ptmcad.mechanism import ClosedMechanism, Model
 from ptmcad.mechanism.fourbars import IN_TWO_WAYS, closed_by, four_bars
 from ptmcad.text.expressions import Expression, constant
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.flint_numbers import to_fraction
 
 Degenerate = DegenerateSliceError | InfiniteSolutionsError
 

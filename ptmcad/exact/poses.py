@@ -29,7 +29,7 @@ from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, mechanism_in
 from ptmcad.mechanism.description import System
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.tree import to_text as text_of
 
 BY_MSOLVE = "the Groebner basis was computed by msolve and proved to be one of the equations"

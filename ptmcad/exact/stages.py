@@ -29,8 +29,8 @@ from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.exact.regions import Link, members, merge
 from ptmcad.exact.variety import Known, check_hypotheses, discriminant_variety
 from ptmcad.question.slice import Count, Slice
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import decimal, fraction_of, short_text
-from ptmcad.text.rationals import from_fraction, to_fraction
 
 Sample = tuple[fmpq, fmpq]
 Report = Callable[[int, int], None]

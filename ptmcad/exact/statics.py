@@ -24,7 +24,7 @@ from ptmcad.exact.stiffness import Number, Stiffness, eigenvalues, square_root, 
 from ptmcad.mechanism.xjoint import second_bar
 from ptmcad.text.balls import ball_of
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 MAX_BITS = 2**22
 """Parameters of a thousand digits need a hundredth of them: a number that is still open is rational unnoticed."""

@@ -19,7 +19,7 @@ from ptmcad.algebra.number_field import Element
 from ptmcad.algebra.rational_roots import rational_roots
 from ptmcad.text.balls import ball_of, enclosed
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.flint_numbers import to_fraction
 
 _Ring = TypeVar("_Ring", fmpq, nmod)
 Matrix = tuple[tuple[Element, ...], ...]

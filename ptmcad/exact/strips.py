@@ -26,7 +26,7 @@ from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.arrangement import Picture
 from ptmcad.exact.cad.curves import by_component
 from ptmcad.exact.cad.stacks import BaseEnd
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 JUMP = Fraction(1, 2**12)
 """Of the window's height: walls on both sides of a critical abscissa that end no further apart are one wall, and

@@ -20,7 +20,7 @@ from ptmcad.algebra.quotient import multiplication_denominator, quotient_algebra
 from ptmcad.errors import DegenerateSliceError, HypothesisError, InfiniteSolutionsError, NothingToCountError
 from ptmcad.exact.models.system import ParametricSystem, on_slice, saturated
 from ptmcad.exact.point_system import solutions_at
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 Point = tuple[fmpq, fmpq]
 Window = tuple[tuple[fmpq, fmpq], tuple[fmpq, fmpq]]

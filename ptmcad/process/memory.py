@@ -10,7 +10,6 @@ Not guaranteed: the bound on systems that do not count mapped memory as data (ma
 from __future__ import annotations
 
 import os
-import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -32,8 +31,6 @@ MIN_BOUND = 64 << 20
 MIN_ROOM = 32 << 20
 """What there must be beside the libraries once they are loaded, for anything to be computed or drawn."""
 
-_SIZE = re.compile(r"([0-9]{1,12}(?:\.[0-9]{1,12})?)\s*([KMGT])(?:I?B)?", re.IGNORECASE)
-_UNITS = {"K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 _GROUPS = Path("/sys/fs/cgroup")
 _CONTAINER_LIMITS = ("memory.max", "memory/memory.limit_in_bytes")
 
@@ -43,31 +40,6 @@ class Bound(NamedTuple):
 
     size: int
     text: str
-
-
-def bound_of(text: str) -> Bound:
-    """A bound as it is written: a number and a unit K, M, G or T (powers of 1024).
-
-    Raises
-    ------
-    ConfigError
-        When it is not of that form, or no sensible size.
-
-    Examples
-    --------
-    >>> bound_of("500M").size, bound_of("1.5 GiB").size
-    (524288000, 1610612736)
-    """
-    match = _SIZE.fullmatch(text.strip())
-    shown = text if len(text) <= 30 else f"{text[:30]}..."
-    if match is None:
-        raise ConfigError(f"'{shown}' is not a size: write a number and a unit, such as 500M or 2G", key="--max-memory")
-    size = int(Fraction(match[1]) * _UNITS[match[2].upper()])
-    if size < MIN_BOUND:
-        raise ConfigError(f"{shown} is too little to start with: at least {MIN_BOUND >> 20}M", key="--max-memory")
-    if size >= 1 << 60:
-        raise ConfigError(f"{shown} is more than any machine has", key="--max-memory")
-    return Bound(size, text.strip())
 
 
 def default_bound() -> Bound | None:

@@ -316,7 +316,7 @@ def _by_algebra(terms: tuple[Term, ...], window: Box, strict: bool, left: Undeci
     """The same, for what halving has left."""
     from ptmcad.algebra import definite  # only here: few records need it, and FLINT takes long to load
     from ptmcad.algebra.polynomials import from_terms
-    from ptmcad.text.rationals import from_fraction, to_fraction
+    from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
     x, y = ((from_fraction(low), from_fraction(high)) for low, high in window)
     bound = definite.MAX_WORK if max_work is None else max_work

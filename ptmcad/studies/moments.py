@@ -22,7 +22,7 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.mechanism import ptm
 from ptmcad.studies.equilibria import derivatives
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.terms import signed_terms
 
 CIRCLES = ("c1", "s1", "c2", "s2")

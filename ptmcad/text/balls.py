@@ -10,7 +10,7 @@ from fractions import Fraction
 from flint import arb
 
 from ptmcad.text.enclosure import Enclosure, settled
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 _GUARD = 6
 """Digits of the enclosure's middle beyond those asked for, at first."""

@@ -30,7 +30,7 @@ from itertools import pairwise
 from flint import fmpq
 
 from ptmcad.answer.regionmap import Adjacency, Cell, CriticalValue, NonAdjacency, Reason, Segment
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.claims import Claims, is_root, short, side
 from ptmcad.verification.heights import Heights
 from ptmcad.verification.report import Violation

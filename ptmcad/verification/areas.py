@@ -18,8 +18,8 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.answer.regionmap import Region
 from ptmcad.text.balls import ball_of
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import approximate_text
-from ptmcad.text.rationals import from_fraction, to_fraction
 from ptmcad.verification.branches import Branch, Effort, Part
 from ptmcad.verification.claims import Claims, bracket
 from ptmcad.verification.disks import PrecisionTooLow

@@ -20,7 +20,7 @@ from math import gcd, isqrt, prod
 from flint import fmpq
 
 from ptmcad.answer.regionmap import Kind
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.verification.algebra import Monomial
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.fibre import Fibre, standard_monomials

@@ -26,8 +26,8 @@ from ptmcad.answer.regionmap import Merge, RegionMap
 from ptmcad.errors import HypothesisError, shown
 from ptmcad.options import Progress
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import text_of
-from ptmcad.text.rationals import from_fraction
 from ptmcad.verification.report import Check, Unchecked, Violation
 from ptmcad.verification.sturm import roots_within
 

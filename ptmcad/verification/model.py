@@ -17,8 +17,8 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz, fmpz_mpoly
 
 from ptmcad.answer.regionmap import System
 from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import fraction_of
-from ptmcad.text.rationals import from_fraction
 from ptmcad.verification.claims import PLANE, Claims
 from ptmcad.verification.derivation import Configuration, coordinates_of, formulas, has_index, parameters_of
 from ptmcad.verification.report import Violation

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from flint import arb, ctx, fmpq
 
 from ptmcad.answer.regionmap import CriticalValue
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.verification.claims import PlaneCurve, ball, bracket
 from ptmcad.verification.sturm import isolating_intervals, squarefree
 

@@ -23,8 +23,8 @@ from flint import arb, arb_mat, ctx
 from ptmcad.answer.regionmap import Cell, Solution
 from ptmcad.mechanism import Model
 from ptmcad.text.balls import ball_of
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import approximate_text
-from ptmcad.text.rationals import from_fraction
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import Configuration, formulas, has_index, parameters_of
 from ptmcad.verification.inertia import bases, leading_minors, negative_eigenvalues

@@ -16,8 +16,8 @@ from math import gcd
 from flint import fmpq, fmpz, fmpz_poly
 
 from ptmcad.answer.regionmap import CriticalValue
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import text_of
-from ptmcad.text.rationals import from_fraction
 from ptmcad.verification.claims import Claims, PlaneCurve, polynomial, short, side
 from ptmcad.verification.elimination import discriminant, resultant
 from ptmcad.verification.report import Violation

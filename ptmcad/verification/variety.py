@@ -35,9 +35,9 @@ from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpz_poly
 
 from ptmcad.answer.regionmap import HARMLESS, Kind
 from ptmcad.mechanism import ClosedMechanism, System
+from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.numerals import text_of
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.text.rationals import to_fraction
 from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.derivation import coordinates_of
 from ptmcad.verification.fibre import Fibre

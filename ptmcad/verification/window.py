@@ -10,7 +10,7 @@ from __future__ import annotations
 from flint import arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly
 
 from ptmcad.answer.regionmap import HARMLESS, NO_POINT, CriticalValue, Kind
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.verification.claims import Claims, PlaneCurve, ball, short
 from ptmcad.verification.report import Violation
 from ptmcad.verification.structure import points_over, projection_of_one

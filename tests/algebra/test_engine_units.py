@@ -39,7 +39,7 @@ from ptmcad.exact.models import system_of
 from ptmcad.exact.models.system import SliceSystem, at_point, on_slice
 from ptmcad.exact.stages import problem_of
 from ptmcad.exact.variety import hermite_determinant, proved_poles
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 X, Y = PLANE.gens()
 SYSTEM = system_of("ptm")

@@ -13,7 +13,7 @@ from ptmcad.algebra import number_field
 from ptmcad.algebra.number_field import Element, Modulus, RealField, polynomial_at
 from ptmcad.algebra.real_roots import isolate
 from ptmcad.exact import stiffness
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 NUMBERS = st.fractions(-4, 4, max_denominator=12).map(from_fraction)
 PRIMES = (2, 3, 5, 7, 11, 2**61 - 1)

@@ -11,7 +11,7 @@ from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 from ptmcad.algebra import puiseux
 from ptmcad.algebra.puiseux import Beside, puiseux_integral
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 FIBRE = (fmpq(-3), fmpq(3))
 BITS = 220

@@ -14,7 +14,7 @@ from support.examples import examples
 from ptmcad.algebra import reflected_roots
 from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
 from ptmcad.algebra.reflected_roots import isolate_reflected
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 SMALL = st.fractions(min_value=-4, max_value=4, max_denominator=6)
 SQUARES = st.lists(st.fractions(min_value=-9, max_value=30, max_denominator=9), min_size=1, max_size=6, unique=True)

@@ -12,8 +12,8 @@ from ptmcad.algebra.real_roots import isolate
 from ptmcad.algebra.slopes import Direction, may_be_tangent, tangent_resultant
 from ptmcad.studies.paper.operation_range import FOLD, HALF, MIDDLE, ONE, STRIP, UPRIGHT, Tangents
 from ptmcad.studies.paper.slices import curves
+from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.text.rationals import to_fraction
 
 CIRCLE = from_plane(PlanePolynomial.parse("x^2 + y^2 - 25"))
 PARABOLA = from_plane(PlanePolynomial.parse("x^2 - y"))

@@ -24,7 +24,7 @@ from ptmcad.exact.arrangement import picture_of
 from ptmcad.exact.familyprojection import OutOfReach
 from ptmcad.exact.strips import Strips
 from ptmcad.question.config import family_from, slice_from
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 SQUARE = {"a": [-1, 1], "b": [-1, 1]}
 

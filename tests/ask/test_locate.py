@@ -23,7 +23,7 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.ask import location
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.curves import curve
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 TINY = Fraction(1, 10**40)
 SHIPPED = [path.stem for path in EXACT]

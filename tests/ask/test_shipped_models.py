@@ -28,7 +28,7 @@ from ptmcad.exact.point_system import solutions_at
 from ptmcad.exact.signatures import count_by_signature
 from ptmcad.exact.stages import point_values, problem_of, variety_of
 from ptmcad.question.slice import Count
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 ROOT = Path(__file__).resolve().parents[2]
 VALIDATOR = jsonschema.Draft202012Validator(

@@ -16,7 +16,7 @@ import ptmcad
 from ptmcad.answer.regionmap import Status
 from ptmcad.certified.plain.spectrum import ordered_eigenvalues
 from ptmcad.text.balls import ball_of
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 SMALL = st.integers(-3, 3)
 NEAR = st.sampled_from([Q(0), Q(1, 10**40), Q(1, 3), Q(-2), Q(10**9)])

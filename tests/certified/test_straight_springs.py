@@ -29,7 +29,7 @@ from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.straight import branches
 from ptmcad.options import Options
 from ptmcad.question.slice import Count, Slice
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 GUIDES = {"1, 0": 1.0, "3/5, 4/5": 1.0, "1, 1": sqrt(2)}
 """A slider's place over its unknown, and how long that vector is."""

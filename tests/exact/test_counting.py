@@ -19,7 +19,7 @@ from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.exact.signatures import count_by_signature
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 SYSTEM = system_of("ptm")
 SHIPPED = [path.stem for path in EXACT]

@@ -26,7 +26,7 @@ from ptmcad.exact.point_system import point_system
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.studies.stress.measure import answer, work_of
 from ptmcad.studies.stress.slices import FIG4, LOADED, SliceQuestion, ten
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.verification.sturm import roots_between
 
 

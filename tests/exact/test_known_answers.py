@@ -21,9 +21,9 @@ from ptmcad.algebra.real_roots import disjoint, isolate, refine, squarefree_part
 from ptmcad.answer.regionmap import Status
 from ptmcad.exact.cad.curves import curve
 from ptmcad.text.expressions import axis
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.text.rationals import from_fraction, to_fraction
 
 SLICES = {path.stem: load(path) for path in EXACT}
 LARGE = ("fig5-text", "fig5-caption", "horizontal", "stiffness", "unequal-springs")

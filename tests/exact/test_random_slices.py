@@ -26,7 +26,7 @@ from ptmcad.exact.cad.curves import curve
 from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.exact.signatures import count_by_signature
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 POINTS = 100
 TINY = Fraction(1, 10**40)

@@ -32,7 +32,7 @@ from ptmcad.exact.cad.panels import Panel
 from ptmcad.exact.cad.projection import project
 from ptmcad.exact.cad.stacks import StackData, lift
 from ptmcad.exact.regions import Link, merge
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 X, Y = PLANE.gens()
 Window = tuple[str, str, str, str]

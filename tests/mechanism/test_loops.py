@@ -25,7 +25,7 @@ from ptmcad.exact.stages import problem_of, variety_of
 from ptmcad.mechanism import ClosedMechanism
 from ptmcad.mechanism.derivative import derivative
 from ptmcad.mechanism.evaluate import evaluate
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.syntax import parse
 from ptmcad.verification.equations import equations_at
 

@@ -18,7 +18,7 @@ from ptmcad.exact.models.potential import geometry_of, squared_lengths, system_f
 from ptmcad.mechanism import Kind, Mechanism, described, mechanism_of, ptm
 from ptmcad.mechanism.evaluate import evaluate, value_at
 from ptmcad.mechanism.ptm import RECORD
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Tree, to_text
 

@@ -24,7 +24,7 @@ from ptmcad.exact.point_system import solutions_at
 from ptmcad.exact.stages import point_values, problem_of
 from ptmcad.mechanism import ClosedMechanism
 from ptmcad.mechanism.xjoint import second_bar
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.equations import equations_at
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs" / "mechanisms"

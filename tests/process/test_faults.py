@@ -29,10 +29,11 @@ from support.warm import Started, start
 
 import ptmcad
 from ptmcad.cli import run
+from ptmcad.cli.limits import bound_of
 from ptmcad.errors import ConfigError
 from ptmcad.process.commit import identity, recover
 from ptmcad.process.handover import Receiver, Topic, connect, disconnect, send
-from ptmcad.process.memory import bound_of, default_bound
+from ptmcad.process.memory import default_bound
 from ptmcad.process.output import check_writable, save_stopped, text_writer, write_files
 from ptmcad.process.salvage import what_is_there
 

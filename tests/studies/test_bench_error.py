@@ -28,8 +28,8 @@ from ptmcad.studies.bench.distance import distances, grid_boundary
 from ptmcad.studies.bench.error import grid_error, wrong_areas
 from ptmcad.studies.bench.methods import question
 from ptmcad.studies.bench.reference import COUNTS, Reference, Walls, centres, reference, regions, shown_count, walls
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.text.rationals import from_fraction
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 ZERO, ONE = Fraction(0), Fraction(1)

@@ -45,7 +45,7 @@ from ptmcad.studies.paper.claims import (
 from ptmcad.studies.paper.free_lengths import FreeLengthDesign, proved_equilibrium
 from ptmcad.studies.paper.slices import FIGURES, region_map, slice_of
 from ptmcad.studies.paper.squaring.equations import squared_equations
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.flint_numbers import to_fraction
 
 SECTIONS = (
     "abstract", "1", "2", "3", "3.1", "3.2", "3.3", "4", "4.1", "4.2", "4.3", "5.1", "5.2", "conclusions",

@@ -32,7 +32,7 @@ from ptmcad.studies.stress.random_cases import KINDS, mirrored, random_case, sti
 from ptmcad.studies.stress.reference import Degenerate as DegeneratePoint
 from ptmcad.studies.stress.reference import newton_pose, sextic_poses
 from ptmcad.studies.stress.report import markdown, to_csv, to_json
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 CASES = named_cases()
 TWINS = (

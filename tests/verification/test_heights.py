@@ -18,8 +18,8 @@ from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.answer.regionmap import CriticalValue
 from ptmcad.exact.cad.curves import curve
 from ptmcad.exact.cad.points import PointsOver
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.text.rationals import from_fraction, to_fraction
 from ptmcad.verification.claims import PlaneCurve
 from ptmcad.verification.heights import Heights
 from ptmcad.verification.sturm import LONG_DEGREE, roots_between

@@ -16,7 +16,7 @@ from support.maps import CONFIGS
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Solution
 from ptmcad.text.balls import exact as exactly
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.certified.narrow import NARROW, judged
 from ptmcad.verification.certified.points import check_points
 from ptmcad.verification.certified.structure import CertifiedClaims

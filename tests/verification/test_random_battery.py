@@ -25,7 +25,7 @@ from ptmcad.errors import DegenerateSliceError, HypothesisError
 from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import system_from
 from ptmcad.exact.signatures import count_by_signature
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 POINTS = 30
 SEEDS = range(30)

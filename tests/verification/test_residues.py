@@ -11,8 +11,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.examples import examples
 
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.text.rationals import from_fraction
 from ptmcad.verification import elimination, residues, sturm
 from ptmcad.verification.branches import Branch
 from ptmcad.verification.claims import PlaneCurve

@@ -14,8 +14,8 @@ from support.shipped_records import EXACT
 
 import ptmcad
 from ptmcad.answer.regionmap import HARMLESS, Component, Kind, RegionMap
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.text.rationals import from_fraction
 from ptmcad.verification import variety
 from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.report import Violation

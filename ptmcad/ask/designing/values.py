@@ -24,7 +24,7 @@ from ptmcad.options import Options
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.text.balls import ball_of, exact
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.syntax import did_you_mean, parse
 from ptmcad.text.tree import Call, Name, Number, Power, Step, Tree, interpret, names_of
 

@@ -13,7 +13,7 @@ from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 from flint.utils.flint_exceptions import DomainError
 
 from ptmcad.text.expressions import Term
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 _PLANE = fmpq_mpoly_ctx.get(("x", "y"), Ordering.lex)
 

@@ -11,12 +11,12 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 import numpy as np
-from flint import arb, ctx
+from flint import ctx
 
 from ptmcad.answer.regionmap import Solution
 from ptmcad.certified.arb_evaluation import ball, lower, run_arb, upper
 from ptmcad.certified.arb_isolation import Box, Isolated, isolate_arb, refined
-from ptmcad.certified.distinct import distinct
+from ptmcad.certified.distinct import distinct, distinct_balls
 from ptmcad.certified.evaluation import program, run
 from ptmcad.certified.parameters import values_at
 from ptmcad.certified.points import (
@@ -197,7 +197,7 @@ def _by_arb(
         for wide, box in zip(*proved, strict=True):
             narrow = refined(equations, _balls(x, y, box, precision), precision)
             more.append(Isolated(_balls(x, y, wide, precision), narrow))
-        kept = _distinct_balls(more, precision)
+        kept = distinct_balls(more, (TH1, TH2), precision)
         if kept is None:
             continue
         zeros = [_kind_by_arb(written, zero) for zero in kept]
@@ -241,32 +241,3 @@ def _balls(x: Fraction, y: Fraction, box: Boxes, precision: int) -> Box:
     with ctx.workprec(precision):
         angles = [ball(Fraction(float(box[k])), Fraction(float(box[k + 4]))) for k in (TH1, TH2)]
         return (ball(x, x), ball(y, y), *angles)
-
-
-def _distinct_balls(found: Sequence[Isolated], precision: int) -> list[Isolated] | None:
-    """Each zero once, modulo full turns; None when it cannot be decided whether two are the same."""
-    kept: list[Isolated] = []
-    with ctx.workprec(precision):
-        turn = 2 * arb.pi()
-        for zero in found:
-            matches = [_same(zero, other, turn) for other in kept]
-            if None in matches:
-                return None
-            if not any(matches):
-                kept.append(zero)
-    return kept
-
-
-def _same(a: Isolated, b: Isolated, turn: arb) -> bool | None:
-    """Whether two zeros are one on the torus."""
-    moved = []
-    for k in (TH1, TH2):
-        turns = round(float((b.narrow[k].mid() - a.narrow[k].mid()) / turn))
-        moved.append(a.narrow[k] + turns * turn)
-    pairs = list(zip((TH1, TH2), moved, strict=True))
-    if all(b.unique[k].contains(m) for k, m in pairs):
-        return True
-    if any(not b.narrow[k].overlaps(m) for k, m in pairs):
-        return False
-    back = [(k, b.narrow[k] - (m - a.narrow[k])) for k, m in pairs]
-    return True if all(a.unique[k].contains(m) for k, m in back) else None

@@ -24,7 +24,7 @@ from ptmcad.exact.cad.mirrors import Wall, mirrored, wall_of
 from ptmcad.exact.cad.panels import Border, Effort, Panel, halves, panels
 from ptmcad.exact.cad.stacks import StackData
 from ptmcad.text.balls import exact
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 Bounds = tuple[tuple[Fraction, Fraction], ...]
 """Of each region's area, in the product of the axes' units."""

@@ -23,7 +23,7 @@ from ptmcad.algebra.real_roots import RealRoot, halve, isolate, refine, sign_at
 from ptmcad.answer.regionmap import CriticalValue, RegionMap
 from ptmcad.exact.cad.curves import by_component, curves_of
 from ptmcad.exact.cad.polyline import ROUNDING, UNPROVED, Branch, Span, chords, shut_in, to_share
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 _NARROWEST = Fraction(1, 2**40)
 _END = fmpq(1, 2**60)

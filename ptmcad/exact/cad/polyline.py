@@ -24,7 +24,7 @@ from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve
 from ptmcad.text.balls import exact
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 Span = tuple[Fraction, Fraction]
 """A part of a window's side: shares of it, from 0 to 1."""

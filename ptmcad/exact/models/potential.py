@@ -19,7 +19,7 @@ from ptmcad.exact.models.turns import with_turns
 from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, System
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.work import split_moments
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.tree import Tree
 
 Vector = tuple[TrigonometricPolynomial, TrigonometricPolynomial]

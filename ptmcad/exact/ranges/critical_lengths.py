@@ -17,7 +17,7 @@ from fractions import Fraction
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
 from ptmcad.mechanism import ptm
 from ptmcad.mechanism.evaluate import evaluate
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 _MECHANISM = ptm()
 _INVERSES = tuple(f"v{n}" for n in range(1, len(_MECHANISM.springs) + 1))

@@ -17,7 +17,7 @@ from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.intervals import End
 from ptmcad.exact.ranges.strips import Branch, Strip, at_abscissa, bound_over
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 
 def ends_of(end: End) -> Interval:

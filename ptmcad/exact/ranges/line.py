@@ -34,8 +34,8 @@ from ptmcad.exact.witness import points
 from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import shortest_text
-from ptmcad.text.rationals import from_fraction, to_fraction
 
 END_WIDTH = Fraction(1, 2**100)
 """Width of the ends' isolating intervals, against the window's."""

@@ -26,7 +26,7 @@ from ptmcad.exact.ranges.matrices import Vector
 from ptmcad.exact.ranges.symmetry import Mirror, changed, changes, mirror_of, proportional
 from ptmcad.exact.ranges.tracking import BITS, Reached, at_value, bridge
 from ptmcad.question.line import Line
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 _MAX_GROUP = 8
 """Solutions of which all groupings are looked through: of eight there are 4140."""

@@ -30,7 +30,7 @@ from ptmcad.exact.ranges.matrices import (
     times,
 )
 from ptmcad.text.balls import ball_of
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 BITS = 160
 _MIN_STEP = Fraction(1, 2**60)

@@ -43,7 +43,7 @@ from ptmcad.exact.ranges.strips import (
 )
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.flint_numbers import to_fraction
 
 ROWS = 41
 """Rows of the table."""

@@ -22,8 +22,8 @@ from ptmcad.exact.models.system import polynomial_at
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.moments import moments_at
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import magnitude
-from ptmcad.text.rationals import from_fraction, to_fraction
 
 Floats = NDArray[np.float64]
 

@@ -26,8 +26,8 @@ from ptmcad.answer.regionmap import RegionMap, Stack
 from ptmcad.exact.cad.curves import Curve, by_component, curves_of
 from ptmcad.show.render.simplification import simplified_line
 from ptmcad.show.render.view import Floats, Interval, Same, View
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.text.rationals import from_fraction, to_fraction
 
 TOLERANCE = 1.5e-4
 DEPTH = 7

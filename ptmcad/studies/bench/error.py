@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from ptmcad.studies.bench.distance import Distances, distances, grid_boundary
 from ptmcad.studies.bench.reference import Column, Reference, Walls, regions
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 Counts = NDArray[np.int16]
 Bounds = tuple[Fraction, Fraction]

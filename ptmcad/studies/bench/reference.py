@@ -25,7 +25,7 @@ from ptmcad.exact.cad.polyline import ROUNDING, UNPROVED, Branch, Chord, chords,
 from ptmcad.exact.cad.stacks import roots_over
 from ptmcad.exact.regions import Link, merge
 from ptmcad.question.slice import Count
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 MAX_CHORD_DISTANCE = Fraction(1, 2**18)
 """Largest distance between a wall and its chord, as a share of the window's side."""

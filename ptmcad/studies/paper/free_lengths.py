@@ -19,7 +19,7 @@ from flint import arb, ctx, fmpq
 from ptmcad.mechanism import ptm
 from ptmcad.studies.equilibria import balls, guesses, proved
 from ptmcad.text.balls import ball_of
-from ptmcad.text.rationals import to_fraction
+from ptmcad.text.flint_numbers import to_fraction
 
 STARTS = 48
 """Starts of Newton's method along each angle."""

@@ -23,7 +23,7 @@ from ptmcad.algebra.polynomials import Coefficient, UnivariatePolynomial, coeffi
 from ptmcad.algebra.real_roots import isolate, squarefree_part
 from ptmcad.algebra.slopes import Direction, may_be_tangent, tangent_resultant
 from ptmcad.studies.paper.slices import curves, operation_range
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 FIGURE = "fig4"
 STRIP = (Fraction(1, 10), Fraction(2))

@@ -22,8 +22,8 @@ from ptmcad.exact.counting import equilibria
 from ptmcad.exact.models import system_of
 from ptmcad.question.slice import Count, Slice
 from ptmcad.studies.slices import Exact, ptm_slice
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.parsing import rational
-from ptmcad.text.rationals import from_fraction, to_fraction
 
 _RECORDS: Mapping[str, tuple[str, Mapping[str, Exact], Mapping[str, tuple[int, int]]]] = {
     "fig2": ("Unloaded mechanism, L1 = 1", {}, {"L2": (0, 4), "rho": (0, 4)}),

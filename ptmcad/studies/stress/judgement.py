@@ -23,7 +23,7 @@ from ptmcad.studies.stress.measure import Verdict, as_float
 from ptmcad.studies.stress.reference import newton_pose, sextic_poses
 from ptmcad.text.balls import exact
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 GRID = 16
 """Points along each axis of a map at which double precision is asked."""

@@ -19,7 +19,7 @@ from flint import arb, ctx, fmpq, fmpq_poly
 
 from ptmcad.studies.equilibria import IndexedPose, balls, in_balls, inverse, proved, sign
 from ptmcad.studies.sextic import sextic
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 DIGITS = 100
 """To which the angles of a pose are known, or more."""

@@ -15,8 +15,8 @@ from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism
 from ptmcad.question.slice import Slice
 from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import Expression, axis
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.parsing import parse
-from ptmcad.text.rationals import from_fraction
 from ptmcad.text.tree import Name, to_text
 from ptmcad.verification.certified.energy import Energy
 from ptmcad.verification.certified.equilibria import Unproved

@@ -24,8 +24,8 @@ from math import ceil, isqrt
 
 from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.text.balls import ball_of
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import text_of
-from ptmcad.text.rationals import from_fraction, to_fraction
 from ptmcad.verification.certified.counted import Counted, Places, differs, stored
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.points import HOPELESS, counting_of

@@ -19,7 +19,7 @@ from math import comb
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
 from ptmcad.cover.rectangles import Cover, Patch
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.verification.certified.sweep import Sets
 from ptmcad.verification.report import Violation
 from ptmcad.verification.sturm import roots_between

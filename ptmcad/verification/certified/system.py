@@ -20,7 +20,7 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz
 
 from ptmcad.answer.regionmap import System
 from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.tree import names_of
 from ptmcad.verification.certified.decimals import in_quotients
 from ptmcad.verification.certified.refutation import differs_somewhere

@@ -18,7 +18,7 @@ from flint import Ordering, arb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.mechanism import description
 from ptmcad.text.balls import ball_of
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.derivation import ANGLES, MECHANISM, POSITIVE, Configuration
 
 NAMES = MECHANISM.variables

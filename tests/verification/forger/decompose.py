@@ -29,7 +29,7 @@ from ptmcad.exact.stages import (
     with_keys,
 )
 from ptmcad.options import Options
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 
 def decomposed(r: RegionMap, components: Sequence[Component], without: frozenset[str] | None = None) -> RegionMap:

@@ -24,7 +24,7 @@ from ptmcad.exact.assembly import _solutions
 from ptmcad.exact.models import system_of
 from ptmcad.exact.stages import count_at
 from ptmcad.question.slice import Count, Point
-from ptmcad.text.rationals import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.verification.claims import Claims, bracket
 
 

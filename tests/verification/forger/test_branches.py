@@ -33,9 +33,9 @@ from ptmcad.answer.regionmap import (
 from ptmcad.mechanism import known_of
 from ptmcad.question.slice import Axis, Count, Point
 from ptmcad.text.expressions import axis, constant
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.text.rationals import from_fraction
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas
 from ptmcad.verification.auxiliary import check_auxiliary

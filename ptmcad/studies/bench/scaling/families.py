@@ -20,7 +20,7 @@ from ptmcad.studies.bench.scaling.folds import fold, grid, regions_of_fold, regi
 from ptmcad.studies.bench.scaling.measurement import Run, Stages
 from ptmcad.studies.bench.scaling.slices import digits, loaded, unloaded
 from ptmcad.studies.slices import ptm_slice
-from ptmcad.text.rationals import from_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 Measure = Callable[[int, int], Sequence[Run]]
 DESIGNS = 150

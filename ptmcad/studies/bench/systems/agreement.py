@@ -17,8 +17,8 @@ from ptmcad.algebra.polynomials import Coefficient, common_factor, from_terms, i
 from ptmcad.answer.regionmap import Kind, RegionMap
 from ptmcad.studies.bench.systems.exchange import Answers, Check, Point, Question
 from ptmcad.studies.bench.systems.programs import AnswerError, Tool, msolve_curves
+from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.text.rationals import to_fraction
 
 
 def checks(asked: Question, answer: Path | None, given: Answers) -> Mapping[str, Check]:

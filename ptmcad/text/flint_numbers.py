@@ -1,4 +1,4 @@
-"""FLINT's rational numbers as Python's and back, for all that computes and all that checks."""
+"""FLINT's rational numbers as Python's fractions and back, for all that computes and all that checks."""
 
 from __future__ import annotations
 
