@@ -71,6 +71,8 @@ MAP_SHRINK_RATIO = Fraction(9, 10)
 """A map on the way is worth making when the boxes' share is at most this part of what it was at the last one."""
 SLANTED_SHARE = Fraction(1, 500)
 """Slanted pieces are tried once the boxes have at most this part of the window."""
+EARLY = 1.5
+"""Seconds before the time limit: a search that ends earlier says so."""
 LATTICE_STEPS = 2**24
 """Lattice steps of a cover along each axis; more for a tolerance below 1e-5."""
 
@@ -144,7 +146,7 @@ class _Run:
             in_time = refine(self.enclosures, self.area * 4.0**-level, self.jobs, report, self._late)
             self.seconds["curves"] += self.clock() - start - (self.seconds["regions"] - regions)
             if not in_time:
-                return self._stopped("the time limit was reached")
+                return self._stopped(self._at_limit())
             cover = self._box_cover()
             undetermined = _share(cover)
             if undetermined > tolerance and self._slantable(undetermined):
@@ -170,6 +172,13 @@ class _Run:
             if self.boxes() > MAX_BOXES:
                 break
         return self._stopped(f"the search ended at {self.boxes():,} boxes")
+
+    def _at_limit(self) -> str:
+        """Why a search ended for its deadline, in words: before it, where much was kept for the last map."""
+        kept = self.pace.left()
+        if kept < EARLY:
+            return "the time limit was reached"
+        return f"the search ended {kept:.1f} s before the time limit, which the last map may take,"
 
     def _slantable(self, undetermined: Fraction) -> bool:
         """Whether it is time for slanted pieces: the tolerance is small, and so are the boxes."""
