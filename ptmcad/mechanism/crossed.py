@@ -83,6 +83,7 @@ def without_xjoints(mechanism: Mechanism) -> ClosedMechanism:
         mechanism=mechanism,
         tangent=(),
         source=mechanism.source,
+        title=mechanism.title,
     )
 
 

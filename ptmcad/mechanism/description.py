@@ -168,12 +168,14 @@ class Model:
     parameters : by name; free lengths come last, and an alias after what it is an alias of.
     unknowns : in the order in which solutions list them.
     source : the record that it was read from; none for a built-in one.
+    title : what the report calls it, where that is not its name.
     """
 
     name: str
     parameters: Mapping[str, Parameter]
     unknowns: Mapping[str, UnknownKind]
     source: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False, kw_only=True)
+    title: str = field(default="", compare=False, repr=False, kw_only=True)
 
     @property
     def record_key(self) -> str:

@@ -109,7 +109,7 @@ def equations_of_loops(model: Mechanism) -> Model:
         stability = (determinant([*rows, [derivative(slope, name) for name in names]]),)
     found = ClosedMechanism(
         model.name, model.parameters, {**model.unknowns, **further}, equations, stability=stability, mechanism=model,
-        tangent=tangent, multipliers=tuple(further), source=model.source,
+        tangent=tangent, multipliers=tuple(further), source=model.source, title=model.title,
     )  # fmt: skip
     sizes = Faults()
     try:

@@ -9,6 +9,7 @@ from ptmcad.mechanism.record import described
 
 RECORD = {
     "name": "ptm",
+    "title": "the planar tensegrity mechanism of Wenger and Chablat",
     "parameters": {
         "L1": {"kind": "length", "default": 1, "range": [0, 4]},
         "L2": {"kind": "length", "default": 1, "range": [0, 4]},

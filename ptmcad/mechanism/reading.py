@@ -20,6 +20,7 @@ from ptmcad.text.tree import FUNCTIONS, Call, Negative, Number, Tree, names_of
 from ptmcad.text.tree import to_text as text_of
 
 MAX_NAME = 40
+MAX_TITLE = 300
 MAX_DEGREE = 64
 """Of a coordinate, stiffness, free length or force in the parameters and the cosines and sines."""
 MAX_UNKNOWNS = 12
@@ -113,6 +114,27 @@ def new_name(name: object, key: str, taken: Mapping[str, object]) -> str:
     if name in taken:
         raise ConfigError(f"the name '{name}' is given twice: choose another one", key=key)
     return name
+
+
+def title_of(title: object) -> str:
+    """A title as one line: YAML's folded and literal texts end with a line break.
+
+    Raises
+    ------
+    ConfigError
+        For what is no text, or a long one, or one with a character that is not printed.
+    """
+    if not isinstance(title, str):
+        raise ConfigError(f"{as_written(title)} is no text", key="title")
+    if len(title) > MAX_TITLE:
+        raise ConfigError(f"the text is longer than {MAX_TITLE} characters", key="title")
+    line = " ".join(title.split())
+    if not line.isprintable():
+        hidden = next(c for c in line if not c.isprintable())
+        raise ConfigError(
+            f"the title has a character that cannot be printed, U+{ord(hidden):04X}: remove it", key="title"
+        )
+    return line
 
 
 class Unread(dict[str, tuple[Tree, Tree]]):

@@ -32,6 +32,7 @@ from ptmcad.mechanism.reading import (
     new_name,
     parameters_of,
     point_name,
+    title_of,
     unknowns_of,
 )
 from ptmcad.mechanism.sizes import check_sizes
@@ -41,8 +42,8 @@ from ptmcad.text.syntax import did_you_mean, parse
 from ptmcad.text.tree import Name, Negative, Number, Tree
 
 KEYS = (
-    "name", "parameters", "unknowns", "points", "bodies", "bars", "supports", "springs", "torsion", "loads", "moments",
-    "symmetries", "closing", "x-joint",
+    "name", "title", "parameters", "unknowns", "points", "bodies", "bars", "supports", "springs", "torsion", "loads",
+    "moments", "symmetries", "closing", "x-joint",
 )  # fmt: skip
 SPRING_KEYS = ("between", "k", "free")
 TORSION_KEYS = ("angle", "k", "rest", "at")
@@ -86,9 +87,11 @@ def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
 def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = False) -> Mechanism:
     """As `described`, but what is wrong is noted, and left out or replaced."""
     check_keys(record, KEYS, "", faults)
-    name, parameters, unknowns = DEFAULT_NAME, {}, {}
+    name, title, parameters, unknowns = DEFAULT_NAME, "", {}, {}
     with faults:
         name = new_name(record.get("name", DEFAULT_NAME), "name", {})
+    with faults:
+        title = title_of(record.get("title", ""))
     with faults:
         parameters = parameters_of(mapping(record.get("parameters", {}), "parameters"), faults)
     for key in ("unknowns", "points"):
@@ -129,6 +132,7 @@ def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = Fal
         parts.closing(points),
         xjoints,
         source=record,
+        title=title,
     )
     if not proved:
         if not {(fault.key or "").partition(".")[0] for fault in faults.found} - _FORCELESS:
@@ -138,7 +142,7 @@ def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = Fal
 
 
 _SHAPE = frozenset({"parameters", "unknowns", "points", "bodies", "x-joint"})
-_FORCELESS = frozenset({"name", "bars", "supports", "symmetries"})
+_FORCELESS = frozenset({"name", "title", "bars", "supports", "symmetries"})
 
 
 def _prove(found: Mechanism, faults: Faults) -> None:

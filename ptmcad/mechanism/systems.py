@@ -22,12 +22,13 @@ from ptmcad.mechanism.reading import (
     new_name,
     parameters_of,
     parsed,
+    title_of,
     unknowns_of,
 )
 from ptmcad.mechanism.sizes import check_sizes
 from ptmcad.text.tree import Tree, names_of
 
-SYSTEM_KEYS = ("name", "parameters", "unknowns", "equations", "potential", "positive", "stable")
+SYSTEM_KEYS = ("name", "title", "parameters", "unknowns", "equations", "potential", "positive", "stable")
 DEFAULT_NAME = "system"
 _LISTS = ("equations", "positive", "stable")
 _HOLDING = frozenset({"unknowns", "equations", "potential"})
@@ -58,6 +59,9 @@ def read_system(record: Mapping[str, Any], faults: Faults) -> System:
     name = DEFAULT_NAME
     with faults:
         name = new_name(record.get("name", DEFAULT_NAME), "name", {})
+    title = ""
+    with faults:
+        title = title_of(record.get("title", ""))
     parameters: dict[str, Parameter] = {}
     with faults:
         parameters = parameters_of(mapping(record.get("parameters", {}), "parameters"), faults)
@@ -87,7 +91,9 @@ def read_system(record: Mapping[str, Any], faults: Faults) -> System:
     equations, positive, stable = (
         tuple(tree for key, tree in trees.items() if key.startswith(f"{part}.")) for part in _LISTS
     )
-    system = System(name, parameters, unknowns, equations, trees.get("potential"), positive, stable, source=record)
+    system = System(
+        name, parameters, unknowns, equations, trees.get("potential"), positive, stable, source=record, title=title
+    )
     with faults:
         if system.potential is not None and system.stability:
             raise ConfigError("of a potential the Hessian decides what is stable: leave this out", key="stable")

@@ -185,7 +185,9 @@ def test_before_anything_is_decided_the_message_says_that_there_is_no_map(monkey
     assert limit.value.partial is None
 
 
-@pytest.mark.parametrize(("seconds", "told"), [(1.0, "the time limit was reached"), (4.5, "4.5 s before the time limit")])
+@pytest.mark.parametrize(
+    ("seconds", "told"), [(1.0, "the time limit was reached"), (4.5, "4.5 s before the time limit")]
+)
 def test_a_search_that_ends_early_says_so(seconds: float, told: str) -> None:
     run = object.__new__(engine._Run)
     run.pace = Pace(seconds, lambda: 0.0, lambda: 0.0)

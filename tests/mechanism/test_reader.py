@@ -5,10 +5,12 @@ from __future__ import annotations
 from copy import deepcopy
 from fractions import Fraction
 from math import cos, pi, sin
+from pathlib import Path
 from random import Random
 from typing import Any
 
 import pytest
+import yaml
 from flint import fmpq
 
 from ptmcad import RegionMap, classify, slice_from_mapping
@@ -16,9 +18,11 @@ from ptmcad.errors import MAX_FAULTS, ConfigError, Faults
 from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models.potential import potential, system_from
 from ptmcad.exact.signatures import count_by_signature
-from ptmcad.mechanism import Mechanism, described, described_system, ptm, recognised, work
+from ptmcad.mechanism import Mechanism, described, described_system, ptm, recognised, without_loops, work
 from ptmcad.mechanism.proofs import check_bars, check_unknowns
 from ptmcad.mechanism.ptm import RECORD
+
+CONFIGS = Path(__file__).resolve().parents[2] / "configs" / "mechanisms"
 
 PLATFORM: dict[str, Any] = {
     "name": "platform",
@@ -222,6 +226,30 @@ def test_the_built_in_ones_are_proved() -> None:
     check_bars(ptm(), faults)
     check_unknowns(ptm(), faults)
     assert faults.found == []
+
+
+TITLES: list[tuple[object, str]] = [
+    (3, "title: 3 is no text"),
+    (None, "title: an empty value is no text"),
+    ("a" * 301, "title: the text is longer than 300 characters"),
+    ("a\u202eb", "title: the title has a character that cannot be printed, U\\+202E"),
+]
+
+
+@pytest.mark.parametrize(("title", "said"), TITLES)
+def test_titles_are_one_line_of_text(title: object, said: str) -> None:
+    with pytest.raises(ConfigError, match=said):
+        described({**PENDULUM, "title": title})
+    with pytest.raises(ConfigError, match=said):
+        described_system({"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"], "title": title})
+
+
+@pytest.mark.parametrize("name", ["inverted-pendulum", "slider-crank", "x-joint"])
+def test_a_title_is_one_line(name: str) -> None:
+    """Also of what its loops and X-joints make of it."""
+    record = yaml.safe_load((CONFIGS / f"{name}.yaml").read_text(encoding="utf-8"))
+    model = without_loops(described({**record["mechanism"], "title": "a title\n  of two lines\n"}))
+    assert model.title == "a title of two lines"
 
 
 def test_a_built_in_name_is_not_taken_by_another() -> None:

@@ -41,12 +41,30 @@ def limited(which: int, soft: int, hard: int | None = None) -> Callable[[], None
 
 # Memory
 
+SEEN = """
+import ptmcad.process.watch
+from ptmcad.process.watch import Watch
+ptmcad.process.watch.POLL_SECONDS = 0.01
+look = Watch._waits_for_memory
+def looks(self, now):
+    waits = look(self, now)
+    if self.waiting.most is not None and self.waiting.most.data >= {bytes}:
+        (here / "seen").touch()
+    return waits
+Watch._waits_for_memory = looks
+def seen():
+    deadline = time.monotonic() + 30
+    while not (here / "seen").exists() and time.monotonic() < deadline:
+        time.sleep(0.01)
+"""
+"""Before work: what watches it looks often, and `seen` waits until it has seen the work use so many bytes."""
+
 
 @pytest.mark.parametrize(("which", "option"), [(resource.RLIMIT_AS, "-v"), (resource.RLIMIT_DATA, "-d")])
 @pytest.mark.slow_cases("2--d")
 def test_the_limit_that_was_reached_is_named(tmp_path: Path, which: int, option: str) -> None:
     """The caller's own, though the program has one too."""
-    work = "def engine(progress, partial):\n    time.sleep(0.4)\n    bytes(1 << 30)\n"
+    work = SEEN.replace("{bytes}", "1") + "def engine(progress, partial):\n    seen()\n    bytes(1 << 30)\n"
     running = Running(tmp_path, work, preexec_fn=limited(which, 300 * MIB))
     place = tmp_path / "out" / "fig2.json"
     assert running.end() == (
@@ -70,11 +88,12 @@ def test_the_limit_that_was_reached_is_named(tmp_path: Path, which: int, option:
 def test_a_crash_with_little_memory_left(tmp_path: Path, end: str, how: str) -> None:
     """No library said that it was for lack of memory, so the message says how it ended, and the result is kept."""
     work = (
+        f"{SEEN.replace('{bytes}', '100 << 20')}"
         "import resource\n"
         "def engine(progress, partial):\n"
         "    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))\n"
         "    kept = bytearray(100 << 20)\n"
-        "    time.sleep(0.8)\n"
+        "    seen()\n"
         f"    {end}\n"
     )
     running = Running(tmp_path, work, "--max-memory", "150M")

@@ -8,7 +8,7 @@ import shlex
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from html import unescape
+from html import escape, unescape
 from html.parser import HTMLParser
 from math import atan2, cos, hypot, pi, sin
 from pathlib import Path
@@ -27,7 +27,7 @@ from ptmcad.answer.regionmap import RegionMap, Solution, Status
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import known_of
-from ptmcad.question.config import load, slice_from_options
+from ptmcad.question.config import load, slice_from_mapping, slice_from_options
 from ptmcad.question.slice import Point
 from ptmcad.show.render.axes import scale_of
 from ptmcad.show.report import page
@@ -39,6 +39,7 @@ from ptmcad.show.report.packing import packed
 from ptmcad.show.report.page import harmless
 from ptmcad.show.report.potential import potential_at
 from ptmcad.show.report.reproduction import reproduction
+from ptmcad.show.report.sections import question
 from ptmcad.text.numerals import text_of
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
@@ -112,6 +113,34 @@ def test_the_page_asks_for_nothing(shipped: Shipped) -> None:
         policy or "",
     )
     assert not re.search(r"https?:(?!//www\.w3\.org/2000/svg)", text)
+
+
+SUSPENDED = {
+    "name": "suspended",
+    "unknowns": {"x": "length", "y": "length"},
+    "points": {"A": ["-a", 0], "B": ["a", 0], "P": ["x", "y"]},
+    "parameters": {"a": {"kind": "base"}, "f": {"kind": "force"}},
+    "springs": [{"between": ["A", "P"], "k": 1}, {"between": ["B", "P"], "k": 1}],
+    "loads": {"P": [0, "f"]},
+}
+CUBIC = {"name": "cubic", "unknowns": {"x": "real"}, "equations": ["x^3 - a*x - f"]}
+
+
+@pytest.mark.parametrize(("key", "model"), [("mechanism", SUSPENDED), ("system", CUBIC)])
+@pytest.mark.parametrize("title", ["", "a mass < 1 & its two\nsprings"])
+def test_what_is_asked_of_has_its_own_title(key: str, model: dict[str, object], title: str) -> None:
+    described = {**model, "title": title} if title else model
+    result = ptmcad.classify(slice_from_mapping({key: described, "axes": {"a": [0, 2], "f": [-1, 1]}}))
+    stored = RegionMap.from_json(result.to_json())
+    shown = escape(" ".join(title.split())) or model["name"]
+    assert stored.slice == result.slice
+    assert question(result) == question(stored)
+    assert f"<dt>{key.capitalize()}</dt><dd>{shown}</dd>" in question(stored)
+
+
+def test_the_title_of_the_paper_s_mechanism(shipped: Shipped) -> None:
+    shown = "<dt>Mechanism</dt><dd>the planar tensegrity mechanism of Wenger and Chablat</dd>"
+    assert shown in question(shipped("fig2"))
 
 
 HOSTILE = "</script><script>document.title='pwned'</script><img src=x onerror=alert(1)>\"'&amp;<!--"

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import random
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -24,7 +26,7 @@ pytest.importorskip("numba")
 import numpy as np
 
 from ptmcad.verification.exclusion import check
-from ptmcad.verification.exclusion.check import MAX_EFFORT, check_free_area
+from ptmcad.verification.exclusion.check import MAX_EFFORT, NUMBA_NEEDED, check_free_area
 from ptmcad.verification.exclusion.forms import evaluate
 from ptmcad.verification.exclusion.formulas import Formulas
 from ptmcad.verification.exclusion.holding import holds
@@ -97,6 +99,45 @@ def test_more_effort_proves_more(monkeypatch: pytest.MonkeyPatch) -> None:
     shares = [Fraction(text.split(" %", maxsplit=1)[0]) for text in found]
     assert isinstance(found[0], Unchecked)
     assert 50 < shares[0] < shares[1] == 100
+
+
+@pytest.fixture
+def not_yet_loaded(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without numba, and without what has been compiled by it."""
+    package = "ptmcad.verification.exclusion."
+    for name in [name for name in sys.modules if name == "numba" or name.startswith(package)]:
+        if name != check.__name__:
+            monkeypatch.delitem(sys.modules, name)
+
+
+@pytest.mark.usefixtures("not_yet_loaded")
+def test_without_numba_it_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    claims = CertifiedClaims(a_map("truss"))
+    monkeypatch.setitem(sys.modules, "numba", None)
+    found = check_free_area(1, claims)
+    assert isinstance(found, Unchecked)
+    assert found == NUMBA_NEEDED
+
+
+@pytest.mark.usefixtures("not_yet_loaded")
+@pytest.mark.parametrize(
+    ("numba", "said"),
+    [
+        ("raise ImportError('Numba needs an older NumPy')", "Numba needs an older NumPy"),
+        ("import a_package_of_its_own", "No module named 'a_package_of_its_own'"),
+        ("import numba.a_part_of_it", "No module named 'numba.a_part_of_it'"),
+    ],
+)
+def test_what_else_cannot_be_imported_is_named(
+    numba: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A numba that is installed is not asked for."""
+    claims = CertifiedClaims(a_map("truss"))
+    (tmp_path / "numba").mkdir()
+    (tmp_path / "numba" / "__init__.py").write_text(numba)
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(ImportError, match=said):
+        check_free_area(1, claims)
 
 
 def with_one_cell(stored: RegionMap) -> RegionMap:

@@ -208,9 +208,13 @@ def _read(node: Tree, faults: Faults, used: Iterable[str] = (), is_system: bool 
     return Described(model, node, _doubtful(model, (*(fault.key or "" for fault in found.found), *empty)))
 
 
+_WITHOUT_PARAMETERS = frozenset({"name", "title", "bars", "supports", "unknowns"})
+"""Keys below which no parameter is used."""
+
+
 def _check_use(model: Model, used: set[str], faults: Faults) -> None:
     """Note each parameter that nothing uses, neither the description nor the record's own expressions."""
-    if {(fault.key or "").partition(".")[0] for fault in faults.found} - {"name", "bars", "supports", "unknowns"}:
+    if {(fault.key or "").partition(".")[0] for fault in faults.found} - _WITHOUT_PARAMETERS:
         return  # what could not be read may use it
     for name in model.idle:
         with faults:
@@ -249,7 +253,7 @@ def _doubtful(model: Model, keys: Iterable[str]) -> frozenset[str]:
 def _hidden(model: System, faulty: Sequence[list[str]]) -> set[str]:
     """The names that a system does not list, and of which faults hide what they are: parameters, or something else."""
     undeclared = {name for name in model.parameters if name not in model.source.get("parameters", {})}
-    if any(step[0] not in ("parameters", "name", *_EXPRESSIONS) for step in faulty):
+    if any(step[0] not in ("parameters", "name", "title", *_EXPRESSIONS) for step in faulty):
         return undeclared
     hidden: set[str] = set()
     right: set[str] = set()

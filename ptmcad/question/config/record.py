@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from ptmcad.errors import ConfigError, Faults, HypothesisError, PtmcadError, shown
 from ptmcad.mechanism import Model, ptm
+from ptmcad.mechanism.reading import MAX_TITLE, title_of
 from ptmcad.question.config.model import Described, described_in
 from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.config.scalars import names_in_scalar, number_text
@@ -25,7 +26,6 @@ RECORD_KEYS = ("name", "title", "notes", "mechanism", "system", "parameters", "a
 MAX_MEMBERS = 400
 """Of a family."""
 _MAX_NAME = 100
-_MAX_TITLE = 300
 _FIELDS = {"parameters": "values", "count": "counting"}
 """Of a `Record`, where it is not named like its key."""
 _PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")
@@ -209,12 +209,10 @@ def _text(node: Node, limit: int) -> str:
 
 
 def _title(node: Node) -> str:
-    """A title as one line: YAML's folded and literal texts end with a line break."""
-    title = " ".join(_text(node, _MAX_TITLE).split())
-    if not title.isprintable():
-        hidden = next(c for c in title if not c.isprintable())
-        raise node.place.error(f"the title has a character that cannot be printed, U+{ord(hidden):04X}: remove it")
-    return title
+    try:
+        return title_of(_text(node, MAX_TITLE))
+    except ConfigError as error:
+        raise node.place.error(error.message) from error
 
 
 def file_name(name: str, option: str) -> str:

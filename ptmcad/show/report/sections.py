@@ -101,11 +101,10 @@ def question(result: RegionMap) -> str:
     ]
     shown = ", ".join(f"{n} = {v}" for n, v in values if v != "0")
     zero = ", ".join(n for n, v in values if v == "0")
-    mechanism = "the planar tensegrity mechanism of Wenger and Chablat" if slice.mechanism == "ptm" else slice.mechanism
     index = ", ".join(index_words(len(slice.model.unknowns) + 1).split("-"))
     counted_by = _COUNTED[slice.count].format(noun=noun(slice.model), index=" and ".join(index.rsplit(", ", 1)))
     items = [
-        ("Mechanism" if isinstance(slice.model, Mechanism) else "System", mechanism),
+        ("Mechanism" if isinstance(slice.model, Mechanism) else "System", slice.model.title or slice.mechanism),
         ("Axes", axes),
         ("Parameters", shown + (f"{'; ' if shown else ''}zero: {zero}" if zero else "") or "none"),
         ("Count", f"regions are distinguished by {counted_by}"),

@@ -44,6 +44,13 @@ def check_free_area(
     Parameters
     ----------
     effort : from 0, nothing, to `MAX_EFFORT`, all.
+
+    Raises
+    ------
+    Violation
+        With a point whose counts are not those of its cell.
+    ImportError
+        Where something other than numba is missing, or numba is installed and does not work.
     """
     if not claims.result.cells:
         return "there are no cells"
@@ -53,7 +60,9 @@ def check_free_area(
         from ptmcad.verification.exclusion.pieces import pieces_of, widened
         from ptmcad.verification.exclusion.running import search, share_over
         from ptmcad.verification.exclusion.systems import systems_of
-    except ImportError:
+    except ModuleNotFoundError as missing:
+        if missing.name != "numba":  # but a part of it, or a package that it needs itself
+            raise
         return Unchecked(NUMBA_NEEDED)
     try:
         systems = systems_of(claims)
