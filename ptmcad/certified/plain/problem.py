@@ -35,7 +35,9 @@ MAX_UNKNOWNS_AT_POINTS = 5
 FIRST = 2
 """Number of the first unknown among the variables, after the two axes."""
 
-_IRRELEVANT = frozenset({"name", "parameters", "unknowns", "source", "bars", "bodies", "supports", "symmetries"})
+_IRRELEVANT = frozenset(
+    {"name", "title", "parameters", "unknowns", "source", "bars", "bodies", "supports", "symmetries"}
+)
 _SAID_IN_EQUATIONS = frozenset({"mechanism", "tangent", "multipliers"})
 """Of a mechanism with closed loops."""
 _USED = frozenset(

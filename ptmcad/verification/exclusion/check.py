@@ -106,7 +106,9 @@ def places_of(claims: CertifiedClaims) -> Callable[[Range, Range], Where] | None
     """Where a map's solutions may be over a rectangle of the window; None without compiled code, or without bounds."""
     try:
         from ptmcad.verification.exclusion.places import Places
-    except ImportError:
+    except ModuleNotFoundError as missing:
+        if missing.name != "numba":
+            raise
         return None
     try:
         return Places(claims)
