@@ -78,6 +78,7 @@ def at_random(claims: CertifiedClaims, rng: random.Random) -> tuple[Fraction, Fr
 
 
 @pytest.mark.parametrize(("name", "count"), CASES)
+@pytest.mark.slow_cases("paper-index", "pair-index", "loop-total", "truss-stable")
 def test_places_have_all_solutions(name: str, count: str) -> None:
     """That balls alone find; and with places they find the same ones."""
     claims, rng, told = CertifiedClaims(a_map(name, count)), random.Random(name + count), 0
@@ -98,6 +99,7 @@ def test_places_have_all_solutions(name: str, count: str) -> None:
 
 
 @pytest.mark.parametrize(("name", "count"), CASES)
+@pytest.mark.slow_cases("paper-stable", "paper-index", "pair-index", "loop-total", "truss-stable", "sliding-stable")
 def test_places_over_a_box_have_those_over_its_points(name: str, count: str) -> None:
     claims, rng, told = CertifiedClaims(a_map(name, count)), random.Random(name), 0
     found, counting = Places(claims), counting_of(claims)
