@@ -107,6 +107,10 @@ def read_text(text: str, file: str | None = None) -> Tree:
         problem = shown(" ".join(filter(None, (error.context, error.problem))), 300)
         if mark is not None and "cannot start any token" in problem:
             problem = _cannot_start(text, mark) or problem
+        if "maximum nesting depth" in problem:  # a limit that some builds of libyaml have
+            raise Place(file=file, line=mark.line + 1 if mark else None).error(
+                f"more than {MAX_DEPTH} levels of nesting"
+            ) from error
         raise ConfigError(f"is not YAML: {problem}", file=file, line=mark.line + 1 if mark else None) from error
     except yaml.YAMLError as error:
         raise ConfigError(
