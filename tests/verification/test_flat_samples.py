@@ -22,7 +22,8 @@ from ptmcad.question.slice import Point
 from ptmcad.verification.certified.counted import Counted, Where
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.flat import beside, is_flat, parameters_at
-from ptmcad.verification.certified.points import PaperCounting, apart
+from ptmcad.verification.certified.paper import PaperCounting
+from ptmcad.verification.certified.points import apart
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation

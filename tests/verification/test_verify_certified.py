@@ -28,8 +28,8 @@ from ptmcad.question.slice import Count, Point
 from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.energy import Energy
 from ptmcad.verification.certified.equilibria import TORUS, Square, Unproved, _halves, equilibria
+from ptmcad.verification.certified.paper import _only, all_equilibria, counts_of
 from ptmcad.verification.certified.parameters import energy_at, energy_over
-from ptmcad.verification.certified.points import _only, all_equilibria, counts_of
 from ptmcad.verification.certified.sampling import _beside, _by_area
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.sweep import sweep

@@ -36,7 +36,7 @@ from ptmcad.verification.certified.counted import Counts
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.field import Field, power
 from ptmcad.verification.certified.models import ModelCounting
-from ptmcad.verification.certified.points import PaperCounting
+from ptmcad.verification.certified.paper import PaperCounting
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import zeros
 from ptmcad.verification.certified.spectrum import inertia, is_no_minimum

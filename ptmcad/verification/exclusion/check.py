@@ -61,8 +61,7 @@ def check_free_area(
         from ptmcad.verification.exclusion.running import search, share_over
         from ptmcad.verification.exclusion.systems import systems_of
     except ModuleNotFoundError as missing:
-        if missing.name != "numba":  # but a part of it, or a package that it needs itself
-            raise
+        _check_is_numba(missing)
         return Unchecked(NUMBA_NEEDED)
     try:
         systems = systems_of(claims)
@@ -102,13 +101,18 @@ def check_free_area(
     return Unchecked(text)
 
 
+def _check_is_numba(missing: ModuleNotFoundError) -> None:
+    """Raise it again where it is a part of numba that is missing, or a package that it needs itself."""
+    if missing.name != "numba":
+        raise missing
+
+
 def places_of(claims: CertifiedClaims) -> Callable[[Range, Range], Where] | None:
     """Where a map's solutions may be over a rectangle of the window; None without compiled code, or without bounds."""
     try:
         from ptmcad.verification.exclusion.places import Places
     except ModuleNotFoundError as missing:
-        if missing.name != "numba":
-            raise
+        _check_is_numba(missing)
         return None
     try:
         return Places(claims)

@@ -1,9 +1,10 @@
-"""Boxes of the window and of configurations: which of them have no critical point outside of the pieces. Compiled.
+"""Boxes of the window and of configurations: which of them have no zero of a system outside of the pieces. Compiled.
 
-Guarantee: a box that is called `GONE` has none. What is tried, in this order: the formulas' values; the mean value
-theorem; the linearised equations, multiplied by a matrix that solves them in the middle of the box, of which each
-leaves an interval for the variable that it is solved for (Hansen and Sengupta); whether the pieces hold the rectangle
-around what is left; and whether they hold the strip that the row of one axis leaves next to the other axis.
+Guarantee: a box that is called `GONE` has none: no critical point, or no solution, as the system has it. What is tried,
+in this order: the formulas' values; the mean value theorem; the linearised equations, multiplied by a matrix that
+solves them in the middle of the box, of which each leaves an interval for the variable that it is solved for (Hansen
+and Sengupta); whether the pieces hold the rectangle around what is left; and whether they hold the strip that the row
+of one axis leaves next to the other axis.
 """
 
 from __future__ import annotations

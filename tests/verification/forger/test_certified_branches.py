@@ -41,10 +41,11 @@ from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import axis
 from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification.certified import points
+from ptmcad.verification.certified import paper
 from ptmcad.verification.certified.equilibria import Square, Unproved, equilibria
+from ptmcad.verification.certified.paper import all_equilibria, cones, counts_of
 from ptmcad.verification.certified.parameters import check_domain, energy_at, energy_over, values_at
-from ptmcad.verification.certified.points import all_equilibria, check_points, cones, counts_of
+from ptmcad.verification.certified.points import check_points
 from ptmcad.verification.certified.sampling import check_boxes
 from ptmcad.verification.certified.structure import CertifiedClaims, check_components, check_form, check_regions
 from ptmcad.verification.certified.system import check_potential
@@ -341,7 +342,7 @@ def test_rejecting_branches(check: Check, make: Callable[[], RegionMap], change:
 
 
 def test_counts_that_contradict_eulers_sum_are_a_fault_of_the_check(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(points, "cones", lambda energy, values: 3)
+    monkeypatch.setattr(paper, "cones", lambda energy, values: 3)
     with pytest.raises(Violation, match=r"minima, saddles and maxima .* with 3 cones contradict Euler's sum"):
         check_points(CertifiedClaims(total()))
 
