@@ -11,7 +11,7 @@ from ptmcad.certified.ptm.flat import has_flat_mirror
 from ptmcad.certified.ptm.mirror import is_own_image
 from ptmcad.certified.ptm.statics import positive_base
 from ptmcad.mechanism import ptm
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.slice import Slice
 
 
 def beforehand(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
@@ -24,10 +24,10 @@ def beforehand(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
     if slice.model != ptm():
         return (*steps, *_plain(slice, without))
     steps.append(PlanStep("discriminant variety", False, "its degree is out of reach when springs have free lengths"))
-    if slice.count in (Count.STABLE, Count.ADMISSIBLE):
+    if slice.count.is_of_stable:
         steps += [saving_step("folds-of-saddles", without), saving_step("cones-and-creases", without)]
     steps.append(saving_step("dependent-equations", without))
-    mirrored = slice.count in (Count.STABLE, Count.ADMISSIBLE) and (is_own_image(slice) or has_flat_mirror(slice))
+    mirrored = slice.count.is_of_stable and (is_own_image(slice) or has_flat_mirror(slice))
     if mirrored:
         steps.append(saving_step("mirror-images", without))
     if unloaded(slice) and not (mirrored and without.isdisjoint({"mirror-images", "folds-of-saddles"})):
@@ -43,7 +43,7 @@ def _plain(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
         else "curves are enclosed, as the certified engine was asked for"
     )
     steps = [PlanStep("discriminant variety", False, reason)]
-    if slice.count is Count.STABLE:
+    if slice.count.is_of_stable:
         steps.append(saving_step("folds-of-saddles", without))
         if slice.has_free_lengths:
             steps.append(saving_step("cones-and-creases", without))

@@ -51,6 +51,11 @@ class Count(Enum):
     ADMISSIBLE = "admissible"
     """stable equilibria at which every spring is longer than its free length"""
 
+    @property
+    def is_of_stable(self) -> bool:
+        """Whether no other solutions than stable ones matter."""
+        return self in (Count.STABLE, Count.ADMISSIBLE)
+
 
 QUANTITIES = ("length", "force")
 """Whose units a record may declare."""

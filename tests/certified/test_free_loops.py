@@ -342,8 +342,6 @@ def test_what_is_not_computed_is_refused() -> None:
     }
     with pytest.raises(ConfigError, match=r"free lengths in closed loops .* one degree of freedom, not 2"):
         ptmcad.slice_from_mapping(FOUR_BAR | {"mechanism": two_free})
-    with pytest.raises(ConfigError, match="admissible equilibria are not counted"):
-        slice_of("four-bar-free", count="admissible")
     with pytest.raises(ConfigError, match="choose certified or auto"):
         ptmcad.classify(slice_of("four-bar-free"), engine="exact")
 

@@ -18,8 +18,9 @@ from ptmcad.certified.formulation import curves, point_counter
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain import slanted
 from ptmcad.certified.plain.bounds import ranges
-from ptmcad.certified.plain.points import inertia, plain_counter
+from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.plain.problem import problem_of
+from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.trigonometric import Harmonics
 from ptmcad.certified.search import search_curve
 from ptmcad.errors import ConfigError, GeometryError
@@ -255,8 +256,6 @@ def test_inertia(entries: list[Any], negative: int | None) -> None:
 
 
 def test_what_the_plain_formulas_do_not_take_is_refused_by_name() -> None:
-    with pytest.raises(ConfigError, match="admissible equilibria of the paper's mechanism only"):
-        plain_counter(replace(_slice(VON_MISES), count=Count.ADMISSIBLE))
     four: dict[str, Any] = {"unknowns": {f"t{n}": "angle" for n in range(4)},
                             "potential": "cos(t0) + a*cos(t1) + b*cos(t2) + cos(t3)"}  # fmt: skip
     with pytest.raises(ConfigError, match="up to 3 unknowns"):

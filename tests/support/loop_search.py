@@ -56,6 +56,20 @@ def _points(
     return px, py, px + (along * dx - off * dy) / apart, py + (along * dy + off * dx) / apart
 
 
+Taut = Callable[[Numbers, Numbers, Numbers, Numbers], NDArray[np.bool_]]
+"""Of the same, whether all springs are longer than their free lengths."""
+
+
+def taut_along(lengths: Mapping[str, float], energy: Energy, taut: Taut, places: int = 6001) -> int:
+    """The number of minima at which all springs are longer than their free lengths."""
+    number = 0
+    for curve in loop_of(lengths, places):
+        values = energy(*curve)
+        lower = (values < np.roll(values, 1)) & (values <= np.roll(values, -1))
+        number += int((lower & taut(*curve)).sum())
+    return number
+
+
 def counts_along(lengths: Mapping[str, float], energy: Energy, places: int = 6001) -> tuple[int, int]:
     """The numbers of all critical points and of minima."""
     total = minima = 0

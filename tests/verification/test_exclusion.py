@@ -62,7 +62,22 @@ PAPER = {
 }
 """Windows with one curve each: of admissible counts the one where a spring has its free length."""
 LOOP = load("configs/mechanisms/four-bar-free.yaml")
-RECORDS = {"zeeman": ZEEMAN, "truss": TRUSS, "loop": LOOP}
+CRANK: dict[str, Any] = {
+    "name": "crank",
+    "mechanism": {
+        "name": "sprung_crank",
+        "parameters": {"F": {"kind": "force"}, "l0": {"kind": "free length"}},
+        "unknowns": {"th": "angle"},
+        "points": {"O": [0, 0], "A": [2, 0], "B": [-1, 2], "P": ["cos(th)", "sin(th)"]},
+        "bars": [["O", "P"]],
+        "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}, {"between": ["B", "P"], "k": 1, "free": "1/2"}],
+        "loads": {"P": [0, "F"]},
+    },
+    "axes": {"F": [1, 2], "l0": [2, 3]},
+    "count": "admissible",
+}
+"""One stable equilibrium, and one curve: where the first spring has its free length."""
+RECORDS = {"crank": CRANK, "zeeman": ZEEMAN, "truss": TRUSS, "loop": LOOP}
 
 
 @cache

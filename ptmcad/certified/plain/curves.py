@@ -17,6 +17,7 @@ from ptmcad.certified.curve import Curve
 from ptmcad.certified.formula import Formula
 from ptmcad.certified.plain.bounds import TURN, Range
 from ptmcad.certified.plain.chart import Chart, chart, determinant, principal_minors
+from ptmcad.certified.plain.excesses import boundaries
 from ptmcad.certified.plain.geometry import Geometry, geometry
 from ptmcad.certified.plain.infinity import Patch, at_infinity, patches
 from ptmcad.certified.plain.loopcurves import curves_of_loops
@@ -75,7 +76,7 @@ def _of_patch(slice: Slice, count: Count, without: frozenset[str], patch: Patch)
         return
     exact = geometry(problem, slice.axes)
     at = chart(exact)
-    stable = problem.is_gradient and count is Count.STABLE and "folds-of-saddles" not in without
+    stable = problem.is_gradient and count.is_of_stable and "folds-of-saddles" not in without
     search = _Search(
         problem,
         exact,
@@ -90,6 +91,7 @@ def _of_patch(slice: Slice, count: Count, without: frozenset[str], patch: Patch)
     )
     yield from _smooth(search, at)
     yield from _boundaries(search, at)
+    yield from _at_free_lengths(search, at)
     yield from _infinite(search, patch)
 
 
@@ -133,11 +135,6 @@ def _charted(search: _Search, at: Chart) -> list[int]:
 
 def _fold(search: _Search, at: Chart) -> Curve:
     """Solutions with a singular Jacobian, every spring long that has a chart where it is short."""
-    semidefinite: list[Formula] = []
-    if search.stable:
-        semidefinite = principal_minors(at.matrix_at_equilibrium())
-        semidefinite += [f for s in range(len(at.springs)) for f in at.diagonal_times_length(s)]
-        semidefinite += [turned.stiffness for turned in at.turned]
     return Curve(
         _name(search),
         _reason(search),
@@ -147,13 +144,22 @@ def _fold(search: _Search, at: Chart) -> Curve:
             _dependent(search, at),
             [
                 *(at.lengths[s] - search.short[s] for s in _charted(search, at)),
-                *semidefinite,
+                *(_semidefinite(at) if search.stable else []),
                 *_values(search.conditions, at),
             ],
         ),
         search.ranges,
         np.array(search.weights),
     )
+
+
+def _semidefinite(at: Chart) -> list[Formula]:
+    """What is not negative at minima, nor at limits of them, but for the determinant."""
+    return [
+        *principal_minors(at.matrix_at_equilibrium()),
+        *(f for s in range(len(at.springs)) for f in at.diagonal_times_length(s)),
+        *(turned.stiffness for turned in at.turned),
+    ]
 
 
 def _dependent(search: _Search, at: Chart) -> tuple[Sequence[Formula], Sequence[Formula]]:
@@ -189,6 +195,27 @@ def _boundaries(search: _Search, at: Chart) -> Iterator[Curve]:
                 [*at.equations, *_values([condition], at)],
                 (0, 1, *search.problem.variables),
                 nonnegative=[*others, *semidefinite],
+            ),
+            search.ranges,
+            np.array(search.weights),
+        )
+
+
+def _at_free_lengths(search: _Search, at: Chart) -> Iterator[Curve]:
+    """Stable equilibria at which one spring has its free length, and no other one is shorter than its own."""
+    problem = search.problem
+    graph = at.equations[0].graph
+    minima = [*_semidefinite(at), at.determinant(at_equilibrium=True)] if problem.is_gradient else []
+    moments = [turned.moment for turned in at.turned]
+    for found in boundaries(problem.excesses, [graph.variable(k) for k in problem.variables]):
+        yield Curve(
+            f"{found.name}{search.where}",
+            found.reason,
+            system(
+                [*at.equations, found.zero],
+                (0, 1, *problem.variables),
+                ([*found.others, *moments, *at.dependent], at.balances),
+                [*found.not_negative, *minima, *_values(search.conditions, at)],
             ),
             search.ranges,
             np.array(search.weights),

@@ -104,6 +104,10 @@ def _inverted(problem: Problem, block: Sequence[int], largest: int, side: int) -
         inequalities=conditions(problem.inequalities),
         stability=conditions(problem.stability),
         multiples=(),
+        excesses=tuple(
+            replace(excess, value=changed(excess.value), boundary=tuple(map(changed, excess.boundary)))
+            for excess in problem.excesses
+        ),
     )
 
 

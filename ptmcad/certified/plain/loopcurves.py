@@ -13,6 +13,7 @@ import numpy as np
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.formula import Formula
 from ptmcad.certified.plain.bounds import TURN
+from ptmcad.certified.plain.excesses import boundaries
 from ptmcad.certified.plain.infinity import Patch
 from ptmcad.certified.plain.loopchart import LoopChart, loop_chart
 from ptmcad.certified.plain.problem import FIRST, Problem
@@ -36,12 +37,27 @@ def curves_of_loops(slice: Slice, count: Count, patch: Patch) -> Iterator[Curve]
     sides = _sides(problem, at)
     fold = system([*at.equations, at.determinant()], variables, ((), ()), [*long, *sides])
     yield Curve(f"fold{problem.where}", _REASON, fold, ranges, np.array(weights))
-    stable = [at.determinant()] if count is Count.STABLE else []
+    stable = [at.determinant()] if count.is_of_stable else []
     for k, (side, condition) in enumerate(zip(sides, problem.inequalities, strict=True)):
         yield Curve(
             f"boundary {condition.text} = 0{problem.where}",
             f"solutions count where {condition.text} > 0, and at one of them it is zero",
             system([*at.equations, side], variables, nonnegative=[*sides[:k], *sides[k + 1 :], *stable]),
+            ranges,
+            np.array(weights),
+        )
+    graph = at.equations[0].graph
+    unknowns = [graph.variable(k) for k in problem.variables]
+    for found in boundaries(problem.excesses, unknowns):
+        yield Curve(
+            f"{found.name}{problem.where}",
+            found.reason,
+            system(
+                [*at.equations, found.zero],
+                variables,
+                (found.others, ()),
+                [*found.not_negative, *sides, at.determinant()],
+            ),
             ranges,
             np.array(weights),
         )
@@ -60,8 +76,6 @@ def curves_of_loops(slice: Slice, count: Count, patch: Patch) -> Iterator[Curve]
             (*ranges, TURN),
             np.array([*weights, TURNING_WEIGHT]),
         )
-    graph = at.equations[0].graph
-    unknowns = [graph.variable(k) for k in problem.variables]
     for cone in problem.cones:
         # configurations are a curve: two equations d = 0 leave curves in the window and need no direction
         vanishing = [f for f in (d.formula(graph, unknowns) for d in cone.difference) if f.value != 0]

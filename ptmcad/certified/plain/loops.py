@@ -21,6 +21,7 @@ from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.points import PlainCounter, plain_counter
 from ptmcad.certified.plain.poses import (
     MAX_DOUBLINGS,
+    all_pull,
     all_settled,
     assembled,
     numbers_of,
@@ -103,7 +104,9 @@ def _pose(
             settle(found, numbers, written, digits, attempt)
         if found.keys() >= numbers.keys():
             pose = assembled(mechanism, parameters, found, None)
-            return replace(pose, stable=solution.signs == "+", energy=found.get("energy")), bits
+            stable = solution.signs == "+"
+            tense = stable and all_pull(pose.springs)
+            return replace(pose, stable=stable, energy=found.get("energy"), admissible=tense), bits
         bits *= 2
     return not_settled(mechanism, found, numbers.keys() - found.keys()), bits // 2
 

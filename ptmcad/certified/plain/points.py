@@ -13,8 +13,9 @@ from fractions import Fraction
 from math import isfinite
 
 import numpy as np
-from flint import arb, arb_mat, ctx
+from flint import arb_mat, ctx
 
+from ptmcad.answer.regionmap import Solution
 from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.distinct import FULL_TURN, distinct
@@ -26,6 +27,7 @@ from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.infinity import WITNESSES, patches
 from ptmcad.certified.plain.loopchart import LoopChart, loop_chart
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS, Problem, problem_of
+from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.points import BUDGET, MIN_BOX_WIDTHS, PRECISIONS, QUICK_BUDGET, PointCount, boxed
 from ptmcad.certified.search import Boxes, Found, isolate
@@ -55,8 +57,8 @@ class PlainCounter:
     all, stable : the systems that a search prunes with, for all solutions that count and for the stable ones.
     equations : the equations alone.
     hessian : a tape of one stage with the Hessian's entries row by row.
-    conditions : a tape of one stage with the inequalities, then the conditions for stability; with closed loops that is
-        the Jacobian's determinant.
+    conditions : a tape with the inequalities, then the conditions for stability, with closed loops the Jacobian's
+        determinant; and in a second stage the springs' excesses, where admissible solutions are asked for.
     pause : called between the parts of a long search; what it raises ends that.
     """
 
@@ -80,40 +82,65 @@ class PlainCounter:
         ArithmeticError
             When the counts contradict Euler's sum on the torus, which would be a fault of this program.
         """
-        stable_only = count is Count.STABLE
+        stable_only = count.is_of_stable
         found = self._zeros(x, y, stable_only, thorough)
         counted = None if found is None else self._counted(x, y, found, count)
         if counted is None:
             return PointCount()
-        if not self.problem.is_gradient:
-            # where all are counted, which of them are stable is known here only: it may change within the cell
-            held = "+" * (self._asked(count) - len(self.problem.inequalities))
-            solutions = tuple(
-                boxed(wide, box, held if stable_only else self._stability(x, y, wide), self.problem.variables)
-                for wide, box in counted
-            )
-            number = len(solutions)
-            if stable_only:
-                return PointCount(stable=number, solutions=solutions, decided=True)
-            return PointCount(total=number, solutions=solutions, decided=True)
-        only_minima, size = stable_only, len(self.problem.unknowns)
-        solutions, index = (), [0] * (size + 1)
+        if self.problem.is_gradient:
+            return self._of_potential(x, y, counted, count)
+        # where all are counted, which of them are stable is known here only: it may change within the cell
+        held = "+" * (self._asked(count) - len(self.problem.inequalities))
+        solutions = tuple(
+            boxed(wide, box, held if stable_only else self._stability(x, y, wide), self.problem.variables)
+            for wide, box in counted
+        )
+        number = len(solutions)
+        if stable_only:
+            return self._with_admissible(x, y, number, solutions, [wide for wide, _ in counted], count)
+        return PointCount(total=number, solutions=solutions, decided=True)
+
+    def _of_potential(
+        self, x: Fraction, y: Fraction, counted: Sequence[tuple[Boxes, Boxes]], count: Count
+    ) -> PointCount:
+        """The counts of critical points by their indices; undecided where one of these is."""
+        only_minima, size = count.is_of_stable, len(self.problem.unknowns)
+        solutions, index, minima = tuple[Solution, ...](), [0] * (size + 1), list[Boxes]()
         for wide, box in counted:
             negative = self._index_in_floats(box)
             negative = self._index(x, y, wide) if negative is None else negative
             if negative is None:
                 return PointCount()
             index[negative] += 1
+            minima += [wide] if negative == 0 else []
             if negative == 0 or not only_minima:
                 signs = "+" * (size - negative) + "-" * negative
                 solutions = (*solutions, boxed(wide, box, signs, self.problem.variables))
         if only_minima:
-            return PointCount(stable=index[0], solutions=solutions, decided=True)
+            return self._with_admissible(x, y, index[0], solutions, minima, count)
         smooth = not (self.problem.has_springs or self.problem.reals or self.problem.inequalities)
         if smooth and sum((-1) ** k * number for k, number in enumerate(index)):
             raise ArithmeticError(f"critical points of a function on the torus by index {index} at ({x}, {y})")
         cones = 0 if smooth else None
         return PointCount(len(solutions), index[0], None, tuple(index), cones, solutions, True)
+
+    def _with_admissible(
+        self,
+        x: Fraction,
+        y: Fraction,
+        stable: int,
+        solutions: tuple[Solution, ...],
+        boxes: Sequence[Boxes],
+        count: Count,
+    ) -> PointCount:
+        """The number of stable solutions, and of admissible ones among them where these are asked for."""
+        admissible: int | None = None
+        if count is Count.ADMISSIBLE:
+            longer = [self._holds(x, y, box, self.conditions.outputs[1]) for box in boxes]
+            if None in longer:
+                return PointCount()
+            admissible = longer.count(True)
+        return PointCount(stable=stable, admissible=admissible, solutions=solutions, decided=True)
 
     def _counted(
         self, x: Fraction, y: Fraction, zeros: tuple[Boxes, Boxes], count: Count
@@ -146,7 +173,7 @@ class PlainCounter:
 
     def _asked(self, count: Count) -> int:
         """How many of the conditions hold at what is counted, from the first one on."""
-        return len(self.problem.inequalities if count is not Count.STABLE else self.conditions.outputs[0])
+        return len(self.conditions.outputs[0] if count.is_of_stable else self.problem.inequalities)
 
     def _stability(self, x: Fraction, y: Fraction, unique: Boxes) -> str:
         """The signs of the conditions for stability at a proved zero; empty where there are none, or one is open."""
@@ -207,13 +234,19 @@ class PlainCounter:
         return found
 
     def zero_condition(self, x: Fraction, y: Fraction, count: Count) -> str:
-        """The text of a condition whose sign is not decided at a proved zero, to as many digits as there are."""
-        found = self._zeros(x, y, False, False)
-        conditions = self.problem.conditions(count)
-        for unique in () if found is None or not conditions else found[0]:
-            signs = [self._holds(x, y, unique, self.conditions.outputs[0][k : k + 1]) for k in range(len(conditions))]
-            if None in signs and False not in signs:
-                return conditions[signs.index(None)].text
+        """What is not decided of the signs of conditions at a proved zero, to as many digits as there are, in words."""
+        conditions = [c.text for c in self.problem.conditions(count)]
+        excesses = [excess.text for excess in self.problem.excesses]
+        found = self._zeros(x, y, bool(excesses), False) if conditions or excesses else None
+        for unique in () if found is None else found[0]:
+            if excesses and self.problem.is_gradient and self._index(x, y, unique) != 0:
+                continue
+            for texts, places in zip((conditions, excesses), self.conditions.outputs, strict=True):
+                signs = [self._holds(x, y, unique, places[k : k + 1]) for k in range(len(texts))]
+                if None in signs and False not in signs:
+                    return texts[signs.index(None)]
+                if False in signs:
+                    break
         return ""
 
     def _box(self, x: Fraction, y: Fraction, box: Boxes) -> Box:
@@ -280,6 +313,7 @@ def _sum(parts: Sequence[PointCount]) -> PointCount:
     return PointCount(
         total=added([p.total for p in parts]),
         stable=added([p.stable for p in parts]),
+        admissible=added([p.admissible for p in parts]),
         index=tuple(map(sum, zip(*indices, strict=True))) if len(indices) == len(parts) else None,
         solutions=tuple(solution for p in parts for solution in p.solutions),
         decided=True,
@@ -310,9 +344,9 @@ def _counter(slice: Slice, problem: Problem, pause: Callable[[], None] | None) -
     at = loop_chart(problem) if problem.closing else chart(geometry(problem))
     vanishing = (at.dependent, at.balances)
     unknowns = [at.equations[0].graph.variable(k) for k in problem.variables]
-    inequalities, stability = (
+    inequalities, stability, excesses = (
         [c.value.formula(at.equations[0].graph, unknowns) for c in some]
-        for some in (problem.inequalities, problem.stability)
+        for some in (problem.inequalities, problem.stability, problem.excesses)
     )
     if isinstance(at, LoopChart):
         stability = [at.determinant()]
@@ -325,7 +359,7 @@ def _counter(slice: Slice, problem: Problem, pause: Callable[[], None] | None) -
         system(at.equations, problem.variables, vanishing, [*minima, *inequalities], at.hessian),
         system(at.equations, problem.variables, jacobian=at.hessian),
         record([[entry for row in at.hessian for entry in row]]),
-        record([[*inequalities, *stability]]),
+        record([[*inequalities, *stability], excesses]),
         pause,
     )
     if not problem.where:  # where sides of kinks are not conditions that anybody asked for
@@ -346,30 +380,9 @@ def _check_conditions(counter: PlainCounter) -> None:
     idle = {counter.zero_condition(x, y, slice.count) for x, y in points}
     if len(idle) == 1 and (text := idle.pop()):
         (x, y), names = points[0], slice.axis_names
+        advice = "ask for another count" if counter.problem.excesses else "choose exact, or ask for another condition"
         raise DegenerateSliceError(
             f"{text} is zero, to 90 digits and more, at a solution at {names[0]} = {text_of(x)}, {names[1]} = "
             f"{text_of(y)}, and so it is at the other points that were tried: the certified engine decides nothing of "
-            "such a slice; choose exact, or ask for another condition"
+            f"such a slice; {advice}"
         )
-
-
-def inertia(matrix: arb_mat) -> int | None:
-    """The number of negative eigenvalues of every symmetric matrix in a matrix of balls; None when undecided.
-
-    By Sylvester's law: with the columns of V near eigenvectors, V' H V is strictly diagonally dominant, so that neither
-    it nor V is singular, and the signs of its diagonal are those of its eigenvalues (Gershgorin).
-    """
-    size = matrix.nrows()
-    middle = np.array([[float(matrix[i, j].mid()) for j in range(size)] for i in range(size)])
-    if not np.isfinite(middle).all():
-        return None
-    vectors = np.linalg.eigh((middle + middle.T) / 2)[1]
-    v = arb_mat(size, size, [float(entry) for entry in vectors.flat])
-    form = v.transpose() * matrix * v
-    negative = 0
-    for i in range(size):
-        off = sum((abs(form[i, j]) for j in range(size) if j != i), arb(0))
-        if not abs(form[i, i]) > off:
-            return None
-        negative += bool(form[i, i] < 0)
-    return negative

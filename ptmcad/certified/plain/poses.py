@@ -247,6 +247,11 @@ def proved_digits(number: arb, digits: int, attempt: int) -> Enclosure | None:
     return enclosed(number, digits + 1) if found is None and attempt > 1 else found
 
 
+def all_pull(springs: Sequence[Spring]) -> bool:
+    """Whether every spring is longer than its free length, by forces of which each is told from zero or is zero."""
+    return all(spring.force.low > 0 for spring in springs)
+
+
 def assembled(
     mechanism: Mechanism,
     parameters: Mapping[str, Fraction],
@@ -296,7 +301,7 @@ def assembled(
         index=index,
         stable=None if index is None else index == 0,
         flat=flat,
-        admissible=None if index is None else index == 0 and all(spring.force.low > 0 for spring in springs),
+        admissible=None if index is None else index == 0 and all_pull(springs),
         reals=tuple(at[f"real {name}"] for name in mechanism.reals),
         torsion=torsion,
     )

@@ -16,6 +16,8 @@ from itertools import combinations
 
 from ptmcad.certified.formula import Formula, Graph, length
 from ptmcad.certified.parameters import expression_formula
+from ptmcad.certified.plain.ends import Vector, points_of, springs_of
+from ptmcad.certified.plain.excesses import Excess, excesses
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError
 from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, System
@@ -44,9 +46,6 @@ _USED = frozenset(
     {"points", "springs", "torsion", "loads", "moments", "equations", "potential", "inequalities", "stability"}
 )
 """What a description may have: nothing else may go unnoticed into a proof."""
-
-
-Vector = tuple[TrigonometricPolynomial, TrigonometricPolynomial]
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +111,7 @@ class Problem:
         loops.
     pushes : of springs along one line each, of which a branch of a problem has one side; the equations lack them.
     where : which branch it is, in words (`ptmcad.certified.plain.straight`).
+    excesses : of springs, all positive at stable equilibria that are admissible; empty where that is not asked.
     """
 
     unknowns: tuple[str, ...]
@@ -125,6 +125,7 @@ class Problem:
     closing: int = 0
     pushes: tuple[Push, ...] = ()
     where: str = ""
+    excesses: tuple[Excess, ...] = ()
 
     @property
     def has_springs(self) -> bool:
@@ -137,8 +138,11 @@ class Problem:
         return self.closing > 0 or len(self.unknowns) == 1
 
     def conditions(self, count: Count) -> tuple[Condition, ...]:
-        """What is positive at all solutions that are counted, and at no others, but for a determinant."""
-        return self.inequalities + (self.stability if count is Count.STABLE else ())
+        """What is positive at all solutions that are counted, and at no others, but for a determinant.
+
+        With admissible equilibria all stable ones are counted.
+        """
+        return self.inequalities + (self.stability if count.is_of_stable else ())
 
     @property
     def variables(self) -> tuple[int, ...]:
@@ -152,8 +156,8 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
     Raises
     ------
     ConfigError
-        When the plain formulas do not take the model or the count: more than ``most`` unknowns, or
-        `Count.ADMISSIBLE`; or when a condition on solutions holds nowhere.
+        When the plain formulas do not take the model: more than ``most`` unknowns; or when a condition on solutions
+        holds nowhere.
     GeometryError
         When it is not proved that k l0 is nowhere negative in the window: only then is a spring without length, whose
         energy has a peak there, no stable equilibrium that is not counted.
@@ -166,12 +170,6 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
             f"the certified engine takes up to {most} unknowns, and {model.name} has {len(model.unknowns)}",
             key="unknowns",
         )
-    if slice.count is Count.ADMISSIBLE:
-        raise ConfigError(
-            f"the certified engine counts admissible equilibria of the paper's mechanism only, not of {model.name}: "
-            "choose stable, total or index",
-            key="count",
-        )
     for key in (found.name for found in fields(model)):
         if key not in _IRRELEVANT | _SAID_IN_EQUATIONS | _USED and getattr(model, key):
             raise ConfigError(f"the certified engine does not take {key}, and {model.name} has some", key=key)
@@ -179,7 +177,7 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
     if isinstance(model, ClosedMechanism) and model.tangent:
         _check_loops(model, slice)
     if isinstance(model, ClosedMechanism) and slice.has_free_lengths:
-        return _of_loops(model, ring, slice.axes)
+        return _asked(slice, model.mechanism, ring, _of_loops(model, ring, slice.axes))
     if isinstance(model, System):
         return _of_system(model, ring)
     assert isinstance(model, Mechanism)
@@ -188,7 +186,14 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
     for unknown, tree in split_moments(model).steady:
         k = ring.unknowns.index(unknown)
         equations[k] = equations[k] - evaluate(tree, ring)
-    return Problem(ring.unknowns, ring.reals, tuple(equations), cones, model.has_potential)
+    return _asked(slice, model, ring, Problem(ring.unknowns, ring.reals, tuple(equations), cones, model.has_potential))
+
+
+def _asked(slice: Slice, mechanism: Mechanism, ring: Harmonics, problem: Problem) -> Problem:
+    """The problem with what tells admissible equilibria, where these are asked for."""
+    if slice.count is not Count.ADMISSIBLE:
+        return problem
+    return replace(problem, excesses=tuple(excesses(mechanism, ring)))
 
 
 def _checked(mechanism: Mechanism, cones: Iterable[Cone], axes: tuple[Axis, Axis]) -> tuple[Cone, ...]:
@@ -308,15 +313,9 @@ def _gradient(energy: TrigonometricPolynomial, ring: Harmonics) -> tuple[Trigono
     return tuple(energy.derivative(k) for k in range(len(ring.unknowns)))
 
 
-def _points(mechanism: Mechanism, ring: Harmonics) -> dict[str, Vector]:
-    return {name: (evaluate(x, ring), evaluate(y, ring)) for name, (x, y) in mechanism.points.items()}
-
-
 def _cones(mechanism: Mechanism, ring: Harmonics) -> Iterator[Cone]:
     """The springs with a free length, as parts of the energy's derivatives by the unknowns."""
-    points = _points(mechanism, ring)
-    for spring in mechanism.springs:
-        dx, dy = (b - a for a, b in zip(points[spring.start], points[spring.end], strict=True))
+    for spring, (dx, dy) in springs_of(mechanism, ring):
         pull = constant_of(evaluate(spring.stiffness, ring) * evaluate(spring.free, ring))
         if pull.numerator and (dx.terms or dy.terms):
             slopes = tuple((dx.derivative(k), dy.derivative(k)) for k in range(len(ring.unknowns)))
@@ -325,9 +324,8 @@ def _cones(mechanism: Mechanism, ring: Harmonics) -> Iterator[Cone]:
 
 def _energy(mechanism: Mechanism, ring: Harmonics) -> TrigonometricPolynomial:
     """Without what springs with a free length take off it."""
-    points, smooth = _points(mechanism, ring), ring.constant(Fraction(0))
-    for spring in mechanism.springs:
-        dx, dy = (b - a for a, b in zip(points[spring.start], points[spring.end], strict=True))
+    points, smooth = points_of(mechanism, ring), ring.constant(Fraction(0))
+    for spring, (dx, dy) in springs_of(mechanism, ring):
         smooth = smooth + (evaluate(spring.stiffness, ring) * (dx * dx + dy * dy)).scaled(Fraction(1, 2))
     for tree in (*(torsion.energy for torsion in mechanism.torsion), *split_moments(mechanism).energies):
         smooth = smooth + evaluate(tree, ring)

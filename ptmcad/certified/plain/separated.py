@@ -17,8 +17,9 @@ from dataclasses import dataclass
 
 from ptmcad.certified.formula import Formula, Graph, length
 from ptmcad.certified.parameters import expression_formula
+from ptmcad.certified.plain.ends import Vector
 from ptmcad.certified.plain.nested import nested
-from ptmcad.certified.plain.problem import Problem, Push, Vector
+from ptmcad.certified.plain.problem import Problem, Push
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.text.expressions import Expression
 

@@ -1,4 +1,4 @@
-"""The eigenvalues of symmetric matrices of balls, in order, equal ones too.
+"""The eigenvalues of symmetric matrices of balls, in order, equal ones too; and how many of them are negative.
 
 Guarantee: the k-th ball contains the k-th eigenvalue, counted with multiplicity from the smallest one on, of every
 symmetric matrix in the balls; balls may overlap. Where the matrix is narrow they are narrow, however near eigenvalues
@@ -7,6 +7,7 @@ are to each other: no proof here separates them.
 
 from __future__ import annotations
 
+import numpy as np
 from flint import arb, arb_mat, ctx
 
 _MAX_SWEEPS = 40
@@ -69,3 +70,25 @@ def _rotate(a: list[list[arb]], v: list[list[arb]], p: int, q: int) -> None:
             row[p], row[q] = (cosine * row[p] - sine * row[q]).mid(), (sine * row[p] + cosine * row[q]).mid()
     for k in range(len(a)):
         a[p][k], a[q][k] = (cosine * a[p][k] - sine * a[q][k]).mid(), (sine * a[p][k] + cosine * a[q][k]).mid()
+
+
+def inertia(matrix: arb_mat) -> int | None:
+    """The number of negative eigenvalues of every symmetric matrix in a matrix of balls; None when undecided.
+
+    By Sylvester's law: with the columns of V near eigenvectors, V' H V is strictly diagonally dominant, so that neither
+    it nor V is singular, and the signs of its diagonal are those of its eigenvalues (Gershgorin).
+    """
+    size = matrix.nrows()
+    middle = np.array([[float(matrix[i, j].mid()) for j in range(size)] for i in range(size)])
+    if not np.isfinite(middle).all():
+        return None
+    vectors = np.linalg.eigh((middle + middle.T) / 2)[1]
+    v = arb_mat(size, size, [float(entry) for entry in vectors.flat])
+    form = v.transpose() * matrix * v
+    negative = 0
+    for i in range(size):
+        off = sum((abs(form[i, j]) for j in range(size) if j != i), arb(0))
+        if not abs(form[i, i]) > off:
+            return None
+        negative += bool(form[i, i] < 0)
+    return negative

@@ -105,7 +105,7 @@ class PointCounter:
 
     def zeros(self, x: Fraction, y: Fraction, count: Count, *, thorough: bool = True) -> list[_Zero] | None:
         """The equilibria that ``count`` needs, each once; None when they cannot be decided."""
-        only_minima = count in (Count.STABLE, Count.ADMISSIBLE)
+        only_minima = count.is_of_stable
         written, creases = self.equilibria_at(x, y), creases_at(values_at(self.slice, x, y))
         (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
         second, first = (CREASED if crease else TURN for crease in creases)

@@ -239,7 +239,7 @@ def _check_count(record: Record, resolved: Mapping[str, Expression]) -> None:
     """Refuse a count that makes no sense for the model."""
     model, count = record.model, record.counting
     problem = ""
-    if count is Count.STABLE and not model.tells_stability:
+    if count is not None and count.is_of_stable and not model.tells_stability:
         problem = "nothing says what a stable solution is: add conditions as 'stable:' to the system, or count total"
         if not isinstance(model, System):
             assert isinstance(model, Mechanism)
@@ -249,9 +249,7 @@ def _check_count(record: Record, resolved: Mapping[str, Expression]) -> None:
             )
     if count is Count.INDEX and not model.has_potential:
         problem = "solutions of equations have no index, which is that of a potential's Hessian: count total"
-    if count is Count.ADMISSIBLE and isinstance(model, ClosedMechanism):
-        problem = "admissible equilibria are not counted in a mechanism with closed loops: count stable or total"
-    elif count is Count.ADMISSIBLE and isinstance(model, System):
+    if count is Count.ADMISSIBLE and isinstance(model, System) and not isinstance(model, ClosedMechanism):
         problem = "a system has no springs whose lengths would be admissible: count stable or total"
     elif count is Count.ADMISSIBLE and not have_free_lengths(model, resolved):
         problem = f"{NOTHING_ADMISSIBLE}: choose stable"

@@ -14,11 +14,9 @@ from flint import arb
 
 from ptmcad.answer.counts import MorseIndex
 from ptmcad.answer.regionmap import Cell, Solution
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.slice import Slice
 from ptmcad.verification.certified.boxes import Box, Floats
 from ptmcad.verification.claims import Claims
-
-MINIMA = (Count.STABLE, Count.ADMISSIBLE)
 
 
 @dataclass(frozen=True, slots=True)

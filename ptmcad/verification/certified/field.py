@@ -201,6 +201,20 @@ class Field:
         return Jet(values, jacobian, smooth, tuple(springs), conditions)
 
 
+def value_of(row: Waves, values: Mapping[str, arb], at: Sequence[arb]) -> arb:
+    """One sum of waves, at all configurations in a box and for all parameters in balls."""
+    total = _ZERO
+    for (turned, raised, sine), terms in row.items():
+        part = ball(terms, values)
+        if any(turned):
+            angle = sum((multiple * x for multiple, x in zip(turned, at, strict=True) if multiple), _ZERO)
+            part *= angle.sin() if sine else angle.cos()
+        for exponent, x in zip(raised, at, strict=True):
+            part *= power(x, exponent)
+        total += part
+    return total
+
+
 def _pointed(cone: Cone, values: Mapping[str, arb], side: int) -> Vector:
     """The direction of a spring on one line."""
     line = line_of(cone)
@@ -293,4 +307,4 @@ def unit(value: arb) -> arb:
     return value if value.rad() < 1 else _ANY
 
 
-__all__ = ["Field", "Jet", "Matrix", "Spring", "power", "size", "square"]
+__all__ = ["Field", "Jet", "Matrix", "Spring", "power", "size", "square", "value_of"]

@@ -20,9 +20,9 @@ from ptmcad.mechanism import Model
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import Box, Zero, disjoint, same
-from ptmcad.verification.certified.counted import MINIMA, Counted, Counts, Where
+from ptmcad.verification.certified.counted import Counted, Counts, Where
 from ptmcad.verification.certified.equilibria import Unproved
-from ptmcad.verification.certified.field import Field, Matrix
+from ptmcad.verification.certified.field import Field, Matrix, value_of
 from ptmcad.verification.certified.kinks import Sides, sides
 from ptmcad.verification.certified.narrow import Function, judged, no_solution
 from ptmcad.verification.certified.parameters import over
@@ -30,7 +30,7 @@ from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import Spent, zeros
 from ptmcad.verification.certified.spectrum import inertia
 from ptmcad.verification.certified.vectors import evaluated
-from ptmcad.verification.certified.waves import Form
+from ptmcad.verification.certified.waves import Excess, Form
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
 
@@ -49,9 +49,15 @@ MAX_REAL = 2**60
 
 @dataclass(frozen=True, slots=True)
 class ModelCounting:
-    """Counts for one model, from the form that follows from its description."""
+    """Counts for one model, from the form that follows from its description.
+
+    Attributes
+    ----------
+    excesses : of the springs, where admissible solutions are counted.
+    """
 
     form: Form
+    excesses: tuple[Excess, ...] = ()
     is_complete = False
 
     def at(self, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> Counted:
@@ -77,7 +83,22 @@ class ModelCounting:
         found = [
             zero for k, side in enumerate(sides(self.form)) for zero in self._on_side(values, count, side, where, k)
         ]
-        return Counted(counts_of(self.form, found, count), found, values)
+        numbers = {name: ball_of(value) for name, value in values.items()}
+        return Counted(self._counts(numbers, found, count), found, values)
+
+    def _counts(self, values: Mapping[str, arb], found: Sequence[Zero], count: Count) -> Counts:
+        """The counts, with the number of admissible solutions where these are asked for.
+
+        Raises
+        ------
+        Unproved
+            When a spring may be as long as its free length at a stable solution.
+        """
+        counts = counts_of(self.form, found, count)
+        if count is not Count.ADMISSIBLE:
+            return counts
+        stable = (zero for zero in found if "-" not in zero.signs)
+        return replace(counts, admissible=sum(_is_admissible(self.excesses, values, zero) for zero in stable))
 
     def _on_side(
         self, values: Mapping[str, Fraction], count: Count, side: Sides, where: Where | None, k: int
@@ -163,7 +184,7 @@ class ModelCounting:
             start, whole = ([_start(field)], None) if where is None else (where.boxes[k], where.whole)
             found, _ = zeros(field, minima, start, budget, smallest, near, whole)
             counted += _counted(field, found, slice.count)
-        return counts_of(self.form, counted, slice.count)
+        return self._counts(values, counted, slice.count)
 
     @property
     def _budget(self) -> int:
@@ -171,7 +192,7 @@ class ModelCounting:
 
 
 def _only_minima(form: Form, count: Count) -> bool:
-    return form.is_gradient and count in MINIMA
+    return form.is_gradient and count.is_of_stable
 
 
 def _may_be_on_side(field: Field, zero: Zero) -> bool:
@@ -184,7 +205,7 @@ def _field(form: Form, values: Mapping[str, arb], count: Count | None, side: Sid
     """The equations with what is positive at the solutions that are counted, and at no others, if a count is given."""
     if count is None:
         return Field(form, values, sides=side)
-    stable = count is Count.STABLE
+    stable = count.is_of_stable
     asked = form.inequalities + (form.stability if stable else ())
     return Field(form, values, asked, stable and bool(form.closing), side)
 
@@ -205,7 +226,7 @@ def _counted(field: Field, found: Sequence[Zero], count: Count) -> list[Zero]:
         if not all(c > 0 for c in conditions):
             where = ", ".join(f"{x:.6g}" for x in zero.center)
             raise Unproved(f"a condition may be zero at the solution near ({where})")
-        of_equations = not field.form.is_gradient and count is Count.STABLE
+        of_equations = not field.form.is_gradient and count.is_of_stable
         signs = "+" * field.form.conditions_for_stability if of_equations else zero.signs
         kept.append(_apart(field, replace(zero, signs=signs)))
     return kept
@@ -268,8 +289,18 @@ def _start(field: Field) -> Box:
     return (0.0,) * len(widths), widths
 
 
+def _is_admissible(excesses: Sequence[Excess], values: Mapping[str, arb], zero: Zero) -> bool:
+    """Whether every spring is longer than its free length at a solution."""
+    found = [value_of(excess.squared, values, zero.within) for excess in excesses]
+    if any(value < 0 for value in found):
+        return False
+    if all(value > 0 for value in found):
+        return True
+    raise Unproved("a spring may be as long as its free length")
+
+
 def counts_of(form: Form, found: Sequence[Zero], count: Count) -> Counts:
-    """The counts that follow from the solutions; Euler's sum is checked where it holds.
+    """The counts that follow from the solutions but that of admissible ones; Euler's sum is checked where it holds.
 
     Raises
     ------
@@ -278,10 +309,10 @@ def counts_of(form: Form, found: Sequence[Zero], count: Count) -> Counts:
     """
     if not form.is_gradient:
         number = len(found)
-        return Counts(None, number, None, None) if count is Count.STABLE else Counts(number, None, None, None)
+        return Counts(None, number, None, None) if count.is_of_stable else Counts(number, None, None, None)
     negative = Counter(zero.signs.count("-") for zero in found)
     index = tuple(negative[k] for k in range(form.size + 1))
-    if count is Count.STABLE:
+    if count.is_of_stable:
         return Counts(None, index[0], None, None)
     if form.is_smooth_on_a_torus and sum((-1) ** k * number for k, number in enumerate(index)):
         raise Violation(f"critical points of a function on the torus by index {index} contradict Euler's sum")

@@ -18,7 +18,6 @@ from ptmcad.mechanism import Kind
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.counted import (
-    MINIMA,
     Counted,
     Counts,
     Enclosed,
@@ -78,7 +77,7 @@ class PaperCounting:
         energy = energy_over(slice, x, y)
         # squares much smaller than the box of parameters are excluded no better than larger ones
         smallest = energy.resolution(max(float(max(x.rad(), y.rad())) / 64, 2.0**-30))
-        minima = slice.count in MINIMA
+        minima = slice.count.is_of_stable
         found, _ = equilibria(energy, minima, _start(where), budget=BUDGET, smallest=smallest, near=there.found)
         kinds = [e.signs for e in found]
         stable = kinds.count("++")
@@ -115,14 +114,16 @@ def all_equilibria(
     Unproved
         When they cannot be decided even then.
     """
-    if count not in MINIMA and any(evaluated(s.free, values) and s.has_crease(values) for s in TURNED):
+    if not count.is_of_stable and any(evaluated(s.free, values) and s.has_crease(values) for s in TURNED):
         raise Unproved(f"{_BASE} equals the length of a bar, where the energy has a crease")
     reason: Unproved | None = None
     for bits in PRECISIONS:
         with ctx.workprec(bits):
             energy = energy_at(values)
             try:
-                return energy, equilibria(energy, count in MINIMA, start, smallest=energy.resolution(MIN_HALF_WIDTH))[0]
+                return energy, equilibria(
+                    energy, count.is_of_stable, start, smallest=energy.resolution(MIN_HALF_WIDTH)
+                )[0]
             except Unproved as unproved:
                 reason = unproved
     assert reason is not None

@@ -16,7 +16,6 @@ from ptmcad.answer.regionmap import Cell, Solution
 from ptmcad.question.slice import Count
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.counted import (
-    MINIMA,
     Counted,
     Counting,
     Places,
@@ -31,7 +30,7 @@ from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.paper import PaperCounting
 from ptmcad.verification.certified.parameters import values_at
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.waves import form_of
+from ptmcad.verification.certified.waves import excesses_of, form_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import MECHANISM
 from ptmcad.verification.report import Unchecked, Violation
@@ -86,7 +85,10 @@ def check_points(
 
 def counting_of(claims: Claims) -> Counting:
     """How the solutions of the map's model are counted."""
-    return PaperCounting() if claims.model == MECHANISM else ModelCounting(form_of(claims.model))
+    if claims.model == MECHANISM:
+        return PaperCounting()
+    asked = claims.result.slice.count is Count.ADMISSIBLE
+    return ModelCounting(form_of(claims.model), excesses_of(claims.model) if asked else ())
 
 
 def _where(claims: Claims, x: Fraction, y: Fraction) -> str:
@@ -106,7 +108,7 @@ def _check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell, places:
         return _check_beside(claims, counting, cell, reason)
     if differs(cell, there.counts):
         raise Violation(f"said to have {stored(cell)}; there are {there.counts}")
-    kept = [e for e in there.found if claims.result.slice.count not in MINIMA or "-" not in e.signs]
+    kept = [e for e in there.found if not claims.result.slice.count.is_of_stable or "-" not in e.signs]
     if len(cell.solutions) != len(kept):
         raise Violation(f"{len(cell.solutions)} boxes of solutions for {len(kept)} equilibria")
     try:
@@ -173,7 +175,7 @@ def _check_beside(claims: CertifiedClaims, counting: Counting, cell: Cell, reaso
             raise Violation(f"said to have {stored(cell)}; {_where(claims, *at)}, in the same cell, there are "
                             f"{there.counts}")  # fmt: skip
         here = replace(there, values=values_at(claims, *cell.sample))
-        asked = [e.signs for e in there.found if claims.result.slice.count not in MINIMA or "-" not in e.signs]
+        asked = [e.signs for e in there.found if not claims.result.slice.count.is_of_stable or "-" not in e.signs]
         signs = [e.signs for e in counting.within(here, cell.solutions)]
         if signs != [solution.signs for solution in cell.solutions] or Counter(signs) != Counter(asked):
             raise Violation(f"equilibria of signs {signs} are in the boxes of solutions, but there are {asked}")

@@ -11,7 +11,7 @@ from functools import cached_property
 from itertools import pairwise
 
 from ptmcad.answer.regionmap import Status
-from ptmcad.mechanism import System
+from ptmcad.mechanism import ClosedMechanism, Mechanism, System
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.verification.certified.slanted import SlantedSweep, slanted_sweep
@@ -135,9 +135,7 @@ def check_form(claims: CertifiedClaims) -> str:
             raise Violation(f"{patch.frame} is not a frame of the lattice")
         if any(len(tube.controls) < 2 for tube in patch.tubes):
             raise Violation(f"a slanted piece in {patch.frame} has no polynomial")
-    needed = {"stable" if r.slice.count is Count.STABLE else "total"}
-    if r.slice.model.has_potential:
-        needed = _NEEDED[r.slice.count]
+    needed = _NEEDED[r.slice.count] if r.slice.model.has_potential or r.slice.count.is_of_stable else {"total"}
     for what, items in (("cell", r.cells), ("region", r.regions)):
         for n, item in enumerate(items):
             present = {name for name in _COUNTS if getattr(item, name) is not None}
@@ -165,7 +163,11 @@ def _check_model(slice: Slice) -> None:
     if not 1 <= len(model.unknowns) <= MAX_UNKNOWNS:
         raise Violation(f"no certified map is of {len(model.unknowns)} unknowns")
     without_index = (Count.TOTAL, Count.STABLE) if tells_stability(model) else (Count.TOTAL,)
-    if slice.count is Count.ADMISSIBLE or not (model.has_potential or slice.count in without_index):
+    has_springs = tells_stability(model) and isinstance(model, Mechanism | ClosedMechanism)
+    known_count = (
+        has_springs if slice.count is Count.ADMISSIBLE else model.has_potential or slice.count in without_index
+    )
+    if not known_count:
         raise Violation(f"no certified map of {model.name!r} counts {slice.count.value}")
     if isinstance(model, System) and model.potential is None and len(model.equations) != len(model.unknowns):
         raise Violation(f"there are {len(model.equations)} equations for {len(model.unknowns)} unknowns")

@@ -47,6 +47,23 @@ class Cone(NamedTuple):
     bends: tuple[tuple[Waves, Waves], ...]
 
 
+class Excess(NamedTuple):
+    """What tells whether a spring is longer than its free length.
+
+    Attributes
+    ----------
+    spring : its name.
+    vector : between its ends.
+    free : its free length, a polynomial in the parameters.
+    squared : |vector|^2 - free^2.
+    """
+
+    spring: str
+    vector: tuple[Waves, Waves]
+    free: Terms
+    squared: Waves
+
+
 class Form(NamedTuple):
     """What is zero at a solution, one equation for each unknown.
 
@@ -213,6 +230,24 @@ def form_of(model: Model) -> Form:
         kept(multiples),
         closing,
     )
+
+
+@lru_cache(maxsize=8)
+def excesses_of(model: Model) -> tuple[Excess, ...]:
+    """Those of all springs of a mechanism, of which none has a negative free length."""
+    assert isinstance(model, Mechanism | ClosedMechanism)
+    mechanism = model if isinstance(model, Mechanism) else model.mechanism
+    ring, found = _Ring(model), []
+    points = ring.configuration.points(mechanism)
+    for spring in mechanism.springs:
+        vector = [points[spring.end][i] - points[spring.start][i] for i in (0, 1)]
+        free = ring.configuration.value(spring.free)
+        across, up, length, squared = (
+            _kept(ring.waves(f), ring.parameters)
+            for f in (*vector, free, vector[0] * vector[0] + vector[1] * vector[1] - free * free)
+        )
+        found.append(Excess(spring.name, (across, up), next(iter(length.values()), ()), squared))
+    return tuple(found)
 
 
 def _divided(f: _Polynomials, inequalities: Iterable[_Polynomials]) -> _Polynomials:

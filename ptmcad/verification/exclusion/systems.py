@@ -18,15 +18,11 @@ from flint import arb
 
 from ptmcad.question.slice import Count
 from ptmcad.text.balls import ball_of
-from ptmcad.verification.certified.counted import MINIMA
-from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.kinks import sides
 from ptmcad.verification.certified.parameters import over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.vectors import SPRINGS
-from ptmcad.verification.certified.waves import Waves
-from ptmcad.verification.derivation import MECHANISM
+from ptmcad.verification.certified.waves import Waves, excesses_of
 from ptmcad.verification.exclusion.equations import Equations, Pair, bases
 from ptmcad.verification.exclusion.formulas import Tape
 
@@ -119,14 +115,21 @@ def solutions_of(claims: CertifiedClaims) -> list[System]:
     return list(_Systems(claims).solutions())
 
 
+class _Excess(NamedTuple):
+    """By how much a spring is longer than its free length, and what is zero where it is not."""
+
+    value: int
+    zero: tuple[int, ...]
+
+
 class _Systems:
     """The systems of one map, and what they have in common."""
 
     def __init__(self, claims: CertifiedClaims):
         self.claims, self.model = claims, Equations(claims)
         self.count, self.form = claims.result.slice.count, self.model.form
-        self.minima = self.form.is_gradient and self.count in MINIMA
-        stable = self.form.stability if self.count is Count.STABLE else ()
+        self.minima = self.form.is_gradient and self.count.is_of_stable
+        stable = self.form.stability if self.count.is_of_stable else ()
         self.conditions: list[Waves] = [*self.form.inequalities, *stable]
         self.asked = [self.model.waves(c) for c in self.conditions]
         self.positive, self.turning, self.where = self.asked, list[int](), ""
@@ -180,13 +183,16 @@ class _Systems:
             yield self._short_folds(k)
             yield self._cone(k)
         # with admissible ones all minima are counted, so that folds ask for no excess
-        for k, c in enumerate([*self.positive, *self.excesses]):
+        for k, c in enumerate(self.positive):
             if k < len(self.conditions) and not any(any(key[0]) or any(key[1]) for key in self.conditions[k]):
                 yield self._system(f"boundary {k}", [c], [], [], unknowns=0)
             else:
-                yield self._system(
-                    f"boundary {k}", [*equations, c], others, [n for n in [*signs, *self.excesses] if n != c]
-                )
+                yield self._system(f"boundary {k}", [*equations, c], others, [n for n in signs if n != c])
+        for k, excess in enumerate(self.excesses):
+            taut = [other.value for other in self.excesses if other is not excess]
+            yield self._system(
+                f"free length {k}", [*equations, *excess.zero], others, [*dict.fromkeys([*signs, *taut])]
+            )
 
     def _minors(self, rows: Sequence[Sequence[int]]) -> list[int]:
         """The principal minors but the determinant; none is negative where the Hessian is positive semidefinite."""
@@ -234,15 +240,14 @@ class _Systems:
             return self._system(name, s.vector, [m.without(k)[i]], signs)
         return self._system(name, s.vector, m.balances(k), self.positive)
 
-    def _excesses(self) -> list[int]:
-        """By how much the springs are longer than their free lengths."""
-        m, f = self.model, self.model.list
-        assert self.claims.model == MECHANISM
-        if len(m.springs) != len(SPRINGS):
-            raise Unproved("a free length is zero all over the window, where springs without length are asked for")
-        free = [m.terms(s.free) for s in SPRINGS]
-        names = [s.name for s in MECHANISM.springs]
-        return [f.subtract(f.length(*s.vector), free[names.index(s.name)]) for s in m.springs]
+    def _excesses(self) -> list[_Excess]:
+        """By how much the springs are longer than their free lengths, of those that are not always as long."""
+        m, f, found = self.model, self.model.list, []
+        for excess in excesses_of(self.claims.model):
+            free, vector = m.terms(excess.free), (m.waves(excess.vector[0]), m.waves(excess.vector[1]))
+            value = f.subtract(f.length(*vector), free)
+            found.append(_Excess(value, vector if f.constant(free) == 0 else (value,)))
+        return found
 
     def _system(
         self, name: str, first: Sequence[int], zero: Sequence[int], not_negative: Sequence[int],

@@ -1,0 +1,78 @@
+"""How much longer the springs are than their free lengths: what admissible equilibria are told by.
+
+Guarantee: exact. A stable equilibrium is admissible if and only if the values of all excesses are positive there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from ptmcad.certified.formula import Formula
+from ptmcad.certified.plain.ends import springs_of
+from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
+from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism.evaluate import evaluate
+
+
+@dataclass(frozen=True, slots=True)
+class Excess:
+    """Of a spring.
+
+    Attributes
+    ----------
+    spring : its name.
+    value : |d|^2 - l0^2, d being the vector between its ends: the sign of |d| - l0, as no free length is negative.
+    boundary : what vanishes where that does: the value itself, or where the free length is zero all over the window,
+        so that the value has no simple zeros, the coordinates of d.
+    """
+
+    spring: str
+    value: TrigonometricPolynomial
+    boundary: tuple[TrigonometricPolynomial, ...]
+
+    @property
+    def text(self) -> str:
+        """What it is, in words."""
+        return f"the length of spring {self.spring} less its free length"
+
+
+class Boundary(NamedTuple):
+    """Where a spring has its free length and no other one is shorter than its own.
+
+    Attributes
+    ----------
+    name, reason : of the curve over which stable equilibria are there.
+    zero, others : what is zero there; one formula is enough for a system.
+    not_negative : the other springs' excesses.
+    """
+
+    name: str
+    reason: str
+    zero: Formula
+    others: list[Formula]
+    not_negative: list[Formula]
+
+
+def boundaries(given: Sequence[Excess], unknowns: Sequence[Formula]) -> Iterator[Boundary]:
+    """One for each excess, in the graph of the unknowns."""
+    graph = unknowns[0].graph
+    values = [excess.value.formula(graph, unknowns) for excess in given]
+    for k, excess in enumerate(given):
+        zero, *others = (f.formula(graph, unknowns) for f in excess.boundary)
+        yield Boundary(
+            f"spring {excess.spring} at its free length",
+            f"spring {excess.spring} of a stable equilibrium has its free length",
+            zero,
+            others,
+            [*values[:k], *values[k + 1 :]],
+        )
+
+
+def excesses(mechanism: Mechanism, ring: Harmonics) -> Iterator[Excess]:
+    """One for each spring; lengths that are constant are in no description."""
+    for spring, (dx, dy) in springs_of(mechanism, ring):
+        free = evaluate(spring.free, ring)
+        value = dx * dx + dy * dy - free * free
+        yield Excess(spring.name, value, (value,) if free.terms else tuple(d for d in (dx, dy) if d.terms))
