@@ -81,7 +81,7 @@ def test_springs_side_by_side_are_one_cone(how: str) -> None:
     strength = {"AN": Fraction(1)}.get(next(s for s in ("AN", "AP") if s in named(how)), Fraction(2))
     pulls = {cone.name.count("+"): cone.pull.constant() for cone in problem_of(slice).cones}
     assert pulls == {0: Fraction(1, 3), 1: strength}
-    checked = {cone.name.count("+"): cone.pull for cone in form_of(slice.model).cones}
+    checked = {cone.name.count("+"): cone.pull for cone in form_of(slice).cones}
     assert checked == {0: ((1, 3, ()),), 1: ((int(strength), 1, ()),)}
 
 
@@ -126,7 +126,7 @@ def test_they_have_the_equilibria_of_the_one_spring(how: str, force: Fraction, u
 
 def test_apart_nothing_is_decided(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where both have no length, each direction is free."""
-    monkeypatch.setattr(plain_problem, "_ratio", lambda *_: None)
+    monkeypatch.setattr(plain_problem, "shares", lambda *_: None)
     assert poses(APART["same ends"], Fraction(-1, 2), Fraction(1, 3)).status is Status.UNDECIDED
 
 
