@@ -18,6 +18,7 @@ from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.points import BranchCounter, PlainCounter, plain_counter
 from ptmcad.certified.plain.problem import MAX_UNKNOWNS_AT_POINTS
+from ptmcad.certified.plain.related import related_numbers
 from ptmcad.certified.plain.relaxed import Relaxed, relaxed_numbers
 from ptmcad.certified.plain.resting import rational_point
 from ptmcad.certified.plain.slanted import with_slanted
@@ -170,6 +171,10 @@ def _pose(
             found |= relaxed_numbers(
                 mechanism, parameters, relaxed, (whole, box), bits, fixed_by_symmetry(mechanism, at)
             )
+            if numbers.keys() - found.keys():
+                fixed, more = related_numbers(mechanism, parameters, counter.problem, (whole, box), bits)
+                turns |= quarter_turns(mechanism, fixed)
+                found |= more
         if found.keys() >= numbers.keys():
             index = solution.signs.count("-") if mechanism.has_potential else None
             return assembled(mechanism, parameters, found, index), bits
