@@ -148,12 +148,12 @@ def _pose(
             radius = solution.radius
             whole: Box = (arb(0), arb(0), *(ball(c - radius, c + radius) for c in solution.center))
         box = refined(counter.equations, whole, bits)
-        if attempt == 1:  # some number is not settled: it may be a short one
+        if attempt > 0:  # some number is not settled: it may be a short one, or a longer one with more bits
             with ctx.workprec(bits):
                 held, boxes = (dict(zip(mechanism.unknowns, some[2:], strict=True)) for some in (box, whole))
-                at = rational_point(mechanism, parameters, held, boxes)
+                at = at or rational_point(mechanism, parameters, held, boxes)
                 rational, surds = with_slanted(mechanism, parameters, at, held, boxes)
-            turns = quarter_turns(mechanism, rational)
+            turns |= quarter_turns(mechanism, rational)
             if rational or surds.multiples:
                 found |= rational_numbers(mechanism, parameters, rational, surds)
         with ctx.workprec(bits):
