@@ -4,11 +4,10 @@ Such as a chain of two equal bars that is folded onto its own pivot: its second 
 and the point in which it ends is the pivot, also where nothing is known of the first angle but the forces' balance.
 
 Guarantee: exact. Relations are a guess, by balls: an angle is another one, or its negative, and some quarter turns
-more, or a real unknown is another one or its negative; or either is fixed. Where they hold, each equation is a
-polynomial over roots of polynomials, in fewer unknowns. If of these equations so many that they and the relations are
-as many as the unknowns imply the others, by linear combination, interval Newton can prove that those and the relations
-have a zero in a box. It is an equilibrium; if the box holds only one, the relations hold at that. (Energies that such a
-relation's reflection leaves as they are have such equations, but others as well: at the folded chain none does that.)
+more, or a real unknown is another one or its negative; or either is fixed. If where they hold the equations all follow
+from some of them, as many as make up the unknowns with the relations, interval Newton can prove that these and the
+relations have a zero in a box. It is an equilibrium; if the box holds only one, the relations hold at that (Lemma S9 of
+docs/soundness.md).
 
 Balls alone would never tell such a number from its neighbours. The lemma is that of interval Newton as in
 `ptmcad.certified.arb_isolation`.
@@ -96,7 +95,7 @@ def related_numbers(
 
 def _choices(problem: Problem, near: Box) -> Iterator[tuple[Relation, ...]]:
     """Relations that an equilibrium seems to satisfy, the most of them first."""
-    seeming = [(None, *_seeming(problem, near[FIRST:], j)) for j in range(len(problem.unknowns))]
+    seeming = [(*_seeming(problem, near[FIRST:], j), None) for j in range(len(problem.unknowns))]
     chosen = [tuple(r for r in some if r is not None) for some in islice(product(*seeming), MAX_CHOICES)]
     for relations in sorted(chosen, key=len, reverse=True):
         if relations and {r.other for r in relations}.isdisjoint(r.unknown for r in relations):
