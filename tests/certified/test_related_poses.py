@@ -59,6 +59,23 @@ def test_a_chain_folded_onto_its_pivot_ends_there(moment: object) -> None:
         assert gy * c - gx * s == pytest.approx(-float(Fraction(moment)) if moment else 0, abs=1e-6)
 
 
+def test_the_elbows_of_a_stretched_chain_are_at_rest() -> None:
+    """Of three bars: all elbows are, or half a turn from it, at eight equilibria; at the others both are bent."""
+    ends = [f"{wave}(th1) + {wave}(th2) + {wave}(th3)" for wave in ("cos", "sin")]
+    three = {
+        "parameters": {"l0": {"kind": "free length"}},
+        "unknowns": {"th1": "angle", "th2": "angle", "th3": "angle"},
+        "points": {"A": [3, 4], "B": [-1, 2], "Q": ends},
+        "springs": CHAIN["springs"],
+        "torsion": [{"angle": "th2 - th1", "k": "1/10"}, {"angle": "th3 - th2", "k": "1/10"}],
+    }
+    found = ptmcad.solve(model=ptmcad.Mechanism(three), l0="1/2").equilibria
+    told = [tuple(torsion.degrees.exact for torsion in pose.torsion) for pose in found]
+    assert [told.count(turns) for turns in ((0, 0), (0, 180), (180, 0), (180, 180))] == [2, 2, 2, 2]
+    assert told.count((None, None)) == 4
+    assert all(t.moment.exact == 0 for pose in found for t in pose.torsion if t.degrees.exact is not None)
+
+
 @pytest.mark.parametrize(
     "change",
     [
