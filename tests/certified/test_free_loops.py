@@ -23,6 +23,7 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.bands import certified_widths
 from ptmcad.ask.fields.field import field_of, request_of
 from ptmcad.certified.curve import Curve
+from ptmcad.certified.engine import certified_map
 from ptmcad.certified.formula import Formula
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain import curves as plain_curves
@@ -30,6 +31,7 @@ from ptmcad.certified.plain import loopcurves
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.errors import ConfigError
+from ptmcad.options import Options
 from ptmcad.question.slice import Count
 from ptmcad.show.report.tape import tape
 
@@ -437,3 +439,24 @@ def value_of(counter: Any, equation: int, t: Numbers) -> float:
     box = [ball(Fraction(x), Fraction(x)) for x in (1.0, 1.5, *t)]
     values = run_arb(counter.equations.tape, box, 90)
     return float(values[int(counter.equations.equations[equation])].mid())
+
+
+def test_springs_side_by_side_in_a_loop_are_the_one_spring_that_they_are() -> None:
+    """From C to Q with k1, and to a point 3/2 as far with k1: k1 (1 + 9/4), and of the free lengths l0 (1 + 3/2)."""
+    mechanism: dict[str, Any] = ANCHORED["mechanism"]
+    beyond = ["x + a*(b + L2*cos(th2) - x)", "y + a*(L2*sin(th2) - y)"]
+    several = mechanism | {
+        "points": mechanism["points"] | {"T": beyond},
+        "parameters": mechanism["parameters"] | {"a": {"default": "3/2"}},
+        "springs": [{"between": ["C", "T"], "k": "k1", "free": "l0"}, *mechanism["springs"]],
+    }
+    alone = mechanism | {"springs": [{"between": ["C", "Q"], "k": "13/4*k1", "free": "10/13*l0"}]}
+    window = {"axes": {"x": [1, 3], "y": [-1, 1]}, "count": "stable"}
+    one, two = (ptmcad.slice_from_mapping(ANCHORED | window | {"mechanism": m}) for m in (alone, several))
+    many = certified_map(two, Options(tolerance=Fraction(1, 10), jobs=1))
+    found = plain_counter(one)
+    assert len({cell.stable for cell in many.cells}) > 2
+    for cell in many.cells:
+        assert found.at(*cell.sample, Count.STABLE).stable == cell.stable
+    told = {check.name for check in ptmcad.verify(many, boxes=2).checks if check.passed}
+    assert told >= {"counts and solutions", "random boxes"}

@@ -278,3 +278,44 @@ def test_a_chain_folded_along_a_line_ends_in_its_pivot() -> None:
     ends = [tuple(coordinate.exact for coordinate in pose.nodes["C"]) for pose in poses.equilibria]
     assert ends == [(None, None)] * 3 + [(0, 0)] * 2 + [(None, None)]
     assert [spring.length.text(6) for spring in poses.equilibria[0].springs] == ["0.500000"] * 2
+
+
+LONG = Fraction(333333333333333333333333333340, 10**30 + 1)
+"""Thirty digits above and below."""
+
+
+@pytest.mark.parametrize("load", ["27/10", "2.7" + 140 * "0" + "1"])
+def test_a_rational_equilibrium_of_thirty_digits(load: str) -> None:
+    """P is (3, 4) from A, where the spring pulls with 9/2: as the load does, but for one in 10^141, which is within
+    the ball by which the place is guessed.
+    """
+    x, y = LONG, 1 / LONG
+    bead = {
+        "parameters": {"F": {"kind": "force"}},
+        "unknowns": {"x": "length", "y": "length"},
+        "points": {"A": [str(x - 3), str(y - 4)], "P": ["x", "y"], "Z": [f"x - {x}", f"y - {y}"]},
+        "springs": [{"between": ["A", "P"], "k": 1, "free": "1/2"}],
+        "loads": {"P": ["F", "18/5"]},
+    }
+    (pose,) = ptmcad.solve(model=ptmcad.Mechanism(bead), F=load).equilibria
+    if load == "27/10":
+        assert [z.exact for z in pose.nodes["Z"]] == [0, 0]
+        assert (pose.reals[0].exact, pose.springs[0].force.exact) == (x, Fraction(9, 2))
+    else:
+        assert all(z.exact is None and 0 < abs(float(z)) < 1e-130 for z in pose.nodes["Z"])
+
+
+@pytest.mark.parametrize("half", [Fraction(333333333333340, 10**15 + 1), LONG])
+def test_a_rational_angle_of_thirty_digits(half: Fraction) -> None:
+    """By the tangent of its half, or by its cosine and sine; the load takes what the spring pulls across the bar."""
+    c, s = (1 - half**2) / (1 + half**2), 2 * half / (1 + half**2)
+    load = Fraction(9, 2) * (Fraction(3, 5) * c - Fraction(4, 5) * s) / c
+    balanced = {
+        **PENDULUM,
+        "points": {"A": [str(s - 3), str(c - 4)], "P": ["sin(th)", "cos(th)"], "Z": [f"cos(th) - {c}", 1]},
+        "loads": {"P": ["W", 0]},
+    }
+    poses = ptmcad.solve(model=ptmcad.Mechanism(balanced), l0="1/2", W=str(load)).equilibria
+    (pose,) = (pose for pose in poses if abs(float(pose.nodes["Z"][0])) < 1e-9)
+    assert (pose.nodes["Z"][0].exact, pose.springs[0].length.exact) == (0, 5)
+    assert [number.exact for number in pose.cosines_sines] == [c, s]

@@ -128,7 +128,7 @@ def inside(at: tuple[float, ...], box: Box) -> bool:
 def test_formulas_are_those_of_the_balls(name: str, count: str) -> None:
     """Equations and Jacobian at random configurations, by compiled forms and by balls, which share the waves alone."""
     claims, rng = CertifiedClaims(a_map(name, count)), random.Random(count)
-    form, slice = form_of(claims.model), claims.result.slice
+    form, slice = form_of(claims.result.slice), claims.result.slice
     for side in sides(form):
         equations = Equations(claims)
         equations.sides = side

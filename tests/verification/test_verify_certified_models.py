@@ -528,16 +528,17 @@ def test_a_negative_eigenvalue_is_told_by_entries_minors_and_determinant(rows: l
 @pytest.mark.parametrize("seed", few(range(3), 1))
 def test_the_paper_s_mechanism_counted_in_two_ways(seed: int) -> None:
     """By the formulas of its own, and by those that its description gives."""
-    model = ptmcad.slice_from_mapping({
+    slice = ptmcad.slice_from_mapping({
         "name": "other", "mechanism": {k: v for k, v in RECORD.items() if k != "symmetries"} | {"name": "other"},
         "axes": {"rho": [1, 2], "L2": [1, 2]},
-    }).model  # fmt: skip
+    })  # fmt: skip
+    model = slice.model
     rng = random.Random(seed)
     values = {n: Fraction(rng.randint(20, 200), 100) for n in model.variables}
     values |= {n: Fraction(rng.randint(-200, 200), 100) for n in model.forces}
     for count in (Count.INDEX, Count.STABLE):
         one = counts_at(PaperCounting(), model, values, count)
-        assert counts_at(ModelCounting(form_of(model)), model, values, count) == one
+        assert counts_at(ModelCounting(form_of(slice)), model, values, count) == one
 
 
 @pytest.mark.parametrize("name", ["cubic", "well", "oscillators"])
@@ -548,7 +549,7 @@ def test_counts_are_those_of_the_exact_engine(name: str) -> None:
     for _ in range(3):
         x, y = (a.low + (a.high - a.low) * Fraction(rng.randint(1, 996), 997) for a in slice.axes)
         values = {n: e.evaluate(x, y) for n, e in slice.parameters.items()}
-        found = counts_at(ModelCounting(form_of(slice.model)), slice.model, values, Count.INDEX)
+        found = counts_at(ModelCounting(form_of(slice)), slice.model, values, Count.INDEX)
         true = ptmcad.counts_at(slice.model, **{n: str(v) for n, v in zip(slice.axis_names, (x, y), strict=True)})
         assert (found.total, found.index) == (true.total, true.index)
 
@@ -557,7 +558,7 @@ def test_counts_are_those_of_the_exact_engine(name: str) -> None:
 def test_derivatives_are_those_of_the_stored_potential(name: str) -> None:
     """Divided differences of the text that a map has, with 400 bits and a step of 2^-60."""
     r = map_of(name)
-    form, rng = form_of(r.slice.model), random.Random(name)
+    form, rng = form_of(r.slice), random.Random(name)
     values = {n: e.evaluate(*r.cells[0].sample) for n, e in r.slice.parameters.items()}
     with ctx.workprec(400):
         balls = {n: ball_of(v) for n, v in values.items()}
@@ -587,12 +588,12 @@ def test_derivatives_are_those_of_the_stored_potential(name: str) -> None:
 
 def test_no_solution_is_beyond_the_bounds_of_real_unknowns() -> None:
     """x^3 - a x + b has a root beyond the square root of a; an unknown that may be anywhere has no bound."""
-    cubic = form_of(ptmcad.slice_from_mapping({"name": "c", **RECORDS["cubic"]}).model)
+    cubic = form_of(ptmcad.slice_from_mapping({"name": "c", **RECORDS["cubic"]}))
     for a in (1, 100, 10**6):
         (bound,) = half_widths(cubic, {"a": arb(a), "b": arb(1, 1)})
         assert a**0.5 < bound < 4 * a**0.5
     ramp = {"system": {"unknowns": {"x": "real"}, "equations": ["a*x + b"]}, "axes": {"a": [-1, 1], "b": [-1, 1]}}
-    form = form_of(ptmcad.slice_from_mapping({"name": "r", **ramp}).model)
+    form = form_of(ptmcad.slice_from_mapping({"name": "r", **ramp}))
     assert half_widths(form, {"a": arb(1), "b": arb(0, 3)}) == (4.0,)
     with pytest.raises(Unproved, match="no bound of the unknown x"):
         half_widths(form, {"a": arb(0, 1), "b": arb(1)})
@@ -602,7 +603,7 @@ def test_no_solution_is_beyond_the_bounds_of_real_unknowns() -> None:
 def test_minima_near_a_spring_without_length(free: str, half: float, bends: bool) -> None:
     """A box is discarded where all Hessians in it have a negative eigenvalue; a wide one around a weak peak is not."""
     record = {**CHAIN, "mechanism": {**CHAIN["mechanism"], "springs": [{"between": ["A", "Q"], "k": 1, "free": free}]}}
-    form = form_of(ptmcad.slice_from_mapping({"name": "c", **record}).model)
+    form = form_of(ptmcad.slice_from_mapping({"name": "c", **record}))
     field = Field(form, {"a": arb(1), "F": arb(0)})
     at = (math.pi / 3, -math.pi / 3)  # where Q is A
     jet = field([arb(x, half) for x in at])
@@ -616,8 +617,8 @@ def test_minima_near_a_spring_without_length(free: str, half: float, bends: bool
 
 def test_a_solution_on_the_edge_of_a_stored_box_is_not_decided() -> None:
     """The irrational root of x^3 - 2 x is told from the edge, the root 1 of x^3 - x at the edge is not."""
-    model = ptmcad.slice_from_mapping({"name": "c", **RECORDS["cubic"]}).model
-    counting = ModelCounting(form_of(model))
+    slice = ptmcad.slice_from_mapping({"name": "c", **RECORDS["cubic"]})
+    counting, model = ModelCounting(form_of(slice)), slice.model
     for a, outside in ((2, "0 equilibria"), (1, "or beside it")):
         claims: Claims = _At(model, {"a": Fraction(a), "b": Fraction(0)}, Count.TOTAL)  # type: ignore[assignment]
         there = counting.at(claims, Fraction(0), Fraction(0))
@@ -630,7 +631,7 @@ def test_a_solution_on_the_edge_of_a_stored_box_is_not_decided() -> None:
 
 
 def test_nothing_is_proved_of_a_double_solution() -> None:
-    form = form_of(ptmcad.slice_from_mapping({"name": "c", **RECORDS["cubic"]}).model)
+    form = form_of(ptmcad.slice_from_mapping({"name": "c", **RECORDS["cubic"]}))
     field = Field(form, {"a": arb(3), "b": arb(2)})
     with pytest.raises(Unproved, match="degenerate"):
         zeros(field, False, [((0.0,), half_widths(form, field.values))], 5_000)

@@ -51,7 +51,7 @@ def searched(name: str) -> Model:
 
 
 def form(record: dict[str, Any]) -> Form:
-    return form_of(ptmcad.slice_from_mapping(record).model)
+    return form_of(ptmcad.slice_from_mapping(record))
 
 
 def balls(values: dict[str, Fraction]) -> dict[str, arb]:

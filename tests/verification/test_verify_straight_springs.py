@@ -91,7 +91,7 @@ def test_a_wrong_count_beside_a_kink_is_found() -> None:
 
 def test_lines_are_told_from_the_vectors() -> None:
     def chosen(guide: str, anchor: str) -> int:
-        form = form_of(ptmcad.slice_from_mapping(sliding(guide, anchor)).model)
+        form = form_of(ptmcad.slice_from_mapping(sliding(guide, anchor)))
         assert line_of(form.cones[0]) is not None
         return len(list(sides(form)))
 

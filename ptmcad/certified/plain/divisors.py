@@ -12,7 +12,7 @@ from functools import reduce
 from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 from flint.utils.flint_exceptions import DomainError
 
-from ptmcad.text.expressions import Term
+from ptmcad.text.expressions import Expression, Term
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 _PLANE = fmpq_mpoly_ctx.get(("x", "y"), Ordering.lex)
@@ -32,6 +32,13 @@ def quotient(polynomial: tuple[Term, ...], divisor: tuple[Term, ...]) -> tuple[T
         Of FLINT, when it is none.
     """
     return _terms(_polynomial(polynomial) / _polynomial(divisor))
+
+
+def lowest_terms(value: Expression) -> Expression:
+    """The same function, whose numerator and denominator have no common divisor."""
+    divisor = common_divisor([value.numerator, value.denominator])
+    above, below = (Expression(quotient(terms, divisor)) for terms in (value.numerator, value.denominator))
+    return above / below
 
 
 def square_root(polynomial: tuple[Term, ...]) -> tuple[Term, ...] | None:

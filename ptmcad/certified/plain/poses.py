@@ -18,6 +18,7 @@ from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.points import BranchCounter, PlainCounter, plain_counter
 from ptmcad.certified.plain.problem import MAX_UNKNOWNS_AT_POINTS
+from ptmcad.certified.plain.related import related_numbers
 from ptmcad.certified.plain.relaxed import Relaxed, relaxed_numbers
 from ptmcad.certified.plain.resting import rational_point
 from ptmcad.certified.plain.slanted import with_slanted
@@ -147,12 +148,12 @@ def _pose(
             radius = solution.radius
             whole: Box = (arb(0), arb(0), *(ball(c - radius, c + radius) for c in solution.center))
         box = refined(counter.equations, whole, bits)
-        if attempt == 1:  # some number is not settled: it may be a short one
+        if attempt > 0:  # some number is not settled: it may be a short one, or a longer one with more bits
             with ctx.workprec(bits):
                 held, boxes = (dict(zip(mechanism.unknowns, some[2:], strict=True)) for some in (box, whole))
-                at = rational_point(mechanism, parameters, held, boxes)
+                at = at or rational_point(mechanism, parameters, held, boxes)
                 rational, surds = with_slanted(mechanism, parameters, at, held, boxes)
-            turns = quarter_turns(mechanism, rational)
+            turns |= quarter_turns(mechanism, rational)
             if rational or surds.multiples:
                 found |= rational_numbers(mechanism, parameters, rational, surds)
         with ctx.workprec(bits):
@@ -170,6 +171,10 @@ def _pose(
             found |= relaxed_numbers(
                 mechanism, parameters, relaxed, (whole, box), bits, fixed_by_symmetry(mechanism, at)
             )
+            if numbers.keys() - found.keys():
+                fixed, more = related_numbers(mechanism, parameters, counter.problem, (whole, box), bits)
+                turns |= quarter_turns(mechanism, fixed)
+                found |= more
         if found.keys() >= numbers.keys():
             index = solution.signs.count("-") if mechanism.has_potential else None
             return assembled(mechanism, parameters, found, index), bits

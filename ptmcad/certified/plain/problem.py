@@ -18,6 +18,7 @@ from ptmcad.certified.formula import Formula, Graph, length
 from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.ends import Vector, points_of, springs_of
 from ptmcad.certified.plain.excesses import Excess, excesses
+from ptmcad.certified.plain.parallel import shares
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError
 from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, System
@@ -205,27 +206,24 @@ def _checked(mechanism: Mechanism, cones: Iterable[Cone], axes: tuple[Axis, Axis
             number = next(n for n, spring in enumerate(mechanism.springs, 1) if spring.name == cone.name)
             raise GeometryError(problem, part=f"springs.{number}")
         for k, other in enumerate(found):
-            if ratio := _ratio(cone.difference, other.difference):
-                name, pull = f"{other.name} + {cone.name}", other.pull + cone.pull * abs(ratio)
-                found[k] = replace(other, name=name, pull=pull)
+            # each of K |d| and K' |d'| alone has a cone, and where both are short at once neither direction would be
+            # balanced by the rest; but K f |e| and K' g |e| are one
+            if parts := shares(other.difference, cone.difference, axes):
+                f, g = parts
+                pull = f * other.pull + g * cone.pull
+                found[k] = replace(_over(other, f), name=f"{other.name} + {cone.name}", pull=pull)
                 break
         else:
             found.append(cone)
     return tuple(found)
 
 
-def _ratio(d: Vector, other: Vector) -> Fraction | None:
-    """The number c for which d is c times another vector, other than zero: then so are all derivatives.
-
-    Each of K|d| and K'|d'| alone has a cone, and where both are short at once neither direction would be balanced by
-    the rest; but |d| = |c| |d'| makes them one (K |c| + K') |d'|.
-    """
-    key, k = next((key, k) for k in (0, 1) for key in other[k].terms)
-    pairs = zip(d[k].terms.get(key, ()), other[k].terms[key], strict=False)
-    ratio = next((a / b for a, b in pairs if b.numerator), None)
-    if ratio is None or not ratio.is_constant or not (c := ratio.constant()):
-        return None
-    return None if any((f - g.scaled(c)).terms for f, g in zip(d, other, strict=True)) else c
+def _over(cone: Cone, factor: Expression) -> Cone:
+    """The cone with its vector over a factor."""
+    (dx, dy), *weights = (
+        (across.scaled(1 / factor), up.scaled(1 / factor)) for across, up in (cone.difference, *cone.weights)
+    )
+    return replace(cone, difference=(dx, dy), weights=tuple(weights))
 
 
 def _check_loops(model: ClosedMechanism, slice: Slice) -> None:

@@ -27,6 +27,7 @@ from flint import arb, ctx, fmpq
 from ptmcad.certified.arb_evaluation import run_arb
 from ptmcad.certified.arb_isolation import Box, newton
 from ptmcad.certified.formula import Formula, Graph
+from ptmcad.certified.plain.combinations import independent
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.plain.symmetric import fixed_place, partly_valued, point_of
 from ptmcad.certified.potential import potential
@@ -94,10 +95,10 @@ def relaxed_numbers(
     equations += [deflections[n][1] for n in relaxed.torsion]
     if not loose or len(equations) != len(loose):
         return {}
-    around = _around(mechanism, turns, boxes, precision)
-    if around is None:
+    place = around(mechanism, turns, boxes, precision)
+    if place is None:
         return {}
-    step = newton(system(equations, loose), around, precision)
+    step = newton(system(equations, loose), place, precision)
     cosines = _cosines(relaxed, deflections, boxes[1], precision)
     if step is None or not step[1] or cosines is None:
         return {}
@@ -127,19 +128,19 @@ def _cosines(
     return {n: Fraction(1 if ball > 0 else -1) for n, ball in zip(relaxed.torsion, found, strict=True)}
 
 
-def _around(mechanism: Mechanism, turns: Mapping[str, int], boxes: tuple[Box, Box], precision: int) -> Box | None:
+def around(mechanism: Mechanism, turns: Mapping[str, int], boxes: tuple[Box, Box], precision: int) -> Box | None:
     """The box for Newton's method, with fixed unknowns at their values; None where it leaves the wider one."""
     whole, narrow = boxes
     with ctx.workprec(precision):
-        around = list(narrow)
+        found = list(narrow)
         for k, name in enumerate(mechanism.unknowns, FIRST):
             if name in turns:
-                around[k] = fixed_place(mechanism, name, narrow[k])
+                found[k] = fixed_place(mechanism, name, narrow[k])
             else:
-                around[k] = arb(narrow[k].mid(), arb(fmpq(1, 2 ** (precision // 2))))
-            if not whole[k].contains(around[k]):
+                found[k] = arb(narrow[k].mid(), arb(fmpq(1, 2 ** (precision // 2))))
+            if not whole[k].contains(found[k]):
                 return None
-    return tuple(around)
+    return tuple(found)
 
 
 def _independent(
@@ -153,23 +154,17 @@ def _independent(
     ----------
     at : values of unknowns that are known, as `partly_valued` takes them.
     """
-    rows: list[tuple[Monomial, dict[Monomial, Fraction]]] = []
-    chosen = []
+
+    def equation(n: int, value: Fraction) -> dict[Monomial, Fraction]:
+        image, spring = MirrorImage(parameters), mechanism.springs[n]
+        squared = squared_length(mechanism, image, spring.start, spring.end)
+        return partly_valued(squared - image.constant(value**2), at)
+
+    numbers = list(free)
     try:
-        for n, value in free.items():
-            image, spring = MirrorImage(parameters), mechanism.springs[n]
-            squared = squared_length(mechanism, image, spring.start, spring.end)
-            rest = partly_valued(squared - image.constant(value**2), at)
-            for pivot, row in rows:
-                if factor := rest.get(pivot):
-                    rest = {m: c for m in rest.keys() | row.keys() if (c := rest.get(m, 0) - factor * row.get(m, 0))}
-            if rest:
-                pivot = min(rest)
-                rows.append((pivot, {m: c / rest[pivot] for m, c in rest.items()}))
-                chosen.append(n)
+        return [numbers[k] for k in independent([equation(n, value) for n, value in free.items()])]
     except ExpressionError:
-        return list(free)
-    return chosen
+        return numbers
 
 
 def _has_steady_moment(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> bool:

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from math import pi, prod
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from flint import arb
 
@@ -133,11 +133,25 @@ def rational_numbers(
     mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Point, surds: Surds = NO_SURDS
 ) -> dict[str, Enclosure]:
     """Those numbers of an equilibrium that are rational by these fixed unknowns, by name, as exact enclosures."""
+    return numbers_by(mechanism, parameters, at, _Known(parameters, at, surds))
+
+
+class Known(Protocol):
+    """What is known of the values of trees at an equilibrium; None where that is nothing, or not rational."""
+
+    def value(self, tree: Tree) -> Fraction | None: ...
+
+    def squared_length(self, mechanism: Mechanism, start: str, end: str) -> Fraction | None: ...
+
+
+def numbers_by(
+    mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Point, known: Known
+) -> dict[str, Enclosure]:
+    """The same by other knowledge beside the fixed unknowns."""
     found = {name: value for name, value in at.items() if " " in name}
     found |= {f"real {name}": at[name] for name in mechanism.reals if name in at}
     for name, n in quarter_turns(mechanism, at).items():
         found |= {f"degrees {name}": Fraction(90 * n)} | ({name: Fraction(0)} if n == 0 else {})
-    known = _Known(parameters, at, surds)
     for name, pair in mechanism.points.items():
         for n, tree in enumerate(pair):
             value = known.value(tree)

@@ -100,7 +100,7 @@ def _undecided_pulls(claims: Claims, window: Window) -> list[str]:
     """
     undecided, zero = [], 0 * axis(0)
     parameters = {name: zero for name in claims.model.free_lengths} | dict(claims.result.slice.parameters)
-    for cone in form_of(claims.model).cones:
+    for cone in form_of(claims.result.slice).cones:
         sign = is_in_domain(evaluated(cone.pull, parameters) + zero, window, False)
         if sign is Sign.WRONG:
             raise Violation(f"stiffness times free length of the spring {cone.name} is negative somewhere")

@@ -88,7 +88,7 @@ def counting_of(claims: Claims) -> Counting:
     if claims.model == MECHANISM:
         return PaperCounting()
     asked = claims.result.slice.count is Count.ADMISSIBLE
-    return ModelCounting(form_of(claims.model), excesses_of(claims.model) if asked else ())
+    return ModelCounting(form_of(claims.result.slice), excesses_of(claims.model) if asked else ())
 
 
 def _where(claims: Claims, x: Fraction, y: Fraction) -> str:
@@ -145,7 +145,7 @@ def _check_signs(claims: CertifiedClaims, true: str, said: str, k: int) -> None:
     if claims.result.slice.count is Count.TOTAL and not claims.model.has_potential:
         if not said:
             return  # of solutions that are all counted nothing need be said
-        if not true and len(said) == form_of(claims.model).conditions_for_stability:
+        if not true and len(said) == form_of(claims.result.slice).conditions_for_stability:
             raise Unproved(f"a condition for stability may be zero at the solution {k}")
     if true != said:
         if not claims.model.has_potential:

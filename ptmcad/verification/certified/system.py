@@ -53,7 +53,11 @@ def check_potential(claims: Claims) -> str:
     if system.unknowns != unknowns:
         raise Violation(f"the unknowns are {system.unknowns}, not {unknowns}")
     bars = 0
-    if isinstance(model, ClosedMechanism) and form_of(model).closing and claims.result.slice.has_free_lengths:
+    if (
+        isinstance(model, ClosedMechanism)
+        and form_of(claims.result.slice).closing
+        and claims.result.slice.has_free_lengths
+    ):
         bars, model = len(model.mechanism.closing), model.mechanism
     of_mechanism = isinstance(model, Mechanism)
     if bars and len(system.relations) != bars:

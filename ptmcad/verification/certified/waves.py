@@ -13,6 +13,9 @@ from typing import Any, NamedTuple
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
+from ptmcad.question.slice import Axis, Slice
+from ptmcad.text.expressions import Expression
+from ptmcad.verification.certified.parallel import Parameters
 from ptmcad.verification.certified.vectors import Terms
 from ptmcad.verification.derivation import Configuration, along_loops, formulas, has_index
 
@@ -31,8 +34,8 @@ class Cone(NamedTuple):
     Attributes
     ----------
     name : of the spring, or of each.
-    pull : K, the stiffness times the free length; of several the sum, each by how much longer it is than the first.
-    vector : between the spring's ends.
+    pull : K, the stiffness times the free length; of several the sum, each by how much longer it is than the vector.
+    vector : between the spring's ends; of several one in the same direction.
     slopes : first derivatives of both by the unknowns.
     weights : for each equation the vector whose product with the spring's direction, times K, it lacks: the slopes, but
         with closed loops the derivative along them in the last equation, and nothing in the others.
@@ -186,10 +189,15 @@ def _less(f: _Polynomials, moment: _Polynomials) -> _Polynomials:
     return _collected([*f.items(), *((key, -c) for key, c in moment.items())])
 
 
+def form_of(slice: Slice) -> Form:
+    """The form of a slice's model, with springs as one that are parallel all over the slice."""
+    return _form(slice.model, tuple(slice.parameters.items()), slice.axes)
+
+
 @lru_cache(maxsize=8)
-def form_of(model: Model) -> Form:
-    """The form of a model."""
+def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[Axis, Axis]) -> Form:
     ring = _Ring(model)
+    parameters = Parameters(ring.parameters, dict(values), axes, ring.numbers)
     unknowns = tuple(model.unknowns)
     given = formulas(ring.configuration, model)
     everything = range(len(unknowns))
@@ -207,10 +215,10 @@ def form_of(model: Model) -> Form:
     cones: tuple[Cone, ...] = ()
     closing: tuple[int, ...] = ()
     if isinstance(model, Mechanism):
-        cones = tuple(_cones(ring, model))
+        cones = tuple(_cones(ring, model, parameters))
     elif isinstance(model, ClosedMechanism) and not (model.multipliers or model.mechanism.xjoints):
         along = [[ring.waves(f) for f in pair] for pair in along_loops(ring.configuration, model)]
-        cones = tuple(_cones(ring, model.mechanism, along))
+        cones = tuple(_cones(ring, model.mechanism, parameters, along))
         closing = tuple(unknowns.index(name) for name in model.angles + model.reals) if cones else ()
     if closing:
         stability = []  # the determinant of the whole Jacobian
@@ -264,8 +272,10 @@ def _divided(f: _Polynomials, inequalities: Iterable[_Polynomials]) -> _Polynomi
     return found
 
 
-def _cones(ring: _Ring, mechanism: Mechanism, along: Sequence[list[_Polynomials]] = ()) -> Iterable[Cone]:
-    """The springs with a free length; those that are always parallel, and a fixed number of times as long, as one.
+def _cones(
+    ring: _Ring, mechanism: Mechanism, parameters: Parameters, along: Sequence[list[_Polynomials]] = ()
+) -> Iterable[Cone]:
+    """The springs with a free length; those that are parallel all over a slice as one.
 
     Parameters
     ----------
@@ -279,18 +289,17 @@ def _cones(ring: _Ring, mechanism: Mechanism, along: Sequence[list[_Polynomials]
         vector = [ring.waves(points[spring.end][i] - points[spring.start][i]) for i in (0, 1)]
         if not pull or not any(_by(d, k) for d in vector for k in everything):
             continue
-        for k, (name, other, force, of_spring) in enumerate(sides):
-            if multiple := _multiple(vector, other):  # K |d| + K' |c d| = (K + |c| K') |d|
-                part = _scaled(pull, fmpq(abs(multiple.p), multiple.q))
-                whole = _collected([*force.items(), *part.items()])
-                sides[k] = _Side(f"{name} + {spring.name}", other, whole, of_spring)
+        new = _Side(spring.name, pull, vector, along[n] if along else [])
+        for k, side in enumerate(sides):
+            if joined := _joined(side, new, parameters):
+                sides[k] = joined
                 break
         else:
-            sides.append(_Side(spring.name, vector, pull, n))
-    for name, vector, pull, n in sides:
+            sides.append(new)
+    for name, pull, vector, turned in sides:
         slopes = [[_by(d, k) for d in vector] for k in everything]
         nothing: list[_Polynomials] = [{}, {}]
-        weights = [*[nothing] * (len(ring.unknowns) - 1), along[n]] if along else slopes
+        weights = [*[nothing] * (len(ring.unknowns) - 1), turned] if along else slopes
         bends = [[_by(d, j) for d in weight] for weight in weights for j in everything]
         strength = _kept(pull, ring.parameters)
         if not strength:
@@ -305,26 +314,27 @@ def _cones(ring: _Ring, mechanism: Mechanism, along: Sequence[list[_Polynomials]
 
 
 class _Side(NamedTuple):
-    """Springs side by side: their names, the vector of the first of them, the K of all, and the first one's number."""
+    """Springs side by side: their names, and the pull and the vector, with its derivative along loops, of the one that
+    they are together.
+    """
 
     names: str
-    vector: list[_Polynomials]
     pull: _Polynomials
-    first: int
+    vector: list[_Polynomials]
+    along: list[_Polynomials]
 
 
-def _scaled(f: _Polynomials, factor: fmpq) -> _Polynomials:
-    return {key: c * factor for key, c in f.items()}
-
-
-def _multiple(vector: Sequence[_Polynomials], other: Sequence[_Polynomials]) -> fmpq | None:
-    """The number c, other than zero, for which one vector is c times the other; None where there is none."""
-    lead = next((k, key) for k in (0, 1) for key in other[k])
-    given = vector[lead[0]].get(lead[1])
-    if given is None:
-        return None
-    c: fmpq = given.leading_coefficient() / other[lead[0]][lead[1]].leading_coefficient()
-    return c if all(not _less(f, _scaled(g, c)) for f, g in zip(vector, other, strict=True)) else None
+def _joined(one: _Side, other: _Side, parameters: Parameters) -> _Side | None:
+    """Two as one, if their vectors are f e and g e at every point of the slice: K |f e| + K' |g e|."""
+    for look in (dict, parameters.valued):  # where parameters may stay, they do: they are factors of equations
+        vector, parallel = ([look(f) for f in side.vector] for side in (one, other))
+        if any(vector) and (factors := parameters.shares(vector, parallel)):
+            f, g = factors
+            pulls = [(key, c * f) for key, c in look(one.pull).items()]
+            pulls += [(key, c * g) for key, c in look(other.pull).items()]
+            over = [[{key: c / f for key, c in look(d).items()} for d in some] for some in (one.vector, one.along)]
+            return _Side(f"{one.names} + {other.names}", _collected(pulls), *over)
+    return None
 
 
 def _kept(f: _Polynomials, parameters: tuple[str, ...]) -> Waves:

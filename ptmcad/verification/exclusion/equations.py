@@ -44,7 +44,7 @@ class Equations:
     """A form's formulas over the window and the unknowns."""
 
     def __init__(self, claims: CertifiedClaims):
-        self.form = form_of(claims.model)
+        self.form = form_of(claims.result.slice)
         self.claims, self.list = claims, Formulas()
         cover = claims.result.cover
         assert cover is not None
