@@ -369,17 +369,3 @@ def test_what_an_engine_refuses_of_an_option_names_the_option(
     given = ["--set", "L1=(a - b)^2 + 10^-30*(a + b)"]
     assert run(["classify", str(path), *given, "--out", str(tmp_path)]) == 2
     assert capsys.readouterr().err.startswith("error: --set L1: a length must be positive")
-
-
-def test_a_count_that_an_engine_refuses_is_that_of_the_option(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    path = tmp_path / "good.yaml"
-    text = SPRUNG % (", l0: {kind: free length, default: 1}", "1", "l0", "1") + AXES
-    path.write_text(f"{text}count: stable\n", encoding="utf-8")
-    assert run(["classify", str(path), "--count", "admissible", "--out", str(tmp_path)]) == 2
-    assert capsys.readouterr().err.startswith("error: --count: the certified engine counts admissible")
-    path.write_text(f"{text}count: admissible\n", encoding="utf-8")
-    for command in (["classify", str(path), "--out", str(tmp_path)], ["check", str(path)]):
-        assert run(command) == 2
-        assert capsys.readouterr().err.startswith(f"error: {path}:10: count: the certified engine counts")
