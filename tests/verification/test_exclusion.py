@@ -27,8 +27,8 @@ import numpy as np
 
 from ptmcad.verification.exclusion import check
 from ptmcad.verification.exclusion.check import MAX_EFFORT, NUMBA_NEEDED, check_free_area
-from ptmcad.verification.exclusion.forms import evaluate
-from ptmcad.verification.exclusion.formulas import Formulas
+from ptmcad.verification.exclusion.forms import CENTER, ERROR, HIGH, LOW, WIDTH, evaluate
+from ptmcad.verification.exclusion.formulas import MAX_VARIABLES, Formulas
 from ptmcad.verification.exclusion.holding import holds
 from ptmcad.verification.exclusion.pieces import pieces_of
 
@@ -211,7 +211,7 @@ OPERATIONS = ("add", "subtract", "multiply", "divide", "cosine", "sine", "invers
 
 def some_formula(f: Formulas, rng: random.Random) -> int:
     """A formula of some operations, each of the last values."""
-    values = [f.variable(0), f.variable(1), f.variable(2), f.number(Fraction(rng.randint(-9, 9), 7))]
+    values = [*map(f.variable, range(MAX_VARIABLES)), f.number(Fraction(rng.randint(-9, 9), 7))]
     for _ in range(rng.randint(2, 12)):
         name = rng.choice(OPERATIONS)
         a, b = rng.choice(values), rng.choice(values[-4:])
@@ -229,23 +229,23 @@ def test_affine_forms_hold_the_values() -> None:
     for _ in range(400):
         f = Formulas()
         tape, _, (place,) = f.tape([], [some_formula(f, rng)])
-        at = np.array([rng.uniform(-2, 2) for _ in range(3)])
-        half = np.array([10 ** rng.uniform(-9, 0) for _ in range(3)])
-        forms = np.empty((len(tape.code), 7))
+        at = np.array([rng.uniform(-2, 2) for _ in range(MAX_VARIABLES)])
+        half = np.array([10 ** rng.uniform(-9, 0) for _ in range(MAX_VARIABLES)])
+        forms = np.empty((len(tape.code), WIDTH))
         evaluate(tape, np.stack([at - half, at + half], axis=1), forms, 0, len(tape.code))
         wide = forms[place].copy()
-        if not wide[4] < np.inf:
+        if not wide[ERROR] < np.inf:
             continue
         for _ in range(10):
-            e = np.array([rng.choice((-1, 1, rng.uniform(-1, 1))) for _ in range(3)])
+            e = np.array([rng.choice((-1, 1, rng.uniform(-1, 1))) for _ in range(MAX_VARIABLES)])
             point = at + half * e
             evaluate(tape, np.stack([point, point], axis=1), forms, 0, len(tape.code))
-            low, high = forms[place, 5:]
+            low, high = forms[place, LOW], forms[place, HIGH]
             if not high - low < 1e-6:
                 continue
             value, lost = (low + high) / 2, (high - low) + 1e-13 * (1 + abs(low))
-            assert wide[5] - lost <= value <= wide[6] + lost
-            assert abs(value - wide[3] - wide[:3] @ e) <= wide[4] + lost
+            assert wide[LOW] - lost <= value <= wide[HIGH] + lost
+            assert abs(value - wide[CENTER] - wide[:MAX_VARIABLES] @ e) <= wide[ERROR] + lost
             checked += 1
     assert checked > 1000
 

@@ -36,7 +36,7 @@ import numpy as np
 from ptmcad.verification.exclusion import check, places
 from ptmcad.verification.exclusion.check import places_of
 from ptmcad.verification.exclusion.equations import Equations
-from ptmcad.verification.exclusion.forms import evaluate
+from ptmcad.verification.exclusion.forms import CENTER, WIDTH, evaluate
 from ptmcad.verification.exclusion.places import Places
 
 PAPER: dict[str, Any] = {
@@ -154,9 +154,9 @@ def test_formulas_are_those_of_the_balls(name: str, count: str) -> None:
 
 
 def numbers_of(tape: Any, box: Any) -> Any:
-    forms = np.empty((len(tape.code), len(box) + 4))
+    forms = np.empty((len(tape.code), WIDTH))
     evaluate(tape, box, forms, 0, len(tape.code))
-    return forms[:, len(box)]
+    return forms[:, CENTER]
 
 
 def test_a_search_that_is_spent_leaves_what_it_has(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,6 +14,8 @@ import numpy as np
 
 CONSTANT, VARIABLE, ADD, SUBTRACT, MULTIPLY, SQUARE, DIVIDE, COSINE, SINE, DIRECTION, INVERSE_LENGTH, LENGTH = range(12)
 """Operations. DIRECTION, INVERSE_LENGTH and LENGTH of the vector (a, b): a/|(a, b)|, 1/|(a, b)| and |(a, b)|."""
+MAX_VARIABLES = 6
+"""Both axes, three unknowns, and the direction of a spring; an even number."""
 
 
 class Tape(NamedTuple):
@@ -55,6 +57,7 @@ class Formulas:
 
     def variable(self, number: int) -> int:
         """One of the variables."""
+        assert number < MAX_VARIABLES
         return self._new(VARIABLE, number, number)
 
     def add(self, a: int, b: int) -> int:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ptmcad.verification.exclusion.compiled import compiled
-from ptmcad.verification.exclusion.forms import evaluate
+from ptmcad.verification.exclusion.forms import CENTER, ERROR, HIGH, LOW, WIDTH, evaluate
 from ptmcad.verification.exclusion.holding import holds
 
 GONE, HALVED, STUCK = range(3)
@@ -46,7 +46,7 @@ def look(system: Any, tape: Any, pieces: Any, boxes: Any, outcome: Any, rest: An
     rest : (number, variables, 2), the second halves of those that are `HALVED`; `boxes` has the first ones.
     """
     nv = boxes.shape[1]
-    forms = np.empty((len(tape.code), nv + 4))
+    forms = np.empty((len(tape.code), WIDTH))
     number = len(system.zero) + len(system.not_negative)
     rows, solved_for = np.empty((number, nv + 2)), np.empty(number, dtype=np.int64)
     for n in range(len(boxes)):
@@ -77,7 +77,7 @@ def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int
     The number of boxes that are left. All solutions in the box are in them.
     """
     most, nv = boxes.shape[0], boxes.shape[1]
-    forms = np.empty((len(tape.code), nv + 4))
+    forms = np.empty((len(tape.code), WIDTH))
     number = len(system.zero) + len(system.not_negative)
     rows, solved_for = np.empty((number, nv + 2)), np.empty(number, dtype=np.int64)
     box, stuck, waiting = np.empty((nv, 2)), 0, 1  # those that are stuck come first, then those that wait
@@ -110,10 +110,10 @@ def _look_at(system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: An
     before = np.empty((nv, 2))
     for _ in range(_ROUNDS):
         evaluate(tape, box, forms, 0, system.first)
-        if _excluded(system.zero[: system.early], forms, nv, False):
+        if _excluded(system.zero[: system.early], forms, False):
             return GONE
         evaluate(tape, box, forms, system.first, len(tape.code))
-        if _excluded(system.zero, forms, nv, False) or _excluded(system.not_negative, forms, nv, True):
+        if _excluded(system.zero, forms, False) or _excluded(system.not_negative, forms, True):
             return GONE
         for j in range(nv):
             before[j, 0], before[j, 1] = box[j, 0], box[j, 1]
@@ -137,10 +137,10 @@ def _look_at(system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: An
 
 
 @compiled
-def _excluded(which: Any, forms: Any, nv: int, above: bool) -> bool:
+def _excluded(which: Any, forms: Any, above: bool) -> bool:
     """Whether a formula that is zero at critical points is not; or one that is not negative there, is (``above``)."""
     for n in which:  # noqa: SIM110
-        if forms[n, nv + 3] < 0 or (not above and forms[n, nv + 2] > 0):
+        if forms[n, HIGH] < 0 or (not above and forms[n, LOW] > 0):
             return True
     return False
 
@@ -160,8 +160,9 @@ def _eliminated(system: Any, forms: Any, nv: int, rows: Any, solved_for: Any) ->
     for i in range(number):
         n = system.zero[i] if i < zeros else system.not_negative[i - zeros]
         solved_for[i] = -1
-        for j in range(nv + 2):
+        for j in range(nv):
             rows[i, j] = forms[n, j]
+        rows[i, nv], rows[i, nv + 1] = forms[n, CENTER], forms[n, ERROR]
     for _ in range(nv - 1):
         row, column, best = -1, -1, _MIN_RATIO
         for i in range(zeros):
@@ -262,7 +263,7 @@ def _widest(system: Any, forms: Any, box: Any) -> int:
     nv, m = box.shape[0], len(system.measured)
     shares = np.zeros(nv)
     for n in system.measured:
-        total = forms[n, nv + 1]
+        total = forms[n, ERROR]
         for j in range(nv):
             total += abs(forms[n, j])
         if 0 < total < _MAX_SLOPE:
