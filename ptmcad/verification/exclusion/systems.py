@@ -7,10 +7,10 @@ a solution of one of the systems, in the box of its start (docs/verify.md, "Why 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
-from math import pi
+from math import inf, pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +18,7 @@ from flint import arb
 
 from ptmcad.question.slice import Count
 from ptmcad.text.balls import ball_of
+from ptmcad.verification.certified.boxes import Floats
 from ptmcad.verification.certified.counted import MINIMA
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.kinks import sides
@@ -25,7 +26,7 @@ from ptmcad.verification.certified.parameters import over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.vectors import SPRINGS
-from ptmcad.verification.certified.waves import Waves
+from ptmcad.verification.certified.waves import Waves, form_of
 from ptmcad.verification.derivation import MECHANISM
 from ptmcad.verification.exclusion.equations import Equations, Pair, bases
 from ptmcad.verification.exclusion.formulas import Tape
@@ -73,6 +74,12 @@ class System:
     first: int
     start: Any
 
+    def within(self, halves: Floats) -> System:
+        """The same with its first unknowns in other ranges, of which half the widths are given."""
+        start = self.start.copy()
+        start[2 : 2 + len(halves)] = [(-half, half) for half in halves]
+        return replace(self, start=start)
+
     def over_window(self, smallest: float) -> Compiled:
         """In arrays, to be looked at over boxes of the window that are wider than a share of it."""
         units = self.start[:, 1] - self.start[:, 0]
@@ -102,28 +109,55 @@ def systems_of(claims: CertifiedClaims) -> list[System]:
     Unproved
         When real unknowns have no bound over the window that can be proved, or where the systems are not known.
     """
-    return list(_Systems(claims).all())
+    return list(_Systems(claims, halves_over(claims, *window_of(claims))).all())
 
 
-def solutions_of(claims: CertifiedClaims) -> list[System]:
+def solutions_of(claims: CertifiedClaims, halves: Floats | None) -> list[System]:
     """What is zero at the solutions that a map counts: a system for each choice of sides, in the order of these.
 
     Guarantee: over each point of the window all that are counted are solutions of it, in the box of its start; it may
     have others, and configurations without solution.
 
+    Parameters
+    ----------
+    halves : as `halves_over` has them; None where there are none, and unknowns may be anything until they are `within`
+        others.
+
     Raises
     ------
     Unproved
-        As above.
+        Where the systems are not known.
     """
-    return list(_Systems(claims).solutions())
+    return list(_Systems(claims, halves or (inf,) * form_of(claims.model).size).solutions())
+
+
+def window_of(claims: CertifiedClaims) -> tuple[arb, arb]:
+    """Balls of both axes."""
+    one, two = (ball_of(axis.low).union(ball_of(axis.high)) for axis in claims.result.slice.axes)
+    return one, two
+
+
+def halves_over(claims: CertifiedClaims, x: arb, y: arb) -> Floats:
+    """Half the widths of ranges around zero that have the unknowns of all solutions over a part of the window.
+
+    Raises
+    ------
+    Unproved
+        When real unknowns have no bound over it that can be proved.
+    """
+    form, slice = form_of(claims.model), claims.result.slice
+    if all(form.is_circle):
+        return (_ANGLE[1],) * form.size
+    values = {n: arb(0) for n in slice.model.free_lengths}
+    values |= {n: over(e, x, y) for n, e in slice.parameters.items()}
+    return half_widths(form, values)
 
 
 class _Systems:
     """The systems of one map, and what they have in common."""
 
-    def __init__(self, claims: CertifiedClaims):
-        self.claims, self.model = claims, Equations(claims)
+    def __init__(self, claims: CertifiedClaims, halves: Floats):
+        self.claims, self.model, self._halves = claims, Equations(claims), halves
         self.count, self.form = claims.result.slice.count, self.model.form
         self.minima = self.form.is_gradient and self.count in MINIMA
         stable = self.form.stability if self.count is Count.STABLE else ()
@@ -261,15 +295,5 @@ class _Systems:
             name + self.where, tape, tuple(places[:count]), tuple(places[count:]), len(first), early, np.array(ranges)
         )  # fmt: skip
 
-    @property
-    def _halves(self) -> tuple[float, ...]:
-        if all(self.form.is_circle):
-            return (_ANGLE[1],) * self.form.size
-        slice = self.claims.result.slice
-        x, y = (ball_of(a.low).union(ball_of(a.high)) for a in slice.axes)
-        values = {n: arb(0) for n in slice.model.free_lengths}
-        values |= {n: over(e, x, y) for n, e in slice.parameters.items()}
-        return half_widths(self.form, values)
 
-
-__all__ = ["Compiled", "System", "solutions_of", "systems_of"]
+__all__ = ["Compiled", "System", "halves_over", "solutions_of", "systems_of", "window_of"]
