@@ -29,7 +29,7 @@ from ptmcad.verification.certified.vectors import SPRINGS
 from ptmcad.verification.certified.waves import Waves, form_of
 from ptmcad.verification.derivation import MECHANISM
 from ptmcad.verification.exclusion.equations import Equations, Pair, bases
-from ptmcad.verification.exclusion.formulas import Tape
+from ptmcad.verification.exclusion.formulas import Tape, shortened
 
 SHORT_SHARE = 16
 """A spring is short, for total counts, if its length is less than this part of the sum of its vector's factors."""
@@ -80,17 +80,40 @@ class System:
         start[2 : 2 + len(halves)] = [(-half, half) for half in halves]
         return replace(self, start=start)
 
+    @property
+    def measured(self) -> int:
+        """How many of the formulas that are zero tell what is halved; over a place one less."""
+        return len(self.start) - 1
+
+    def with_some(self, chosen: Any) -> System:
+        """The same without some of its formulas, of which none is claimed then.
+
+        Parameters
+        ----------
+        chosen : for each formula that is zero, and then for each that is not negative, whether it is kept; the first
+            ones are.
+        """
+        chosen = chosen | (np.arange(len(chosen)) < max(self.early, self.measured))
+        zero, not_negative = (
+            [n for n, kept in zip(some, which, strict=True) if kept]
+            for some, which in ((self.zero, chosen[: len(self.zero)]), (self.not_negative, chosen[len(self.zero) :]))
+        )
+        tape, places = shortened(self.tape, self.first, [*zero, *not_negative])
+        return replace(
+            self, tape=tape, zero=tuple(places[: len(zero)]), not_negative=tuple(places[len(zero) :])
+        )  # fmt: skip
+
     def over_window(self, smallest: float) -> Compiled:
         """In arrays, to be looked at over boxes of the window that are wider than a share of it."""
         units = self.start[:, 1] - self.start[:, 0]
         least = np.where(np.arange(len(units)) < 2, smallest * units, np.inf)
-        return self._compiled(len(self.start) - 1, least, 0)
+        return self._compiled(self.measured, least, 0)
 
     def over_place(self, smallest: float) -> Compiled:
         """The same over one box of the window, and boxes of the unknowns that are wider than a share of all."""
         units = self.start[:, 1] - self.start[:, 0]
         least = np.where(np.arange(len(units)) < 2, np.inf, smallest * units)
-        return self._compiled(len(self.start) - 2, least, 2)
+        return self._compiled(self.measured - 1, least, 2)
 
     def _compiled(self, measured: int, least: Any, halved: int) -> Compiled:
         zero, not_negative = (np.array(some, dtype=np.int64) for some in (self.zero, self.not_negative))
