@@ -25,12 +25,15 @@ pytest.importorskip("numba")
 
 import numpy as np
 
-from ptmcad.verification.exclusion import check
+from ptmcad.verification.exclusion import check, running
 from ptmcad.verification.exclusion.check import MAX_EFFORT, NUMBA_NEEDED, check_free_area
 from ptmcad.verification.exclusion.forms import CENTER, ERROR, HIGH, LOW, WIDTH, evaluate
-from ptmcad.verification.exclusion.formulas import MAX_VARIABLES, Formulas
+from ptmcad.verification.exclusion.formulas import MAX_VARIABLES, Formulas, shortened
 from ptmcad.verification.exclusion.holding import holds
-from ptmcad.verification.exclusion.pieces import pieces_of
+from ptmcad.verification.exclusion.pieces import Pieces, no_pieces, pieces_of
+from ptmcad.verification.exclusion.running import search
+from ptmcad.verification.exclusion.search import look
+from ptmcad.verification.exclusion.systems import System, systems_of
 
 ZEEMAN: dict[str, Any] = {
     "mechanism": {
@@ -248,6 +251,56 @@ def test_affine_forms_hold_the_values() -> None:
             assert abs(value - wide[CENTER] - wide[:MAX_VARIABLES] @ e) <= wide[ERROR] + lost
             checked += 1
     assert checked > 1000
+
+
+def test_a_shortened_tape_has_the_values_of_the_whole_one() -> None:
+    rng = random.Random(3)
+    for _ in range(40):
+        f = Formulas()
+        wanted = [some_formula(f, rng) for _ in range(4)]
+        tape, first, places = f.tape(wanted[:1], wanted[1:])
+        kept, where = shortened(tape, first, places[::3])
+        assert first <= len(kept.code) < len(tape.code)
+        at = np.array([rng.uniform(-2, 2) for _ in range(MAX_VARIABLES)])
+        box, forms = np.stack([at, at + 0.1], axis=1), [np.empty((len(t.code), WIDTH)) for t in (tape, kept)]
+        for t, found in zip((tape, kept), forms, strict=True):
+            evaluate(t, box, found, 0, len(t.code))
+        assert np.array_equal(forms[0][places[::3]], forms[1][where])
+
+
+def left_by(system: System, pieces: Pieces) -> tuple[int, set[bytes]]:
+    """How many boxes a search looks at, and those that it leaves."""
+    rest = search(system, pieces, system.start[None], 50_000, 2.0**-6)
+    assert not len(rest.open)
+    return rest.looked, {box.tobytes() for box in rest.stuck}
+
+
+def test_a_search_loses_no_box_where_it_tries_some_with_all_formulas(monkeypatch: pytest.MonkeyPatch) -> None:
+    claims = CertifiedClaims(a_map("loop"))
+    system, pieces = systems_of(claims)[0], no_pieces(claims.sweep.steps)
+    monkeypatch.setattr(running, "LEARNT_FROM", 10**9)
+    all_at_once = left_by(system, pieces)
+    assert len(all_at_once[1]) > 100
+    monkeypatch.setattr(running, "LEARNT_FROM", 0)
+    monkeypatch.setattr(running, "WORTH", 0.0)
+    assert left_by(system, pieces) == all_at_once
+
+
+def test_formulas_that_exclude_nothing_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The search looks at hardly more boxes then, and evaluates much less."""
+    claims = CertifiedClaims(a_map("loop"))
+    system, pieces, tapes = systems_of(claims)[0], no_pieces(claims.sweep.steps), list[int]()
+    monkeypatch.setattr(running, "LEARNT_FROM", 10**9)
+    looked, _ = left_by(system, pieces)
+    monkeypatch.undo()
+
+    def watched(*arguments: Any) -> None:
+        tapes.append(len(arguments[1].code))
+        look(*arguments)
+
+    monkeypatch.setattr(running, "look", watched)
+    assert left_by(system, pieces)[0] < 1.2 * looked
+    assert min(tapes) < 0.8 * max(tapes) == 0.8 * len(system.tape.code)
 
 
 def test_what_is_held_lies_in_the_cover() -> None:

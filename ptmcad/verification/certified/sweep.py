@@ -134,7 +134,8 @@ def sweep(cover: Cover) -> Sweep:
             at = slice(bisect_left(gaps, (bottom,)), bisect_left(gaps, (top,)))
             new_blocks = full.begin(_merged(inner), low)
             new_gaps = free.begin(_between(new_blocks, bottom, top), low)
-            pairs.update(_meeting(new_gaps, [*sides[0], *new_blocks, *sides[1]], closed=True))
+            # a gap that ends at a block which goes on is joined with the old one that ended there
+            pairs.update(_meeting(new_gaps, new_blocks, closed=True))
             old_blocks, old_gaps = blocks[first:last], gaps[at]
             full.end(old_blocks, low)
             free.end(old_gaps, low)
