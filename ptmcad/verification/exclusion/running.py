@@ -55,7 +55,7 @@ def search(
     smallest : share of the window's width; boxes over less than that are stuck.
     report : called with the share of the start's volume that is done with.
     """
-    choice = _Choice(system, smallest)
+    choice = _Choice(system, pieces, smallest)
     waiting, stuck, looked, number = [start.copy()], [start[:0]], 0, len(start)
     whole, gone = float(_volumes(start).sum()), 0.0
     while waiting:
@@ -66,7 +66,7 @@ def search(
         for k in range(0, len(boxes), AT_ONCE):
             some = boxes[k : k + AT_ONCE]
             before = _volumes(some)
-            some, outcome, other = choice.look(pieces, some)
+            some, outcome, other = choice.look(some)
             halved = outcome == HALVED
             children = np.concatenate([some[halved], other[halved]])
             stuck.append(some[outcome == STUCK].copy())
@@ -81,34 +81,38 @@ def search(
 class _Choice:
     """A system with those of its formulas that have lately excluded boxes: most of them hardly ever do.
 
-    All of them are evaluated over the first boxes, and over some of all others, which tells what is worth it.
+    All of them are evaluated over the first boxes, over some of all others, which tells what is worth it, and over
+    those that would not be halved any more.
     """
 
-    def __init__(self, system: System, smallest: float):
-        self._system, self._smallest = system, smallest
-        self._told = np.zeros(len(system.zero) + len(system.not_negative))
-        self._chosen = np.ones(len(self._told), dtype=bool)
-        self._some = system
-        self._looked = 0
+    def __init__(self, system: System, pieces: Pieces, smallest: float):
+        self._all, self._pieces, self._smallest = system, pieces, smallest
+        self._some, self._chosen = system, np.ones(len(system.zero) + len(system.not_negative), dtype=bool)
+        self._told, self._looked = np.zeros(len(self._chosen)), 0
 
-    def look(self, pieces: Pieces, boxes: Any) -> tuple[Any, Any, Any]:
-        """Boxes in another order, what becomes of them, and the second halves, as `look` has them."""
+    def look(self, boxes: Any) -> tuple[Any, Any, Any]:
+        """Boxes in another order, what becomes of them, and the second halves, as `search.look` has them."""
         parts = 1 if self._looked < LEARNT_FROM else SAMPLE
         boxes = boxes[np.argsort(np.arange(len(boxes)) % parts, kind="stable")]
         outcome, other = np.full(len(boxes), GONE), np.empty_like(boxes)
-        sampled = -(-len(boxes) // parts)
+        tried = -(-len(boxes) // parts)
         self._told *= FORGETTING
-        for system, part, told in (
-            (self._system, slice(sampled), self._told),
-            (self._some, slice(sampled, None), np.zeros(len(self._some.zero) + len(self._some.not_negative))),
-        ):
-            compiled = system.over_window(self._smallest)
-            look(compiled, system.tape, pieces, boxes[part], outcome[part], other[part], told)
+        self._look(self._all, boxes[:tried], outcome[:tried], other[:tried], self._told)
+        self._look(self._some, boxes[tried:], outcome[tried:], other[tried:])
+        small = tried + np.flatnonzero(outcome[tried:] == STUCK)
+        left, anew = boxes[small], outcome[small]
+        self._look(self._all, left, anew, other[small])
+        boxes[small], outcome[small] = left, anew
         self._looked += len(boxes)
         chosen = self._told >= WORTH * self._told.sum()
         if self._looked >= LEARNT_FROM and (chosen != self._chosen).any():
-            self._chosen, self._some = chosen, self._system.with_some(chosen)
+            self._chosen, self._some = chosen, self._all.with_some(chosen)
         return boxes, outcome, other
+
+    def _look(self, system: System, boxes: Any, outcome: Any, other: Any, told: Any = None) -> None:
+        if told is None:
+            told = np.zeros(len(system.zero) + len(system.not_negative))
+        look(system.over_window(self._smallest), system.tape, self._pieces, boxes, outcome, other, told)
 
 
 def _volumes(boxes: Any) -> Any:
