@@ -15,7 +15,7 @@ import numpy as np
 CONSTANT, VARIABLE, ADD, SUBTRACT, MULTIPLY, SQUARE, DIVIDE, COSINE, SINE, DIRECTION, INVERSE_LENGTH, LENGTH = range(12)
 """Operations. DIRECTION, INVERSE_LENGTH and LENGTH of the vector (a, b): a/|(a, b)|, 1/|(a, b)| and |(a, b)|."""
 MAX_VARIABLES = 6
-"""Both axes, three unknowns, and the direction of a spring; an even number."""
+"""Both axes, three unknowns, and the direction of a spring; even, as sums over them take two at once."""
 
 
 class Tape(NamedTuple):
