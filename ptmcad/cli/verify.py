@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 @click.option("--seed", type=click.IntRange(min=0), metavar="N",
               help="Seed of the random points and of the random boxes.  [default: a hash of the claims]")  # fmt: skip
 @click.option("--boxes", type=click.IntRange(0, 100_000), metavar="N",
-              help="Random boxes of the free area of a certified map.  [default: 40]")  # fmt: skip
+              help="Random boxes of the free area of a certified map.  [default: 16]")  # fmt: skip
 @click.option("--effort", type=click.IntRange(0, 10), metavar="N",
               help="How much of a certified map's free area is to be proved free of critical curves: 0 nothing, each "
                    "number more four times the work, 10 all of it.  [default: 2]")  # fmt: skip

@@ -25,12 +25,15 @@ pytest.importorskip("numba")
 
 import numpy as np
 
-from ptmcad.verification.exclusion import check
+from ptmcad.verification.exclusion import check, running
 from ptmcad.verification.exclusion.check import MAX_EFFORT, NUMBA_NEEDED, check_free_area
-from ptmcad.verification.exclusion.forms import evaluate
-from ptmcad.verification.exclusion.formulas import Formulas
+from ptmcad.verification.exclusion.forms import CENTER, ERROR, HIGH, LOW, WIDTH, evaluate
+from ptmcad.verification.exclusion.formulas import MAX_VARIABLES, Formulas, shortened
 from ptmcad.verification.exclusion.holding import holds
-from ptmcad.verification.exclusion.pieces import pieces_of
+from ptmcad.verification.exclusion.pieces import no_pieces, pieces_of
+from ptmcad.verification.exclusion.running import Rest, search
+from ptmcad.verification.exclusion.search import look
+from ptmcad.verification.exclusion.systems import systems_of
 
 ZEEMAN: dict[str, Any] = {
     "mechanism": {
@@ -226,7 +229,7 @@ OPERATIONS = ("add", "subtract", "multiply", "divide", "cosine", "sine", "invers
 
 def some_formula(f: Formulas, rng: random.Random) -> int:
     """A formula of some operations, each of the last values."""
-    values = [f.variable(0), f.variable(1), f.variable(2), f.number(Fraction(rng.randint(-9, 9), 7))]
+    values = [*map(f.variable, range(MAX_VARIABLES)), f.number(Fraction(rng.randint(-9, 9), 7))]
     for _ in range(rng.randint(2, 12)):
         name = rng.choice(OPERATIONS)
         a, b = rng.choice(values), rng.choice(values[-4:])
@@ -244,25 +247,84 @@ def test_affine_forms_hold_the_values() -> None:
     for _ in range(400):
         f = Formulas()
         tape, _, (place,) = f.tape([], [some_formula(f, rng)])
-        at = np.array([rng.uniform(-2, 2) for _ in range(3)])
-        half = np.array([10 ** rng.uniform(-9, 0) for _ in range(3)])
-        forms = np.empty((len(tape.code), 7))
+        at = np.array([rng.uniform(-2, 2) for _ in range(MAX_VARIABLES)])
+        half = np.array([10 ** rng.uniform(-9, 0) for _ in range(MAX_VARIABLES)])
+        forms = np.empty((len(tape.code), WIDTH))
         evaluate(tape, np.stack([at - half, at + half], axis=1), forms, 0, len(tape.code))
         wide = forms[place].copy()
-        if not wide[4] < np.inf:
+        if not wide[ERROR] < np.inf:
             continue
         for _ in range(10):
-            e = np.array([rng.choice((-1, 1, rng.uniform(-1, 1))) for _ in range(3)])
+            e = np.array([rng.choice((-1, 1, rng.uniform(-1, 1))) for _ in range(MAX_VARIABLES)])
             point = at + half * e
             evaluate(tape, np.stack([point, point], axis=1), forms, 0, len(tape.code))
-            low, high = forms[place, 5:]
+            low, high = forms[place, LOW], forms[place, HIGH]
             if not high - low < 1e-6:
                 continue
             value, lost = (low + high) / 2, (high - low) + 1e-13 * (1 + abs(low))
-            assert wide[5] - lost <= value <= wide[6] + lost
-            assert abs(value - wide[3] - wide[:3] @ e) <= wide[4] + lost
+            assert wide[LOW] - lost <= value <= wide[HIGH] + lost
+            assert abs(value - wide[CENTER] - wide[:MAX_VARIABLES] @ e) <= wide[ERROR] + lost
             checked += 1
     assert checked > 1000
+
+
+def test_a_shortened_tape_has_the_values_of_the_whole_one() -> None:
+    rng = random.Random(3)
+    for _ in range(40):
+        f = Formulas()
+        wanted = [some_formula(f, rng) for _ in range(4)]
+        tape, first, places = f.tape(wanted[:1], wanted[1:])
+        kept, where = shortened(tape, first, places[::3])
+        assert first <= len(kept.code) < len(tape.code)
+        at = np.array([rng.uniform(-2, 2) for _ in range(MAX_VARIABLES)])
+        box, forms = np.stack([at, at + 0.1], axis=1), [np.empty((len(t.code), WIDTH)) for t in (tape, kept)]
+        for t, found in zip((tape, kept), forms, strict=True):
+            evaluate(t, box, found, 0, len(t.code))
+        assert np.array_equal(forms[0][places[::3]], forms[1][where])
+
+
+def test_a_search_loses_no_box_where_it_tries_some_with_all_formulas(monkeypatch: pytest.MonkeyPatch) -> None:
+    claims = CertifiedClaims(a_map("loop"))
+    system, pieces = systems_of(claims)[0], no_pieces(claims.sweep.steps)
+
+    def left() -> tuple[int, set[bytes]]:
+        rest = search(system, pieces, system.start[None], 8_000, 2.0**-20)
+        return rest.looked, {box.tobytes() for box in rest.open}
+
+    monkeypatch.setattr(running, "LEARNT_FROM", 10**9)
+    all_at_once = left()
+    assert len(all_at_once[1]) > 1000
+    monkeypatch.setattr(running, "LEARNT_FROM", 0)
+    monkeypatch.setattr(running, "WORTH", 0.0)
+    assert left() == all_at_once
+
+
+def test_formulas_that_exclude_nothing_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The search looks at hardly more boxes then, and evaluates much less; what it leaves for good was tried by all."""
+    claims = CertifiedClaims(a_map("loop"))
+    system, pieces, tapes = systems_of(claims)[0], no_pieces(claims.sweep.steps), list[int]()
+    tried_by_all = set[bytes]()
+
+    def watched(*arguments: Any) -> None:
+        look(*arguments)
+        tapes.append(len(arguments[1].code))
+        if tapes[-1] == len(system.tape.code):
+            tried_by_all.update(box.tobytes() for box in arguments[3])
+
+    def done() -> Rest:
+        return search(system, pieces, system.start[None], 50_000, 2.0**-6)
+
+    found = done()
+    monkeypatch.setattr(running, "LEARNT_FROM", 10**9)
+    by_all = done()
+    assert len(found.open) == 0 == len(by_all.open)
+    assert found.looked < 1.2 * by_all.looked
+    monkeypatch.undo()
+    monkeypatch.setattr(running, "look", watched)
+    left = {box.tobytes() for box in done().stuck}
+    assert len(left) > 100
+    assert left <= tried_by_all
+    assert min(tapes) < 0.8 * max(tapes) == 0.8 * len(system.tape.code)
 
 
 def test_what_is_held_lies_in_the_cover() -> None:

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 from flint import arb
-from support.held_sliders import PAIR
+from support.held_sliders import PAIR, SLANTED
 from support.maps import once_per_run
 from support.records import TRUSS
 
@@ -36,8 +36,9 @@ import numpy as np
 from ptmcad.verification.exclusion import check, places
 from ptmcad.verification.exclusion.check import places_of
 from ptmcad.verification.exclusion.equations import Equations
-from ptmcad.verification.exclusion.forms import evaluate
+from ptmcad.verification.exclusion.forms import CENTER, WIDTH, evaluate
 from ptmcad.verification.exclusion.places import Places
+from ptmcad.verification.exclusion.systems import halves_over, window_of
 
 PAPER: dict[str, Any] = {
     "mechanism": "ptm",
@@ -57,9 +58,14 @@ SLIDING: dict[str, Any] = {
     "axes": {"F": [-2, 2], "l": ["1/10", 2]},
 }
 """One spring along the slider's guide, and one from its side."""
-RECORDS: dict[str, dict[str, Any]] = {"paper": PAPER, "pair": PAIR, "sliding": SLIDING, "truss": TRUSS}
+APART: dict[str, Any] = SLANTED | {"axes": {"a": ["1/4", "3/4"], "F": [1, 2]}}
+"""Two sliders that have bounds over small parts of the window only."""
+RECORDS: dict[str, dict[str, Any]] = {
+    "paper": PAPER, "pair": PAIR, "sliding": SLIDING, "truss": TRUSS, "apart": APART
+}  # fmt: skip
 LOOP = "configs/mechanisms/four-bar-free.yaml"
-CASES = [(name, count) for name in RECORDS for count in ("stable", "index")] + [("loop", "stable"), ("loop", "total")]
+CASES = [(name, count) for name in RECORDS for count in ("stable", "index")]
+CASES += [("loop", "stable"), ("loop", "total")]
 
 
 @cache
@@ -70,6 +76,18 @@ def a_map(name: str, count: str) -> RegionMap:
 
     found: RegionMap = once_per_run(f"places-{name}-{count}", made)
     return found
+
+
+def test_places_have_bounds_of_their_own_where_the_window_has_none() -> None:
+    claims = CertifiedClaims(a_map("apart", "index"))
+    with pytest.raises(Unproved, match="no bound of the unknown x"):
+        halves_over(claims, *window_of(claims))
+    find, rng = Places(claims), random.Random(1)
+    (one, two), steps = at_random(claims, rng), claims.sweep.steps
+    point, whole = find((one, one), (two, two)), find((Fraction(0), Fraction(steps)), (Fraction(0), Fraction(steps)))
+    assert point is not None
+    assert max(point.whole) < 100
+    assert whole is None
 
 
 def at_random(claims: CertifiedClaims, rng: random.Random) -> tuple[Fraction, Fraction]:
@@ -91,6 +109,7 @@ def test_places_have_all_solutions(name: str, count: str) -> None:
         except Unproved:
             continue
         told += 1
+        assert where is not None
         kept = [e for e in alone.found if count != "stable" or "-" not in e.signs]
         for e in kept:
             assert any(inside(e.center, box) for boxes in where.boxes for box in boxes)
@@ -107,6 +126,7 @@ def test_places_over_a_box_have_those_over_its_points(name: str, count: str) -> 
     for _ in range(6):
         u, v = at_random(claims, rng)
         whole = found((u - half, u + half), (v - half, v + half))
+        assert whole is not None
         for du, dv in ((1, 1), (-1, 1), (0, -1)):
             try:
                 there = counting.at(claims, *claims.off_lattice(u + du * half, v + dv * half))
@@ -154,9 +174,9 @@ def test_formulas_are_those_of_the_balls(name: str, count: str) -> None:
 
 
 def numbers_of(tape: Any, box: Any) -> Any:
-    forms = np.empty((len(tape.code), len(box) + 4))
+    forms = np.empty((len(tape.code), WIDTH))
     evaluate(tape, box, forms, 0, len(tape.code))
-    return forms[:, len(box)]
+    return forms[:, CENTER]
 
 
 def test_a_search_that_is_spent_leaves_what_it_has(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -167,6 +187,7 @@ def test_a_search_that_is_spent_leaves_what_it_has(monkeypatch: pytest.MonkeyPat
         monkeypatch.setattr(places, "BUDGET", budget)
         monkeypatch.setattr(places, "MAX_LEFT", left)
         where = Places(claims)((at[0],) * 2, (at[1],) * 2)
+        assert where is not None
         assert len(where.boxes[0]) <= left
         assert all(any(inside(e.center, box) for box in where.boxes[0]) for e in true.found)
 

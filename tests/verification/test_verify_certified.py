@@ -522,6 +522,24 @@ def test_sweep_and_subdivision_agree(cover: Cover) -> None:
     assert len(set(names.values())) == len(names)
 
 
+def test_sweep_and_subdivision_agree_where_strips_change_in_parts() -> None:
+    """Many small rectangles that touch, so that most of a strip goes on while parts of it begin and end."""
+    rng = random.Random(11)
+    for _ in range(300):
+        found = set()
+        for _ in range(rng.randint(1, 24)):
+            u, v = rng.randrange(8), rng.randrange(8)
+            wide = rng.choice((1, 1, 2, 3, 8))
+            found.add((u * (wide < 8), min(u + wide, 8), v, min(v + rng.randint(1, 3), 8)))
+        cover = Cover(8, tuple(sorted(found)))
+        one, two = sweep(cover), components(cover)
+        assert sorted(one.areas.values()) == sorted(two.areas)
+        assert sorted(one.cluster_areas.values()) == sorted(two.cluster_areas)
+        assert Counter((one.areas[a], one.cluster_areas[b]) for a, b in one.touching) == Counter(
+            (two.areas[a], two.cluster_areas[b]) for a, b in two.touching
+        )
+
+
 @given(covers(), st.integers(1, 15), st.integers(1, 15), st.integers(0, 5))
 @settings(max_examples=100, deadline=None)
 def test_a_free_square_meets_no_rectangle(cover: Cover, u: int, v: int, half: int) -> None:

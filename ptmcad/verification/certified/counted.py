@@ -79,8 +79,8 @@ class Where:
     whole: Floats
 
 
-Places = Callable[[tuple[Fraction, Fraction], tuple[Fraction, Fraction]], Where]
-"""Where the solutions may be over a rectangle of the window, in lattice steps."""
+Places = Callable[[tuple[Fraction, Fraction], tuple[Fraction, Fraction]], Where | None]
+"""Where the solutions may be over a rectangle of the window, in lattice steps; None where nothing is told of it."""
 
 
 class Counting(Protocol):

@@ -46,8 +46,9 @@ _FIRST_TRIALS = 40
 PLACES_ON_TUBES = 4
 """Beside which points are tried, for each tube."""
 """The same for points beside rectangles, of which others will do."""
-Edge = tuple[Fraction, Fraction, Fraction, Fraction]
-"""A side of a rectangle within a square: left, right, bottom, top, one pair of them equal."""
+Edge = tuple[Fraction | int, Fraction | int, Fraction | int, Fraction | int]
+"""A side of a rectangle within a square: left, right, bottom, top, one pair of them equal; in lattice steps times the
+number of squares side by side, in which squares begin and end at whole numbers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +166,8 @@ def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[Sa
                 break
             for _ in range(_FIRST_TRIALS):
                 chosen = edges[k][bisect_right(totals[k], totals[k][-1] * _uniform(rng))]
-                box = _free(claims, *_off(chosen, Fraction(claims.sweep.steps, _side(number)), rng))
+                u, v = _off(chosen, claims.sweep.steps, rng)
+                box = _free(claims, u / _side(number), v / _side(number))
                 if box is not None:
                     found.append(box)
                     break
@@ -178,17 +180,16 @@ def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[Sa
 def _edges(rectangles: tuple[Rectangle, ...], steps: int, side: int) -> dict[tuple[int, int], list[Edge]]:
     """The rectangles' sides, cut by the squares of the grid."""
     found: dict[tuple[int, int], list[Edge]] = {}
-    for left, right, bottom, top in rectangles:
+    for rectangle in rectangles:
+        left, right, bottom, top = (side * x for x in rectangle)
         for height in (bottom, top):
-            if 0 < height < steps:
-                for i, low, high in _cut(left, right, steps, side):
-                    edge = (low, high, Fraction(height), Fraction(height))
-                    found.setdefault((i, height * side // steps), []).append(edge)
+            if 0 < height < side * steps:
+                for i, low, high in _cut(left, right, steps):
+                    found.setdefault((i, height // steps), []).append((low, high, height, height))
         for across in (left, right):
-            if 0 < across < steps:
-                for j, low, high in _cut(bottom, top, steps, side):
-                    edge = (Fraction(across), Fraction(across), low, high)
-                    found.setdefault((across * side // steps, j), []).append(edge)
+            if 0 < across < side * steps:
+                for j, low, high in _cut(bottom, top, steps):
+                    found.setdefault((across // steps, j), []).append((across, across, low, high))
     return found
 
 
@@ -204,19 +205,20 @@ def _along_tubes(cover: Cover, side: int, rng: random.Random) -> dict[tuple[int,
                 v = to_fraction(value)
                 if not frame.bottom <= v <= frame.top:
                     continue
-                edge = (u, u + 1, v, v) if patch.along == 0 else (v, v, u, u + 1)
-                place = (edge[0] * side // cover.steps, edge[2] * side // cover.steps)
-                found.setdefault((int(place[0]), int(place[1])), []).append(edge)
+                places = (u, u + 1, v, v) if patch.along == 0 else (v, v, u, u + 1)
+                left, right, bottom, top = (side * x for x in places)
+                square = int(left // cover.steps), int(bottom // cover.steps)
+                found.setdefault(square, []).append((left, right, bottom, top))
     return found
 
 
-def _cut(low: int, high: int, steps: int, side: int) -> Iterator[tuple[int, Fraction, Fraction]]:
-    """The parts of an interval in the grid's columns, and their numbers."""
-    for k in range(low * side // steps, (high * side - 1) // steps + 1):
-        yield k, max(Fraction(low), Fraction(k * steps, side)), min(Fraction(high), Fraction((k + 1) * steps, side))
+def _cut(low: int, high: int, width: int) -> Iterator[tuple[int, int, int]]:
+    """The parts of an interval in the grid's columns of this width, and their numbers."""
+    for k in range(low // width, (high - 1) // width + 1):
+        yield k, max(low, k * width), min(high, (k + 1) * width)
 
 
-def _off(edge: Edge, width: Fraction, rng: random.Random) -> tuple[Fraction, Fraction]:
+def _off(edge: Edge, width: int, rng: random.Random) -> tuple[Fraction, Fraction]:
     """A point off a rectangle's side, on either side of it, and as likely twice as far away as half as far."""
     left, right, bottom, top = edge
     away = width * Fraction(2 ** rng.uniform(-14, 0)) * rng.choice((-1, 1))

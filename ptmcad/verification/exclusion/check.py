@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.text.numerals import text_of
-from ptmcad.verification.certified.counted import Where, differs, stored
+from ptmcad.verification.certified.counted import Places, differs, stored
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.points import counting_of
 from ptmcad.verification.certified.structure import CertifiedClaims
@@ -32,7 +32,6 @@ _PLACES = 12
 _STEPS_AWAY = (4, 64)
 _SQUARES = 1024
 """Of the window's width: boxes that are left in one square are one place."""
-Range = tuple[Fraction, Fraction]
 NUMBA_NEEDED = "compiled code is needed for it: install numba (ptmcad[certified])"
 
 
@@ -107,15 +106,15 @@ def _check_is_numba(missing: ModuleNotFoundError) -> None:
         raise missing
 
 
-def places_of(claims: CertifiedClaims) -> Callable[[Range, Range], Where] | None:
-    """Where a map's solutions may be over a rectangle of the window; None without compiled code, or without bounds."""
+def places_of(claims: CertifiedClaims) -> Places | None:
+    """What tells where a map's solutions may be; None without compiled code, or where their equations are not known."""
     try:
-        from ptmcad.verification.exclusion.places import Places
+        from ptmcad.verification.exclusion.places import Places as Isolated
     except ModuleNotFoundError as missing:
         _check_is_numba(missing)
         return None
     try:
-        return Places(claims)
+        return Isolated(claims)
     except Unproved:
         return None
 

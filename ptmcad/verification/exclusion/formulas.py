@@ -14,6 +14,8 @@ import numpy as np
 
 CONSTANT, VARIABLE, ADD, SUBTRACT, MULTIPLY, SQUARE, DIVIDE, COSINE, SINE, DIRECTION, INVERSE_LENGTH, LENGTH = range(12)
 """Operations. DIRECTION, INVERSE_LENGTH and LENGTH of the vector (a, b): a/|(a, b)|, 1/|(a, b)| and |(a, b)|."""
+MAX_VARIABLES = 6
+"""Both axes, three unknowns, and the direction of a spring; even, as sums over them take two at once."""
 
 
 class Tape(NamedTuple):
@@ -30,6 +32,19 @@ class Tape(NamedTuple):
     second: Any
     low: Any
     high: Any
+
+
+def shortened(tape: Tape, first: int, wanted: Sequence[int]) -> tuple[Tape, list[int]]:
+    """The first operations, and those that some values need; and the places of these."""
+    needed = np.arange(len(tape.code)) < first
+    needed[list(wanted)] = True
+    for n in reversed(range(first, len(needed))):
+        if needed[n] and tape.code[n] > VARIABLE:
+            needed[tape.first[n]] = needed[tape.second[n]] = True
+    place, kept = np.cumsum(needed) - 1, [column[needed] for column in tape]
+    is_leaf = kept[0] <= VARIABLE
+    kept[1:3] = (np.where(is_leaf, operands, place[operands]) for operands in kept[1:3])
+    return Tape(*kept), place[list(wanted)].tolist()
 
 
 class Formulas:
@@ -55,6 +70,7 @@ class Formulas:
 
     def variable(self, number: int) -> int:
         """One of the variables."""
+        assert number < MAX_VARIABLES
         return self._new(VARIABLE, number, number)
 
     def add(self, a: int, b: int) -> int:

@@ -6,17 +6,21 @@ proved elsewhere.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from fractions import Fraction
 
 import numpy as np
+from flint import arb
 
+from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import Box, Floats
 from ptmcad.verification.certified.counted import Where
+from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.exclusion.formulas import enclosing
 from ptmcad.verification.exclusion.pieces import no_pieces
 from ptmcad.verification.exclusion.search import isolate
-from ptmcad.verification.exclusion.systems import solutions_of
+from ptmcad.verification.exclusion.systems import halves_over, solutions_of, window_of
 
 BUDGET = 4000
 """Boxes that are looked at for one place and one choice of sides ..."""
@@ -36,25 +40,38 @@ Range = tuple[Fraction, Fraction]
 class Places:
     """The boxes of a map's solutions.
 
+    Real unknowns may have bounds that are proved over the window; where they have not, each place has its own.
+
     Raises
     ------
     Unproved
-        When real unknowns have no bound over the window that can be proved.
+        Where it is not known what is zero at the solutions.
     """
 
     def __init__(self, claims: CertifiedClaims):
         assert claims.result.cover is not None
-        self._systems = solutions_of(claims)
+        self._claims = claims
+        self._halves: Floats | None = None
+        with suppress(Unproved):
+            self._halves = halves_over(claims, *window_of(claims))
+        self._systems = solutions_of(claims, self._halves)
         self._steps = claims.result.cover.steps
         self._pieces = no_pieces(self._steps)
 
-    def __call__(self, u: Range, v: Range) -> Where:
-        """Over a rectangle of the window, in lattice steps."""
-        whole = tuple(high for _, high in self._systems[0].start[2:].tolist())
+    def __call__(self, u: Range, v: Range) -> Where | None:
+        """Over a rectangle of the window, in lattice steps; None where no bound of a real unknown is proved."""
+        systems = self._systems
+        if self._halves is None:
+            try:
+                halves = halves_over(self._claims, *self._balls(u, v))
+            except Unproved:
+                return None
+            systems = [system.within(halves) for system in systems]
+        whole = tuple(high for _, high in systems[0].start[2:].tolist())
         share = max(high - low for low, high in (u, v)) / self._steps
         smallest = max(MIN_WIDTH, PER_SHARE * float(share))
         found = []
-        for system in self._systems:
+        for system in systems:
             boxes = np.empty((MAX_LEFT, *system.start.shape))
             boxes[0] = system.start
             for k, (low, high) in enumerate((u, v)):
@@ -62,6 +79,11 @@ class Places:
             left = isolate(system.over_place(smallest), system.tape, self._pieces, boxes, BUDGET)
             found.append([_box(rows, whole) for rows in boxes[:left, 2:].tolist()])
         return Where(found, whole)
+
+    def _balls(self, u: Range, v: Range) -> tuple[arb, arb]:
+        low, high = (self._claims.off_lattice(*corner) for corner in zip(u, v, strict=True))
+        x, y = (ball_of(a).union(ball_of(b)) for a, b in zip(low, high, strict=True))
+        return x, y
 
 
 def _box(rows: list[list[float]], whole: Floats) -> Box:

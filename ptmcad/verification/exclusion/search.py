@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ptmcad.verification.exclusion.compiled import compiled
-from ptmcad.verification.exclusion.forms import evaluate
+from ptmcad.verification.exclusion.forms import CENTER, ERROR, HIGH, LOW, WIDTH, evaluate
 from ptmcad.verification.exclusion.holding import holds
 
 GONE, HALVED, STUCK = range(3)
@@ -36,7 +36,7 @@ _MIN_SHARE = 0.1
 
 
 @compiled
-def look(system: Any, tape: Any, pieces: Any, boxes: Any, outcome: Any, rest: Any) -> None:
+def look(system: Any, tape: Any, pieces: Any, boxes: Any, outcome: Any, rest: Any, told: Any) -> None:
     """Treat boxes one by one.
 
     Parameters
@@ -44,14 +44,16 @@ def look(system: Any, tape: Any, pieces: Any, boxes: Any, outcome: Any, rest: An
     system : `ptmcad.verification.exclusion.systems.Compiled`.
     boxes : (number, variables, 2), made smaller; outcome : (number,), as above.
     rest : (number, variables, 2), the second halves of those that are `HALVED`; `boxes` has the first ones.
+    told : (formulas), those that are zero and then those that are not negative: how many boxes each of them
+        has excluded is added.
     """
     nv = boxes.shape[1]
-    forms = np.empty((len(tape.code), nv + 4))
+    forms = np.empty((len(tape.code), WIDTH))
     number = len(system.zero) + len(system.not_negative)
     rows, solved_for = np.empty((number, nv + 2)), np.empty(number, dtype=np.int64)
     for n in range(len(boxes)):
         box = boxes[n]
-        outcome[n] = _look_at(system, tape, pieces, box, forms, rows, solved_for)
+        outcome[n] = _look_at(system, tape, pieces, box, forms, rows, solved_for, told)
         if outcome[n] == HALVED:
             k = _widest(system, forms, box)
             half = 0.5 * (box[k, 0] + box[k, 1])
@@ -77,16 +79,17 @@ def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int
     The number of boxes that are left. All solutions in the box are in them.
     """
     most, nv = boxes.shape[0], boxes.shape[1]
-    forms = np.empty((len(tape.code), nv + 4))
+    forms = np.empty((len(tape.code), WIDTH))
     number = len(system.zero) + len(system.not_negative)
     rows, solved_for = np.empty((number, nv + 2)), np.empty(number, dtype=np.int64)
+    told = np.zeros(number)
     box, stuck, waiting = np.empty((nv, 2)), 0, 1  # those that are stuck come first, then those that wait
     for _ in range(budget):
         if waiting == 0 or stuck + waiting == most:
             break
         waiting -= 1
         box[:] = boxes[stuck + waiting]
-        outcome = _look_at(system, tape, pieces, box, forms, rows, solved_for)
+        outcome = _look_at(system, tape, pieces, box, forms, rows, solved_for, told)
         if outcome == GONE:
             continue
         k = _widest(system, forms, box) if outcome == HALVED else -1
@@ -104,16 +107,21 @@ def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int
 
 
 @compiled
-def _look_at(system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: Any, solved_for: Any) -> int:
+def _look_at(system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: Any, solved_for: Any, told: Any) -> int:
     """What becomes of one box."""
     nv = box.shape[0]
     before = np.empty((nv, 2))
     for _ in range(_ROUNDS):
         evaluate(tape, box, forms, 0, system.first)
-        if _excluded(system.zero[: system.early], forms, nv, False):
+        if _excluding(system.zero[: system.early], forms, False) >= 0:
             return GONE
         evaluate(tape, box, forms, system.first, len(tape.code))
-        if _excluded(system.zero, forms, nv, False) or _excluded(system.not_negative, forms, nv, True):
+        excluding = _excluding(system.zero, forms, False)
+        if excluding < 0:
+            excluding = _excluding(system.not_negative, forms, True)
+            excluding += len(system.zero) if excluding >= 0 else 0
+        if excluding >= 0:
+            told[excluding] += 1
             return GONE
         for j in range(nv):
             before[j, 0], before[j, 1] = box[j, 0], box[j, 1]
@@ -137,12 +145,13 @@ def _look_at(system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: An
 
 
 @compiled
-def _excluded(which: Any, forms: Any, nv: int, above: bool) -> bool:
-    """Whether a formula that is zero at critical points is not; or one that is not negative there, is (``above``)."""
-    for n in which:  # noqa: SIM110
-        if forms[n, nv + 3] < 0 or (not above and forms[n, nv + 2] > 0):
-            return True
-    return False
+def _excluding(which: Any, forms: Any, above: bool) -> int:
+    """The first of some formulas that is not zero, or that is negative where it may be ``above``; -1 where none is."""
+    for k in range(len(which)):
+        n = which[k]
+        if forms[n, HIGH] < 0 or (not above and forms[n, LOW] > 0):
+            return k
+    return -1
 
 
 @compiled
@@ -160,8 +169,9 @@ def _eliminated(system: Any, forms: Any, nv: int, rows: Any, solved_for: Any) ->
     for i in range(number):
         n = system.zero[i] if i < zeros else system.not_negative[i - zeros]
         solved_for[i] = -1
-        for j in range(nv + 2):
+        for j in range(nv):
             rows[i, j] = forms[n, j]
+        rows[i, nv], rows[i, nv + 1] = forms[n, CENTER], forms[n, ERROR]
     for _ in range(nv - 1):
         row, column, best = -1, -1, _MIN_RATIO
         for i in range(zeros):
@@ -262,7 +272,7 @@ def _widest(system: Any, forms: Any, box: Any) -> int:
     nv, m = box.shape[0], len(system.measured)
     shares = np.zeros(nv)
     for n in system.measured:
-        total = forms[n, nv + 1]
+        total = forms[n, ERROR]
         for j in range(nv):
             total += abs(forms[n, j])
         if 0 < total < _MAX_SLOPE:

@@ -7,10 +7,10 @@ a solution of one of the systems, in the box of its start (docs/verify.md, "Why 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
-from math import pi
+from math import inf, pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,13 +18,14 @@ from flint import arb
 
 from ptmcad.question.slice import Count
 from ptmcad.text.balls import ball_of
+from ptmcad.verification.certified.boxes import Floats
 from ptmcad.verification.certified.kinks import sides
 from ptmcad.verification.certified.parameters import over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.waves import Waves, excesses_of
+from ptmcad.verification.certified.waves import Waves, excesses_of, form_of
 from ptmcad.verification.exclusion.equations import Equations, Pair, bases
-from ptmcad.verification.exclusion.formulas import Tape
+from ptmcad.verification.exclusion.formulas import Tape, shortened
 
 SHORT_SHARE = 16
 """A spring is short, for total counts, if its length is less than this part of the sum of its vector's factors."""
@@ -69,17 +70,46 @@ class System:
     first: int
     start: Any
 
+    def within(self, halves: Floats) -> System:
+        """The same with its first unknowns in other ranges, of which half the widths are given."""
+        start = self.start.copy()
+        start[2 : 2 + len(halves)] = [(-half, half) for half in halves]
+        return replace(self, start=start)
+
+    @property
+    def measured(self) -> int:
+        """How many of the formulas that are zero tell what is halved; over a place one less."""
+        return len(self.start) - 1
+
+    def with_some(self, chosen: Any) -> System:
+        """The same without some of its formulas, of which none is claimed then.
+
+        Parameters
+        ----------
+        chosen : for each formula that is zero, and then for each that is not negative, whether it is kept; the first
+            ones are.
+        """
+        chosen = chosen | (np.arange(len(chosen)) < max(self.early, self.measured))
+        zero, not_negative = (
+            [n for n, kept in zip(some, which, strict=True) if kept]
+            for some, which in ((self.zero, chosen[: len(self.zero)]), (self.not_negative, chosen[len(self.zero) :]))
+        )
+        tape, places = shortened(self.tape, self.first, [*zero, *not_negative])
+        return replace(
+            self, tape=tape, zero=tuple(places[: len(zero)]), not_negative=tuple(places[len(zero) :])
+        )  # fmt: skip
+
     def over_window(self, smallest: float) -> Compiled:
         """In arrays, to be looked at over boxes of the window that are wider than a share of it."""
         units = self.start[:, 1] - self.start[:, 0]
         least = np.where(np.arange(len(units)) < 2, smallest * units, np.inf)
-        return self._compiled(len(self.start) - 1, least, 0)
+        return self._compiled(self.measured, least, 0)
 
     def over_place(self, smallest: float) -> Compiled:
         """The same over one box of the window, and boxes of the unknowns that are wider than a share of all."""
         units = self.start[:, 1] - self.start[:, 0]
         least = np.where(np.arange(len(units)) < 2, np.inf, smallest * units)
-        return self._compiled(len(self.start) - 2, least, 2)
+        return self._compiled(self.measured - 1, least, 2)
 
     def _compiled(self, measured: int, least: Any, halved: int) -> Compiled:
         zero, not_negative = (np.array(some, dtype=np.int64) for some in (self.zero, self.not_negative))
@@ -98,21 +128,49 @@ def systems_of(claims: CertifiedClaims) -> list[System]:
     Unproved
         When real unknowns have no bound over the window that can be proved, or where the systems are not known.
     """
-    return list(_Systems(claims).all())
+    return list(_Systems(claims, halves_over(claims, *window_of(claims))).all())
 
 
-def solutions_of(claims: CertifiedClaims) -> list[System]:
+def solutions_of(claims: CertifiedClaims, halves: Floats | None) -> list[System]:
     """What is zero at the solutions that a map counts: a system for each choice of sides, in the order of these.
 
     Guarantee: over each point of the window all that are counted are solutions of it, in the box of its start; it may
     have others, and configurations without solution.
 
+    Parameters
+    ----------
+    halves : as `halves_over` has them; None where there are none, and unknowns may be anything until they are `within`
+        others.
+
     Raises
     ------
     Unproved
-        As above.
+        Where the systems are not known.
     """
-    return list(_Systems(claims).solutions())
+    return list(_Systems(claims, halves or (inf,) * form_of(claims.result.slice).size).solutions())
+
+
+def window_of(claims: CertifiedClaims) -> tuple[arb, arb]:
+    """Balls of both axes."""
+    one, two = (ball_of(axis.low).union(ball_of(axis.high)) for axis in claims.result.slice.axes)
+    return one, two
+
+
+def halves_over(claims: CertifiedClaims, x: arb, y: arb) -> Floats:
+    """Half the widths of ranges around zero that have the unknowns of all solutions over a part of the window.
+
+    Raises
+    ------
+    Unproved
+        When real unknowns have no bound over it that can be proved.
+    """
+    slice = claims.result.slice
+    form = form_of(slice)
+    if all(form.is_circle):
+        return (_ANGLE[1],) * form.size
+    values = {n: arb(0) for n in slice.model.free_lengths}
+    values |= {n: over(e, x, y) for n, e in slice.parameters.items()}
+    return half_widths(form, values)
 
 
 class _Excess(NamedTuple):
@@ -125,8 +183,8 @@ class _Excess(NamedTuple):
 class _Systems:
     """The systems of one map, and what they have in common."""
 
-    def __init__(self, claims: CertifiedClaims):
-        self.claims, self.model = claims, Equations(claims)
+    def __init__(self, claims: CertifiedClaims, halves: Floats):
+        self.claims, self.model, self._halves = claims, Equations(claims), halves
         self.count, self.form = claims.result.slice.count, self.model.form
         self.minima = self.form.is_gradient and self.count.is_of_stable
         stable = self.form.stability if self.count.is_of_stable else ()
@@ -266,15 +324,5 @@ class _Systems:
             name + self.where, tape, tuple(places[:count]), tuple(places[count:]), len(first), early, np.array(ranges)
         )  # fmt: skip
 
-    @property
-    def _halves(self) -> tuple[float, ...]:
-        if all(self.form.is_circle):
-            return (_ANGLE[1],) * self.form.size
-        slice = self.claims.result.slice
-        x, y = (ball_of(a.low).union(ball_of(a.high)) for a in slice.axes)
-        values = {n: arb(0) for n in slice.model.free_lengths}
-        values |= {n: over(e, x, y) for n, e in slice.parameters.items()}
-        return half_widths(self.form, values)
 
-
-__all__ = ["Compiled", "System", "solutions_of", "systems_of"]
+__all__ = ["Compiled", "System", "halves_over", "solutions_of", "systems_of", "window_of"]
