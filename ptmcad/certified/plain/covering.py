@@ -7,7 +7,7 @@ of them counts only, a condition has to say (Lemma S8 of docs/soundness.md).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
@@ -40,8 +40,6 @@ def in_half_angle(problem: Problem, turn: Multi) -> Problem:
     halved = min((k for k in size if turn[k] % 2), key=lambda k: abs(turn[k]))
     others = {j: turn[halved] * turn[j] for j in size if j != halved}
     rows = tuple(tuple(2 * (j == k) - others.get(j, 0) if k == halved else int(j == k) for j in size) for k in size)
-    sum_of_angles = combination({halved: 1, **others}, problem.unknowns)
-    names = tuple(f"{sum_of_angles}/2" if k == halved else name for k, name in enumerate(problem.unknowns))
 
     def slopes(old: Sequence[TrigonometricPolynomial]) -> tuple[TrigonometricPolynomial, ...]:
         """By the new unknowns; but with closed loops the last one is along these, whatever the unknowns are."""
@@ -60,7 +58,6 @@ def in_half_angle(problem: Problem, turn: Multi) -> Problem:
 
     return replace(
         problem,
-        unknowns=names,
         equations=slopes(problem.equations),
         cones=tuple(
             replace(
@@ -77,14 +74,19 @@ def in_half_angle(problem: Problem, turn: Multi) -> Problem:
     )
 
 
-def combination(multiples: Mapping[int, int], names: Sequence[str]) -> str:
-    """A sum of whole multiples of angles, in brackets where it has several terms."""
+def sum_of_angles(problem: Problem, turn: Multi) -> str:
+    """A sum of whole multiples of a problem's angles in words, by the description's; empty where it is nothing."""
+    twice = [2 * n for n in turn]
+    if problem.covering:
+        inverse = _inverse(problem.covering)
+        twice = [int(sum(n * row[k] for n, row in zip(twice, inverse, strict=True))) for k in range(len(turn))]
+    whole = not any(n % 2 for n in twice)
     text = ""
-    for k, c in multiples.items():
-        if c:
-            sign = (" - " if c < 0 else " + ") if text else "-" if c < 0 else ""
-            text += sign + (f"{abs(c)}*" if abs(c) > 1 else "") + names[k]
-    return f"({text})" if " " in text else text
+    for name, n in zip(problem.unknowns, twice, strict=True):
+        if multiple := abs(n) // 2 if whole else abs(n):
+            sign = (" - " if n < 0 else " + ") if text else "-" if n < 0 else ""
+            text += sign + (f"{multiple}*" if multiple > 1 else "") + name
+    return text if whole else f"({text})/2" if " " in text else f"{text}/2"
 
 
 def located(
@@ -105,9 +107,8 @@ def located(
     if not rows:
         return solution, narrow
     center = tuple(sum((c * x for c, x in zip(row, solution.center, strict=True)), Fraction(0)) for row in rows)
-    inverse = fmpq_mat(fmpz_mat([list(row) for row in rows])).inv()
     # the problem's unknowns of a cube so much smaller are all in the given one
-    most = max(sum(abs(to_fraction(inverse[i, j])) for j in range(len(rows))) for i in range(len(rows)))
+    most = max(sum(map(abs, row)) for row in _inverse(rows))
     with ctx.workprec(precision):
         image = (sum((c * x for c, x in zip(row, narrow[FIRST:], strict=True)), arb(0)) for row in rows)
         return Solution(center, solution.radius / most, solution.signs), (*narrow[:FIRST], *image)
@@ -146,3 +147,7 @@ def _within_a_turn(cube: Solution, narrow: Box, is_angle: Sequence[bool]) -> Sol
 def _product(one: Rows, other: Rows) -> Rows:
     columns = list(zip(*other, strict=True))
     return tuple(tuple(sum(a * b for a, b in zip(row, column, strict=True)) for column in columns) for row in one)
+
+
+def _inverse(rows: Rows) -> list[list[Fraction]]:
+    return [list(map(to_fraction, row)) for row in fmpq_mat(fmpz_mat([list(row) for row in rows])).inv().tolist()]

@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
-from ptmcad.certified.plain.covering import combination, in_half_angle
+from ptmcad.certified.plain.covering import in_half_angle, sum_of_angles
 from ptmcad.certified.plain.divisors import common_divisor, quotient, square_root
 from ptmcad.certified.plain.problem import Condition, Cone, Problem, Push, Vector
 from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial, waves
@@ -82,7 +82,7 @@ def _branch(problem: Problem, lines: list[_Line], sides: tuple[int, ...], axes: 
         ex, ey = line.direction
         pull, norm = line.cone.pull * side, _rational_norm(line.direction, axes)
         ahead = f"({', '.join((side * e).to_text() for e in (ex, ey))})"
-        if angle := combination(dict(enumerate(line.turn)), problem.unknowns):
+        if angle := sum_of_angles(problem, line.turn):
             ahead += f" turned by {angle}"
         text = f"length of spring {line.cone.name} along {ahead}"
         inequalities = (*problem.inequalities, Condition(text, line.way.scaled(Fraction(side))))
