@@ -108,7 +108,8 @@ def pair_by_hand(force: float, free: float) -> Index:
         for k in np.flatnonzero(np.sign(slope[1:]) != np.sign(slope[:-1])):
             bent = 4 * cos(2 * f[k]) + 2 * free * sin(f[k]) + 2 * c * force * cos(f[k])
             turned = 2 * c * force * cos(f[k])
-            assume(min(abs(bent), abs(turned)) > 1e-3)
+            if min(abs(bent), abs(turned)) < 1e-3:
+                return ()  # nearly degenerate
             found[(bent < 0) + (turned < 0)] += 1
     return tuple(found)
 
@@ -119,6 +120,7 @@ def test_two_cranks_have_the_equilibria_of_their_angles_difference(
     way: tuple[str, str], force: Fraction, free: Fraction
 ) -> None:
     true = pair_by_hand(float(force), float(free))
+    assume(true)
     across, up = (force * Fraction(part) for part in way)
     count = counted(PAIR, F=across, G=up, l=free)
     assert count.decided
@@ -346,18 +348,15 @@ def test_a_map_of_two_cranks_is_true_at_random_points() -> None:
         force = (x + 2) * Fraction(7, 16) + Fraction(1, 4)
         cell = found.locate(F=force, l=y).cell
         if cell is not None:
-            assert found.cells[cell].index == pair_by_hand(float(force), float(y))
+            assert pair_by_hand(float(force), float(y)) in ((), found.cells[cell].index)
 
 
 def test_solve_has_the_angles_themselves() -> None:
     """At l = 1 the sine of the half angle is 1/2, or the angle is half a turn."""
     poses = ptmcad.solve(record(CRANK), F=0, l=1)
     assert poses.status is Status.CERTIFIED
-    assert [(p.index, p.degrees[0].text(8)) for p in poses.equilibria] == [
-        (0, "60.000000"),
-        (0, "-60.000000"),
-        (1, "180.00000"),
-    ]
+    said = {(p.index, p.degrees[0].text(8)) for p in poses.equilibria}
+    assert said == {(0, "60.000000"), (0, "-60.000000"), (1, "180")}
     pair = ptmcad.solve(record(PAIR), F="1/2", l=1)
     assert pair.status is Status.CERTIFIED
     assert tuple(sum(p.index == k for p in pair.equilibria) for k in range(3)) == pair_by_hand(0.5, 1.0)
@@ -365,19 +364,14 @@ def test_solve_has_the_angles_themselves() -> None:
 
 def test_a_direction_may_depend_on_the_axes() -> None:
     """The spring's end in the direction of a rational angle, or of one by the tangent of its half: the crank turned."""
-    way = {"c": {"kind": "number"}, "s": {"kind": "number"}}
-    turned = {
-        **CRANK,
-        "parameters": way,
-        "points": {**CRANK["points"], "A": ["c", "s"]},
-        "loads": {"P": ["F*c", "F*s"]},
-    }
+    way = {"c": {"kind": "number", "default": 1}, "s": {"kind": "number", "default": 0}}
+    loads = {"P": ["F*c - G*s", "F*s + G*c"]}
+    turned = {**CRANK, "parameters": way, "points": {**CRANK["points"], "A": ["c", "s"]}, "loads": loads}
     values = {"F": Fraction(1, 3), "l": Fraction(3, 4)}
     there = counted(turned, c=Fraction(-7, 25), s=Fraction(24, 25), **values)
     assert there.decided
     assert there.index == crank_by_hand(values["F"], values["l"])
     moved = record(turned, F=[-2, 2], t=[-2, 2])
-    del moved["mechanism"]["parameters"]["G"]
     slice = ptmcad.slice_from_mapping({**moved, "parameters": {"c": "(1 - t^2)/(1 + t^2)", "s": "2*t/(1 + t^2)"}})
     (branch,) = branches(problem_of(slice), slice.axes)
     assert not branch.cones
