@@ -17,7 +17,8 @@ from ptmcad.answer.regionmap import Solution
 from ptmcad.certified.arb_evaluation import ball
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.distinct import FULL_TURN
-from ptmcad.certified.plain.problem import FIRST, Condition, Problem, Vector
+from ptmcad.certified.plain.ends import Vector
+from ptmcad.certified.plain.problem import FIRST, Condition, Problem
 from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial
 from ptmcad.certified.points import PRECISIONS, PointCount, radius_between
 from ptmcad.certified.system import System
@@ -70,6 +71,10 @@ def in_half_angle(problem: Problem, turn: Multi) -> Problem:
         inequalities=conditions(problem.inequalities),
         stability=conditions(problem.stability),
         multiples=tuple(f.substituted(rows) for f in problem.multiples),
+        excesses=tuple(
+            replace(e, value=e.value.substituted(rows), boundary=tuple(f.substituted(rows) for f in e.boundary))
+            for e in problem.excesses
+        ),
         covering=_product(problem.covering, rows) if problem.covering else rows,
     )
 
