@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
-from itertools import pairwise
+from itertools import pairwise, product
 from math import cos, hypot, pi, sin
 from typing import Any
 
@@ -23,12 +23,14 @@ from ptmcad.certified.engine import certified_map
 from ptmcad.certified.plain import curves as plain_curves
 from ptmcad.certified.plain import points as plain_points
 from ptmcad.certified.plain import straight
+from ptmcad.certified.plain.covering import located
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.plain.poses import point_slice
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.straight import branches
 from ptmcad.options import Options
 from ptmcad.question.slice import Count
+from ptmcad.text.balls import ball_of
 
 Index = tuple[int, ...]
 
@@ -302,6 +304,57 @@ def test_a_loop_has_the_equilibria_of_the_half_angle(at: tuple[str, str]) -> Non
     for solution in found[0].solutions:
         angle, x = map(float, solution.center)
         assert hypot(cos(angle) - x, sin(angle)) == pytest.approx(2, abs=float(8 * solution.radius))
+
+
+RELATIVE: dict[str, Any] = {
+    "unknowns": {"a": "angle", "b": "angle"},
+    "points": {
+        "O": [0, 0],
+        "B": [2, 0],
+        "P": ["cos(a)", "sin(a)"],
+        "Q": ["cos(a) + cos(a + b)", "sin(a) + sin(a + b)"],
+        "R": ["cos(a) + 1", "sin(a)"],
+    },
+    "closing": [{"between": ["Q", "B"], "length": "3/2"}],
+    "springs": [{"between": ["Q", "R"], "k": 1, "free": "l"}],
+    "loads": {"P": ["F", "G"]},
+}
+"""Four bars: the second one's angle, a + b, is halved, so that both unknowns of the problem are in its equations."""
+
+
+def test_in_half_angles_a_loop_is_closed_by_equations_without_springs() -> None:
+    slice = ptmcad.slice_from_mapping(record(RELATIVE, "total"))
+    (branch,) = branches(problem_of(slice), slice.axes)
+    assert branch.covering == ((2, -1), (0, 1))
+    closed, slope = branch.equations
+    assert all(a.is_constant and b.is_constant for a, b in closed.terms.values())
+    assert not all(a.is_constant and b.is_constant for a, b in slope.terms.values())
+
+
+def test_a_solution_is_alone_in_the_cube_of_the_descriptions_angles() -> None:
+    """Whatever is in it has unknowns of the problem in the cube in which those are the only ones."""
+    model = ptmcad.slice_from_mapping(record(PAIR)).model
+    values = {"l": Fraction(1), "F": Fraction(1, 2), "G": Fraction(0)}
+    (counter,) = plain_counter(point_slice(model, values)).branches
+    origin = Fraction(0), Fraction(0)
+    for solution in counter.at(*origin, Count.INDEX).solutions:
+        cube, narrow = located(counter.problem, counter.equations, origin, solution, 128)
+        for corner in product((-1, 1), repeat=2):
+            a, b = (c + side * cube.radius for c, side in zip(cube.center, corner, strict=True))
+            own = (a - b) / 2, b
+            assert all(abs(u - c) <= solution.radius for u, c in zip(own, solution.center, strict=True))
+        assert all(abs(x - ball_of(c)) < ball_of(cube.radius) for x, c in zip(narrow[2:], cube.center, strict=True))
+
+
+def test_a_length_that_no_unknown_changes_has_no_sides() -> None:
+    """From the middle of the circle, where a parameter puts it: the spring's line turns, but it is never short."""
+    points = {**CRANK["points"], "B": ["r", 0]}
+    springs = [*CRANK["springs"], {"between": ["P", "B"], "k": 1, "free": "l"}]
+    middle = {**CRANK, "parameters": {"r": {"kind": "number", "default": 0}}, "points": points, "springs": springs}
+    slice = ptmcad.slice_from_mapping(record(middle))
+    assert [len(b.cones) for b in branches(problem_of(slice), slice.axes)] == [1]
+    values = {"F": Fraction(1, 3), "l": Fraction(1)}
+    assert counted(middle, **values).index == crank_by_hand(values["F"], values["l"])
 
 
 @cache

@@ -43,7 +43,7 @@ def in_half_angle(problem: Problem, turn: Multi) -> Problem:
     rows = tuple(tuple(2 * (j == k) - others.get(j, 0) if k == halved else int(j == k) for j in size) for k in size)
 
     def slopes(old: Sequence[TrigonometricPolynomial]) -> tuple[TrigonometricPolynomial, ...]:
-        """By the new unknowns; but with closed loops the last one is along these, whatever the unknowns are."""
+        """By the new unknowns; with closed loops the last one is along these, the first ones stay without springs."""
         there = [f.substituted(rows) for f in old]
         if problem.closing:
             return tuple(there)
