@@ -306,26 +306,27 @@ def test_a_loop_has_the_equilibria_of_the_half_angle(at: tuple[str, str]) -> Non
         assert hypot(cos(angle) - x, sin(angle)) == pytest.approx(2, abs=float(8 * solution.radius))
 
 
-RELATIVE: dict[str, Any] = {
+GEARED = {"G": ["cos(2*a + b)", "3 + sin(2*a + b)"], "C": [1, 3]}
+"""A pin that a differential turns, and a point of its circle."""
+FOUR_BARS: dict[str, Any] = {
     "unknowns": {"a": "angle", "b": "angle"},
     "points": {
         "O": [0, 0],
         "B": [2, 0],
         "P": ["cos(a)", "sin(a)"],
         "Q": ["cos(a) + cos(a + b)", "sin(a) + sin(a + b)"],
-        "R": ["cos(a) + 1", "sin(a)"],
+        **GEARED,
     },
     "closing": [{"between": ["Q", "B"], "length": "3/2"}],
-    "springs": [{"between": ["Q", "R"], "k": 1, "free": "l"}],
+    "springs": [{"between": ["G", "C"], "k": 1, "free": "l"}],
     "loads": {"P": ["F", "G"]},
 }
-"""Four bars: the second one's angle, a + b, is halved, so that both unknowns of the problem are in its equations."""
 
 
 def test_in_half_angles_a_loop_is_closed_by_equations_without_springs() -> None:
-    slice = ptmcad.slice_from_mapping(record(RELATIVE, "total"))
+    slice = ptmcad.slice_from_mapping(record(FOUR_BARS, "total"))
     (branch,) = branches(problem_of(slice), slice.axes)
-    assert branch.covering == ((2, -1), (0, 1))
+    assert branch.covering == ((1, 0), (-2, 2))
     closed, slope = branch.equations
     assert all(a.is_constant and b.is_constant for a, b in closed.terms.values())
     assert not all(a.is_constant and b.is_constant for a, b in slope.terms.values())
@@ -333,15 +334,19 @@ def test_in_half_angles_a_loop_is_closed_by_equations_without_springs() -> None:
 
 def test_a_solution_is_alone_in_the_cube_of_the_descriptions_angles() -> None:
     """Whatever is in it has unknowns of the problem in the cube in which those are the only ones."""
-    model = ptmcad.slice_from_mapping(record(PAIR)).model
+    points, spring = {**PAIR["points"], **GEARED}, {"between": ["G", "C"], "k": 1, "free": "l"}
+    model = ptmcad.slice_from_mapping(record({**PAIR, "points": points, "springs": [spring]})).model
     values = {"l": Fraction(1), "F": Fraction(1, 2), "G": Fraction(0)}
     (counter,) = plain_counter(point_slice(model, values)).branches
+    assert counter.problem.covering == ((1, 0), (-2, 2))
     origin = Fraction(0), Fraction(0)
-    for solution in counter.at(*origin, Count.INDEX).solutions:
+    found = counter.at(*origin, Count.INDEX).solutions
+    assert found
+    for solution in found:
         cube, narrow = located(counter.problem, counter.equations, origin, solution, 128)
         for corner in product((-1, 1), repeat=2):
             a, b = (c + side * cube.radius for c, side in zip(cube.center, corner, strict=True))
-            own = (a - b) / 2, b
+            own = a, a + b / 2
             assert all(abs(u - c) <= solution.radius for u, c in zip(own, solution.center, strict=True))
         assert all(abs(x - ball_of(c)) < ball_of(cube.radius) for x, c in zip(narrow[2:], cube.center, strict=True))
 

@@ -49,6 +49,10 @@ LEANING: dict[str, Any] = {
     "points": {"O": [0, 0], "A": ["6/5", "8/5"], "B": [-2, 0], "P": ["2*cos(th)", "2*sin(th)"]},
     "springs": [{"between": ["A", "P"], "k": 1, "free": "l"}, {"between": ["B", "P"], "k": 1, "free": "1/3"}],
 }
+TILTED: dict[str, Any] = {
+    **CRANK,
+    "points": {"O": [0, 0], "A": [1, 2], "P": ["cos(th) - 2*sin(th)", "2*cos(th) + sin(th)"]},
+}
 PAIR: dict[str, Any] = {
     "unknowns": {"a": "angle", "b": "angle"},
     "points": {"O": [0, 0], "P": ["cos(a)", "sin(a)"], "Q": ["cos(b)", "sin(b)"]},
@@ -128,14 +132,21 @@ def test_a_half_angle_in_the_place_of_the_angle_is_found() -> None:
 
 @pytest.mark.parametrize(
     ("mechanism", "twice"),
-    [(CRANK, [(1,)]), (LEANING, [(1,), (1,)]), (PAIR, [(1, 1)]), (ARM, [(2, 0), None]), (LOOP, [(1, 0)])],
+    [
+        (CRANK, [(1,)]),
+        (TILTED, [(1,)]),
+        (LEANING, [(1,), (1,)]),
+        (PAIR, [(1, 1)]),
+        (ARM, [(2, 0), None]),
+        (LOOP, [(1, 0)]),
+    ],
 )
 def test_lines_are_told_from_the_vectors(mechanism: dict[str, Any], twice: list[Any]) -> None:
     lines = [line_of(cone) for cone in form(mechanism).cones]
     assert [line and line.twice for line in lines] == twice
 
 
-@pytest.mark.parametrize("mechanism", [CRANK, LEANING, PAIR, ARM, LOOP])
+@pytest.mark.parametrize("mechanism", [CRANK, TILTED, LEANING, PAIR, ARM, LOOP])
 def test_on_its_side_a_line_is_the_springs_direction(mechanism: dict[str, Any]) -> None:
     """Equations and Jacobian are those of springs that may point anywhere, and so they are only where all are ahead."""
     values = {"l": arb(1) / 2, "F": arb(1) / 3, "G": arb(1) / 7}

@@ -53,8 +53,6 @@ def line_of(cone: Cone) -> Line | None:
         if other is None:
             return None
         paired.append((part, other))
-    if len(parts) == 1 and not any(any(raised) for _, raised in parts):
-        return None  # |d| is a function of the parameters alone
     # with d = s e^(i n.q) e a pair is z e and z* e: their sum is along e, or zero, and then i times one of them is
     part, other = paired[0]
     e = _plus(part, other)
