@@ -381,6 +381,17 @@ def test_a_map_has_the_area_below_a_line(count: str) -> None:
     assert sum(float(r.area[0]) for r in two) <= 5 <= sum(float(r.area[1]) for r in two)
 
 
+def test_a_map_tells_whether_the_spring_pulls() -> None:
+    """At the two minima it does where F < 0; beyond the line there is one, at th = pi, where it does, as l < 2."""
+    found = map_of("admissible")
+    assert found.undetermined < Fraction(1, 100)
+    areas = {(2, 2): 1, (2, 0): 4, (1, 1): 3}
+    assert {(r.stable, r.admissible) for r in found.regions} == areas.keys()
+    for (stable, admissible), area in areas.items():
+        (region,) = (r for r in found.regions if (r.stable, r.admissible) == (stable, admissible))
+        assert region.area[0] <= area <= region.area[1]
+
+
 def random_points(number: int) -> Iterator[tuple[Fraction, Fraction]]:
     generator = np.random.default_rng(11)
     for u, v in generator.integers(1, 10**4, (number, 2)):

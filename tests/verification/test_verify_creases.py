@@ -77,6 +77,7 @@ CASES = {
     "crank": record(CRANK),
     "crank, total": record(CRANK, "total", G=[-1, 1], l=["1/10", 1]),
     "crank, stable": record(CRANK, "stable"),
+    "crank, admissible": record(CRANK, "admissible"),
     "leaning": record(LEANING),
     "pair": record(PAIR, F=[1, 2], l=[1, 2]),
     "loop": record(LOOP, "total", F=["1/4", "1/2"], l=["1/2", 1]),
