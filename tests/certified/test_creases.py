@@ -488,3 +488,18 @@ def test_without_the_crease_among_the_curves_a_map_is_false(monkeypatch: pytest.
     before = cells()
     monkeypatch.setattr(plain_curves, "_boundaries", lambda *_: iter(()))
     assert cells() < before
+
+
+def test_half_of_a_direction_that_winds_is_none() -> None:
+    """Around the origin half the angle of the square of x + iy turns by half a turn: there the spring stays a cone."""
+    way = {name: {"kind": "number"} for name in ("c", "s", "r")}
+    points = {"O": [0, 0], "A": ["c", "s"], "P": ["r*cos(th)", "r*sin(th)"]}
+    winding = record({**CRANK, "parameters": way, "points": points}, x=[-1, 1], y=[-1, 1])
+    given = {**winding, "parameters": {"c": "x^2 - y^2", "s": "2*x*y", "r": "x^2 + y^2"}}
+
+    def cones(**axes: list[Any]) -> int:
+        slice = ptmcad.slice_from_mapping({**given, "axes": axes})
+        return sum(len(branch.cones) for branch in branches(problem_of(slice), slice.axes))
+
+    assert cones(x=[-1, 1], y=[-1, 1]) == 1
+    assert cones(x=["1/4", 1], y=[-1, 1]) == 0
