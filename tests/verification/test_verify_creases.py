@@ -196,6 +196,23 @@ def test_what_continues_a_side_hides_no_equilibrium_a_turn_away(at: tuple[str, s
     assert ModelCounting(form(BEHIND))._at({"l": free, "F": force, "G": up}, Count.INDEX).counts.index == (2, 1)
 
 
+def test_counts_without_a_potential_agree_with_the_engines() -> None:
+    """Moments that depend on the other angle: the balance in half angles is that of virtual work."""
+    from ptmcad.certified.plain.points import plain_counter
+
+    moved = {**PAIR, "moments": {"a": "1/3*sin(b) + 1/9", "b": "1/5*cos(a)"}}
+    slice = ptmcad.slice_from_mapping(record(moved, "total"))
+    counter, found = plain_counter(slice), set[int]()
+    for force, free in (("0", "1/2"), ("1/3", "7/4"), ("-7/4", "1"), ("1", "1/9"), ("-1/5", "5/3")):
+        x, y = Fraction(force), Fraction(free)
+        true = counter.at(x, y, Count.TOTAL)
+        values = {name: e.evaluate(x, y) for name, e in slice.parameters.items()}
+        assert true.decided
+        assert ModelCounting(form_of(slice.model))._at(values, Count.TOTAL).counts.total == true.total
+        found.add(true.total or 0)
+    assert len(found) > 1
+
+
 @pytest.mark.parametrize("mechanism", [CRANK, BEHIND])
 def test_counts_agree_with_the_engines(mechanism: dict[str, Any]) -> None:
     from ptmcad.certified.plain.points import plain_counter
