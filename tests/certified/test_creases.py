@@ -1,4 +1,4 @@
-"""Springs between two points of a circle, and along lines that turn (Lemma S8): counts and maps against known ones."""
+"""Springs between two points of a circle, and along lines that turn (Lemma S10): counts and maps against known ones."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 Guarantee: exact. With q_k = 2 t - sum of c_j q_j, c_j whole numbers, every polynomial in cosines and sines of the q is
 one in those of t and the other q. A configuration has two places in the new unknowns, half a turn of t apart; that one
-of them counts only, a condition has to say (Lemma S8 of docs/soundness.md).
+of them counts only, a condition has to say (Lemma S10 of docs/soundness.md).
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ As that of a slider along its own guide, along one on a crank, or between two po
 of their angles turns the line of the latter.
 
 Guarantee: a problem's solutions are, without one left out or twice, those of its branches at which all inequalities of
-their branch are positive (Lemmas S6 and S8 of docs/soundness.md).
+their branch are positive (Lemmas S6 and S10 of docs/soundness.md).
 
 With d = s e, e a fixed vector or one that turns, K |d| is K |e| |s|: no cone, but a kink along s = 0. On either side of
 it the potential continues smoothly across s = 0, with u = e/|e| or u = -e/|e| everywhere. So there is one branch for
