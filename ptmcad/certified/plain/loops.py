@@ -15,8 +15,8 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Solution, Status
-from ptmcad.certified.arb_evaluation import ball, run_arb
-from ptmcad.certified.arb_isolation import Box, newton, refined
+from ptmcad.certified.arb_evaluation import run_arb
+from ptmcad.certified.arb_isolation import Box, newton
 from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.points import PlainCounter, plain_counter
 from ptmcad.certified.plain.poses import (
@@ -24,6 +24,7 @@ from ptmcad.certified.plain.poses import (
     all_pull,
     all_settled,
     assembled,
+    boxes_of,
     numbers_of,
     point_slice,
     settle,
@@ -93,10 +94,7 @@ def _pose(
     """The pose with all numbers settled, and the bits that this took; a sentence that says which number is not."""
     bits, found = 64 + 4 * digits, dict[str, Enclosure]()
     for attempt in range(MAX_DOUBLINGS):
-        with ctx.workprec(bits):
-            radius = solution.radius
-            whole: Box = (arb(0), arb(0), *(ball(c - radius, c + radius) for c in solution.center))
-        box = refined(counter.equations, whole, bits)
+        whole, box = boxes_of(counter, solution, bits)
         if attempt == 1:
             found |= _relaxed(mechanism, parameters, (whole, box), bits)
         with ctx.workprec(bits):

@@ -23,6 +23,7 @@ from ptmcad.certified.evaluation import Indices, program, run
 from ptmcad.certified.formula import Formula
 from ptmcad.certified.plain.bounds import Range, known_ranges
 from ptmcad.certified.plain.chart import Chart, chart, principal_minors
+from ptmcad.certified.plain.covering import in_description
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.infinity import WITNESSES, patches
 from ptmcad.certified.plain.loopchart import LoopChart, loop_chart
@@ -282,7 +283,7 @@ class PlainCounter:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BranchCounter:
-    """Counts at points of one slice, of whose problem each branch has a counter."""
+    """Counts at points of one slice, of whose problem each branch has a counter, in unknowns of its own."""
 
     branches: tuple[PlainCounter, ...]
 
@@ -290,7 +291,8 @@ class BranchCounter:
         """What ``count`` needs at the point (x, y) of the two axes, as `PlainCounter.at` has it."""
         parts = []
         for counter in self.branches:
-            parts.append(counter.at(x, y, count, thorough=thorough))
+            own = counter.at(x, y, count, thorough=thorough)
+            parts.append(in_description(counter.problem, counter.equations, (x, y), own))
             if not parts[-1].decided:
                 return PointCount()
         return parts[0] if len(parts) == 1 else _sum(parts)

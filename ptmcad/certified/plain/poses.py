@@ -14,10 +14,11 @@ from flint import arb, arb_mat, ctx
 from ptmcad.answer.poses import Pose, Poses, Spring, TorsionSpring
 from ptmcad.answer.regionmap import Solution, Status
 from ptmcad.certified.arb_evaluation import ball, run_arb
-from ptmcad.certified.arb_isolation import Box, refined
+from ptmcad.certified.arb_isolation import Box
 from ptmcad.certified.formula import Graph
+from ptmcad.certified.plain.covering import located
 from ptmcad.certified.plain.points import BranchCounter, PlainCounter, plain_counter
-from ptmcad.certified.plain.problem import MAX_UNKNOWNS_AT_POINTS
+from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS_AT_POINTS
 from ptmcad.certified.plain.related import related_numbers
 from ptmcad.certified.plain.relaxed import Relaxed, relaxed_numbers
 from ptmcad.certified.plain.resting import rational_point
@@ -91,6 +92,13 @@ def solutions_at(counter: BranchCounter, count: Count) -> list[tuple[PlainCounte
     return found
 
 
+def boxes_of(counter: PlainCounter, solution: Solution, precision: int) -> tuple[Box, Box]:
+    """A box of the mechanism's unknowns that holds a solution of a branch and no other one, and a narrow one."""
+    cube, box = located(counter.problem, counter.equations, (Fraction(0), Fraction(0)), solution, precision)
+    with ctx.workprec(precision):
+        return (*box[:FIRST], *(ball(c - cube.radius, c + cube.radius) for c in cube.center)), box
+
+
 def _order(pose: Pose) -> tuple[Fraction, ...]:
     """Stable equilibria first, then by energy; without a potential by the unknowns."""
     if pose.energy is not None:
@@ -144,10 +152,7 @@ def _pose(
     turns: dict[str, int] = {}
     at: Point = {}
     for attempt in range(MAX_DOUBLINGS):
-        with ctx.workprec(bits):
-            radius = solution.radius
-            whole: Box = (arb(0), arb(0), *(ball(c - radius, c + radius) for c in solution.center))
-        box = refined(counter.equations, whole, bits)
+        whole, box = boxes_of(counter, solution, bits)
         if attempt > 0:  # some number is not settled: it may be a short one, or a longer one with more bits
             with ctx.workprec(bits):
                 held, boxes = (dict(zip(mechanism.unknowns, some[2:], strict=True)) for some in (box, whole))

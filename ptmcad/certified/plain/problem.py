@@ -68,11 +68,12 @@ class Cone:
 
 @dataclass(frozen=True, slots=True)
 class Push:
-    """What a spring takes off the equations that can only point along one direction e: K |e| w_i, K with its side.
+    """What a spring takes off the equations that can only point along one line: K |e| w_i, K with its side.
 
     Attributes
     ----------
-    weights : the derivatives of s by the unknowns, where its vector is s e; as those of a `Cone` with closed loops.
+    weights : the derivatives of s by the unknowns, where its vector is s e, e turned by angles or not; as those of a
+        `Cone` with closed loops.
     """
 
     pull: Expression
@@ -113,6 +114,8 @@ class Problem:
     pushes : of springs along one line each, of which a branch of a problem has one side; the equations lack them.
     where : which branch it is, in words (`ptmcad.certified.plain.straight`).
     excesses : of springs, all positive at stable equilibria that are admissible; empty where that is not asked.
+    covering : of each of the description's unknowns its whole multiples of these, where these are others
+        (`ptmcad.certified.plain.covering`).
     """
 
     unknowns: tuple[str, ...]
@@ -127,6 +130,7 @@ class Problem:
     pushes: tuple[Push, ...] = ()
     where: str = ""
     excesses: tuple[Excess, ...] = ()
+    covering: tuple[tuple[int, ...], ...] = ()
 
     @property
     def has_springs(self) -> bool:

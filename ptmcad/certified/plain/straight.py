@@ -1,11 +1,15 @@
-"""Springs whose ends can only move along one line relative to each other, as that of a slider along its own guide.
+"""Springs whose ends can only move along one line relative to each other, which may turn with angles.
+
+As that of a slider along its own guide, along one on a crank, or between two points of a crank's circle: half the sum
+of their angles turns the line of the latter.
 
 Guarantee: a problem's solutions are, without one left out or twice, those of its branches at which all inequalities of
-their branch are positive (Lemma S6 of docs/soundness.md).
+their branch are positive (Lemmas S6 and S10 of docs/soundness.md).
 
-With d = s e, e a fixed vector, K |d| is K |e| |s|: no cone, but a kink along s = 0. On either side of it the potential
-continues smoothly across s = 0, with u = e/|e| or u = -e/|e| everywhere. So there is one branch for each choice of
-sides, a problem without that spring's cone and with the inequality s > 0, or -s > 0, instead.
+With d = s e, e a fixed vector or one that turns, K |d| is K |e| |s|: no cone, but a kink along s = 0. On either side of
+it the potential continues smoothly across s = 0, with u = e/|e| or u = -e/|e| everywhere. So there is one branch for
+each choice of sides, a problem without that spring's cone and with the inequality s > 0, or -s > 0, instead. Where the
+line turns by half a turn with a whole turn of an angle, both sides are one, over two turns of the angle.
 """
 
 from __future__ import annotations
@@ -15,9 +19,11 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
+from ptmcad.certified.plain.covering import in_half_angle, sum_of_angles
 from ptmcad.certified.plain.divisors import common_divisor, quotient, square_root
+from ptmcad.certified.plain.ends import Vector
 from ptmcad.certified.plain.problem import Condition, Cone, Problem, Push
-from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
+from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial, waves
 from ptmcad.question.positivity import PROVED, Need, decide
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
@@ -27,9 +33,15 @@ Pair = tuple[Expression, Expression]
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """A cone whose vector is s e, and whose weights are w_i e."""
+    """A cone whose vector is s e, e turned by a sum of angles, and the parts of its weights along e, over e.
+
+    Attributes
+    ----------
+    turn : the multiples of the angles in that sum.
+    """
 
     cone: Cone
+    turn: Multi
     direction: Pair
     way: TrigonometricPolynomial
     weights: tuple[TrigonometricPolynomial, ...]
@@ -42,12 +54,28 @@ def branches(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Problem, ...]:
     ----------
     axes : of the window in which a line's direction is to be a vector other than zero.
     """
+    problem, one_sided = _in_half_angles(problem, axes)
     lines = [line for cone in problem.cones if (line := _line(cone, axes)) is not None]
     if not lines:
         return (problem,)
     straight = {line.cone.name for line in lines}
     bare = replace(problem, cones=tuple(cone for cone in problem.cones if cone.name not in straight))
-    return tuple(_branch(bare, lines, sides, axes) for sides in product((1, -1), repeat=len(lines)))
+    choices = [(1,) if line.cone.name in one_sided else (1, -1) for line in lines]
+    return tuple(_branch(bare, lines, sides, axes) for sides in product(*choices))
+
+
+def _in_half_angles(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Problem, set[str]]:
+    """The problem in unknowns by whose sums all lines turn, and the springs that change their side between two places
+    of one configuration: of these one side has every configuration once."""
+    one_sided = set[str]()
+    for k in range(len(problem.cones)):
+        first, last = _ends(problem.cones[k].difference)
+        if any((a + b) % 2 for a, b in zip(first, last, strict=True)):
+            halved = in_half_angle(problem, tuple(b - a for a, b in zip(first, last, strict=True)))
+            if _line(halved.cones[k], axes) is not None:
+                problem = halved
+                one_sided.add(problem.cones[k].name)
+    return problem, one_sided
 
 
 def _branch(problem: Problem, lines: list[_Line], sides: tuple[int, ...], axes: tuple[Axis, Axis]) -> Problem:
@@ -55,6 +83,8 @@ def _branch(problem: Problem, lines: list[_Line], sides: tuple[int, ...], axes: 
         ex, ey = line.direction
         pull, norm = line.cone.pull * side, _rational_norm(line.direction, axes)
         ahead = f"({', '.join((side * e).to_text() for e in (ex, ey))})"
+        if angle := sum_of_angles(problem, line.turn):
+            ahead += f" turned by {angle}"
         text = f"length of spring {line.cone.name} along {ahead}"
         inequalities = (*problem.inequalities, Condition(text, line.way.scaled(Fraction(side))))
         problem = replace(problem, inequalities=inequalities, where=f"{problem.where}, {line.cone.name} along {ahead}")
@@ -78,25 +108,59 @@ def _rational_norm(direction: Pair, axes: tuple[Axis, Axis]) -> Expression | Non
 
 
 def _line(cone: Cone, axes: tuple[Axis, Axis]) -> _Line | None:
-    """The line along which a cone's vector stays, if there is one and it is proved to have a direction everywhere."""
-    across, up = cone.difference
+    """The line along which a cone's vector stays, if there is one and it is proved to have a direction everywhere.
+
+    A line that turns by an odd half of an angle is none of these.
+    """
+    twice = tuple(a + b for a, b in zip(*_ends(cone.difference), strict=True))
+    if any(n % 2 for n in twice):
+        return None
+    turn = tuple(n // 2 for n in twice)
+    (across, up), *weights = (_turned_back(vector, turn) for vector in (cone.difference, *cone.weights))
     first = next(pair for pair in _coefficients(across, up) if any(c.numerator for c in pair))
-    direction = _primitive(first)
-    vectors = [cone.difference, *cone.weights]
-    if any(_crossed(pair, direction) for vector in vectors for pair in _coefficients(*vector)):
+    ex, ey = direction = _primitive(first)
+    if any(_crossed(pair, direction) for pair in _coefficients(across, up)):
         return None
-    ex, ey = direction
-    if decide(ex * ex + ey * ey, axes, Need.POSITIVE) != PROVED:
+    squared = ex * ex + ey * ey
+    if decide(squared, axes, Need.POSITIVE) != PROVED:
         return None
-    way, *weights = ((a.scaled(1 / ex) if ex.numerator else b.scaled(1 / ey)) for a, b in vectors)
-    return _Line(cone, direction, way, tuple(weights))
+    way = across.scaled(1 / ex) if ex.numerator else up.scaled(1 / ey)
+    if not any(any(m) or any(e) for m, e in way.terms):
+        return None  # of a length that no unknown changes
+    along = tuple(a.scaled(ex / squared) + b.scaled(ey / squared) for a, b in weights)
+    return _Line(cone, turn, direction, way, along)
+
+
+def _ends(vector: Vector) -> tuple[Multi, Multi]:
+    """Of the multiples by which a vector's parts turn, d_x + i d_y a sum of c e^(i m.q): the first and the last one.
+
+    Of s e turned by n.q they are on both sides of n, equally far from it, as s is real.
+    """
+    across, up = vector
+    found = set[Multi]()
+    for key in across.terms.keys() | up.terms.keys():
+        (ax, bx), (ay, by) = (f.terms.get(key, _NOTHING) for f in vector)
+        ahead, back = (ax + by, ay - bx), (ax - by, ay + bx)
+        for pair, sign in ((ahead, 1), (back, -1)):
+            if any(c.numerator for c in pair):
+                found.add(tuple(sign * m for m in key[0]))
+    return min(found), max(found)
+
+
+def _turned_back(vector: Vector, turn: Multi) -> Vector:
+    """By a sum of angles."""
+    across, up = vector
+    cosine, sine = waves(turn)
+    return across * cosine + up * sine, up * cosine - across * sine
 
 
 def _coefficients(across: TrigonometricPolynomial, up: TrigonometricPolynomial) -> Iterator[Pair]:
     """The vectors of the coefficients of each wave."""
-    nothing = constant(0), constant(0)
     for key in across.terms.keys() | up.terms.keys():
-        yield from zip(across.terms.get(key, nothing), up.terms.get(key, nothing), strict=True)
+        yield from zip(across.terms.get(key, _NOTHING), up.terms.get(key, _NOTHING), strict=True)
+
+
+_NOTHING = constant(0), constant(0)
 
 
 def _primitive(pair: Pair) -> Pair:

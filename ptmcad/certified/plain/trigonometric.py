@@ -91,6 +91,21 @@ class TrigonometricPolynomial:
             found.append(((tuple(multiples), tuple(powers)), (c * sign**power, d * sign**power)))
         return _collected(found)
 
+    def substituted(self, rows: Sequence[Multi]) -> TrigonometricPolynomial:
+        """With sums of whole multiples of other angles for the angles; real unknowns, whose multiples are 0, stay.
+
+        Parameters
+        ----------
+        rows : for each unknown these multiples.
+        """
+        columns = list(zip(*rows, strict=True))
+        return _collected(
+            [
+                ((tuple(sum(a * b for a, b in zip(m, column, strict=True)) for column in columns), e), pair)
+                for (m, e), pair in self.terms.items()
+            ]
+        )
+
     def formula(self, graph: Graph, unknowns: Sequence[Formula]) -> Formula:
         """The polynomial as a formula: by Horner's rule in each real unknown, over sums of harmonics."""
         return _horner(graph, unknowns, dict(self.terms), 0)
@@ -134,6 +149,12 @@ def _collected(
         known = total.get((multiples, e), (_NOTHING, _NOTHING))
         total[multiples, e] = (known[0] + a, known[1] + sine)
     return TrigonometricPolynomial({key: (a, b) for key, (a, b) in total.items() if a.numerator or b.numerator})
+
+
+def waves(multiples: Multi) -> tuple[TrigonometricPolynomial, TrigonometricPolynomial]:
+    """Cosine and sine of a sum of whole multiples of the angles."""
+    key, one = (multiples, (0,) * len(multiples)), constant(1)
+    return _collected([(key, (one, _NOTHING))]), _collected([(key, (_NOTHING, one))])
 
 
 @dataclass(frozen=True, slots=True)

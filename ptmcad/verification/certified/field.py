@@ -6,6 +6,7 @@ spring with a free length may have no length, its direction is any unit vector, 
 The potential is V - sum of K |d|. With u = d/|d|, slopes g_i of d by the unknowns, second derivatives g_ij, and
 c_i = u x g_i, a spring's part of the equations is -K u.g_i and of the Hessian -K (c_i c_j/|d| + u.g_ij). With closed
 loops other vectors w_i are in the place of the g_i: of the equations -K u.w_i, and -K ((u x w_i) c_j/|d| + u.w_ij).
+Where u is on a line that turns by n_j with the unknowns, c_j/|d| is n_j.
 """
 
 from __future__ import annotations
@@ -158,6 +159,12 @@ class Field:
         self._matrix = arb_mat(len(rows), 2 * len(found), entries)
         self._turned = sorted({turned for turned, _ in found if any(turned)})
 
+    @property
+    def circles(self) -> tuple[bool, ...]:
+        """Of each unknown, whether the equations are the same after a full turn: not where half of it turns a line."""
+        lines = self._lines.values()
+        return tuple(c and not any(line.twice[k] % 2 for line in lines) for k, c in enumerate(self.form.is_circle))
+
     def _waves(self, at: Sequence[arb]) -> arb_mat:
         waves = {}
         for turned in self._turned:
@@ -186,10 +193,10 @@ class Field:
         springs, ahead = [], list[arb]()
         length = 2 + (4 if self.form.closing else 2) * n + 2 * n * n
         for number, _, pull in self.cones:
-            line = self._lines.get(number)
+            line = self._lines[number].at(at) if number in self._lines else None
             new = _spring(number, pull, rows[place : place + length], jacobian, line)
             if line is not None:
-                ahead.append(line[0] * rows[place] + line[1] * rows[place + 1])
+                ahead.append(line.unit[0] * rows[place] + line.unit[1] * rows[place + 1])
             values = [value - part for value, part in zip(values, new.part, strict=True)]
             springs.append(new)
             place += length
@@ -215,23 +222,43 @@ def value_of(row: Waves, values: Mapping[str, arb], at: Sequence[arb]) -> arb:
     return total
 
 
-def _pointed(cone: Cone, values: Mapping[str, arb], side: int) -> Vector:
-    """The direction of a spring on one line."""
+class _Pointed(NamedTuple):
+    """The direction of a spring on one line, and the multiples of the unknowns in twice the sum that turns it."""
+
+    unit: Vector
+    twice: tuple[int, ...]
+
+    @property
+    def spins(self) -> list[arb]:
+        """How fast it turns with the unknowns."""
+        return [arb(n) / 2 for n in self.twice]
+
+    def at(self, unknowns: Sequence[arb]) -> _Pointed:
+        """Turned."""
+        if not any(self.twice):
+            return self
+        (x, y), angle = self.unit, sum((n * q for n, q in zip(self.spins, unknowns, strict=True)), arb(0))
+        sine, cosine = angle.sin_cos()
+        return self._replace(unit=(unit(x * cosine - y * sine), unit(x * sine + y * cosine)))
+
+
+def _pointed(cone: Cone, values: Mapping[str, arb], side: int) -> _Pointed:
+    """The direction of a spring on one line before that turns."""
     line = line_of(cone)
     assert line is not None
-    x, y = (side * ball(terms, values) for terms in line)
+    x, y = (side * ball(terms, values) for terms in line.vector)
     squared = square(x) + square(y)
     if not squared > 0:
         raise Unproved(f"the line of spring {cone.name} may have no direction")
-    return x / squared.sqrt(), y / squared.sqrt()
+    return _Pointed((x / squared.sqrt(), y / squared.sqrt()), line.twice)
 
 
-def _spring(number: int, pull: arb, rows: list[arb], jacobian: Matrix, line: Vector | None) -> Spring:
+def _spring(number: int, pull: arb, rows: list[arb], jacobian: Matrix, line: _Pointed | None) -> Spring:
     """A spring from its vector and its derivatives; its part is taken off the Jacobian if it surely has a direction.
 
     Parameters
     ----------
-    line : its direction, where it is on one line: then it does not turn.
+    line : its direction, where it is on one line: then it turns as that does.
     """
     n = len(jacobian)
     a, b = rows[:2]
@@ -245,14 +272,14 @@ def _spring(number: int, pull: arb, rows: list[arb], jacobian: Matrix, line: Vec
     if line is None and not q > 0:
         part = tuple(pull * _ANY * size(*w) for w in weights)
         return Spring(number, pull, reach, slopes, weights, part, outer, True)
-    inverse = _ZERO if line else q.rsqrt()
-    u, v = line or (unit(a * inverse), unit(b * inverse))
-    cross = [_ZERO if line else u * gy - v * gx for gx, gy in slopes]
-    lean = cross if is_gradient or line else [u * wy - v * wx for wx, wy in weights]
+    inverse = _ONE if line else q.rsqrt()
+    u, v = line.unit if line else (unit(a * inverse), unit(b * inverse))
+    cross = line.spins if line else [u * gy - v * gx for gx, gy in slopes]
+    lean = cross if is_gradient and not line else [u * wy - v * wx for wx, wy in weights]
     for i in range(n):
         for j in range(i if is_gradient else 0, n):
             across, up = bends[2 * (i * n + j)], bends[2 * (i * n + j) + 1]
-            turning = square(cross[i]) if is_gradient and i == j else lean[i] * cross[j]
+            turning = square(cross[i]) if is_gradient and i == j and not line else lean[i] * cross[j]
             entry = pull * (turning * inverse + u * across + v * up)
             jacobian[i][j] = jacobian[i][j] - entry
             if is_gradient and i != j:

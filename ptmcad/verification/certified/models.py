@@ -83,6 +83,7 @@ class ModelCounting:
         found = [
             zero for k, side in enumerate(sides(self.form)) for zero in self._on_side(values, count, side, where, k)
         ]
+        found = self._once(found)
         numbers = {name: ball_of(value) for name, value in values.items()}
         return Counted(self._counts(numbers, found, count), found, values)
 
@@ -99,6 +100,14 @@ class ModelCounting:
             return counts
         stable = (zero for zero in found if "-" not in zero.signs)
         return replace(counts, admissible=sum(_is_admissible(self.excesses, values, zero) for zero in stable))
+
+    def _once(self, found: Sequence[Zero]) -> list[Zero]:
+        """Solutions on all sides; at both ends of a box of angles one may be there on two sides."""
+        kept = list[Zero]()
+        for zero in found:
+            if not any(self.same(zero, other) for other in kept):
+                kept.append(zero)
+        return kept
 
     def _on_side(
         self, values: Mapping[str, Fraction], count: Count, side: Sides, where: Where | None, k: int
@@ -184,7 +193,7 @@ class ModelCounting:
             start, whole = ([_start(field)], None) if where is None else (where.boxes[k], where.whole)
             found, _ = zeros(field, minima, start, budget, smallest, near, whole)
             counted += _counted(field, found, slice.count)
-        return self._counts(values, counted, slice.count)
+        return self._counts(values, self._once(counted), slice.count)
 
     @property
     def _budget(self) -> int:

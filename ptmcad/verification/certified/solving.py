@@ -62,7 +62,7 @@ def zeros(
     Unproved
         When a solution is degenerate or nearly so for some parameters, or the budget was spent.
     """
-    circles = field.form.is_circle
+    circles = field.circles
     waiting = list(start)
     whole = whole or waiting[0][1]
     least = [smallest * w for w in whole]
@@ -142,7 +142,7 @@ def _met(box: Box, image: Sequence[arb]) -> Box | None:
 def _settled(field: Field, box: Box, found: Sequence[Zero], whole: Floats) -> Zero | None:
     """A solution that Newton's method reaches from the box's middle, proved to be one; None when none is."""
     center = newton(field, box)
-    if center is None or any(within(center, z.center, z.alone, field.form.is_circle) for z in found):
+    if center is None or any(within(center, z.center, z.alone, field.circles) for z in found):
         return None
     return proved(field, center, _shapes(box[1], whole))
 

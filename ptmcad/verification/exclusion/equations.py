@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from ptmcad.errors import ExpressionError
 from ptmcad.text.expressions import Expression
-from ptmcad.verification.certified.kinks import Sides, line_of
+from ptmcad.verification.certified.kinks import Line, Sides, line_of
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.vectors import Terms, evaluated
 from ptmcad.verification.certified.waves import Cone, Form, Key, Waves, form_of
@@ -165,7 +165,9 @@ class Equations:
             for i in range(n):
                 for j in range(n):
                     part = f.dot(u, s.bends[i * n + j])
-                    if k != without and s.name not in self.sides:
+                    if s.name in self.sides:
+                        part = f.add(part, f.multiply(f.number(self._spin(s.name, j)), pushed[i]))
+                    elif k != without:
                         inverse = f.inverse_length(*s.vector)
                         whole = f.multiply(turning[j], self.factors[j])
                         part = f.add(part, f.multiply(f.multiply(pushed[i], whole), inverse))
@@ -187,24 +189,41 @@ class Equations:
             for k, s in enumerate(self.springs)
         }
 
-    def _line(self, name: str) -> Pair:
-        """The vector along which a spring on one line points, on its side."""
+    def _line(self, name: str) -> Line:
+        """That of a spring on one line."""
         line = line_of(next(c for c in self.form.cones if c.name == name))
         assert line is not None
-        x, y = (self.list.multiply(self.list.number(self.sides[name]), self.terms(terms)) for terms in line)
+        return line
+
+    def _ahead(self, name: str) -> Pair:
+        """The vector along which such a spring points, on its side, before its line turns."""
+        x, y = (self.list.multiply(self.list.number(self.sides[name]), self.terms(t)) for t in self._line(name).vector)
         return x, y
 
+    def _spin(self, name: str, j: int) -> Fraction:
+        """How fast such a line turns along the j-th vector of the basis."""
+        return Fraction(sum(a * b for a, b in zip(self._line(name).twice, self.basis[j], strict=True)), 2)
+
+    def _with_line(self, name: str, vector: Pair) -> Pair:
+        """A vector turned as such a line is."""
+        f, (x, y), twice = self.list, vector, self._line(name).twice
+        if not any(twice):
+            return vector
+        angle = f.sum(f.multiply(f.number(Fraction(n, 2)), q) for n, q in zip(twice, self.unknowns, strict=True))
+        c, s = f.cosine(angle), f.sine(angle)
+        return f.subtract(f.multiply(x, c), f.multiply(y, s)), f.add(f.multiply(x, s), f.multiply(y, c))
+
     def _pointed(self, name: str) -> Pair:
-        f, (x, y) = self.list, self._line(name)
+        f, (x, y) = self.list, self._ahead(name)
         p, q = f.constant(x), f.constant(y)
         if p is not None and q is not None and (p == 0 or q == 0):
-            return f.number((p > 0) - (p < 0)), f.number((q > 0) - (q < 0))
-        return f.direction(x, y)
+            return self._with_line(name, (f.number((p > 0) - (p < 0)), f.number((q > 0) - (q < 0))))
+        return self._with_line(name, f.direction(x, y))
 
     def ahead(self, k: int) -> int:
         """What is positive where a spring on one line is on its side."""
         s = self.springs[k]
-        return self.list.dot(self._line(s.name), s.vector)
+        return self.list.dot(self._with_line(s.name, self._ahead(s.name)), s.vector)
 
     def without(self, k: int) -> list[int]:
         """The equations without the part of one spring, which is what balances it."""

@@ -240,6 +240,7 @@ class _Systems:
         for k in springs if charted else ():
             yield self._short_folds(k)
             yield self._cone(k)
+        signs = list(dict.fromkeys([*signs, determinant] if self.minima else signs))
         # with admissible ones all minima are counted, so that folds ask for no excess
         for k, c in enumerate(self.positive):
             if k < len(self.conditions) and not any(any(key[0]) or any(key[1]) for key in self.conditions[k]):

@@ -1,0 +1,228 @@
+"""`verify` of maps with springs on lines that turn, by half an angle too: true ones are proved, false ones are not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from math import pi
+from typing import Any
+
+import numpy as np
+import pytest
+from flint import arb
+
+pytest.importorskip("numba")
+
+import ptmcad
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.certified.engine import certified_map
+from ptmcad.certified.plain import curves as plain_curves
+from ptmcad.options import Options
+from ptmcad.question.slice import Count
+from ptmcad.verification.certified.field import Field
+from ptmcad.verification.certified.kinks import line_of, sides
+from ptmcad.verification.certified.models import ModelCounting
+from ptmcad.verification.certified.waves import Form, form_of
+
+
+def record(mechanism: dict[str, Any], count: str = "index", **axes: list[Any]) -> dict[str, Any]:
+    parameters = {
+        "l": {"kind": "free length", "default": 1},
+        "F": {"kind": "force", "default": 0},
+        "G": {"kind": "force", "default": 0},
+    }
+    given = {"name": "creased", **mechanism, "parameters": parameters}
+    return {"name": "creased", "mechanism": given, "axes": axes or {"F": [-2, 2], "l": [0, 2]}, "count": count}
+
+
+CRANK: dict[str, Any] = {
+    "unknowns": {"th": "angle"},
+    "points": {"O": [0, 0], "A": [1, 0], "P": ["cos(th)", "sin(th)"]},
+    "springs": [{"between": ["A", "P"], "k": 1, "free": "l"}],
+    "loads": {"P": ["F", "G"]},
+}
+BEHIND: dict[str, Any] = {**CRANK, "points": {**CRANK["points"], "A": [-1, 0]}}
+"""The crease at half a turn, where the search begins and ends."""
+LEANING: dict[str, Any] = {
+    **CRANK,
+    "points": {"O": [0, 0], "A": ["6/5", "8/5"], "B": [-2, 0], "P": ["2*cos(th)", "2*sin(th)"]},
+    "springs": [{"between": ["A", "P"], "k": 1, "free": "l"}, {"between": ["B", "P"], "k": 1, "free": "1/3"}],
+}
+TILTED: dict[str, Any] = {
+    **CRANK,
+    "points": {"O": [0, 0], "A": [1, 2], "P": ["cos(th) - 2*sin(th)", "2*cos(th) + sin(th)"]},
+}
+PAIR: dict[str, Any] = {
+    "unknowns": {"a": "angle", "b": "angle"},
+    "points": {"O": [0, 0], "P": ["cos(a)", "sin(a)"], "Q": ["cos(b)", "sin(b)"]},
+    "springs": [{"between": ["P", "Q"], "k": 1, "free": "l"}],
+    "loads": {"P": ["F", "G"], "Q": ["1/3", "-1/7"]},
+}
+ARM: dict[str, Any] = {
+    "unknowns": {"a": "angle", "x": "length"},
+    "points": {"O": [0, 0], "A": [1, 0], "S": ["x*cos(a)", "x*sin(a)"]},
+    "springs": [{"between": ["O", "S"], "k": 1, "free": "l"}, {"between": ["A", "S"], "k": 1, "free": "1/4"}],
+    "loads": {"S": ["F", "G"]},
+}
+LOOP: dict[str, Any] = {
+    "unknowns": {"th": "angle", "x": "length"},
+    "points": {"O": [0, 0], "A": [0, 1], "P": ["cos(th)", "sin(th)"], "S": ["x", 0]},
+    "bars": [["O", "P"]],
+    "closing": [{"between": ["P", "S"], "length": 2}],
+    "springs": [{"between": ["A", "P"], "k": 1, "free": "l"}],
+    "loads": {"S": ["F", "G"]},
+}
+CASES = {
+    "crank": record(CRANK),
+    "crank, total": record(CRANK, "total", G=[-1, 1], l=["1/10", 1]),
+    "crank, stable": record(CRANK, "stable"),
+    "crank, admissible": record(CRANK, "admissible"),
+    "leaning": record(LEANING),
+    "pair": record(PAIR, F=[1, 2], l=[1, 2]),
+    "loop": record(LOOP, "total", F=["1/4", "1/2"], l=["1/2", 1]),
+}
+
+
+@cache
+def made(name: str) -> RegionMap:
+    return certified_map(ptmcad.slice_from_mapping(CASES[name]), Options(tolerance=Fraction(1, 50), jobs=1))
+
+
+def form(mechanism: dict[str, Any]) -> Form:
+    return form_of(ptmcad.slice_from_mapping(record(mechanism, "total")).model)
+
+
+@pytest.mark.parametrize("name", list(CASES))
+def test_true_maps_are_proved(name: str) -> None:
+    report = ptmcad.verify(made(name), seed=1, boxes=2)
+    assert report.ok
+    checks = {c.name: c for c in report.checks}
+    assert checks["counts and solutions"].passed
+    if name not in ("pair", "loop"):
+        assert checks["the whole free area"].passed
+
+
+@pytest.mark.parametrize("name", ["crank, total"])
+def test_a_map_without_the_crease_is_not_proved(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(plain_curves, "_boundaries", lambda *_: iter(()))
+    slice = ptmcad.slice_from_mapping(CASES[name])
+    false = certified_map(slice, Options(tolerance=Fraction(1, 50), jobs=1))
+    monkeypatch.undo()
+    assert len(false.cells) < len(made(name).cells)
+    (area,) = (c for c in ptmcad.verify(false, seed=1, boxes=0).checks if c.name == "the whole free area")
+    assert not area.passed
+
+
+@pytest.mark.parametrize("name", ["crank", "pair"])
+def test_a_wrong_count_is_found(name: str) -> None:
+    true = made(name)
+    cell = true.cells[0]
+    assert cell.index is not None and cell.total is not None
+    wrong = replace(cell, total=cell.total + 1, stable=cell.index[0] + 1, index=(cell.index[0] + 1, *cell.index[1:]))
+    assert not ptmcad.verify(replace(true, cells=(wrong, *true.cells[1:])), boxes=0, effort=0).ok
+
+
+def test_a_half_angle_in_the_place_of_the_angle_is_found() -> None:
+    true = made("crank")
+    cell = true.cells[0]
+    halves = tuple(replace(s, center=tuple(c / 2 for c in s.center)) for s in cell.solutions)
+    wrong = replace(cell, solutions=halves)
+    assert not ptmcad.verify(replace(true, cells=(wrong, *true.cells[1:])), boxes=0, effort=0).ok
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "twice"),
+    [
+        (CRANK, [(1,)]),
+        (TILTED, [(1,)]),
+        (LEANING, [(1,), (1,)]),
+        (PAIR, [(1, 1)]),
+        (ARM, [(2, 0), None]),
+        (LOOP, [(1, 0)]),
+    ],
+)
+def test_lines_are_told_from_the_vectors(mechanism: dict[str, Any], twice: list[Any]) -> None:
+    lines = [line_of(cone) for cone in form(mechanism).cones]
+    assert [line and line.twice for line in lines] == twice
+
+
+@pytest.mark.parametrize("mechanism", [CRANK, TILTED, LEANING, PAIR, ARM, LOOP])
+def test_on_its_side_a_line_is_the_springs_direction(mechanism: dict[str, Any]) -> None:
+    """Equations and Jacobian are those of springs that may point anywhere, and so they are only where all are ahead."""
+    values = {"l": arb(1) / 2, "F": arb(1) / 3, "G": arb(1) / 7}
+    of, generator = form(mechanism), np.random.default_rng(5)
+    free = Field(of, values)
+    for _ in range(20):
+        q = [arb(float(x)) for x in generator.uniform(-pi, pi, of.size)]
+        true, ahead = free(q), 0
+        for side in sides(of):
+            jet = Field(of, values, sides=side)(q)
+            if all(c > 0 for c in jet.conditions):
+                ahead += 1
+                assert all(a.overlaps(b) for a, b in zip(jet.values, true.values, strict=True))
+                for row, other in zip(jet.jacobian, true.jacobian, strict=True):
+                    assert all(a.overlaps(b) for a, b in zip(row, other, strict=True))
+            else:
+                assert not all(a.overlaps(b) for a, b in zip(jet.values, true.values, strict=True))
+        assert ahead == 1
+
+
+def test_what_half_of_an_angle_turns_is_another_after_a_full_turn() -> None:
+    values = {"l": arb(1), "F": arb(0), "G": arb(0)}
+
+    def circles(mechanism: dict[str, Any]) -> tuple[bool, ...]:
+        of = form(mechanism)
+        return Field(of, values, sides=next(iter(sides(of)))).circles
+
+    assert circles(CRANK) == (False,)
+    assert circles(PAIR) == (False, False)
+    assert circles(ARM) == (True, False)
+
+
+def test_an_equilibrium_at_both_ends_of_the_circle_is_one() -> None:
+    """At th = pi, where the search begins and ends: it is on one side of the spring there, and on the other here."""
+    values = {"l": Fraction(1), "F": Fraction(1, 3), "G": Fraction(0)}
+    counts = ModelCounting(form(CRANK))._at(values, Count.INDEX).counts
+    assert counts.index == (2, 1)
+
+
+@pytest.mark.parametrize(
+    "at", [("1/4", "-131/64", "-3/32"), ("31/64", "-53/64", "-5/16"), ("43/64", "-185/64", "19/64")]
+)
+def test_what_continues_a_side_hides_no_equilibrium_a_turn_away(at: tuple[str, str, str]) -> None:
+    """Beyond the crease the energy's continuation has a zero a full turn from an equilibrium of the same side."""
+    free, force, up = map(Fraction, at)
+    assert ModelCounting(form(BEHIND))._at({"l": free, "F": force, "G": up}, Count.INDEX).counts.index == (2, 1)
+
+
+def test_counts_without_a_potential_agree_with_the_engines() -> None:
+    """Moments that depend on the other angle: the balance in half angles is that of virtual work."""
+    from ptmcad.certified.plain.points import plain_counter
+
+    moved = {**PAIR, "moments": {"a": "1/3*sin(b) + 1/9", "b": "1/5*cos(a)"}}
+    slice = ptmcad.slice_from_mapping(record(moved, "total"))
+    counter, found = plain_counter(slice), set[int]()
+    for force, free in (("0", "1/2"), ("1/3", "7/4"), ("-7/4", "1"), ("1", "1/9"), ("-1/5", "5/3")):
+        x, y = Fraction(force), Fraction(free)
+        true = counter.at(x, y, Count.TOTAL)
+        values = {name: e.evaluate(x, y) for name, e in slice.parameters.items()}
+        assert true.decided
+        assert ModelCounting(form_of(slice.model))._at(values, Count.TOTAL).counts.total == true.total
+        found.add(true.total or 0)
+    assert len(found) > 1
+
+
+@pytest.mark.parametrize("mechanism", [CRANK, BEHIND])
+def test_counts_agree_with_the_engines(mechanism: dict[str, Any]) -> None:
+    from ptmcad.certified.plain.points import plain_counter
+    from ptmcad.certified.plain.poses import point_slice
+
+    generator = np.random.default_rng(3)
+    slice = ptmcad.slice_from_mapping(record(mechanism))
+    for _ in range(60):
+        force, up, free = (Fraction(int(n), 64) for n in generator.integers((-192, -64, 1), (192, 64, 256)))
+        values = {"l": free, "F": force, "G": up}
+        true = plain_counter(point_slice(slice.model, values)).at(Fraction(0), Fraction(0), Count.INDEX)
+        if true.decided:
+            assert ModelCounting(form(mechanism))._at(values, Count.INDEX).counts.index == true.index
