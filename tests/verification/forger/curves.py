@@ -146,8 +146,10 @@ def component_left_out(r: RegionMap) -> Iterator[Alteration]:
     for k, c in enumerate(r.components):
         if not c.left_out:
             yield partial(decomposed, r, put(r.components, k, left_out=NO_POINT, separates=False))
-        for reason in {HARMLESS, "it separates nothing"} - {c.left_out}:
-            if reason == HARMLESS and c.kind is Kind.INFINITY and c.left_out == NO_POINT:
+        for reason in (HARMLESS, "it separates nothing"):
+            if reason == c.left_out:
+                continue
+            if reason == HARMLESS and c.kind is Kind.INFINITY and (c.left_out == NO_POINT or not c.separates):
                 continue  # it may be harmless as well
             yield partial(decomposed, r, put(r.components, k, left_out=reason, separates=False))
 
