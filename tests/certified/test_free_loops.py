@@ -16,7 +16,6 @@ import numpy as np
 import pytest
 import yaml
 from support.loop_search import Energy, Numbers, counts_along
-from support.shipped_records import OTHER_FREE
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
@@ -126,20 +125,6 @@ def test_counts_are_those_of_a_search_along_the_loop(name: str, count: str, tole
     m = map_of(name, count, tolerance)
     assert m.undetermined < Fraction(tolerance)
     assert not wrong_counts(m)
-
-
-@pytest.mark.parametrize("path", OTHER_FREE, ids=lambda path: path.stem)
-def test_the_record_s_own_figures(path: Path) -> None:
-    known = yaml.safe_load(path.read_text(encoding="utf-8"))["reference"]
-    m = map_of(path.stem, "stable", "1/500")
-    assert m.status is Status.CERTIFIED
-    for count, area in known["areas"].items():
-        found = sum(float(sum(region.area)) / 2 for region in m.regions if region.stable == count)
-        assert found == pytest.approx(float(area), rel=float(known["tolerance"]))
-    for entry in known["counts"]:
-        poses = ptmcad.solve(path, **entry["at"])
-        assert (len(poses.equilibria), poses.stable) == (entry["total"], entry["stable"])
-        assert m.locate(**entry["at"]).stable == entry["stable"]
 
 
 def test_as_free_lengths_vanish_counts_are_the_exact_engine_s() -> None:
