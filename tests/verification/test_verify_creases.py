@@ -20,10 +20,14 @@ from ptmcad.certified.engine import certified_map
 from ptmcad.certified.plain import curves as plain_curves
 from ptmcad.options import Options
 from ptmcad.question.slice import Count
+from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.field import Field
-from ptmcad.verification.certified.kinks import line_of, sides
+from ptmcad.verification.certified.kinks import sides
 from ptmcad.verification.certified.models import ModelCounting
+from ptmcad.verification.certified.points import check_points
+from ptmcad.verification.certified.structure import CertifiedClaims, check_form
 from ptmcad.verification.certified.waves import Form, form_of
+from ptmcad.verification.report import Unchecked, Violation
 
 
 def record(mechanism: dict[str, Any], count: str = "index", **axes: list[Any]) -> dict[str, Any]:
@@ -143,7 +147,7 @@ def test_a_half_angle_in_the_place_of_the_angle_is_found() -> None:
     ],
 )
 def test_lines_are_told_from_the_vectors(mechanism: dict[str, Any], twice: list[Any]) -> None:
-    lines = [line_of(cone) for cone in form(mechanism).cones]
+    lines = [cone.line for cone in form(mechanism).cones]
     assert [line and line.twice for line in lines] == twice
 
 
@@ -226,3 +230,91 @@ def test_counts_agree_with_the_engines(mechanism: dict[str, Any]) -> None:
         true = plain_counter(point_slice(slice.model, values)).at(Fraction(0), Fraction(0), Count.INDEX)
         if true.decided:
             assert ModelCounting(form(mechanism))._at(values, Count.INDEX).counts.index == true.index
+
+
+@pytest.mark.parametrize("count", ["total", "stable"])
+def test_a_line_whose_spring_has_no_free_length_has_no_sides(count: str) -> None:
+    """The parameter m is zero all over the slice."""
+    mechanism = {
+        "unknowns": {"x": "length"},
+        "points": {"S": ["x", -1], "B": [0, -1], "C": [1, "1/2"]},
+        "springs": [{"between": ["B", "S"], "k": 1, "free": "m"}, {"between": ["C", "S"], "k": 1, "free": "l"}],
+        "loads": {"S": ["F", "G"]},
+    }
+    given = record(mechanism, count, F=[1, 2], l=["1/10", 1])
+    given["mechanism"]["parameters"] |= {"m": {"kind": "free length", "default": 0}}
+    true = certified_map(ptmcad.slice_from_mapping(given), Options(tolerance=Fraction(1, 50), jobs=1))
+    assert len(form_of(true.slice).cones) == 1
+    report = ptmcad.verify(true, seed=1, boxes=2, effort=0)
+    assert report.ok
+    assert next(c for c in report.checks if c.name == "counts and solutions").passed
+
+
+def turned(**axes: Any) -> dict[str, Any]:
+    """A crank whose spring's other end is in a direction of which only the slice says that it is one."""
+    given = record(CRANK | {"points": {"A": ["c", "s"], "P": ["cos(th)", "sin(th)"]}}, "index", **axes)
+    given["mechanism"]["parameters"] |= {"c": {"default": 1}, "s": {"default": 0}}
+    return given | {"parameters": {"c": "(1 - t^2)/(1 + t^2)", "s": "2*t/(1 + t^2)"}}
+
+
+def test_directions_are_told_by_the_values_of_parameters() -> None:
+    given = turned()
+    given["axes"] = {"F": [1, 2], "t": ["1/4", 1]}
+    true = certified_map(ptmcad.slice_from_mapping(given), Options(tolerance=Fraction(1, 50), jobs=1))
+    (cone,) = form_of(true.slice).cones
+    assert cone.line is not None and cone.line.twice == (1,)
+    report = ptmcad.verify(true, seed=1, boxes=2, effort=0)
+    assert report.ok
+    assert next(c for c in report.checks if c.name == "counts and solutions").passed
+    given["parameters"]["s"] = "t/(1 + t^2)"  # no direction any more
+    assert form_of(ptmcad.slice_from_mapping(given)).cones[0].line is None
+
+
+@pytest.mark.parametrize("away", [Fraction(1, 10**20), Fraction(1, 10**29)])
+def test_narrow_boxes_beside_solutions_are_refused_on_the_side_of_a_crease(away: Fraction) -> None:
+    true = made("crank")
+    cell = true.cells[0]
+    values = dict(zip(true.slice.axis_names, cell.sample, strict=True))
+    poses = [Fraction(p.angles[0].text(45)) for p in ptmcad.solve(true.slice, digits=45, **values).equilibria]
+    narrow = Fraction(1, 10**30)
+
+    def moved(by: Fraction) -> RegionMap:
+        solutions = tuple(
+            replace(s, center=(min(poses, key=lambda x: abs(x - s.center[0])) + by,), radius=narrow)
+            for s in cell.solutions
+        )
+        return replace(true, cells=(replace(cell, solutions=solutions), *true.cells[1:]))
+
+    assert ptmcad.verify(moved(Fraction(0)), seed=1, boxes=0, effort=0).ok
+    assert not ptmcad.verify(moved(away), seed=1, boxes=0, effort=0).ok
+
+
+def test_more_admissible_equilibria_than_stable_ones_are_refused() -> None:
+    true = made("crank, admissible")
+    cell = true.cells[0]
+    assert cell.stable is not None
+    wrong = replace(true, cells=(replace(cell, admissible=cell.stable + 1), *true.cells[1:]))
+    with pytest.raises(Violation, match="admissible equilibria among"):
+        check_form(CertifiedClaims(wrong))
+
+
+def test_counts_of_an_undecided_sample_are_those_beside_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    true = made("crank")
+    sample, at = tuple(true.cells[0].sample), ModelCounting.at
+
+    def undecided(self: ModelCounting, claims: Any, x: Fraction, y: Fraction, where: Any = None) -> Any:
+        if (x, y) == sample:
+            raise Unproved("a test")
+        return at(self, claims, x, y, where)
+
+    monkeypatch.setattr(ModelCounting, "at", undecided)
+    said = check_points(CertifiedClaims(true))
+    assert isinstance(said, Unchecked) and "a test; the counts are those at" in said
+    # a pair less, in count and list
+    cell = next(c for c in true.cells if tuple(c.sample) == sample)
+    assert cell.index is not None and cell.total is not None and cell.stable is not None
+    rest = tuple(s for s in cell.solutions if "-" in s.signs)
+    index = (0, *cell.index[1:])
+    wrong = replace(cell, total=len(rest), stable=0, index=index, solutions=rest)
+    with pytest.raises(Violation, match="in the same cell"):
+        check_points(CertifiedClaims(replace(true, cells=(wrong, *true.cells[1:]))))

@@ -18,7 +18,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.certified.engine import certified_map
 from ptmcad.certified.plain import curves as plain_curves
 from ptmcad.options import Options
-from ptmcad.verification.certified.kinks import line_of, sides
+from ptmcad.verification.certified.kinks import sides
 from ptmcad.verification.certified.ranges import _Bounds
 from ptmcad.verification.certified.waves import form_of
 
@@ -92,7 +92,7 @@ def test_a_wrong_count_beside_a_kink_is_found() -> None:
 def test_lines_are_told_from_the_vectors() -> None:
     def chosen(guide: str, anchor: str) -> int:
         form = form_of(ptmcad.slice_from_mapping(sliding(guide, anchor)))
-        assert line_of(form.cones[0]) is not None
+        assert form.cones[0].line is not None
         return len(list(sides(form)))
 
     assert chosen("1, 0", "1/2, 0") == 4

@@ -20,7 +20,7 @@ from typing import NamedTuple
 from flint import arb, arb_mat
 
 from ptmcad.verification.certified.equilibria import Unproved
-from ptmcad.verification.certified.kinks import Sides, line_of
+from ptmcad.verification.certified.kinks import Sides
 from ptmcad.verification.certified.vectors import ball
 from ptmcad.verification.certified.waves import Cone, Form, Waves
 
@@ -139,7 +139,8 @@ class Field:
         self.cones: list[tuple[int, Cone, arb]] = []
         for number, cone in enumerate(form.cones):
             pull = ball(cone.pull, values)
-            if not (pull == 0):  # noqa: SIM201 (a ball that is not exactly zero: != would ask for one without zero)
+            # one that pulls nothing at a point has its sides there, too, as all other choices of them have
+            if cone.name in sides or not (pull == 0):  # noqa: SIM201 (not exactly zero: != asks for no zero in a ball)
                 self.cones.append((number, cone, pull))
         rows: list[Waves] = [*form.equations, *form.jacobian]
         self._lines = {
@@ -244,7 +245,7 @@ class _Pointed(NamedTuple):
 
 def _pointed(cone: Cone, values: Mapping[str, arb], side: int) -> _Pointed:
     """The direction of a spring on one line before that turns."""
-    line = line_of(cone)
+    line = cone.line
     assert line is not None
     x, y = (side * ball(terms, values) for terms in line.vector)
     squared = square(x) + square(y)

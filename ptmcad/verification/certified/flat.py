@@ -57,14 +57,21 @@ def beside(claims: CertifiedClaims, cell: Cell) -> list[tuple[Fraction, Fraction
     Violation
         When the sample is so near to a rectangle that no engine would have taken it.
     """
+    found = near(claims, cell)
+    if not found:
+        raise Violation("the sample is too near to a rectangle of the cover to be confirmed")
+    return [at for at in found if not is_flat(parameters_at(claims, *at))]
+
+
+def near(claims: CertifiedClaims, cell: Cell) -> list[tuple[Fraction, Fraction]]:
+    """Points of a sample's cell near the sample; none where it is very near to a rectangle of the cover."""
     u, v = claims.on_lattice(*cell.sample)
     half, least = Fraction(claims.sweep.steps, _PARTS), Fraction(claims.sweep.steps, _MIN_PARTS)
     while not claims.sweep.free_around(u, v, half):
         half /= 2
         if half < least:
-            raise Violation("the sample is too near to a rectangle of the cover to be confirmed")
-    near = [claims.off_lattice(u + half * i / 4, v + half * j / 4) for i, j in _PLACES]
-    return [at for at in near if not is_flat(parameters_at(claims, *at))]
+            return []
+    return [claims.off_lattice(u + half * i / 4, v + half * j / 4) for i, j in _PLACES]
 
 
 def parameters_at(claims: CertifiedClaims, x: Fraction, y: Fraction) -> dict[str, Fraction]:

@@ -129,8 +129,10 @@ class ModelCounting:
 
     def _in_box(self, fields: Sequence[Field], values: Mapping[str, Fraction], solution: Solution, k: int) -> Zero:
         _check_box(self.form, solution, k)
-        # where springs are on lines, a box has to be searched on each side of them
-        narrow = _narrow(self.form, values, solution, k) if len(fields) == 1 else None
+        # where it may be on several sides of springs' lines, it has to be searched on each of them
+        box = [ball_of(x) + arb(0, ball_of(solution.radius)) for x in solution.center]
+        possible = [field for field in fields if not any(c < 0 for c in _ahead(field, box))]
+        narrow = _narrow(self.form, values, possible[0].sides, solution, k) if len(possible) == 1 else None
         return narrow or _only(fields, solution, k, self._budget)
 
     def check_list(self, claims: Claims, cell: Cell) -> None:
@@ -206,8 +208,12 @@ def _only_minima(form: Form, count: Count) -> bool:
 
 def _may_be_on_side(field: Field, zero: Zero) -> bool:
     """Whether a solution may be on the field's side of the lengths zero."""
-    ahead = field(zero.within).conditions[: len(field.sides)]
-    return not any(c < 0 for c in ahead)
+    return not any(c < 0 for c in _ahead(field, zero.within))
+
+
+def _ahead(field: Field, box: Sequence[arb]) -> Sequence[arb]:
+    """What is positive on the field's side of the lengths zero."""
+    return field(box).conditions[: len(field.sides)]
 
 
 def _field(form: Form, values: Mapping[str, arb], count: Count | None, side: Sides) -> Field:
@@ -328,11 +334,11 @@ def counts_of(form: Form, found: Sequence[Zero], count: Count) -> Counts:
     return Counts(len(found), index[0], index, None)
 
 
-def _narrow(form: Form, values: Mapping[str, Fraction], solution: Solution, k: int) -> Zero | None:
-    """The one solution in a stored box that is narrow; None where a search has to tell."""
+def _narrow(form: Form, values: Mapping[str, Fraction], side: Sides, solution: Solution, k: int) -> Zero | None:
+    """The one solution in a stored box that is narrow, and on one side; None where a search has to tell."""
 
     def function() -> Function:
-        field = _field_at(form, values)
+        field = _field_at(form, values, side=side)
 
         def at(box: Sequence[arb]) -> tuple[Sequence[arb], Matrix] | None:
             jet = field(box)

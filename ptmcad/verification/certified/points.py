@@ -25,7 +25,7 @@ from ptmcad.verification.certified.counted import (
 from ptmcad.verification.certified.equilibria import (
     Unproved,
 )
-from ptmcad.verification.certified.flat import beside, is_flat, is_nearly_flat
+from ptmcad.verification.certified.flat import beside, is_flat, is_nearly_flat, near
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.paper import PaperCounting
 from ptmcad.verification.certified.parameters import values_at
@@ -37,6 +37,8 @@ from ptmcad.verification.report import Unchecked, Violation
 
 HOPELESS = 16
 """Samples or random points whose counts were not decided, after which no more are tried."""
+MOST_NEAR = 2
+"""Points beside a sample whose counts were not decided, at which they are tried."""
 _PI, _PI_ERROR = Fraction(355, 113), Fraction(1, 10**5)
 """Near pi; and more than six times its error."""
 
@@ -103,6 +105,7 @@ def _check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell, places:
     except Unproved as reason:
         if isinstance(counting, ModelCounting):
             counting.check_list(claims, cell)
+            _check_near(claims, counting, cell, reason)
         if not (counting.is_complete and is_nearly_flat(values_at(claims, *cell.sample))):
             raise
         return _check_beside(claims, counting, cell, reason)
@@ -116,6 +119,26 @@ def _check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell, places:
     except Unproved as reason:
         raise _InBoxes(str(reason)) from reason
     return len(kept)
+
+
+def _check_near(claims: CertifiedClaims, counting: Counting, cell: Cell, reason: Unproved) -> None:
+    """The counts at points beside an undecided sample, in the same cell, as far as they are decided, are those stored.
+
+    Raises
+    ------
+    Violation
+    _InBoxes
+        When they are at one: nothing is said of the boxes at the sample.
+    """
+    for at in near(claims, cell)[:MOST_NEAR]:
+        try:
+            there = counting.at(claims, *at)
+        except Unproved:
+            continue
+        if differs(cell, there.counts):
+            raise Violation(f"said to have {stored(cell)}; {_where(claims, *at)}, in the same cell, there are "
+                            f"{there.counts}")  # fmt: skip
+        raise _InBoxes(f"{reason}; the counts are those {_where(claims, *at)}") from reason
 
 
 def _check_boxes(claims: CertifiedClaims, counting: Counting, cell: Cell, there: Counted) -> None:

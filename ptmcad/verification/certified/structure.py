@@ -147,6 +147,8 @@ def check_form(claims: CertifiedClaims) -> str:
         for name in (*needed - {"index"},):
             if getattr(cell, name) < 0:
                 raise Violation(f"cell {n} has a negative count")
+        if cell.admissible is not None and cell.stable is not None and cell.admissible > cell.stable:
+            raise Violation(f"cell {n} has {cell.admissible} admissible equilibria among {cell.stable} stable ones")
     number = sum(len(patch.tubes) for patch in r.cover.patches)
     slanted = f"{number} slanted pieces, " if number else ""
     return f"{len(r.cover.rectangles)} rectangles, {slanted}{len(r.cells)} cells, {len(r.regions)} regions"

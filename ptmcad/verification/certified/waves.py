@@ -15,6 +15,7 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.expressions import Expression
+from ptmcad.verification.certified.lines import Line, line_of
 from ptmcad.verification.certified.parallel import Parameters
 from ptmcad.verification.certified.vectors import Terms
 from ptmcad.verification.derivation import Configuration, along_loops, formulas, has_index
@@ -40,6 +41,7 @@ class Cone(NamedTuple):
     weights : for each equation the vector whose product with the spring's direction, times K, it lacks: the slopes, but
         with closed loops the derivative along them in the last equation, and nothing in the others.
     bends : the weights' derivatives by the unknowns, row by row.
+    line : along which the vector stays all over the slice, if there is one.
     """
 
     name: str
@@ -48,6 +50,7 @@ class Cone(NamedTuple):
     slopes: tuple[tuple[Waves, Waves], ...]
     weights: tuple[tuple[Waves, Waves], ...]
     bends: tuple[tuple[Waves, Waves], ...]
+    line: Line | None
 
 
 class Excess(NamedTuple):
@@ -287,7 +290,7 @@ def _cones(
     for n, spring in enumerate(mechanism.springs):
         pull = ring.waves(ring.configuration.value(spring.stiffness) * ring.configuration.value(spring.free))
         vector = [ring.waves(points[spring.end][i] - points[spring.start][i]) for i in (0, 1)]
-        if not pull or not any(_by(d, k) for d in vector for k in everything):
+        if parameters.vanish(pull) or not any(_by(d, k) for d in vector for k in everything):
             continue
         new = _Side(spring.name, pull, vector, along[n] if along else [])
         for k, side in enumerate(sides):
@@ -302,15 +305,15 @@ def _cones(
         weights = [*[nothing] * (len(ring.unknowns) - 1), turned] if along else slopes
         bends = [[_by(d, j) for d in weight] for weight in weights for j in everything]
         strength = _kept(pull, ring.parameters)
-        if not strength:
-            continue
 
         def pair(found: list[_Polynomials]) -> tuple[Waves, Waves]:
             across, up = (_kept(f, ring.parameters) for f in found)
             return across, up
 
         ((_, terms),) = strength.items()
-        yield Cone(name, terms, pair(vector), *(tuple(map(pair, some)) for some in (slopes, weights, bends)))
+        derivatives = [tuple(map(pair, some)) for some in (slopes, weights, bends)]
+        line = line_of(pair(vector), parameters.vanishes)
+        yield Cone(name, terms, pair(vector), derivatives[0], derivatives[1], derivatives[2], line)
 
 
 class _Side(NamedTuple):

@@ -156,12 +156,18 @@ def _refute(claims: CertifiedClaims, boxes: Any) -> None:
 
 
 def _places(boxes: Any, steps: int) -> Iterator[tuple[Fraction, Fraction, Fraction]]:
-    """Boxes in the midst of some of the squares that have most of them: a point, and the box's width."""
+    """Boxes in the midst of some squares: a point, and the box's width.
+
+    Half of the squares are those with most boxes, and the others are from all over the rest: many boxes are also left
+    along lines at which nothing changes.
+    """
     squares: dict[tuple[int, int], list[Any]] = {}
     for box in boxes:
         u, v = (int(box[k].mean() * _SQUARES / steps) for k in (0, 1))
         squares.setdefault((u, v), []).append(box)
-    for some in sorted(squares.values(), key=len, reverse=True)[:_PLACES]:
+    ranked, half = sorted(squares.values(), key=len, reverse=True), _PLACES // 2
+    rest = ranked[half:]
+    for some in ranked[:half] + rest[:: max(1, len(rest) // half)][:half]:
         box = sorted(some, key=lambda b: (b[0, 0], b[1, 0]))[len(some) // 2]
         width = max(box[0, 1] - box[0, 0], box[1, 1] - box[1, 0], steps * FINER)
         yield (*_middle(box), Fraction(float(width)))

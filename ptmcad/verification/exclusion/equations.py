@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 from ptmcad.errors import ExpressionError
 from ptmcad.text.expressions import Expression
-from ptmcad.verification.certified.kinks import Line, Sides, line_of
+from ptmcad.verification.certified.kinks import Sides
+from ptmcad.verification.certified.lines import Line
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.vectors import Terms, evaluated
 from ptmcad.verification.certified.waves import Cone, Form, Key, Waves, form_of
@@ -191,7 +192,7 @@ class Equations:
 
     def _line(self, name: str) -> Line:
         """That of a spring on one line."""
-        line = line_of(next(c for c in self.form.cones if c.name == name))
+        line = next(c for c in self.form.cones if c.name == name).line
         assert line is not None
         return line
 
