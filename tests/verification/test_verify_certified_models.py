@@ -34,9 +34,10 @@ from ptmcad.verification.certified import models, points
 from ptmcad.verification.certified.boxes import Zero
 from ptmcad.verification.certified.counted import Counts
 from ptmcad.verification.certified.equilibria import Unproved
-from ptmcad.verification.certified.field import Field, power
+from ptmcad.verification.certified.field import Field
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.paper import PaperCounting
+from ptmcad.verification.certified.powers import power
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import zeros
 from ptmcad.verification.certified.spectrum import inertia, is_no_minimum
@@ -660,3 +661,24 @@ def test_powers_of_balls(ball: arb, exponent: int) -> None:
     if exponent and exponent % 2 == 0:
         assert not found < 0
         assert found.abs_upper() >= float(ball.abs_upper()) ** exponent
+
+
+def test_bounds_where_an_axis_is_squared() -> None:
+    """1 + 2 a^2 over all of a wide window is seen to be positive: a ball times itself would not be."""
+    mechanism = {
+        "name": "squared",
+        "parameters": {"a": {"kind": "length"}, "F": {"kind": "force"}},
+        "unknowns": {"x": "length", "y": "length"},
+        "points": {"A": [0, 0], "B": [2, 0], "P": ["x", "y"], "M": ["a*x", "a*y"]},
+        "springs": [
+            {"between": ["A", "P"], "k": 1, "free": 1},
+            {"between": ["A", "M"], "k": 2, "free": "1/2"},
+            {"between": ["B", "P"], "k": 1, "free": "1/3"},
+        ],
+        "loads": {"P": ["F", "1/5"]},
+    }
+    record = {"name": "squared", "mechanism": mechanism, "axes": {"a": ["1/4", 2], "F": [-2, 2]}, "count": "stable"}
+    report = ptmcad.verify(ptmcad.classify(ptmcad.slice_from_mapping(record), tolerance="1/50"), seed=1, boxes=2)
+    assert report.ok
+    (area,) = (c for c in report.checks if c.name == "the whole free area")
+    assert "% of the free area is proved" in area.detail

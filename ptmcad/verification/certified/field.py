@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import combinations
-from math import inf, prod
+from math import inf
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -21,6 +21,7 @@ from flint import arb, arb_mat
 
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.kinks import Sides
+from ptmcad.verification.certified.powers import power, square
 from ptmcad.verification.certified.vectors import ball
 from ptmcad.verification.certified.waves import Cone, Form, Waves
 
@@ -303,27 +304,6 @@ def determinant(matrix: Matrix) -> arb:
 _ZERO, _ONE = arb(0), arb(1)
 
 
-def square(x: arb) -> arb:
-    """The square: no product of two balls that have nothing to do with one another."""
-    return _ZERO.union(_product(x.abs_upper(), 2)) if x.contains(0) else x * x
-
-
-def power(x: arb, exponent: int) -> arb:
-    """A power; an even one of a ball with both signs is not negative."""
-    if exponent == 0:
-        return _ONE
-    if exponent % 2 == 0 and x.contains(0):
-        return _ZERO.union(_product(x.abs_upper(), exponent))
-    if x.rad() == 0:
-        return _product(x, exponent)
-    return _product(x.lower(), exponent).union(_product(x.upper(), exponent))
-
-
-def _product(x: arb, exponent: int) -> arb:
-    """Not by the operator, which has no answer for balls around 0."""
-    return prod([x] * exponent, start=_ONE)
-
-
 def size(x: arb, y: arb) -> arb:
     """An upper bound of a vector's length."""
     a, b = x.abs_upper(), y.abs_upper()
@@ -335,4 +315,4 @@ def unit(value: arb) -> arb:
     return value if value.rad() < 1 else _ANY
 
 
-__all__ = ["Field", "Jet", "Matrix", "Spring", "power", "size", "square", "value_of"]
+__all__ = ["Field", "Jet", "Matrix", "Spring", "size", "value_of"]

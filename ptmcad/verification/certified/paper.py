@@ -95,7 +95,7 @@ def _counted(values: Values, count: Count, start: Sequence[Square]) -> Counted:
 
 def _start(where: Where | None) -> Sequence[Square]:
     """Squares in which all equilibria are that are asked for."""
-    if where is None:
+    if where is None or len(where.boxes) > 1:  # boxes of several sides of a crease may meet
         return (TORUS,)
     return [(m1, r1, m2, r2) for (m1, m2), (r1, r2) in where.boxes[0]]
 

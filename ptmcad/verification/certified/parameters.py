@@ -20,7 +20,7 @@ from ptmcad.text.parsing import parse
 from ptmcad.text.tree import Name, to_text
 from ptmcad.verification.certified.energy import Energy
 from ptmcad.verification.certified.equilibria import Unproved
-from ptmcad.verification.certified.field import power
+from ptmcad.verification.certified.powers import power
 from ptmcad.verification.certified.vectors import NAMES, SPRINGS, evaluated
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims

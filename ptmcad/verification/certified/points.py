@@ -37,7 +37,7 @@ from ptmcad.verification.report import Unchecked, Violation
 
 HOPELESS = 16
 """Samples or random points whose counts were not decided, after which no more are tried."""
-MOST_NEAR = 2
+MAX_NEAR = 2
 """Points beside a sample whose counts were not decided, at which they are tried."""
 _PI, _PI_ERROR = Fraction(355, 113), Fraction(1, 10**5)
 """Near pi; and more than six times its error."""
@@ -130,7 +130,7 @@ def _check_near(claims: CertifiedClaims, counting: Counting, cell: Cell, reason:
     _InBoxes
         When they are at one: nothing is said of the boxes at the sample.
     """
-    for at in near(claims, cell)[:MOST_NEAR]:
+    for at in near(claims, cell)[:MAX_NEAR]:
         try:
             there = counting.at(claims, *at)
         except Unproved:

@@ -22,8 +22,9 @@ from math import comb, inf, nextafter
 from flint import arb
 
 from ptmcad.verification.certified.equilibria import Unproved
-from ptmcad.verification.certified.field import power, size
+from ptmcad.verification.certified.field import size
 from ptmcad.verification.certified.held import Linear
+from ptmcad.verification.certified.powers import power
 from ptmcad.verification.certified.vectors import ball
 from ptmcad.verification.certified.waves import Form, Key, Waves
 

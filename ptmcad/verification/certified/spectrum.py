@@ -9,7 +9,8 @@ from itertools import combinations
 
 from flint import arb
 
-from ptmcad.verification.certified.field import Matrix, square
+from ptmcad.verification.certified.field import Matrix
+from ptmcad.verification.certified.powers import square
 
 
 def inertia(h: Matrix) -> str | None:

@@ -7,9 +7,10 @@ sines of the angles and of their sum, and so are the derivatives. A description 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
-from functools import reduce
+from functools import cache, reduce
 from itertools import product
 from math import prod
 from typing import Any, NamedTuple
@@ -19,6 +20,7 @@ from flint import Ordering, arb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from ptmcad.mechanism import description
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.verification.certified.powers import power
 from ptmcad.verification.derivation import ANGLES, MECHANISM, POSITIVE, Configuration
 
 NAMES = MECHANISM.variables
@@ -187,13 +189,25 @@ def evaluated(terms: Terms, values: Mapping[str, Any]) -> Any:
     number = Fraction(0)  # exact: a quotient of integers would be a double
     for numerator, denominator, names in terms:
         if names:
-            term = prod([values[name] for name in names], start=numerator)
+            term = prod([_raised(values[name], exponent) for name, exponent in _powers(names)], start=numerator)
             total = total + (term / denominator if denominator != 1 else term)
         else:
             number += Fraction(numerator, denominator)
     if not number:
         return total
     return total + (from_fraction(number) if isinstance(total, arb) else number)
+
+
+@cache
+def _powers(names: tuple[str, ...]) -> tuple[tuple[str, int], ...]:
+    return tuple(Counter(names).items())
+
+
+def _raised(value: Any, exponent: int) -> Any:
+    """A power: of a ball with both signs an even one is not negative."""
+    if exponent == 1:
+        return value
+    return power(value, exponent) if isinstance(value, arb) else value**exponent
 
 
 def ball(terms: Terms, values: Mapping[str, Any]) -> arb:
