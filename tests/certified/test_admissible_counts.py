@@ -147,7 +147,7 @@ def test_the_known_answer_of_a_spring_on_a_slider() -> None:
 def test_by_the_papers_mechanism() -> None:
     """Against formulas made by hand for it, and against a search."""
     plain, seen = plain_counter(slice_of(PLAIN_PTM)), set()
-    for x, y in points_of(slice_of(PLAIN_PTM), 40, seed=3):
+    for x, y in points_of(slice_of(PLAIN_PTM), 20, seed=3):
         count = plain.at(x, y, Count.ADMISSIBLE)
         values = {f"k{n}": 100.0 for n in (1, 2, 3)} | {f"l0_{n}": 0.5 for n in (1, 2, 3)}
         values |= {"rho": float(x), "L1": 1, "L2": float(y), "F3": -10, "F4": -10, "F3x": 0, "F4x": 0}

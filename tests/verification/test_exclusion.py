@@ -177,7 +177,7 @@ def outcomes(stored: RegionMap, tries: int, effort: int = MAX_EFFORT) -> Iterato
 
 
 @pytest.mark.parametrize("name", RECORDS)
-@pytest.mark.slow_cases("zeeman", "loop")
+@pytest.mark.slow_cases("crank", "zeeman", "loop")
 def test_a_dropped_rectangle_is_found(name: str) -> None:
     # one that others hold, or that no curve meets, is no loss
     found = list(outcomes(a_map(name), 6))
