@@ -193,6 +193,7 @@ def test_where_elimination_is_out_of_reach_that_is_said(monkeypatch: pytest.Monk
     assert "(not proved that nothing changes between them)" in [t.get_text() for t in found.plot(surface=mesh).texts]
 
 
+@pytest.mark.slow
 def test_few_members_leave_a_deviation_or_gaps_that_are_told() -> None:
     coarse = maps("loads").boundary_surface(max_members=8)
     assert 1 / 100 < coarse.deviation < 5 / 100

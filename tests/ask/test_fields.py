@@ -504,6 +504,7 @@ def test_a_pose_that_the_counts_exclude_is_refused_before_anything_is_drawn(
     assert [path.suffix for path in tmp_path.iterdir()].count(".png") == 1
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("coarse")
 def test_a_quantitys_map_is_drawn_in_a_style_at_its_size(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
     result = tmp_path / "fig4.json"

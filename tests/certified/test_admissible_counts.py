@@ -121,6 +121,7 @@ def in_chain(force: float, free: tuple[float, float]) -> tuple[int, int, bool]:
 
 
 @pytest.mark.parametrize(("name", "tolerance"), [("chain", "1/100"), ("one without", "1/100")])
+@pytest.mark.slow_cases("chain-1/100")
 def test_counts_in_cells_are_those_of_a_search(name: str, tolerance: str) -> None:
     m = map_of(name, tolerance)
     assert m.undetermined < Fraction(tolerance)

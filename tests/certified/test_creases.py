@@ -159,6 +159,7 @@ def by_samples(frequencies: tuple[int, ...], force: float, up: float, free: floa
     return (int(low.sum()), int(high.sum() - creases.sum())), float(nearest)
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(st.sampled_from([(1, 2), (1, 3), (2, 3), (1, -1), (1, -2), (3, 1)]), small, small, lengths)
 def test_gears_have_the_equilibria_of_all_their_halves(
@@ -409,6 +410,7 @@ def test_a_map_of_a_crank_is_true_at_random_points() -> None:
     assert wrong(map_of("index"), crank_by_hand) == 0
 
 
+@pytest.mark.slow
 def test_a_map_of_two_cranks_is_true_at_random_points() -> None:
     slice = ptmcad.slice_from_mapping(record(PAIR, F=["1/4", 2], l=[0, 2]))
     found = certified_map(slice, Options(tolerance=Fraction(1, 100), jobs=1))

@@ -426,6 +426,7 @@ def value_of(counter: Any, equation: int, t: Numbers) -> float:
     return float(values[int(counter.equations.equations[equation])].mid())
 
 
+@pytest.mark.slow
 def test_springs_side_by_side_in_a_loop_are_the_one_spring_that_they_are() -> None:
     """From C to Q with k1, and to a point 3/2 as far with k1: k1 (1 + 9/4), and of the free lengths l0 (1 + 3/2)."""
     mechanism: dict[str, Any] = ANCHORED["mechanism"]

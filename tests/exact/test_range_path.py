@@ -165,6 +165,7 @@ def test_the_pose_of_a_merger_at_an_irrational_value_is_told_by_its_symmetry() -
     assert end.energy == end.target_energy and end.energy.text(5) == "-0.75000"
 
 
+@pytest.mark.slow
 def test_a_merger_is_told_by_a_mirror_line_that_turns_with_the_axis() -> None:
     """At F = 0 the mirror line is OA. With |OA| = r both poses have B and C at 1/2 from A and merge at r = 3/2, where
     the chain is straight; at a = 0, r = 1/2, they cross, so that steps are in proportion to a, not to its square."""

@@ -250,6 +250,7 @@ def test_bad_input_gets_one_message(
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
+@pytest.mark.slow
 def test_one_slice_by_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """All files are written, belong together, and can be read by what reads them; the reference passed verify."""
     arguments = ["bench", str(CONFIGS / "fig2.yaml"), "--quick", "--rounds", "1", "--method", "exact", "--method",

@@ -96,7 +96,7 @@ def at_random(claims: CertifiedClaims, rng: random.Random) -> tuple[Fraction, Fr
 
 
 @pytest.mark.parametrize(("name", "count"), CASES)
-@pytest.mark.slow_cases("paper-index", "pair-index", "loop-total", "truss-stable")
+@pytest.mark.slow_cases("paper-stable", "paper-index", "pair-index", "loop-total", "truss-stable")
 def test_places_have_all_solutions(name: str, count: str) -> None:
     """That balls alone find; and with places they find the same ones."""
     claims, rng, told = CertifiedClaims(a_map(name, count)), random.Random(name + count), 0
@@ -118,7 +118,9 @@ def test_places_have_all_solutions(name: str, count: str) -> None:
 
 
 @pytest.mark.parametrize(("name", "count"), CASES)
-@pytest.mark.slow_cases("paper-stable", "paper-index", "pair-index", "loop-total", "truss-stable", "sliding-stable")
+@pytest.mark.slow_cases(
+    "paper-stable", "paper-index", "pair-index", "loop-total", "truss-stable", "sliding-stable", "loop-stable"
+)
 def test_places_over_a_box_have_those_over_its_points(name: str, count: str) -> None:
     claims, rng, told = CertifiedClaims(a_map(name, count)), random.Random(name), 0
     found, counting = Places(claims), counting_of(claims)
@@ -145,6 +147,7 @@ def inside(at: tuple[float, ...], box: Box) -> bool:
 
 
 @pytest.mark.parametrize(("name", "count"), CASES)
+@pytest.mark.slow_cases("paper-index")
 def test_formulas_are_those_of_the_balls(name: str, count: str) -> None:
     """Equations and Jacobian at random configurations, by compiled forms and by balls, which share the waves alone."""
     claims, rng = CertifiedClaims(a_map(name, count)), random.Random(count)
