@@ -10,7 +10,7 @@ import random
 import re
 from copy import deepcopy
 from fractions import Fraction
-from itertools import pairwise
+from itertools import combinations, pairwise
 from typing import Any
 
 import ptmcad
@@ -87,6 +87,85 @@ def _singularity(dice: random.Random) -> Record:
 
 
 _BASES = (_system, _mechanism, _slider, _singularity, _paper, _slider, _singularity)
+
+
+def _free(dice: random.Random) -> Record:
+    """The paper's mechanism on springs with free lengths."""
+    loads = {name: dice.choice([0, -10, -10, 5]) for name in ("F3", "F4")}
+    length = dice.choice(["1/5", "1/2", "1/10", "1/1000000000000"])
+    parameters = {"L1": 1, "k": dice.choice([100, "1e12", "1e-12"]), **loads, "l0": length}
+    return {
+        "mechanism": "ptm",
+        "parameters": parameters,
+        "axes": {"rho": ["1/20", 2], "L2": ["1/10", 2]},
+        "count": "stable",
+    }
+
+
+def _bead(dice: random.Random) -> Record:
+    """A bead on a line, held by a spring above it: a pitchfork without a load, folds with one."""
+    size = dice.choice(["1", "1e6", "1e-6", "1e-12"])
+    record = {
+        "name": "bead", "parameters": {"h": {"kind": "base"}, "F": {"kind": "force"}}, "unknowns": {"x": "length"},
+        "points": {"A": [0, "h"], "S": ["x", 0]}, "loads": {"S": ["F", 0]},
+        "springs": [{"between": ["A", "S"], "k": dice.choice([1, "1e12", "1e-12"]), "free": size}],
+    }  # fmt: skip
+    r = Fraction(size)
+    return {
+        "mechanism": record,
+        "axes": {"h": [str(r / 3), str(2 * r)], "F": [-1, 1]},
+        "count": dice.choice(["stable", "index"]),
+    }
+
+
+def _free_slider(dice: random.Random) -> Record:
+    record = _slider(dice)
+    for spring in record["mechanism"]["springs"]:
+        spring["free"] = dice.choice(["1/2", "1/3", 1])
+    return record
+
+
+_BASES_CERTIFIED = (_free, _bead, _free_slider, _singularity, _bead, _system, _singularity)
+
+
+def scaled_certified(seed: int) -> Record | None:
+    """The slice with this number, for the certified engine."""
+    dice = random.Random(f"certified {seed}")
+    base = _BASES_CERTIFIED[seed % len(_BASES_CERTIFIED)](dice)
+    if "system" in base and dice.random() < 2 / 3:
+        base = _other_units(base, dice)
+    return dice.choice([_about_a_change, _about_a_change, _vast, _shifted, _units_of_axes])(base, dice)
+
+
+def _about_a_change(record: Record, dice: random.Random) -> Record | None:
+    """A small window about a point at which the counts change, found by halving the way between two samples."""
+    try:
+        result = ptmcad.classify(record, engine="certified", tolerance="1/4", timeout=10)
+        pairs = [(a, b) for a, b in combinations(result.cells, 2) if (a.total, a.stable) != (b.total, b.stable)]
+        if not pairs:
+            return None
+        one, two = dice.choice(pairs)
+        low, high = list(one.sample), list(two.sample)
+
+        def number(at: list[Fraction]) -> tuple[int, int]:
+            poses = ptmcad.solve(record, **dict(zip(result.slice.axis_names, at, strict=True))).equilibria
+            return len(poses), sum(bool(pose.stable) for pose in poses)
+
+        there = number(low)
+        for _ in range(34):
+            middle = [(x + y) / 2 for x, y in zip(low, high, strict=True)]
+            low, high = (middle, high) if number(middle) == there else (low, middle)
+    except PtmcadError:
+        return None
+    size = Fraction(dice.choice(["1e-2", "1e-4", "1e-6", "1e-8", "1e-10"]))
+    axes = {}
+    for (name, (first, last)), middle in zip(_window(record).items(), low, strict=True):
+        half = (last - first) * size
+        axes[name] = [
+            str(middle - half * Fraction(dice.randint(1, 9), 10)),
+            str(middle + half * Fraction(dice.randint(1, 9), 10)),
+        ]
+    return {**record, "axes": axes}
 
 
 # -------------------------------------------------------------------------------------------------------------- scales
