@@ -194,8 +194,12 @@ def _through(record: Record, maps: dict[str, tuple[str, Fraction, Fraction]]) ->
     names = dict(zip(maps, ("u", "v"), strict=True))
     fixed = {key: _with_axes(str(value), maps, names) for key, value in record.get("parameters", {}).items()}
     # of the paper's mechanism an axis may be a name of its own, on which parameters depend
-    own = MODEL if not {"mechanism", "system"} & record.keys() else maps
-    fixed |= {name: function.replace("@", names[name]) for name, (function, _, _) in maps.items() if name in own}
+    own = record.get("system", record["mechanism"] if isinstance(record.get("mechanism"), dict) else MODEL)
+    fixed |= {
+        name: function.replace("@", names[name])
+        for name, (function, _, _) in maps.items()
+        if re.search(rf"\b{name}\b", str(own))
+    }
     axes = {names[name]: [str(low), str(high)] for name, (_, low, high) in maps.items()}
     return {**record, "parameters": fixed, "axes": axes}
 
