@@ -30,6 +30,8 @@ from ptmcad.exact.point_system import PointSystem, simple_solutions, text_of_poi
 
 _FIRST_BITS = 128
 """Two machine words: nearly always enough, and in balls hardly more work than one."""
+_ROOM = 2**10
+"""A solution is alone in so many times its box, so that Newton's method finds it from the box's middle."""
 
 
 class Equilibrium(NamedTuple):
@@ -134,9 +136,10 @@ def _enclosed(
             signs = _condition_signs(conditions, root, unknowns, zeros)
             if signs is None:
                 return None
-            if signs[: len(point.inequalities)].strip("+"):
+            inequalities = len(point.inequalities)
+            if signs[:inequalities].strip("+"):
                 continue
-            signs = signs[len(point.inequalities) :]
+            signs = signs[inequalities:]
             if system.has_index:
                 negative = _negative_eigenvalues(hessian, size, unknowns)
                 if negative is None:
@@ -145,9 +148,14 @@ def _enclosed(
             box = _decimal_box(unknowns)
             if box is None:
                 return None
-            found.append(Equilibrium(*box, signs))
+            center, radius = box
+            around = [arb(x, arb(_ROOM * radius)) for x in center]
+            # where all inequalities hold there is no solution that does not count
+            if not all(_value(p, around) > 0 for p in conditions[:inequalities]):
+                return None
+            found.append(Equilibrium(center, radius, signs))
     disjoint = all(
-        any(abs(x - y) > a.radius + b.radius for x, y in zip(a.center, b.center, strict=True))
+        any(abs(x - y) > _ROOM * (a.radius + b.radius) for x, y in zip(a.center, b.center, strict=True))
         for a, b in combinations(found, 2)
     )
     return tuple(found) if disjoint else None

@@ -4,7 +4,7 @@ Each wall between two regions is integrated over panels by `ptmcad.verification.
 values that are not rational count as error.
 
 Guarantee: the enclosures are proved (ball arithmetic of Arb, rational panels). They are refined until each is within
-its stored bounds or outside of them; bounds that are too narrow for that are rejected as not confirmed.
+its stored bounds or outside of them; where bounds are too narrow for that, they are listed as not checked.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ from ptmcad.verification.branches import Branch, Effort, Part
 from ptmcad.verification.claims import Claims, bracket
 from ptmcad.verification.disks import PrecisionTooLow
 from ptmcad.verification.places import at_edge, at_value, beyond
-from ptmcad.verification.report import Violation
+from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.walls import LONG, Known, Wall, image_of
 
 NARROWEST = 10**60
-"""Bounds that are relatively narrower than the inverse of this are not even tried."""
+"""Of bounds that are relatively narrower than the inverse of this, it is tried whether they are off by so much."""
 CROWDED_PANELS = 100
 """Panels for each stack beyond which polynomials of higher degree are worth their cost."""
 MARGIN = 2**12
 """Of a strip, the part that is left out besides where a series about the critical value is taken."""
 ATTEMPTS = 7
-"""Times that precision is raised, and strips are narrowed, before bounds count as not confirmed."""
+"""Times that precision is raised, and strips are narrowed, before bounds count as not checked."""
 
 
 class _Panel(NamedTuple):
@@ -60,10 +60,7 @@ def check_areas(claims: Claims) -> str:
             raise Violation(f"the only region's area is the window's, {approximate_text(window)}, not "
                             f"{_between(result.regions[0])}")  # fmt: skip
         return "1 region, the window"
-    for n, region in enumerate(result.regions):
-        if region.area[1] - region.area[0] < region.area[1] / NARROWEST:
-            raise Violation(f"region {n}: that its area is {_between(region)} cannot be confirmed: too narrow")
-    narrowest = min(region.area[1] - region.area[0] for region in result.regions)
+    narrowest = min(map(_width, result.regions))
     scale = (narrowest or window / 10**18) / window
     bits = 96 + 2 * _doublings(scale)
     for ends in (claims.base, claims.height):
@@ -83,7 +80,13 @@ def check_areas(claims: Claims) -> str:
             return f"{len(result.regions)} enclosures within the stored bounds, {bits} bits"
         unconfirmed = open_region
         bits, strip, margin = 2 * bits, strip / 2**16, margin / 2**16
-    raise Violation(unconfirmed)
+    return Unchecked(unconfirmed)
+
+
+def _width(region: Region) -> Fraction:
+    """How far apart the bounds of an area are, or the least distance that is looked at."""
+    low, high = region.area
+    return max(high - low, high / NARROWEST)
 
 
 def _doublings(scale: Fraction) -> int:
@@ -101,7 +104,7 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
     lost = sum((b - a for a, b in brackets), fmpq(0)) * (high - low)
     bounds = [(ball_of(r.area[0]), ball_of(r.area[1])) for r in result.regions]
     number = max(1, sum(len(s.walls) for s in result.stacks))
-    shares = [(b - a).mid() * margin / number for a, b in bounds]
+    shares = [ball_of(_width(r)).mid() * margin / number for r in result.regions]
     effort = Effort(min(shares), width / 2**8, width / 2 ** (bits // 3), (low, high), (2,))
     known: Known = {}
     whole = [arb(0) for _ in result.regions]

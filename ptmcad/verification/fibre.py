@@ -23,6 +23,7 @@ from math import prod
 from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.mechanism import Model
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.algebra import Monomial, NotFinite, algebra
 from ptmcad.verification.equations import PointEquations, equations_at
 from ptmcad.verification.inertia import bases, determinant, leading_minors, negative_eigenvalues
@@ -73,14 +74,18 @@ class Fibre:
     def matrix(self, p: fmpq_mpoly) -> fmpq_mat:
         """The matrix of multiplication by p, a polynomial in the coordinates."""
         total = fmpq_mat(self.dimension, self.dimension)
-        own = self.tables[len(self.tables) - len(self.point.names) :]
         for exponents, c in p.terms():
             term = _identity(self.dimension) * c
-            for table, e in zip(own, exponents, strict=True):
+            for table, e in zip(self._own, exponents, strict=True):
                 for _ in range(int(e)):
                     term = term * table
             total = total + term
         return total
+
+    @property
+    def _own(self) -> tuple[fmpq_mat, ...]:
+        """The matrices of multiplication by the model's coordinates, last to first."""
+        return self.tables[len(self.tables) - len(self.point.names) :]
 
     @cached_property
     def jacobian_entries(self) -> list[list[fmpq_mat]]:
@@ -152,22 +157,53 @@ class Fibre:
         if self.point.has_index:
             index = self._index(required)
             return Counts(sum(index), index[0], index)
-        total = self._sum_of_signs(required, _identity(self.dimension))
+        total = self._number(required)
         if not self.point.stability:
             return Counts(total, None, None)
         wanted = [*required, *(self.matrix(p) for p in self.point.stability)]
-        return Counts(total, self._sum_of_signs(wanted, _identity(self.dimension)), None)
+        return Counts(total, self._number(wanted), None)
+
+    def within(self, center: Sequence[Fraction], radius: Fraction, *, counted: bool) -> tuple[int, list[fmpq_mat]]:
+        """The number of the real solutions in an open box, and functions that are all positive at these and no others.
+
+        Parameters
+        ----------
+        center : in the order of the model's coordinates.
+        counted : whether only solutions that count are asked for.
+        """
+        positive = [self.matrix(p) for p in self.point.inequalities if counted]
+        number = self._number(positive)
+        for table, x in zip(reversed(self._own), map(from_fraction, center), strict=True):
+            off = table - _identity(self.dimension) * x
+            inside = _identity(self.dimension) * from_fraction(radius) ** 2 - off * off
+            # where no solution is lost, all that are left are on this side
+            if (left := self._number([*positive, inside])) < number:
+                number, positive = left, [*positive, inside]
+        return number, positive
+
+    def signs(self, positive: Sequence[fmpq_mat]) -> str:
+        """Of the only real solution at which functions are positive: those of the Hessian's eigenvalues, positive ones
+        first, or of the conditions for stability.
+        """
+        if self.point.has_index:
+            index = self._index(positive)
+            negative = index.index(1)
+            return "+" * (len(index) - 1 - negative) + "-" * negative
+        return "".join("0+-"[self._sum_of_signs(positive, self.matrix(p))] for p in self.point.stability)
 
     def number_of_zeros(self, p: fmpq_mpoly) -> int:
         """Of the real solutions that count, the number of those at which a polynomial is zero."""
         required, square = [self.matrix(q) for q in self.point.inequalities], self.matrix(p) * self.matrix(p)
-        one = _identity(self.dimension)
-        return self._sum_of_signs(required, one) - self._sum_of_signs(required, square)
+        return self._number(required) - self._sum_of_signs(required, square)
 
     def balance(self) -> int:
         """The sum of the signs of the Jacobian's determinant over all real solutions."""
         positive, negative = self.signature(self.jacobian)
         return positive - negative
+
+    def _number(self, positive: Sequence[fmpq_mat]) -> int:
+        """The number of real solutions at which all of some functions are positive."""
+        return self._sum_of_signs(positive, _identity(self.dimension))
 
     def _sum_of_signs(self, positive: Sequence[fmpq_mat], weight: fmpq_mat) -> int:
         """The sum of the weight's signs over the real solutions at which all of some functions are positive.
@@ -215,7 +251,7 @@ class Fibre:
     def form_traces(self, form: Sequence[int]) -> list[fmpq]:
         """Traces of the powers 1, 2, ..., dimension of a linear form in the coordinates."""
         matrix = fmpq_mat(self.dimension, self.dimension)
-        for c, table in zip(form, self.tables[len(self.tables) - len(form) :], strict=True):
+        for c, table in zip(form, self._own, strict=True):
             matrix = matrix + table * fmpq(c)
         # Newton's identities: powers of the matrix would have entries of many more digits than their traces
         coefficients = [fmpq(c) for c in reversed(matrix.charpoly().coeffs())]

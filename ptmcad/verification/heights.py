@@ -30,7 +30,7 @@ from ptmcad.verification.sturm import ends_of, isolated, parting, real_roots
 
 _BITS = (256, 1024, 4096)
 _FINEST = 512
-"""Bits of candidates that are compared with the curves."""
+"""Bits of candidates that are compared with the curves, besides twice those of their polynomial's coefficients."""
 
 
 class _Undecided(ArithmeticError):
@@ -61,11 +61,11 @@ class Heights:
 
         It has the points over the conjugates of the critical value among its roots as well.
         """
-        number = 0
-        with ctx.workprec(2 * _FINEST):
-            value = ball(self.value, fmpq(1, 1 << _FINEST))
+        number, finest = 0, _FINEST + 2 * self._polynomial.height_bits()
+        with ctx.workprec(2 * finest):
+            value = ball(self.value, fmpq(1, 1 << finest))
             ends = [end for end in (low, high) if self._is_point(end)]
-            for v in real_roots(tuple(int(c) for c in self._polynomial.coeffs()), _FINEST):
+            for v in real_roots(tuple(int(c) for c in self._polynomial.coeffs()), finest):
                 first, last = ends_of(v)
                 if last < low or high < first or any(first <= end <= last for end in ends):
                     continue

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from fractions import Fraction
@@ -23,13 +24,13 @@ from ptmcad.verification.certified.counted import Counted, Where
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.flat import beside, is_flat, parameters_at
 from ptmcad.verification.certified.paper import PaperCounting
-from ptmcad.verification.certified.points import apart
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
 
 UNLOADED = {"L1": "1", "k": "1", "l0": "1/2"}
 SUM = {"rho": ["11/10", "13/10"], "L2": ["1/10", "3/10"]}
+PI = Fraction(math.pi)
 DIFFERENCE = {"rho": ["49/100", "51/100"], "L2": ["149/100", "151/100"]}
 
 
@@ -195,12 +196,7 @@ def test_what_is_flat(rho: str, free: str, flat: bool) -> None:
     assert is_flat({**values, **bars, "rho": Fraction(rho), "l0_3": Fraction(free)}) is flat
 
 
-def test_boxes_a_turn_apart_are_the_same() -> None:
-    def box(x: str, y: str) -> Solution:
-        return Solution((Fraction(x), Fraction(y)), Fraction(1, 1000), "++")
-
-    assert apart(box("3.13", "0"), box("-3.13", "0"))
-    assert not apart(box("3.141", "0"), box("-3.141", "0"))
-    assert not apart(box("0", "-6.283"), box("0", "6.283"))
-    assert not apart(box("1", "1"), box("1", "1.0019"))
-    assert apart(box("1", "1"), box("1", "1.003"))
+def test_a_solution_that_is_stored_twice_a_turn_apart(flat: RegionMap) -> None:
+    solutions = flat.cells[0].solutions
+    again = replace(solutions[0], center=(solutions[0].center[0] - 2 * PI, solutions[0].center[1]))
+    assert counted(replace(flat, cells=put(flat.cells, 0, solutions=(solutions[0], again)))) is False

@@ -86,11 +86,6 @@ Places = Callable[[tuple[Fraction, Fraction], tuple[Fraction, Fraction]], Where 
 class Counting(Protocol):
     """A way of counting the solutions of one model. What it cannot prove raises `Unproved`."""
 
-    @property
-    def is_complete(self) -> bool:
-        """Whether it decides every true map's samples, so that an undecided one counts as false."""
-        ...
-
     def at(self, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> Counted:
         """At a point of the window; a parameter outside of its domain is a `Violation`."""
         ...

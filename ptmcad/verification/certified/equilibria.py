@@ -18,13 +18,13 @@ search does not end where a formula has a zero on it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from itertools import combinations
-from math import isfinite, pi
+from math import isfinite
 
 from flint import arb
 
+from ptmcad.verification.certified.boxes import Zero, disjoint, same, within
 from ptmcad.verification.certified.energy import Derivatives, Energy
 from ptmcad.verification.certified.vectors import SPRINGS
 
@@ -32,6 +32,7 @@ Pair = tuple[float, float]
 """A number for each angle."""
 Square = tuple[float, float, float, float]
 """Middle and half width in the first angle, then in the second."""
+CIRCLES = (True, True)
 _HALF_WIDTH = 101 / 32
 """A little more than pi, so that the first square has the whole torus."""
 TORUS: Square = (0.0, _HALF_WIDTH, 0.0, _HALF_WIDTH)
@@ -52,22 +53,19 @@ class Unproved(Exception):
     """The number of equilibria could not be proved; the message says why."""
 
 
-@dataclass(frozen=True, slots=True)
-class Equilibrium:
-    """The only equilibrium within ``alone`` of ``center``, and it is within ``radii``; for each choice of parameters.
+def is_same(one: Zero, two: Zero, circles: Sequence[bool]) -> bool:
+    """Whether a solution lies where another one is alone.
 
-    ``signs`` are those of the Hessian's eigenvalues, ``within`` the balls of the two angles.
+    Raises
+    ------
+    Unproved
+        When it may or may not be the other one.
     """
-
-    center: Pair
-    radii: Pair
-    alone: Pair
-    signs: str
-
-    @property
-    def within(self) -> tuple[arb, arb]:
-        (x, y), (r1, r2) = self.center, self.radii
-        return arb(x, r1), arb(y, r2)
+    if same(one, two, circles):
+        return True
+    if disjoint(one, two, circles):
+        return False
+    raise Unproved("a stored box may have one of two solutions")
 
 
 def equilibria(
@@ -76,8 +74,8 @@ def equilibria(
     start: Iterable[Square] = (TORUS,),
     budget: int = 300_000,
     smallest: Pair = (MIN_HALF_WIDTH, MIN_HALF_WIDTH),
-    near: Iterable[Equilibrium] = (),
-) -> tuple[list[Equilibrium], int]:
+    near: Iterable[Zero] = (),
+) -> tuple[list[Zero], int]:
     """The equilibria in the squares, and how many squares were looked at.
 
     Parameters
@@ -94,7 +92,7 @@ def equilibria(
     """
     waiting = list(start)
     found = [_persisting(energy, e) for e in near]
-    if not all(_disjoint(one, two) for one, two in combinations(found, 2)):
+    if not all(disjoint(one, two, CIRCLES) for one, two in combinations(found, 2)):
         raise Unproved("two equilibria may meet")
     used = 0
     while waiting:
@@ -116,7 +114,7 @@ def equilibria(
                 if _off_middle(energy, square, d, inverse):
                     continue
                 new = _settled(energy, square, found)
-                if new is not None and all(_disjoint(new, e) for e in found):
+                if new is not None and all(disjoint(new, e, CIRCLES) for e in found):
                     found.append(new)
                     if _inside(square, new):
                         continue
@@ -202,7 +200,7 @@ def _off_middle(energy: Energy, square: Square, d: Derivatives, inverse: tuple[f
     return bool(step1 > r1 or step1 < -r1 or step2 > r2 or step2 < -r2)
 
 
-def _settled(energy: Energy, square: Square, found: list[Equilibrium]) -> Equilibrium | None:
+def _settled(energy: Energy, square: Square, found: list[Zero]) -> Zero | None:
     """An equilibrium that Newton's method reaches from the square's middle, proved to be one; None when none is."""
     m1, r1, m2, r2 = square
     x, y, step = m1, m2, 1.0
@@ -223,16 +221,16 @@ def _settled(energy: Energy, square: Square, found: list[Equilibrium]) -> Equili
             break
     if step > _MAX_STEP:
         return None
-    if any(_within((x, y), e.center, e.alone) for e in found):
+    if any(within((x, y), e.center, e.alone, CIRCLES) for e in found):
         return None
     return _proved(energy, (x, y))
 
 
-def _persisting(energy: Energy, e: Equilibrium) -> Equilibrium:
+def _persisting(energy: Energy, e: Zero) -> Zero:
     """The equilibrium for all parameters that one for some parameters belongs to."""
-    persisting = _proved(energy, e.center)
+    x, y = e.center
+    persisting = _proved(energy, (x, y))
     if persisting is None:
-        x, y = e.center
         raise Unproved(f"the equilibrium near ({x:.6g}, {y:.6g}) may not persist")
     return persisting
 
@@ -247,7 +245,7 @@ def _units(d: Derivatives) -> Pair:
     return 1.0, 1.0
 
 
-def _proved(energy: Energy, center: Pair) -> Equilibrium | None:
+def _proved(energy: Energy, center: Pair) -> Zero | None:
     x, y = center
     middle = energy(arb(x), arb(y))
     unit1, unit2 = (1.0, 1.0) if middle.short else _units(middle)
@@ -285,7 +283,7 @@ def _proved(energy: Energy, center: Pair) -> Equilibrium | None:
                     min(r, float((abs(step) + abs(i) * r1 + abs(j) * r2).abs_upper()) * 1.0001)
                     for r, step, i, j in ((r1, step1, i11, i12), (r2, step2, i21, i22))
                 )
-        return Equilibrium(center, (r1, r2), (size * unit1, size * unit2), signs)
+        return Zero(center, (r1, r2), (size * unit1, size * unit2), signs)
     return None
 
 
@@ -302,35 +300,11 @@ def signs_of(d: Derivatives) -> str | None:
     return None
 
 
-def _turned(difference: float) -> int:
-    """The number of whole turns next to a difference of angles."""
-    return round(difference / (2 * pi))
-
-
-def _within(one: Pair, other: Pair, radii: Pair) -> bool:
-    """Whether two points of the torus are surely nearer than the radii in both angles."""
-    return all(
-        bool(abs(arb(x) - arb(y) - 2 * turns * arb.pi() if (turns := _turned(x - y)) else arb(x) - arb(y)) < radius)
-        for x, y, radius in zip(one, other, radii, strict=True)
-    )
-
-
-def _inside(square: Square, e: Equilibrium) -> bool:
+def _inside(square: Square, e: Zero) -> bool:
     """Whether the square is within the part of the torus in which the equilibrium is alone."""
     m1, r1, m2, r2 = square
     room = e.alone[0] - r1, e.alone[1] - r2
-    return min(room) > 0 and _within((m1, m2), e.center, room)
-
-
-def _disjoint(one: Equilibrium, two: Equilibrium) -> bool:
-    """Whether the boxes of two equilibria are surely disjoint on the torus."""
-    full = 2 * arb.pi()
-    for x, y, r, s in zip(one.center, two.center, one.radii, two.radii, strict=True):
-        difference, reach = arb(x) - arb(y), arb(r) + arb(s)
-        turns = _turned(x - y)
-        if all(abs(difference - (turns + k) * full) > reach for k in (-1, 0, 1)):
-            return True
-    return False
+    return min(room) > 0 and within((m1, m2), e.center, room, CIRCLES)
 
 
 def _first(d: Derivatives, r1: float, r2: float) -> bool:
@@ -343,6 +317,3 @@ def _first(d: Derivatives, r1: float, r2: float) -> bool:
     if not (isfinite(by1) and isfinite(by2)):
         return r1 >= r2
     return by1 >= by2 if max(r1, r2) < 32 * min(r1, r2) else r1 >= r2
-
-
-__all__ = ["MIN_HALF_WIDTH", "TORUS", "Equilibrium", "Square", "Unproved", "equilibria", "signs_of"]

@@ -17,11 +17,9 @@ from fractions import Fraction
 from ptmcad.answer.regionmap import Cell
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.vectors import CROSSING, evaluated
-from ptmcad.verification.report import Violation
 
 _PLACES = ((3, 2), (-2, 3), (2, -1), (-1, -3))
 """Where points beside a sample are, in quarters of a square around it: on no line with it through two of them."""
-_NEARLY = Fraction(1, 16)
 _PARTS = 8
 """Of the window's width, half the width of the largest such square: what is nearly flat takes many boxes ..."""
 _MIN_PARTS = 2**60
@@ -30,37 +28,14 @@ _MIN_PARTS = 2**60
 
 def is_flat(values: Mapping[str, Fraction]) -> bool:
     """Whether the spring between the bars pulls, and has no length where the bars are in line with the base."""
-    return _off(values) == 0
-
-
-def is_nearly_flat(values: Mapping[str, Fraction]) -> bool:
-    """Whether it pulls and has nearly no length there: then a test in the two angles may take too many boxes."""
-    off = _off(values)
-    return off is not None and off <= _NEARLY
-
-
-def _off(values: Mapping[str, Fraction]) -> Fraction | None:
-    """The spring's least length with the bars in line, against the base; None where nothing can be flat."""
     fixed, *arms = (evaluated(z, values) for z in CROSSING.vectors)
     base, (one, two) = abs(fixed), map(abs, arms)
-    if not (evaluated(CROSSING.free, values) > 0 and base > 0):
-        return None
-    least: Fraction = min(abs(base - one - two), abs(base - abs(one - two))) / base
-    return least
+    return evaluated(CROSSING.free, values) > 0 and base > 0 and base in (one + two, abs(one - two))
 
 
 def beside(claims: CertifiedClaims, cell: Cell) -> list[tuple[Fraction, Fraction]]:
-    """Points of a sample's cell that are not flat themselves, near the sample; none where the whole slice is flat.
-
-    Raises
-    ------
-    Violation
-        When the sample is so near to a rectangle that no engine would have taken it.
-    """
-    found = near(claims, cell)
-    if not found:
-        raise Violation("the sample is too near to a rectangle of the cover to be confirmed")
-    return [at for at in found if not is_flat(parameters_at(claims, *at))]
+    """Points of a sample's cell that are not flat themselves, near the sample; none where the whole slice is flat."""
+    return [at for at in near(claims, cell) if not is_flat(parameters_at(claims, *at))]
 
 
 def near(claims: CertifiedClaims, cell: Cell) -> list[tuple[Fraction, Fraction]]:

@@ -19,12 +19,12 @@ from ptmcad.answer.regionmap import Cell, Solution
 from ptmcad.mechanism import Model
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.balls import ball_of
-from ptmcad.verification.certified.boxes import Box, Zero, disjoint, same
+from ptmcad.verification.certified.boxes import Box, Zero
 from ptmcad.verification.certified.counted import Counted, Counts, Where
-from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.equilibria import Unproved, is_same
 from ptmcad.verification.certified.field import Field, Matrix, value_of
 from ptmcad.verification.certified.kinks import Sides, sides
-from ptmcad.verification.certified.narrow import Function, judged, no_solution
+from ptmcad.verification.certified.narrow import Function, judged, only
 from ptmcad.verification.certified.parameters import over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import Spent, zeros
@@ -43,8 +43,8 @@ BOX_BUDGET_SHARE = 4
 _HALVINGS = 60
 MAX_ANGLE = 8
 """Of the middle of a stored box, where an unknown is an angle."""
-MAX_REAL = 2**60
-"""... and where it is a length: far beyond the largest bound that is tried, and a number that floats have."""
+MAX_REAL = 2**1000
+"""... and where it is a length: a number that floats have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,6 @@ class ModelCounting:
 
     form: Form
     excesses: tuple[Excess, ...] = ()
-    is_complete = False
 
     def at(self, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> Counted:
         """At a point of the window."""
@@ -169,11 +168,7 @@ class ModelCounting:
         Unproved
             When it may or may not be the other one.
         """
-        if same(one, two, self.form.is_circle):
-            return True
-        if disjoint(one, two, self.form.is_circle):
-            return False
-        raise Unproved("a stored box may have one of two solutions")
+        return is_same(one, two, self.form.is_circle)
 
     def over(self, slice: Slice, x: arb, y: arb, there: Counted, where: Where | None = None) -> Counts:
         """At all points of a box."""
@@ -350,7 +345,7 @@ def _narrow(form: Form, values: Mapping[str, Fraction], side: Sides, solution: S
     if found is None:
         return None
     if not found.holds:
-        raise Violation(no_solution(solution, k))
+        return only([], solution, k)  # which refuses it
     signs = inertia(found.jacobian) if form.is_gradient else ""
     # nothing is said of what is around the box
     return None if signs is None else Zero(*found.in_floats(), (0.0,) * form.size, signs)
@@ -376,18 +371,4 @@ def _only(fields: Sequence[Field], solution: Solution, k: int, budget: int) -> Z
     for field in fields:
         found, _ = zeros(field, False, [(center, radii)], budget)
         inside += [zero for zero in found if _may_be_on_side(field, zero)]
-    held = [zero for zero in inside if _distances(zero, solution, "in")]
-    open_ = [zero for zero in inside if zero not in held and not _distances(zero, solution, "out")]
-    near = ", ".join(f"{x:.6g}" for x in center)
-    if open_ and len(held) < 2:
-        raise Unproved(f"a solution may be in box {k} of the solutions, around ({near}), or beside it")
-    if len(held) != 1:
-        raise Violation(f"box {k} of the solutions, around ({near}), has {len(held)} equilibria, not one")
-    return held[0]
-
-
-def _distances(zero: Zero, solution: Solution, where: str) -> bool:
-    """Whether a solution is surely in a stored box, or surely out of it."""
-    radius = ball_of(solution.radius)
-    away = [abs(x - ball_of(c)) for x, c in zip(zero.within, solution.center, strict=True)]
-    return all(d <= radius for d in away) if where == "in" else any(d > radius for d in away)
+    return only(inside, solution, k)

@@ -18,8 +18,10 @@ from flint import arb, arb_mat, ctx
 
 from ptmcad.answer.regionmap import Solution
 from ptmcad.text.balls import ball_of
-from ptmcad.verification.certified.boxes import Floats
+from ptmcad.verification.certified.boxes import Floats, Zero
+from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.field import Matrix
+from ptmcad.verification.report import Violation
 
 NARROW = Fraction(1, 2**20)
 """Half the width of a box up to which one test is tried before a search."""
@@ -70,10 +72,26 @@ def judged(function_at: Callable[[], Function], solution: Solution) -> Judgement
     return None
 
 
-def no_solution(solution: Solution, k: int) -> str:
-    """That a stored box has none, in words."""
+def only(found: Sequence[Zero], solution: Solution, k: int) -> Zero:
+    """The one of all solutions in and about a stored box that is in it.
+
+    Raises
+    ------
+    Violation
+        When none is, or several are.
+    Unproved
+        When one may be, or may be beside it.
+    """
+    radius, center = ball_of(solution.radius), list(map(ball_of, solution.center))
+    away = [[abs(x - c) for x, c in zip(zero.within, center, strict=True)] for zero in found]
+    held = [zero for zero, off in zip(found, away, strict=True) if all(d <= radius for d in off)]
+    outside = sum(any(d > radius for d in off) for off in away)
     near = ", ".join(f"{float(x):.6g}" for x in solution.center)
-    return f"box {k} of the solutions, around ({near}), has 0 equilibria, not one"
+    if len(held) < 2 and len(held) + outside < len(found):
+        raise Unproved(f"a solution may be in box {k} of the solutions, around ({near}), or beside it")
+    if len(held) != 1:
+        raise Violation(f"box {k} of the solutions, around ({near}), has {len(held)} equilibria, not one")
+    return held[0]
 
 
 def _judged(function: Function, solution: Solution) -> Judgement | None:

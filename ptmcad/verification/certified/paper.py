@@ -17,6 +17,7 @@ from ptmcad.answer.regionmap import Solution
 from ptmcad.mechanism import Kind
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.balls import ball_of
+from ptmcad.verification.certified.boxes import Zero
 from ptmcad.verification.certified.counted import (
     Counted,
     Counts,
@@ -25,16 +26,17 @@ from ptmcad.verification.certified.counted import (
 )
 from ptmcad.verification.certified.energy import Energy
 from ptmcad.verification.certified.equilibria import (
+    CIRCLES,
     MIN_HALF_WIDTH,
     TORUS,
-    Equilibrium,
     Square,
     Unproved,
     equilibria,
+    is_same,
     signs_of,
 )
 from ptmcad.verification.certified.field import Matrix
-from ptmcad.verification.certified.narrow import Function, judged, no_solution
+from ptmcad.verification.certified.narrow import Function, judged, only
 from ptmcad.verification.certified.parameters import Values, energy_at, energy_over, values_at
 from ptmcad.verification.certified.vectors import CROSSING, SPRINGS, TURNED, evaluated
 from ptmcad.verification.claims import Claims
@@ -51,8 +53,6 @@ _BASE = MECHANISM.first(Kind.BASE)
 class PaperCounting:
     """The paper's mechanism, with the formulas of `ptmcad.verification.certified.energy`."""
 
-    is_complete = True
-
     def at(self, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> Counted:
         """At a point of the window."""
         values, count = values_at(claims, x, y), claims.result.slice.count
@@ -68,9 +68,15 @@ class PaperCounting:
             energy = energy_at(there.values)
         return [_narrow(there.values, solution, k) or _only(energy, solution, k) for k, solution in enumerate(boxes)]
 
-    def same(self, one: Equilibrium, two: Equilibrium) -> bool:
-        """Whether an equilibrium lies where another one is alone."""
-        return _same(one, two)
+    def same(self, one: Zero, two: Zero) -> bool:
+        """Whether an equilibrium lies where another one is alone.
+
+        Raises
+        ------
+        Unproved
+            When it may or may not be the other one.
+        """
+        return is_same(one, two, CIRCLES)
 
     def over(self, slice: Slice, x: arb, y: arb, there: Counted, where: Where | None = None) -> Counts:
         """At all points of a box."""
@@ -100,9 +106,7 @@ def _start(where: Where | None) -> Sequence[Square]:
     return [(m1, r1, m2, r2) for (m1, m2), (r1, r2) in where.boxes[0]]
 
 
-def all_equilibria(
-    values: Values, count: Count, start: Sequence[Square] = (TORUS,)
-) -> tuple[Energy, list[Equilibrium]]:
+def all_equilibria(values: Values, count: Count, start: Sequence[Square] = (TORUS,)) -> tuple[Energy, list[Zero]]:
     """All equilibria at exact parameters, or all minima where no more is asked for; with rising precision.
 
     Parameters
@@ -130,7 +134,7 @@ def all_equilibria(
     raise reason
 
 
-def counts_of(energy: Energy, values: Mapping[str, Fraction], found: list[Equilibrium], count: Count) -> Counts:
+def counts_of(energy: Energy, values: Mapping[str, Fraction], found: list[Zero], count: Count) -> Counts:
     """The counts that follow from the equilibria; Euler's sum is checked where all are known.
 
     Raises
@@ -152,7 +156,7 @@ def counts_of(energy: Energy, values: Mapping[str, Fraction], found: list[Equili
     return Counts(sum(index), index[0], index, None)
 
 
-def admissible(energy: Energy, e: Equilibrium) -> bool:
+def admissible(energy: Energy, e: Zero) -> bool:
     """Whether every spring is longer than its free length.
 
     Raises
@@ -195,7 +199,7 @@ def cones(energy: Energy, values: Mapping[str, Fraction]) -> int:
     return peaks
 
 
-def _narrow(values: Values, solution: Solution, k: int) -> Equilibrium | None:
+def _narrow(values: Values, solution: Solution, k: int) -> Zero | None:
     """The one equilibrium in a stored box that is narrow; None where a search has to tell."""
     _check_box(solution, k)
 
@@ -215,13 +219,13 @@ def _narrow(values: Values, solution: Solution, k: int) -> Equilibrium | None:
     if found is None:
         return None
     if not found.holds:
-        raise Violation(no_solution(solution, k))
+        return only([], solution, k)  # which refuses it
     with ctx.workprec(_BOX_PRECISION):
         one, two = found.within
         signs = signs_of(energy_at(values)(one, two))
     (x, y), (r1, r2) = found.in_floats()
     # nothing is said of what is around the box
-    return None if signs is None else Equilibrium((x, y), (r1, r2), (0.0, 0.0), signs)
+    return None if signs is None else Zero((x, y), (r1, r2), (0.0, 0.0), signs)
 
 
 def _check_box(solution: Solution, k: int) -> None:
@@ -229,7 +233,7 @@ def _check_box(solution: Solution, k: int) -> None:
         raise Violation(f"box {k} of the solutions is not a box of two angles")
 
 
-def _only(energy: Energy, solution: Solution, k: int) -> Equilibrium:
+def _only(energy: Energy, solution: Solution, k: int) -> Zero:
     """The one equilibrium in a stored box."""
     _check_box(solution, k)
     x, y = (float(c) for c in solution.center)
@@ -238,31 +242,4 @@ def _only(energy: Energy, solution: Solution, k: int) -> Equilibrium:
     start: Square = (x, radius, y, radius)
     with ctx.workprec(_BOX_PRECISION):
         inside, _ = equilibria(energy, False, [start], smallest=energy.resolution(min(MIN_HALF_WIDTH, radius / 1024)))
-        held = [e for e in inside if _in(e, solution)]
-        open_ = [e for e in inside if e not in held and not _out(e, solution)]
-    if len(held) != 1 or open_:
-        raise Violation(f"box {k} of the solutions, around ({x:.6g}, {y:.6g}), has {len(held)} equilibria, not one")
-    return held[0]
-
-
-def _in(e: Equilibrium, solution: Solution) -> bool:
-    radius = ball_of(solution.radius)
-    return all(
-        bool(abs(angle - ball_of(center)) <= radius) for angle, center in zip(e.within, solution.center, strict=True)
-    )
-
-
-def _out(e: Equilibrium, solution: Solution) -> bool:
-    radius = ball_of(solution.radius)
-    return any(
-        bool(abs(angle - ball_of(center)) > radius) for angle, center in zip(e.within, solution.center, strict=True)
-    )
-
-
-def _same(one: Equilibrium, two: Equilibrium) -> bool:
-    """Whether an equilibrium lies where another one is alone."""
-    full = 2 * arb.pi()
-    return all(
-        bool(abs(angle - middle - round((float(angle.mid()) - middle) / 6.283185307179586) * full) < alone)
-        for angle, middle, alone in zip(one.within, two.center, two.alone, strict=True)
-    )
+        return only(inside, solution, k)

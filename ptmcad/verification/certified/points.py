@@ -7,12 +7,12 @@ Guarantee: exact at the samples. That the counts hold in the whole cells rests o
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
 
-from ptmcad.answer.regionmap import Cell, Solution
+from ptmcad.answer.regionmap import Cell
 from ptmcad.question.slice import Count
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.counted import (
@@ -25,7 +25,7 @@ from ptmcad.verification.certified.counted import (
 from ptmcad.verification.certified.equilibria import (
     Unproved,
 )
-from ptmcad.verification.certified.flat import beside, is_flat, is_nearly_flat, near
+from ptmcad.verification.certified.flat import beside, near
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.paper import PaperCounting
 from ptmcad.verification.certified.parameters import values_at
@@ -39,8 +39,6 @@ HOPELESS = 16
 """Samples or random points whose counts were not decided, after which no more are tried."""
 MAX_NEAR = 2
 """Points beside a sample whose counts were not decided, at which they are tried."""
-_PI, _PI_ERROR = Fraction(355, 113), Fraction(1, 10**5)
-"""Near pi; and more than six times its error."""
 
 
 class _InBoxes(Unproved):
@@ -53,8 +51,8 @@ def check_points(
 ) -> str:  # fmt: skip
     """Counts and stored solutions of every cell; and for how many cells nothing was proved.
 
-    Of the paper's mechanism all cells can be decided, so one that cannot is a fault of the map. Samples that are flat
-    or nearly so (`ptmcad.verification.certified.flat`) are by the counts beside them, unless the whole slice is flat.
+    Where a sample cannot be decided, as a flat one (`ptmcad.verification.certified.flat`), the counts beside it are
+    those of its cell.
 
     Parameters
     ----------
@@ -68,8 +66,6 @@ def check_points(
         try:
             found = _check_cell(claims, counting, cell, places)
         except Unproved as reason:
-            if counting.is_complete and not _is_all_flat(claims, cell):
-                raise Violation(f"cell {n}: the counts {where} could not be confirmed: {reason}") from None
             undecided.append(f"cell {n} {where}: {reason}")
             uncounted += not isinstance(reason, _InBoxes)
             if uncounted == HOPELESS:
@@ -103,12 +99,12 @@ def _check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell, places:
         u, v = claims.on_lattice(*cell.sample)
         there = counting.at(claims, *cell.sample, places and places((u, u), (v, v)))
     except Unproved as reason:
-        if isinstance(counting, ModelCounting):
-            counting.check_list(claims, cell)
-            _check_near(claims, counting, cell, reason)
-        if not (counting.is_complete and is_nearly_flat(values_at(claims, *cell.sample))):
+        if not isinstance(counting, ModelCounting):
+            return _check_beside(claims, counting, cell, reason)
+        counting.check_list(claims, cell)
+        if (found := _decided(claims, counting, cell, near(claims, cell))) is None:
             raise
-        return _check_beside(claims, counting, cell, reason)
+        raise _InBoxes(f"{reason}; the counts are those {_where(claims, *found[0])}") from reason
     if differs(cell, there.counts):
         raise Violation(f"said to have {stored(cell)}; there are {there.counts}")
     kept = [e for e in there.found if not claims.result.slice.count.is_of_stable or "-" not in e.signs]
@@ -121,16 +117,17 @@ def _check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell, places:
     return len(kept)
 
 
-def _check_near(claims: CertifiedClaims, counting: Counting, cell: Cell, reason: Unproved) -> None:
-    """The counts at points beside an undecided sample, in the same cell, as far as they are decided, are those stored.
+def _decided(
+    claims: CertifiedClaims, counting: Counting, cell: Cell, places: Sequence[tuple[Fraction, Fraction]]
+) -> tuple[tuple[Fraction, Fraction], Counted] | None:
+    """The first of some points of an undecided cell at which the counts are decided, and what is counted there.
 
     Raises
     ------
     Violation
-    _InBoxes
-        When they are at one: nothing is said of the boxes at the sample.
+        When these are not the cell's.
     """
-    for at in near(claims, cell)[:MAX_NEAR]:
+    for at in places[:MAX_NEAR]:
         try:
             there = counting.at(claims, *at)
         except Unproved:
@@ -138,7 +135,8 @@ def _check_near(claims: CertifiedClaims, counting: Counting, cell: Cell, reason:
         if differs(cell, there.counts):
             raise Violation(f"said to have {stored(cell)}; {_where(claims, *at)}, in the same cell, there are "
                             f"{there.counts}")  # fmt: skip
-        raise _InBoxes(f"{reason}; the counts are those {_where(claims, *at)}") from reason
+        return at, there
+    return None
 
 
 def _check_boxes(claims: CertifiedClaims, counting: Counting, cell: Cell, there: Counted) -> None:
@@ -176,41 +174,24 @@ def _check_signs(claims: CertifiedClaims, true: str, said: str, k: int) -> None:
         raise Violation(f"the Hessian at the solution {k} has eigenvalues of signs {true}, not {said!r}")
 
 
-def _is_all_flat(claims: CertifiedClaims, cell: Cell) -> bool:
-    """Whether a sample is flat, and what is beside it, too."""
-    return is_flat(values_at(claims, *cell.sample)) and not beside(claims, cell)
-
-
 def _check_beside(claims: CertifiedClaims, counting: Counting, cell: Cell, reason: Unproved) -> int:
     """The counts are those at a point beside the sample, and there are as many different equilibria in the boxes.
 
     Raises
     ------
     Unproved
-        For the reason given, when nothing beside the sample is decided.
+        When nothing beside the sample is decided, then for the reason given, or not what is in the boxes.
     """
-    for at in beside(claims, cell):
-        try:
-            there = counting.at(claims, *at)
-        except Unproved:
-            continue
-        if differs(cell, there.counts):
-            raise Violation(f"said to have {stored(cell)}; {_where(claims, *at)}, in the same cell, there are "
-                            f"{there.counts}")  # fmt: skip
-        here = replace(there, values=values_at(claims, *cell.sample))
-        asked = [e.signs for e in there.found if not claims.result.slice.count.is_of_stable or "-" not in e.signs]
-        signs = [e.signs for e in counting.within(here, cell.solutions)]
-        if signs != [solution.signs for solution in cell.solutions] or Counter(signs) != Counter(asked):
-            raise Violation(f"equilibria of signs {signs} are in the boxes of solutions, but there are {asked}")
-        if not all(apart(one, two) for one, two in combinations(cell.solutions, 2)):
-            raise Violation("two boxes of solutions meet")
-        return len(signs)
-    raise reason
-
-
-def apart(one: Solution, two: Solution) -> bool:
-    """Whether the boxes of two solutions surely do not meet on the torus."""
-    return any(
-        all(abs(x - y + turns * 2 * _PI) > one.radius + two.radius + _PI_ERROR for turns in range(-3, 4))
-        for x, y in zip(one.center, two.center, strict=True)
-    )
+    found = _decided(claims, counting, cell, beside(claims, cell))
+    if found is None:
+        raise reason
+    _, there = found
+    here = replace(there, values=values_at(claims, *cell.sample))
+    asked = [e.signs for e in there.found if not claims.result.slice.count.is_of_stable or "-" not in e.signs]
+    inside = counting.within(here, cell.solutions)
+    signs = [e.signs for e in inside]
+    if signs != [solution.signs for solution in cell.solutions] or Counter(signs) != Counter(asked):
+        raise Violation(f"equilibria of signs {signs} are in the boxes of solutions, but there are {asked}")
+    if any(counting.same(one, two) for one, two in combinations(inside, 2)):
+        raise Violation("two boxes have the same solution")
+    return len(signs)
