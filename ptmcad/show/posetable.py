@@ -122,9 +122,9 @@ def _bounds(poses: Poses) -> list[str]:
         for n, x in enumerate(entries, 1):
             if isinstance(x, Enclosure) and x.exact is None and x.low <= 0 <= x.high:
                 where.setdefault(f"|{header}| < {exact_text(x.high)}{unit and f' {unit}'}", []).append(str(n))
-    said = [f"{bound} in {noun(poses.model, len(n))} {', '.join(n)}: it may be zero" for bound, n in where.items()]
+    said = [f"{bound} in {noun(poses.model, len(n))} {', '.join(n)}" for bound, n in where.items()]
     more = [f"{len(said) - _MAX_BOUNDS} more such bounds"] if len(said) > _MAX_BOUNDS else []
-    return _wrapped("bounds", [*said[:_MAX_BOUNDS], *more], "; ") if said else []
+    return _wrapped("bounds", ["of what may be zero: " + said[0], *said[1:_MAX_BOUNDS], *more], "; ") if said else []
 
 
 def _summary(poses: Poses) -> list[str]:
