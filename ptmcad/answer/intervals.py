@@ -13,7 +13,7 @@ from itertools import groupby
 
 from ptmcad.answer import with_methods
 from ptmcad.answer.counts import Counts, MorseIndex
-from ptmcad.answer.regionmap import Kind
+from ptmcad.answer.regionmap import Continuum, Kind
 from ptmcad.answer.words import kind_name
 from ptmcad.mechanism import Model
 from ptmcad.question.slice import Axis
@@ -44,12 +44,14 @@ class Change:
     ----------
     kind : the kind of the variety's component through it.
     before, after : the numbers of solutions on the two sides.
+    continuum : whether there are infinitely many solutions at the value; None where that is not known.
     """
 
     at: AlgebraicNumber
     kind: Kind
     before: Counts
     after: Counts
+    continuum: Continuum | None = None
 
     @property
     def event(self) -> Event:
@@ -81,6 +83,13 @@ class Change:
     @property
     def text(self) -> str:
         """The event in words, read in the direction of growing values."""
+        if self.continuum is None:
+            return self._change()
+        many = "equilibria" if self.before.index is not None else "solutions"
+        change = "" if self.event is Event.UNCHANGED else f", {self._change()}"
+        return f"{self.continuum.value} {many}{change}"
+
+    def _change(self) -> str:
         event, first = self.event, self._pair()
         if event is Event.UNCHANGED:
             return str(event.value)

@@ -10,7 +10,10 @@ from ptmcad.answer.regionmap import Status
 
 @dataclass(frozen=True, slots=True)
 class Location:
-    """Where a point lies; region, cell and counts are None unless the point is decided and in a cell."""
+    """Where a point lies; region, cell and counts are None unless the point is decided and in a cell.
+
+    A point on a curve that no count feels has counts of its own, and the region on both sides; it is in no cell.
+    """
 
     status: Status
     region: int | None = None
@@ -19,3 +22,4 @@ class Location:
     stable: int | None = None
     index: MorseIndex | None = None
     admissible: int | None = None
+    remark: str = ""

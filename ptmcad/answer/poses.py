@@ -1,6 +1,7 @@
 """The solutions at one rational point: equilibria with everything that a designer asks of a pose.
 
-Guarantee: all real equilibria are there; every number is exact or an `Enclosure`; what is zero is known to be zero.
+Guarantee: all real equilibria are there unless the status is UNDECIDED; every number is exact or an `Enclosure`. One
+that holds zero is of a number that is zero or too small to be distinguished from it.
 """
 
 from __future__ import annotations
@@ -63,11 +64,11 @@ class Pose:
     eigenvalues : of the Hessian by the unknowns, the smallest first; none without a potential.
     multiplicity : of the solution in its fibre; 1 exactly when the Jacobian is nonsingular.
     index : number of negative eigenvalues when the Hessian is nonsingular, else None.
-    stable : whether the Hessian is positive definite, or a system's conditions hold; None when it is singular, or
-        nothing says what stable is.
+    stable : whether the Hessian is positive definite, or a system's conditions hold; None when it is singular, nothing
+        says what stable is, or it is not decided.
     flat : whether all points of a mechanism lie on the x axis, exactly.
     admissible : whether it is stable with every spring longer than its free length, as cables demand; None when the
-        springs have no free lengths.
+        springs have no free lengths, or it is not decided.
     torsion : the torsion springs, in the description's order.
     """
 
@@ -85,6 +86,11 @@ class Pose:
     admissible: bool | None = None
     reals: tuple[Enclosure, ...] = ()
     torsion: tuple[TorsionSpring, ...] = ()
+
+    @property
+    def may_be_admissible(self) -> bool:
+        """Whether some spring has a free length, so that the pose is admissible or not."""
+        return self.admissible is not None or any(spring.free_length for spring in self.springs)
 
     def __repr__(self) -> str:
         kind = {True: "stable", False: "unstable", None: "degenerate, or not told"}[self.stable]
@@ -112,11 +118,13 @@ class Poses:
     parameters : every one of its parameters to its value.
     equilibria : stable ones first, then by energy.
     status : EXACT; CERTIFIED with free lengths, none degenerate; ON_VARIETY when an equilibrium is degenerate;
-        UNDECIDED with no equilibria when there are infinitely many or they could not be separated; see ``remark``.
-    digits : significant digits that each enclosure settles; one more where it cannot be told from halfway between two
-        texts of so many.
+        UNDECIDED with those that are proved when there are infinitely many or some could not be separated; see
+        ``remark``.
+    digits : significant digits that each enclosure settles, but for one that holds zero; one more where it cannot be
+        told from halfway between two texts of so many.
     bits : the precision that was needed.
     units : of ``length`` and ``force``, where the record declares them; nothing but text depends on them.
+    undecided : number of boxes of configurations in which there may be more equilibria.
     """
 
     model: Model
@@ -127,6 +135,7 @@ class Poses:
     bits: int
     remark: str = ""
     units: Mapping[str, str] = field(default_factory=dict)
+    undecided: int = 0
 
     @property
     def mechanism(self) -> str:

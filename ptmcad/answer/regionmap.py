@@ -52,6 +52,16 @@ class Kind(Enum):
     AUXILIARY = "auxiliary"
 
 
+class Continuum(Enum):
+    """How many solutions there are on a curve of the variety on which they are not isolated.
+
+    PROVED: at each of its points in the slice's domain. POSSIBLE: complex ones are, of real ones it is not decided.
+    """
+
+    PROVED = "infinitely many"
+    POSSIBLE = "perhaps infinitely many"
+
+
 COMPILATION = "compilation"
 """The timing, beside the total, of what was compiled before the computation: once on a machine."""
 NO_POINT = "no point in the window"
@@ -96,12 +106,14 @@ class Component:
     polynomial : primitive, in Z[x, y] for the axes in their order.
     left_out : empty when the decomposition uses the component, else the reason why it does not.
     separates : whether some wall on it separates two regions.
+    continuum : whether solutions on it are not isolated; None where they are, or where that is not known.
     """
 
     polynomial: PlanePolynomial
     kind: Kind
     left_out: str = ""
     separates: bool = False
+    continuum: Continuum | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -339,6 +351,11 @@ class RegionMap:
 
     def __str__(self) -> str:
         return self.table()
+
+    @property
+    def continua(self) -> dict[int, Continuum]:
+        """The components on which solutions are not isolated, by number."""
+        return {n: c.continuum for n, c in enumerate(self.components) if c.continuum is not None}
 
     def __repr__(self) -> str:
         return f"<RegionMap {self.slice.name}: {len(self.regions)} regions, {self.status.value}>"

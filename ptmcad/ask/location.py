@@ -6,20 +6,23 @@ polynomials at the point and numbers of their real roots below it; in a certifie
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at
+from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_expression, from_plane, univariate
+from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part
 from ptmcad.answer.location import Location
-from ptmcad.answer.regionmap import CriticalValue, RegionMap, Status
+from ptmcad.answer.regionmap import Component, CriticalValue, Kind, RegionMap, Status
+from ptmcad.answer.words import noun
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
-from ptmcad.errors import ConfigError, expect
+from ptmcad.errors import ConfigError, DegenerateSliceError, expect
 from ptmcad.exact.cad.curves import Curve, curves_of
+from ptmcad.exact.models import system_from
+from ptmcad.exact.stages import count_at
 from ptmcad.question.slice import Point
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.parsing import number_for
@@ -47,10 +50,20 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
         return _locate_outside_cover(result, result.cover, point)
     if not result.cells:
         return Location(Status.UNDECIDED)
-    if any(c.polynomial(*point) == 0 for c in result.components if not c.left_out):
-        return Location(Status.ON_VARIETY)
     base = result.base
     u, v = from_fraction(point[base]), from_fraction(point[1 - base])
+    met = [c for c in result.components if not c.left_out and c.polynomial(*point) == 0]
+    if met:
+        return _on_curves(result, met, (u, v))
+    number = _cell_at(result, u, v)
+    cell = result.cells[number]
+    # in a map that was stopped before its areas were known, the counts are exact all the same
+    status = Status.EXACT if result.status is Status.PARTIAL else result.status
+    return Location(status, cell.region, number, cell.total, cell.stable, cell.index)
+
+
+def _cell_at(result: RegionMap, u: fmpq, v: fmpq) -> int:
+    """The number of the cell that holds a point, by its coordinates along the base and across it, on no curve."""
     curves = _curves(result)
     stack, on_critical = stack_over(result, u)
     if stack >= len(result.stacks):
@@ -58,18 +71,64 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
     if on_critical:
         # the point lies on an artefact of the decomposition: step to the stack at its left along a free segment
         u = _step_left(result, curves, u, v, stack)
-    low = from_fraction(result.slice.axes[1 - base].low)
+    low = from_fraction(result.slice.axes[1 - result.base].low)
     below = sum(_roots_below(c.fibre(u), low, v) for c in curves)
     try:
         number = result.stacks[stack].cells[below]
-        cell = result.cells[number]
+        result.cells[number]
     except IndexError as error:
         raise ConfigError(
             f"the map contradicts itself: stack {stack} has no cell above {below} walls; check it with ptmcad verify"
         ) from error
-    # in a map that was stopped before its areas were known, the counts are exact all the same
-    status = Status.EXACT if result.status is Status.PARTIAL else result.status
-    return Location(status, cell.region, number, cell.total, cell.stable, cell.index)
+    return number
+
+
+_ON_REGULAR = "on a curve of the variety; counted at the point itself, where all solutions are regular"
+
+
+def _on_curves(result: RegionMap, met: Sequence[Component], at: tuple[fmpq, fmpq]) -> Location:
+    """A point on curves of the variety: with the counts there, where they are those of one region all around it."""
+    many = next((c.continuum for c in met if c.continuum is not None), None)
+    remark = "" if many is None else f"{many.value} {noun(result.slice.model)}"
+    if remark or any(c.separates for c in met) or any(c.kind is Kind.BOUNDARY for c in met):
+        return Location(Status.ON_VARIETY, remark=remark)
+    slice = result.slice
+    system = system_from(slice.model)
+    parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
+    try:
+        counts = count_at("the point", system, parameters, at if result.base == 0 else at[::-1]).counts
+    except DegenerateSliceError:
+        return Location(Status.ON_VARIETY)
+    around = [result.cells[number] for number in _cells_around(result, at)]
+    for cell in around:
+        known = [(cell.total, counts.total), (cell.stable, counts.stable)]
+        if cell.region != around[0].region or any(there not in (None, here) for there, here in known):
+            return Location(Status.ON_VARIETY)
+    if not around:
+        return Location(Status.ON_VARIETY)
+    return Location(Status.EXACT, around[0].region, None, counts.total, counts.stable, counts.index, remark=_ON_REGULAR)
+
+
+def _cells_around(result: RegionMap, at: tuple[fmpq, fmpq]) -> Iterator[int]:
+    """Cells beside a point on curves, each reached along a segment that meets no other point of the curves."""
+    base, axes = result.base, result.slice.axes
+    curves = [from_plane(c.polynomial) for c in result.components if not c.left_out]
+    for direction, axis in enumerate((axes[base], axes[1 - base])):
+        varying = base if direction == 0 else 1 - base
+        traces = [univariate(coefficients_in(p, varying), at[1 - direction]) for p in curves]
+        if all(traces):  # no curve runs in this direction through the point
+            for end in (axis.low, axis.high):
+                step = (from_fraction(end) - at[direction]) / 2
+                while any(_meets(p, at[direction], step) for p in traces):
+                    step = step / 2
+                beside = (at[0] + step, at[1]) if direction == 0 else (at[0], at[1] + step)
+                yield _cell_at(result, *beside)
+
+
+def _meets(p: UnivariatePolynomial, start: fmpq, step: fmpq) -> bool:
+    """Whether a polynomial has a root after the start, up to the end of a step."""
+    low, high = sorted((start, start + step))
+    return sign_at(p, start + step) == 0 or bool(isolate(squarefree_part(p), low, high))
 
 
 _KEPT = 4

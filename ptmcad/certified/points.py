@@ -31,7 +31,9 @@ class PointCount:
     ----------
     index : numbers of minima, saddles and maxima.
     cones : configurations in which springs have no length and the energy has a peak.
-    solutions : disjoint boxes, angles in radians: all solutions, or the minima when only these were counted.
+    solutions : disjoint boxes, angles in radians: all solutions, or the minima when only these were counted. Where
+        nothing is decided those that are proved, without signs where these are open.
+    open : boxes in which there may be more of them.
     """
 
     total: int | None = None
@@ -41,6 +43,7 @@ class PointCount:
     cones: int | None = None
     solutions: tuple[Solution, ...] = ()
     decided: bool = False
+    open: int = 0
 
 
 def boxed(unique: Boxes, narrow: Boxes, signs: str, unknowns: Sequence[int]) -> Solution:

@@ -154,6 +154,8 @@ def _lines(location: Location, point: Mapping[str, str], fields: Sequence[str], 
         elif name == "stable" and unknown and location.cell is not None:
             note = "not known: it may change within the cell; `ptmcad solve` tells it of a point"
             yield f"{name:{width}}{note if location.total else 0}"
+    if location.remark:
+        yield f"{'remark':{width}}{location.remark}"
 
 
 @click.command("locate")
@@ -171,9 +173,10 @@ def _lines(location: Location, point: Mapping[str, str], fields: Sequence[str], 
 def command(*, result: Path, at: str | None, table: Path | None, limits: Limits) -> None:
     """Tell in which cell and region of RESULT a rational point lies, and the number of equilibria there.
 
-    The answer is exact, however near the point is to a boundary: "on the variety" exactly on a curve, "on the
-    window's edge" where the map ends, "outside the window" beyond. In a certified map a point of its undetermined part
-    is "undecided". Numbers such as 7/10, 0.7 and 7e-1 are exact.
+    The answer is exact, however near the point is to a boundary: "on the variety" exactly on a curve, unless no count
+    changes across it and all solutions at the point are regular, "on the window's edge" where the map ends, "outside
+    the window" beyond. In a certified map a point of its undetermined part is "undecided". Numbers such as 7/10, 0.7
+    and 7e-1 are exact.
 
     \b
     Examples:

@@ -126,8 +126,8 @@ def command(
 
     CONFIG is a problem record (YAML) for what --at and --set leave open. Without it, parameters that are not given have
     their defaults: L1 = L2 = rho = 1, k = 100, no load. Every digit that is shown is right; a zero or another number
-    that is shown without trailing digits is exact; a degenerate equilibrium is named, with its multiplicity. Where no
-    equilibrium is told, as where there are infinitely many, the answer says why, and the exit status is 3.
+    that is shown without trailing digits is exact; a degenerate equilibrium is named, with its multiplicity. Where not
+    all equilibria are found, as where there are infinitely many, the answer says why, and the exit status is 3.
 
     \b
     Examples:

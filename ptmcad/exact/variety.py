@@ -21,6 +21,7 @@ the latter also vanishes where the monomial basis degenerates; `hermite_determin
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from ptmcad.algebra.determinants import determinant
@@ -29,6 +30,7 @@ from ptmcad.algebra.polynomials import (
     Coefficient,
     Ratio,
     UnknownPolynomial,
+    from_plane,
     irreducible_factors,
     ratio,
     to_plane,
@@ -50,6 +52,7 @@ from ptmcad.algebra.quotient import (
 from ptmcad.algebra.window import Interval, nowhere_zero
 from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, Kind
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError, NothingToCountError
+from ptmcad.exact.continua import continuum
 from ptmcad.exact.models.system import ParametricSystem, SliceSystem, leading_minors, on_slice, saturated
 from ptmcad.text.plane import PlanePolynomial
 
@@ -122,7 +125,13 @@ def discriminant_variety(
     if "hermite-matrix" in without:
         for part in determinant(trace_form(algebra)):
             seen.adopt(irreducible_factors(part), Kind.AUXILIARY)
-    return DiscriminantVariety(seen.in_order(), algebra.dimension, equations.unknowns > given.unknowns)
+    components = tuple(
+        replace(c, continuum=continuum(from_plane(c.polynomial), system, parameters, given, jacobian_norm[0]))
+        if not c.left_out
+        else c
+        for c in seen.in_order()
+    )
+    return DiscriminantVariety(components, algebra.dimension, equations.unknowns > given.unknowns)
 
 
 def check_hypotheses(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> None:

@@ -13,7 +13,7 @@ from typing import Any
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.words import counted
-from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.show.posetable import kind_of
 from ptmcad.show.render.axes import symbol
@@ -112,13 +112,13 @@ def point_view(poses: Poses, at: Mapping[str, Fraction]) -> dict[str, Any]:
         "status": poses.status.value,
         "remark": poses.remark,
         "loads": [[float(value_at(load.x, known)), float(value_at(load.y, known))] for load in loads],
-        "equilibria": [_pose_view(pose) for pose in poses.equilibria],
+        "equilibria": [_pose_view(pose, model) for pose in poses.equilibria],
     }
 
 
-def _pose_view(pose: Pose) -> dict[str, Any]:
+def _pose_view(pose: Pose, model: Model) -> dict[str, Any]:
     return {
-        "kind": kind_of(pose),
+        "kind": kind_of(pose, model),
         "unknowns": [f"{d.text(DIGITS)}°" for d in pose.degrees] + [r.text(DIGITS) for r in pose.reals],
         "energy": "" if pose.energy is None else pose.energy.text(DIGITS),
         "nodes": [[float(x), float(y)] for x, y in pose.nodes.values()],

@@ -1,6 +1,7 @@
 """The equilibria at a point as a table for the terminal.
 
-Guarantee: every digit is right; lines have at most `WIDTH` characters unless a single column needs more.
+Guarantee: every digit is right; lines have at most `WIDTH` characters unless a single column needs more. What is not
+decided is said, of a pose and of all of them.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from itertools import pairwise
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.answer.words import counted, noun, of_what, untold
-from ptmcad.mechanism import Mechanism, built_in, mechanism_in
+from ptmcad.mechanism import Mechanism, Model, built_in, mechanism_in
 from ptmcad.question.slice import merged
 from ptmcad.show.units import energy_unit
 from ptmcad.text.enclosure import Enclosure, exact_text
@@ -20,14 +21,18 @@ WIDTH = 100
 
 Column = tuple[str, str, list[str]]
 """Header, unit and entries."""
+Quantity = tuple[str, str, Sequence[Enclosure] | list[str]]
+"""The same before numbers are written."""
+_MAX_BOUNDS = 6
+"""Numbers that may be zero that are listed."""
 
 
-def kind_of(pose: Pose) -> str:
+def kind_of(pose: Pose, model: Model) -> str:
     """Stable, saddle, maximum or degenerate; of a system of equations stable, unstable or just a solution."""
     if pose.multiplicity > 1:
         return "degenerate"
     if pose.stable is None:
-        return "solution"
+        return "undecided" if model.tells_stability else "solution"
     if pose.stable:
         return "stable"
     if pose.index is None:
@@ -52,7 +57,8 @@ def table(poses: Poses, digits: int | None = None) -> str:
             *(_wrapped("units", units) if (units := _units(poses)) else []),
             *(_wrapped("energy", [note]) if (note := _energy_note(poses)) else []),
             *(_wrapped("torsion", [_TORSION]) if poses.equilibria[0].torsion else []),
-            *(_wrapped("tense", [_TENSE]) if poses.equilibria[0].admissible is not None else []),
+            *(_wrapped("tense", [_TENSE]) if poses.equilibria[0].may_be_admissible else []),
+            *_bounds(poses),
         ]
     return "\n".join(lines)
 
@@ -109,18 +115,33 @@ def _point(poses: Poses) -> list[str]:
     return parts + ([f"{n} = {values[n]}" for n in loads if values[n] != "0"] or (["no load"] if loads else []))
 
 
+def _bounds(poses: Poses) -> list[str]:
+    """The quantities that may be zero, with what is proved of them."""
+    where: dict[str, list[str]] = {}
+    for header, unit, entries in (quantity for group in _groups(poses) for quantity in group if quantity[1] != "rad"):
+        for n, x in enumerate(entries, 1):
+            if isinstance(x, Enclosure) and x.exact is None and x.low <= 0 <= x.high:
+                where.setdefault(f"|{header}| < {exact_text(x.high)}{unit and f' {unit}'}", []).append(str(n))
+    said = [f"{bound} in {noun(poses.model, len(n))} {', '.join(n)}" for bound, n in where.items()]
+    more = [f"{len(said) - _MAX_BOUNDS} more such bounds"] if len(said) > _MAX_BOUNDS else []
+    return _wrapped("bounds", ["of what may be zero: " + said[0], *said[1:_MAX_BOUNDS], *more], "; ") if said else []
+
+
 def _summary(poses: Poses) -> list[str]:
-    if poses.status is Status.UNDECIDED:
+    if poses.status is Status.UNDECIDED and not poses.equilibria:
         return [poses.remark]
-    kinds = [kind_of(pose) for pose in poses.equilibria]
+    kinds = [kind_of(pose, poses.model) for pose in poses.equilibria]
     several = {"stable": "stable", "saddle": "saddles", "maximum": "maxima", "degenerate": "degenerate"}
-    several |= {"unstable": "unstable", "solution": "solutions"}
+    several |= {"unstable": "unstable", "solution": "solutions", "undecided": "undecided"}
     tally = [
         f"{kinds.count(kind)} {several[kind] if kinds.count(kind) > 1 else kind}" for kind in several if kind in kinds
     ]
     tells = f": {', '.join(tally)}" if kinds and "solution" not in kinds else ""
     parts = [f"{counted(poses.model, len(kinds))}{tells}", poses.status.value]
-    if any(pose.admissible is not None for pose in poses.equilibria):
+    if poses.status is Status.UNDECIDED:
+        boxes = f"{poses.undecided} box{'' if poses.undecided == 1 else 'es'}"
+        parts = [f"at least {parts[0]}, each certified", f"{boxes} of configurations undecided"]
+    if any(pose.may_be_admissible for pose in poses.equilibria):
         tense = sum(pose.admissible is True for pose in poses.equilibria)
         parts.insert(1, f"{tense} stable with every spring longer than its free length")
     return parts + ([poses.remark] if poses.remark else [])
@@ -140,6 +161,17 @@ def _wrapped(label: str, parts: Sequence[str], separator: str = ", ") -> list[st
 
 
 def _blocks(poses: Poses, digits: int) -> list[list[Column]]:
+    width = len(str(len(poses.equilibria)))
+
+    def written(quantity: Quantity) -> Column:
+        header, unit, entries = quantity
+        return header, unit, [x if isinstance(x, str) else x.text(digits) for x in entries]
+
+    groups = [list(map(written, group)) for group in _groups(poses)]
+    return [block for group in groups if group for block in _fitting(group, width)]
+
+
+def _groups(poses: Poses) -> list[list[Quantity]]:
     found = poses.equilibria
     if not found:
         return []
@@ -147,54 +179,46 @@ def _blocks(poses: Poses, digits: int) -> list[list[Column]]:
     mechanism = mechanism_in(model)
     moving = () if mechanism is None else mechanism.moving
 
-    def column(header: str, unit: str, numbers: Sequence[Enclosure]) -> Column:
-        return header, unit, [x.text(digits) for x in numbers]
-
     first = found[0]
     called = {"solution": noun(model, 1)}
-    states: list[Column] = [("state", "", [called.get(kind, kind) for kind in map(kind_of, found)])]
+    kinds = [kind_of(pose, model) for pose in found]
+    states: list[Quantity] = [("state", "", [called.get(kind, kind) for kind in kinds])]
     if mechanism is not None:
         states.append(("flat", "", ["yes" if p.flat else "no" for p in found]))
-    if first.admissible is not None:
-        states.append(("tense", "", ["yes" if p.admissible else "no" for p in found]))
+    if first.may_be_admissible:
+        said = {True: "yes", False: "no", None: "undecided"}
+        states.append(("tense", "", [said[p.admissible] for p in found]))
     if first.eigenvalues:
         states.append(("index", "", ["-" if p.index is None else str(p.index) for p in found]))
     states.append(("mult.", "", [str(p.multiplicity) for p in found]))
     if first.energy is not None:
-        states.append(column("energy", "", [p.known_energy for p in found]))
-    states += [
-        column(f"eigenvalue {k + 1}", "", [p.eigenvalues[k] for p in found]) for k in range(len(first.eigenvalues))
-    ]
-    angles = [
-        column(name, unit, [getattr(p, field)[i] for p in found])
+        states.append(("energy", "", [p.known_energy for p in found]))
+    states += [(f"eigenvalue {k + 1}", "", [p.eigenvalues[k] for p in found]) for k in range(len(first.eigenvalues))]
+    angles: list[Quantity] = [
+        (name, unit, [getattr(p, field)[i] for p in found])
         for field, unit in (("angles", "rad"), ("degrees", "deg"))
         for i, name in enumerate(model.angles)
     ]
-    angles += [column(name, "", [p.reals[i] for p in found]) for i, name in enumerate(model.reals)]
-    nodes = [
-        column(f"{name} {axis}", "", [p.nodes[name][i] for p in found])
+    angles += [(name, "", [p.reals[i] for p in found]) for i, name in enumerate(model.reals)]
+    nodes: list[Quantity] = [
+        (f"{name} {axis}", "", [p.nodes[name][i] for p in found])
         for name in found[0].nodes
         if name in moving
         for i, axis in enumerate("xy")
     ]
-    springs = [
-        column(f"{what} {s.start}{s.end}", "", [getattr(p.springs[k], what) for p in found])
+    springs: list[Quantity] = [
+        (f"{what} {s.start}{s.end}", "", [getattr(p.springs[k], what) for p in found])
         for what in ("length", "force")
         for k, s in enumerate(found[0].springs)
     ]
-    torsion = [
-        column(f"{what} {t.name}", unit, [getattr(p.torsion[k], field) for p in found])
+    torsion: list[Quantity] = [
+        (f"{what} {t.name}", unit, [getattr(p.torsion[k], field) for p in found])
         for field, what, unit in (
             ("deflection", "deflection", "rad"), ("degrees", "deflection", "deg"), ("moment", "moment", ""),
         )
         for k, t in enumerate(first.torsion)
     ]  # fmt: skip
-    return [
-        block
-        for group in (states, angles, nodes, springs, torsion)
-        if group
-        for block in _fitting(group, len(str(len(found))))
-    ]
+    return [states, angles, nodes, springs, torsion]
 
 
 def _fitting(columns: Sequence[Column], used: int) -> list[list[Column]]:

@@ -117,7 +117,13 @@ def _curves(result: RegionMap) -> str:
         f"({terms} term{'s' * (terms != 1)})"
         for (kind, degrees, terms), n in alike.items()
     )
-    return f"curves    {curves or 'no curve changes the count'}"
+    lines = [f"curves    {curves or 'no curve changes the count'}"]
+    many = noun(result.slice.model)
+    lines += [
+        f"continua  {found.value} {many} where {result.components[n].polynomial.text(names)} = 0"
+        for n, found in result.continua.items()
+    ]
+    return "\n".join(lines)
 
 
 def _covered(cover: Cover) -> str:

@@ -11,6 +11,7 @@ from flint import arb
 
 from ptmcad.text.enclosure import Enclosure, settled
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.numerals import magnitude
 
 _GUARD = 6
 """Digits of the enclosure's middle beyond those asked for, at first."""
@@ -44,6 +45,20 @@ def enclosed(ball: arb, digits: int) -> Enclosure | None:
             near, far = (Fraction(n * 10 ** max(place, 0), 10 ** max(-place, 0)) for n in (center - 1, center + 1))
             return Enclosure(near, far) if mantissa > 0 else Enclosure(-far, -near)
         guard *= 2
+
+
+def bounded(ball: arb) -> Enclosure | None:
+    """All of a ball; where it holds zero, up to a power of ten on either side. None of a ball that is not finite.
+
+    >>> bounded(arb(0, "2e-31")) == Enclosure(-Fraction(1, 10**30), Fraction(1, 10**30))
+    True
+    """
+    if not ball.is_finite():
+        return None
+    if ball.is_exact() or not ball.contains(0):
+        return enclosure_of(ball)
+    most = Fraction(10) ** (magnitude(exact(ball.abs_upper())) + 1)
+    return Enclosure(-most, most)
 
 
 def _in_units(mantissa: int, exponent: int, place: int) -> tuple[int, int]:

@@ -1,7 +1,7 @@
 """Enclosures of real numbers, and real algebraic numbers: what certified answers are made of.
 
 Guarantee: an `Enclosure` contains the number it stands for, and each digit of its `text` is right: the text is the
-number rounded to nearest. An `AlgebraicNumber` is exact.
+number rounded to nearest, or a middle and a bound of what the number differs from it. An `AlgebraicNumber` is exact.
 """
 
 from __future__ import annotations
@@ -92,25 +92,19 @@ class Enclosure:
         Of an enclosure that does not determine so few, with the fewest more that it does: of what may be 2.5 and is not
         known exactly, no single digit is nearest. Zeros at the end are left out only where the text is the number
         exactly; an exact number halfway between two texts goes to the even one. Exact zero is ``0``; very small and
-        very large numbers are written as ``1.5e-7``.
+        very large numbers are written as ``1.5e-7``. An enclosure that settles no digits, as of what may be zero, is
+        written as a middle and a bound of the difference.
 
         >>> Enclosure(Fraction(1, 3), Fraction(1, 3)).text(4), Enclosure(Fraction(1, 4), Fraction(1, 4)).text()
         ('0.3333', '0.25')
         >>> Enclosure(Fraction(2499999, 10**6), Fraction(2500001, 10**6)).text(1)
         '2.5'
-        >>> Enclosure(Fraction(1), Fraction(2)).text(2)
-        Traceback (most recent call last):
-        ...
-        ValueError: the enclosure does not determine 2 digits
-
-        Raises
-        ------
-        ValueError
-            When the enclosure is too wide; `settles` says so before.
+        >>> Enclosure(Fraction(-1, 10**30), Fraction(1, 10**30)).text(), Enclosure(Fraction(1), Fraction(2)).text()
+        ('0 ± 1e-30', '1.5 ± 0.5')
         """
         told = self.told_digits(digits)
         if told is None:
-            raise ValueError(f"the enclosure does not determine {digits} digits")
+            return self._with_error()
         digits = told
         if self.low == self.high == 0:
             return "0"
@@ -118,6 +112,13 @@ class Enclosure:
         mantissa, exponent = _rounded(abs(value), digits)
         exact = self.low == self.high and abs(value) == mantissa * Fraction(10) ** exponent
         return ("-" if value < 0 else "") + _decimal(mantissa, exponent, digits, exact)
+
+    def _with_error(self) -> str:
+        """A middle, to the place of the radius' first digit, and what the number differs from it at most."""
+        unit = Fraction(10) ** magnitude(self.radius)
+        middle = round(self.center / unit) * unit
+        error = -(-max(self.high - middle, middle - self.low) // unit) * unit
+        return f"{exact_text(middle)} ± {exact_text(error)}"
 
 
 def exact_text(value: Fraction) -> str:

@@ -11,17 +11,20 @@ from collections.abc import Sequence
 from fractions import Fraction
 from math import lcm
 
-from ptmcad.answer.regionmap import Kind
+from ptmcad.answer.regionmap import Continuum, Kind
 from ptmcad.errors import ExpressionError
-from ptmcad.mechanism import Model
+from ptmcad.mechanism import Mechanism, Model, System
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.parsing import names_in, parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import PLANE, Claims
+from ptmcad.verification.derivation import has_index
 from ptmcad.verification.model import equation_factors
 from ptmcad.verification.report import Violation
 from ptmcad.verification.variety import BITS, check_identity, condition_exponents, factors, random_points
+
+_VANISHES = "an equation vanishes on it, number"
 
 
 def auxiliary(model: Model) -> tuple[str, ...]:
@@ -104,7 +107,21 @@ def check_boundary(claims: Claims, seed: str) -> str:
     for n, c in enumerate(claims.result.components):
         if c.kind is Kind.BOUNDARY and c.polynomial not in needed:
             raise Violation(f"component {n} is stored as boundary, but bounds nothing: {c.polynomial.text(names)[:60]}")
+        if c.continuum is Continuum.PROVED:
+            _check_continuum(claims, n, needed.get(c.polynomial, ""))
     return f"{len(needed)} factors of parameters and equations"
+
+
+def _check_continuum(claims: Claims, number: int, why: str) -> None:
+    """On a component on which an equation vanishes: all solutions of the others are, whatever its unknown is.
+
+    There are some where the equations are the slopes of a function on a torus, or there is no other.
+    """
+    model = claims.result.slice.model
+    free = not (model.inequalities if isinstance(model, System) else isinstance(model, Mechanism) and model.moments)
+    alone = len(model.unknowns) == 1
+    if not why.startswith(_VANISHES) or model.reals or not free or not (alone or has_index(model)):
+        raise Violation(f"component {number} is said to have infinitely many solutions, which is not proved")
 
 
 def _needed(claims: Claims) -> dict[PlanePolynomial, str]:
@@ -120,7 +137,7 @@ def _needed(claims: Claims) -> dict[PlanePolynomial, str]:
                 needed[factor] = f"it bounds the domain of {name}"
     for k, common in enumerate(equation_factors(claims)):
         for factor in factors(common) if not common.is_constant() else []:
-            needed.setdefault(factor, f"equation {k} vanishes on it")
+            needed.setdefault(factor, f"{_VANISHES} {k}")
     return needed
 
 

@@ -151,11 +151,12 @@ def test_poses_are_the_critical_points_along_the_loop() -> None:
 
 
 def test_a_relaxed_spring_is_told() -> None:
-    """Of an unloaded loop on one spring: its force and the energy are exactly zero, and the pose is stable."""
+    """Of an unloaded loop on one spring: its force and the energy are zero, to 100 digits, and the pose is stable."""
     poses = ptmcad.solve(ANCHORED | {"parameters": {}}, x="3/2", y=1)
-    relaxed = [pose for pose in poses.equilibria if pose.springs[0].force.exact == 0]
+    relaxed = [pose for pose in poses.equilibria if abs(pose.springs[0].force.high) < Fraction(1, 10**100)]
     assert len(relaxed) == poses.stable == 4
-    assert all(pose.energy is not None and pose.energy.exact == 0 and pose.stable for pose in relaxed)
+    assert all(pose.energy is not None and abs(pose.energy.high) < Fraction(1, 10**100) for pose in relaxed)
+    assert all(pose.stable and pose.admissible is None for pose in relaxed)
     assert len(poses.equilibria) == 8
 
 

@@ -1,17 +1,16 @@
-"""Equilibria whose unknowns are related, such as bars folded onto each other: what is exact by that is told exactly."""
+"""Equilibria whose unknowns are related, such as bars folded onto each other: what may be zero is enclosed closely."""
 
 from __future__ import annotations
 
 from fractions import Fraction
-from math import cos, pi, prod, sin, sqrt
+from math import pi, sqrt
 from typing import Any
 
 import pytest
 
 import ptmcad
 from ptmcad.answer.poses import Pose, Poses
-from ptmcad.certified.plain.combinations import independent
-from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
+from ptmcad.text.enclosure import Enclosure
 
 CHAIN: dict[str, Any] = {
     "parameters": {"l0": {"kind": "free length"}, "M": {}, "N": {}, "W": {"kind": "force"}},
@@ -36,6 +35,11 @@ def chain(changed: dict[str, Any] | None = None, **parameters: object) -> Poses:
     return ptmcad.solve(model=ptmcad.Mechanism({**CHAIN, **(changed or {})}), **values)
 
 
+def nearly(number: Enclosure, value: Fraction | int) -> bool:
+    """Whether a number is proved to be a value but for 1e-12."""
+    return abs(number.low - value) < Fraction(1, 10**12) > abs(number.high - value)
+
+
 def folded(poses: Poses) -> list[Pose]:
     """Those whose second angle is about the first one and half a turn."""
     turned = [(float(pose.angles[1]) - float(pose.angles[0])) / pi % 2 for pose in poses.equilibria]
@@ -51,9 +55,9 @@ def test_a_chain_folded_onto_its_pivot_ends_there(moment: object) -> None:
     assert len(found) == 2
     gx, gy = 2.7 - 2 * (1 - 0.5 / sqrt(5)), 3.6 + 4 * (1 - 0.5 / sqrt(5))
     for pose in found:
-        assert [c.exact for c in pose.nodes["Q"]] == [0, 0]
-        assert (pose.springs[0].length.exact, pose.springs[0].force.exact) == (5, Fraction(9, 2))
-        assert (pose.torsion[0].moment.exact, pose.torsion[0].degrees.exact) == (0, 180)
+        assert all(nearly(c, 0) for c in pose.nodes["Q"])
+        assert nearly(pose.springs[0].length, 5) and nearly(pose.springs[0].force, Fraction(9, 2))
+        assert nearly(pose.torsion[0].moment, 0) and nearly(pose.torsion[0].degrees, 180)
         assert pose.angles[0].exact is None
         c, s = (float(number) for number in pose.cosines_sines[:2])
         assert gy * c - gx * s == pytest.approx(-float(Fraction(moment)) if moment else 0, abs=1e-6)
@@ -70,10 +74,11 @@ def test_the_elbows_of_a_stretched_chain_are_at_rest() -> None:
         "torsion": [{"angle": "th2 - th1", "k": "1/10"}, {"angle": "th3 - th2", "k": "1/10"}],
     }
     found = ptmcad.solve(model=ptmcad.Mechanism(three), l0="1/2").equilibria
-    told = [tuple(torsion.degrees.exact for torsion in pose.torsion) for pose in found]
+    turns = [next((n for n in (0, 180) if nearly(t.degrees, n)), None) for pose in found for t in pose.torsion]
+    told = list(zip(turns[::2], turns[1::2], strict=True))
     assert [told.count(turns) for turns in ((0, 0), (0, 180), (180, 0), (180, 180))] == [2, 2, 2, 2]
     assert told.count((None, None)) == 4
-    assert all(t.moment.exact == 0 for pose in found for t in pose.torsion if t.degrees.exact is not None)
+    assert [nearly(t.moment, 0) for pose in found for t in pose.torsion] == [n is not None for n in turns]
 
 
 @pytest.mark.parametrize(
@@ -88,7 +93,7 @@ def test_the_elbows_of_a_stretched_chain_are_at_rest() -> None:
     ],
 )
 def test_a_chain_that_is_nearly_folded_is_not_taken_for_one_that_is(change: dict[str, Any]) -> None:
-    """The end is within the ball at which the relation is tried: only what the equations imply refuses it."""
+    """The end is told from the pivot, however near it is."""
     parts = {name: value for name, value in change.items() if name in CHAIN}
     poses = chain(parts, **{name: value for name, value in change.items() if name not in CHAIN})
     found = folded(poses)
@@ -101,7 +106,7 @@ def test_a_second_angle_that_is_the_negative_of_the_first() -> None:
     """Between A and B, on one line with the pivot, 3 - x - 1/2 = 2 (x - 1 - 1/2) at x = 11/6: bent to either side."""
     level = {"points": {**CHAIN["points"], "A": [3, 0], "B": [1, 0]}, "torsion": []}
     bent = [pose for pose in chain(level).equilibria if abs(float(pose.nodes["Q"][0]) - 11 / 6) < 1e-6]
-    assert [pose.nodes["Q"][1].exact for pose in bent] == [0, 0]
+    assert [nearly(pose.nodes["Q"][1], 0) for pose in bent] == [True, True]
     assert [float(pose.cosines_sines[0]) for pose in bent] == pytest.approx([11 / 12] * 2)
 
 
@@ -114,9 +119,9 @@ def test_a_second_angle_that_is_a_quarter_turn_more_than_the_first() -> None:
     }
     found = chain({"points": points, "torsion": []}).equilibria
     stretched = [pose for pose in found if abs(float(pose.nodes["Z"][0])) < 1e-6]
-    assert [pose.nodes["Z"][0].exact for pose in stretched] == [0, 0]
+    assert [nearly(pose.nodes["Z"][0], 0) for pose in stretched] == [True, True]
     # the ends of the others are beside each other where Q is the pivot
-    assert [[c.exact for c in pose.nodes["Q"]] for pose in found if pose not in stretched] == [[0, 0]] * 2
+    assert [[nearly(c, 0) for c in pose.nodes["Q"]] for pose in found if pose not in stretched] == [[True, True]] * 2
 
 
 def sliders(free: object, load: object) -> Poses:
@@ -142,7 +147,7 @@ def test_sliders_that_are_at_the_same_height_because_of_the_same_forces() -> Non
     length = sqrt((x - 2) ** 2 + x**2)
     # half of each spring's slope
     assert (1 - 1 / 3 / length) * (x - 1) + (x - 1 / 3 / sqrt(2) / 1) == pytest.approx(0, abs=1e-5)
-    assert pose.nodes["Z"][0].exact == 0 and pose.nodes["Z"][1].exact is None
+    assert nearly(pose.nodes["Z"][0], 0) and not nearly(pose.nodes["Z"][1], 0)
 
 
 @pytest.mark.parametrize(("free", "load"), [("1/3", "1e-70"), (Fraction(1, 3) + Fraction(1, 10**70), 0)])
@@ -151,33 +156,3 @@ def test_sliders_that_are_nearly_at_the_same_height(free: object, load: object) 
     (pose,) = sliders(str(free), load).equilibria
     assert pose.nodes["Z"][0].exact is None
     assert 0 < abs(float(pose.nodes["Z"][0])) < 1e-60
-
-
-@pytest.mark.parametrize(("sign", "quarters"), [(1, 0), (1, 1), (-1, 2), (-1, 3), (1, -1)])
-def test_polynomials_in_which_an_unknown_is_replaced(sign: int, quarters: int) -> None:
-    """In doubles, at a place where the second angle is such, and the second length the first one times the sign."""
-    ring = Harmonics(("p", "q", "x", "y"), ("x", "y"))
-    p, q = (ring.cos("p"), ring.sin("p")), (ring.cos("q"), ring.sin("q"))
-    f = p[0] * q[1] * q[1] * ring.parameter("y") + q[0] * q[0] * ring.parameter("x") + p[1] * q[1] * q[0] + p[0]
-    g = f.replaced(1, 0, sign, quarters).replaced(3, 2, sign, 0)
-    assert all(m[1] == e[3] == 0 for m, e in g.terms)
-    at = [0.7, sign * 0.7 + quarters * pi / 2, 1.3, sign * 1.3]
-    assert value(g, at) == pytest.approx(value(f, at))
-    fixed = f.replaced(1, None, 1, quarters).replaced(3, None, 1, 0)
-    assert value(fixed, [0.7, 9, 1.3, 9]) == pytest.approx(value(f, [0.7, quarters * pi / 2, 1.3, 0]))
-
-
-def value(f: TrigonometricPolynomial, at: list[float]) -> float:
-    total = 0.0
-    for (m, e), (a, b) in f.terms.items():
-        angle = sum(k * x for k, x in zip(m, at, strict=True))
-        power = prod(x**k for k, x in zip(e, at, strict=True))
-        total += (float(a.constant()) * cos(angle) + float(b.constant()) * sin(angle)) * power
-    return total
-
-
-def test_rows_that_follow_from_others() -> None:
-    one = Fraction(1)
-    rows = [{"a": one, "b": one}, {"a": 2 * one, "b": 2 * one}, {}, {"b": one, "c": -one}, {"a": one, "c": one}]
-    assert independent(rows) == [0, 3]
-    assert independent([*rows, {"c": one}]) == [0, 3, 5]

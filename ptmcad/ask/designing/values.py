@@ -146,7 +146,8 @@ def _poses(design: Design, values: Mapping[str, Fraction]) -> Poses | None:
     if poses.status in (Status.ON_VARIETY, Status.UNDECIDED):
         return None
     fits = [pose for pose in poses.equilibria if not design.model.tells_stability or pose.stable is True]
-    number = sum(not design.tension or pose.admissible is not False for pose in fits)
+    # where it is not decided whether a pose is tense, it is not taken for one
+    number = sum(not design.tension or not pose.may_be_admissible or pose.admissible is True for pose in fits)
     return poses if number == design.working else None
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.field import Field
 from ptmcad.answer.poses import Pose, Poses
-from ptmcad.answer.regionmap import RegionMap
+from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.fields.barrier import barriers
 from ptmcad.ask.fields.branches import Filling, Follower, Places, filled, places_of
 from ptmcad.ask.fields.equations import State, eigenvalues
@@ -320,7 +320,7 @@ def _checked(
     compared = []
     for k in picked:
         poses = exact_at(result, *centre(result, follower.places, int(rows[k]), int(columns[k])))
-        if poses.equilibria:
+        if poses.equilibria and poses.status is not Status.UNDECIDED:
             compared.append((k, np.array([unknowns_of(p) for p in poses.equilibria]).T))
     if not compared:
         return 0, 0.0

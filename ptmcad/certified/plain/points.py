@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite
+from typing import NamedTuple
 
 import numpy as np
 from flint import arb_mat, ctx
@@ -46,6 +47,14 @@ MAX_OPEN_BOXES = 40
 
 HALVINGS = 60
 """Of a box around a solution, before it is in no other solution's way."""
+
+
+class Zeros(NamedTuple):
+    """Boxes with exactly one zero each, narrower ones around it, each zero once; and how many boxes may hold more."""
+
+    unique: Boxes
+    narrow: Boxes
+    open: int
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,9 +94,9 @@ class PlainCounter:
         """
         stable_only = count.is_of_stable
         found = self._zeros(x, y, stable_only, thorough)
-        counted = None if found is None else self._counted(x, y, found, count)
-        if counted is None:
-            return PointCount()
+        counted, unclear = self._counted(x, y, found, count)
+        if found.open or unclear:
+            return self._proved(x, y, counted, count, found.open + unclear)
         if self.problem.is_gradient:
             return self._of_potential(x, y, counted, count)
         # where all are counted, which of them are stable is known here only: it may change within the cell
@@ -101,6 +110,19 @@ class PlainCounter:
             return self._with_admissible(x, y, number, solutions, [wide for wide, _ in counted], count)
         return PointCount(total=number, solutions=solutions, decided=True)
 
+    def _proved(
+        self, x: Fraction, y: Fraction, counted: Sequence[tuple[Boxes, Boxes]], count: Count, unclear: int
+    ) -> PointCount:
+        """What is proved where the counts are not decided; nothing where the stable ones only were looked for."""
+        found = []
+        for wide, box in () if count.is_of_stable else counted:
+            signs = self._stability(x, y, wide)
+            if self.problem.is_gradient:
+                negative = self._index(x, y, wide)
+                signs = "" if negative is None else "+" * (len(self.problem.unknowns) - negative) + "-" * negative
+            found.append(boxed(wide, box, signs, self.problem.variables))
+        return PointCount(solutions=tuple(found), open=unclear)
+
     def _of_potential(
         self, x: Fraction, y: Fraction, counted: Sequence[tuple[Boxes, Boxes]], count: Count
     ) -> PointCount:
@@ -111,7 +133,7 @@ class PlainCounter:
             negative = self._index_in_floats(box)
             negative = self._index(x, y, wide) if negative is None else negative
             if negative is None:
-                return PointCount()
+                return self._proved(x, y, counted, count, 0)
             index[negative] += 1
             minima += [wide] if negative == 0 else []
             if negative == 0 or not only_minima:
@@ -143,22 +165,20 @@ class PlainCounter:
             admissible = longer.count(True)
         return PointCount(stable=stable, admissible=admissible, solutions=solutions, decided=True)
 
-    def _counted(
-        self, x: Fraction, y: Fraction, zeros: tuple[Boxes, Boxes], count: Count
-    ) -> list[tuple[Boxes, Boxes]] | None:
-        """The proved zeros at which all conditions are positive; None when that is not decided of some."""
+    def _counted(self, x: Fraction, y: Fraction, zeros: Zeros, count: Count) -> tuple[list[tuple[Boxes, Boxes]], int]:
+        """The proved zeros at which all conditions are positive, and of how many that is not decided."""
         asked = self.conditions.outputs[0][: self._asked(count)]
-        found = []
-        for unique, narrow in zip(*zeros, strict=True):
+        found, unclear = list[tuple[Boxes, Boxes]](), 0
+        for unique, narrow in zip(zeros.unique, zeros.narrow, strict=True):
             counts = self._holds(x, y, unique, asked)
-            if counts is None:
-                return None
-            if counts:
-                own = self._apart(x, y, unique, narrow) if self.problem.where else unique
-                if own is None:
-                    return None
+            if counts is False:
+                continue
+            own = self._apart(x, y, unique, narrow) if counts and self.problem.where else unique
+            if counts is None or own is None:
+                unclear += 1
+            else:
                 found.append((own, narrow))
-        return found
+        return found, unclear
 
     def _apart(self, x: Fraction, y: Fraction, unique: Boxes, narrow: Boxes) -> Boxes | None:
         """A box between two around a zero of a branch in which its conditions hold: no other branch has a zero there.
@@ -197,14 +217,15 @@ class PlainCounter:
                 return True
         return None
 
-    def _zeros(self, x: Fraction, y: Fraction, stable: bool, thorough: bool) -> tuple[Boxes, Boxes] | None:
-        """Boxes with exactly one solution each, and narrower ones, each solution once; None when undecided."""
+    def _zeros(self, x: Fraction, y: Fraction, stable: bool, thorough: bool) -> Zeros:
+        """The zeros at a point that a search proves."""
+        none = np.empty((0, 2 * (FIRST + len(self.problem.unknowns))))
         (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
         found_ranges = self.ranges
         if found_ranges is None:
             here = known_ranges(self.problem, (Axis("x", x, x), Axis("y", y, y)))
             if not all(isfinite(sum(bounds)) for bounds in here):
-                return None
+                return Zeros(none, none, 1)
             found_ranges = here
         low, high = zip(*found_ranges, strict=True)
         start = np.array([[x_low, y_low, *low, x_high, y_high, *high]])
@@ -213,12 +234,14 @@ class PlainCounter:
         for finest in MIN_BOX_WIDTHS if thorough else MIN_BOX_WIDTHS[:1]:
             found = self._isolated(arguments, start, finest, thorough)
             if not len(found.left()):
-                periods = np.zeros(variables)
-                for k, name in enumerate(self.problem.unknowns, FIRST):
-                    periods[k] = 0.0 if name in self.problem.reals else FULL_TURN
-                kept = distinct(found.unique, found.narrow, FIRST, periods)
-                return None if kept is None else (found.unique[kept], found.narrow[kept])
-        return None
+                break
+        periods = np.zeros(variables)
+        for k, name in enumerate(self.problem.unknowns, FIRST):
+            periods[k] = 0.0 if name in self.problem.reals else FULL_TURN
+        kept = distinct(found.unique, found.narrow, FIRST, periods)
+        if kept is None:
+            return Zeros(none, none, len(found.left()) + len(found.unique))
+        return Zeros(found.unique[kept], found.narrow[kept], len(found.left()))
 
     def _isolated(self, arguments: Arguments, start: Boxes, finest: float, thorough: bool) -> Found:
         """The search in boxes no finer than that; of more than three unknowns one of many parts."""
@@ -239,7 +262,7 @@ class PlainCounter:
         conditions = [c.text for c in self.problem.conditions(count)]
         excesses = [excess.text for excess in self.problem.excesses]
         found = self._zeros(x, y, bool(excesses), False) if conditions or excesses else None
-        for unique in () if found is None else found[0]:
+        for unique in () if found is None or found.open else found.unique:
             if excesses and self.problem.is_gradient and self._index(x, y, unique) != 0:
                 continue
             for texts, places in zip((conditions, excesses), self.conditions.outputs, strict=True):
@@ -292,6 +315,8 @@ class BranchCounter:
         parts = []
         for counter in self.branches:
             own = counter.at(x, y, count, thorough=thorough)
+            if not own.decided:
+                return PointCount()
             parts.append(in_description(counter.problem, counter.equations, (x, y), own))
             if not parts[-1].decided:
                 return PointCount()

@@ -1,12 +1,12 @@
 """The equilibria at a point of any mechanism with springs of free lengths, with everything asked of a pose.
 
-Guarantee: all equilibria are there, each proved; every number settles the digits asked for. What could not be decided,
-such as a number that is zero without being a constant, makes the whole answer UNDECIDED.
+Guarantee: each equilibrium is proved, and all are there unless the answer is UNDECIDED, which then says in how many
+boxes there may be more. Every number settles the digits asked for or, where it may be zero, is enclosed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from flint import arb, arb_mat, ctx
@@ -19,27 +19,24 @@ from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.covering import located
 from ptmcad.certified.plain.points import BranchCounter, PlainCounter, plain_counter
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS_AT_POINTS
-from ptmcad.certified.plain.related import related_numbers
-from ptmcad.certified.plain.relaxed import Relaxed, relaxed_numbers
 from ptmcad.certified.plain.resting import rational_point
 from ptmcad.certified.plain.slanted import with_slanted
 from ptmcad.certified.plain.spectrum import ordered_eigenvalues
-from ptmcad.certified.plain.symmetric import Point, fixed_by_symmetry, quarter_turns, rational_numbers
-from ptmcad.certified.plain.unsettled import not_settled
+from ptmcad.certified.plain.symmetric import Point, quarter_turns, rational_numbers
 from ptmcad.certified.potential import potential
 from ptmcad.certified.tape import Tape, record
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Axis, Count, Slice
-from ptmcad.text.balls import enclosed
+from ptmcad.text.balls import bounded, enclosed
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.expressions import axis
 
 MAX_DOUBLINGS = 4
 """Of the bits, for a number that is not distinguished from zero."""
 NOT_TOLD = (
-    "the equilibria could not be distinguished: there are infinitely many, one is nearly degenerate, or a spring has "
+    "not all equilibria could be distinguished: there are infinitely many, one is nearly degenerate, or a spring has "
     "nearly no length there"
 )
 
@@ -59,37 +56,42 @@ def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits
     """
     slice = point_slice(mechanism, parameters)
     prove_slice(slice)
-    found = solutions_at(plain_counter(slice, MAX_UNKNOWNS_AT_POINTS), Count.INDEX)
-    if found is None:
-        return Poses(mechanism, parameters, (), Status.UNDECIDED, digits, 0, NOT_TOLD)
+    zeros, unclear = solutions_at(plain_counter(slice, MAX_UNKNOWNS_AT_POINTS), Count.INDEX)
     written = tape_of(mechanism, parameters)
-    poses, most = all_settled(_pose(mechanism, parameters, written, at, solution, digits) for at, solution in found)
-    if isinstance(poses, str):
-        return Poses(mechanism, parameters, (), Status.UNDECIDED, digits, most, poses)
-    ordered = sorted(poses, key=_order)
-    return Poses(mechanism, parameters, tuple(ordered), Status.CERTIFIED, digits, most)
+    poses = [_pose(mechanism, parameters, written, at, solution, digits) for at, solution in zeros]
+    return answered(mechanism, parameters, digits, sorted(poses, key=lambda p: _order(p[0])), unclear, NOT_TOLD)
 
 
-def all_settled(found: Iterable[tuple[Pose | str, int]]) -> tuple[list[Pose] | str, int]:
-    """All poses, or the sentence that says which number of the first of them is not settled; and the most bits."""
-    poses, most = [], 0
-    for pose, bits in found:
-        most = max(most, bits)
-        if isinstance(pose, str):
-            return pose, most
-        poses.append(pose)
-    return poses, most
+def answered(
+    model: Model,
+    parameters: Mapping[str, Fraction],
+    digits: int,
+    poses: Sequence[tuple[Pose, int]],
+    unclear: int,
+    reason: str,
+    remark: str = "",
+) -> Poses:
+    """The answer: these poses, each with the bits that it took; for a reason undecided where some may lack.
+
+    Parameters
+    ----------
+    unclear : boxes in which there may be more equilibria.
+    reason : for which there are such boxes.
+    remark : where there are none.
+    """
+    most = max((bits for _, bits in poses), default=0)
+    status, remark = (Status.UNDECIDED, reason) if unclear else (Status.CERTIFIED, remark)
+    return Poses(model, parameters, tuple(pose for pose, _ in poses), status, digits, most, remark, undecided=unclear)
 
 
-def solutions_at(counter: BranchCounter, count: Count) -> list[tuple[PlainCounter, Solution]] | None:
-    """The solutions that a count has, each with the counter of its branch; None where they are not decided."""
-    found = []
+def solutions_at(counter: BranchCounter, count: Count) -> tuple[list[tuple[PlainCounter, Solution]], int]:
+    """The solutions, each with the counter of its branch, and the number of boxes in which there may be more."""
+    found, unclear = [], 0
     for branch in counter.branches:
         counts = branch.at(Fraction(0), Fraction(0), count)
-        if not counts.decided:
-            return None
+        unclear += counts.open
         found += [(branch, solution) for solution in counts.solutions]
-    return found
+    return found, unclear
 
 
 def boxes_of(counter: PlainCounter, solution: Solution, precision: int) -> tuple[Box, Box]:
@@ -145,13 +147,14 @@ def _pose(
     counter: PlainCounter,
     solution: Solution,
     digits: int,
-) -> tuple[Pose | str, int]:
-    """The pose with all numbers settled, and the bits that this took; a sentence that says which number is not."""
+) -> tuple[Pose, int]:
+    """The pose with all numbers settled or, where they may be zero, enclosed; and the bits that this took."""
     tape, _ = written
-    bits, found = 64 + 4 * digits, dict[str, Enclosure]()
+    bits, found = 32 + 2 * digits, dict[str, Enclosure]()
     turns: dict[str, int] = {}
     at: Point = {}
     for attempt in range(MAX_DOUBLINGS):
+        bits *= 2
         whole, box = boxes_of(counter, solution, bits)
         if attempt > 0:  # some number is not settled: it may be a short one, or a longer one with more bits
             with ctx.workprec(bits):
@@ -168,23 +171,10 @@ def _pose(
             entries = arb_mat(size, size, [values[int(place)] for place in tape.outputs[1]])
             numbers |= {f"eigenvalue {n}": value for n, value in enumerate(ordered_eigenvalues(entries))}
             settle(found, numbers, written, digits, attempt)
-        if attempt == 1:
-            relaxed = Relaxed(
-                tuple(n for n in range(len(mechanism.springs)) if f"force {n}" not in found),
-                tuple(n for n in range(len(mechanism.torsion)) if f"torsion moment {n}" not in found),
-            )
-            found |= relaxed_numbers(
-                mechanism, parameters, relaxed, (whole, box), bits, fixed_by_symmetry(mechanism, at)
-            )
-            if numbers.keys() - found.keys():
-                fixed, more = related_numbers(mechanism, parameters, counter.problem, (whole, box), bits)
-                turns |= quarter_turns(mechanism, fixed)
-                found |= more
         if found.keys() >= numbers.keys():
-            index = solution.signs.count("-") if mechanism.has_potential else None
-            return assembled(mechanism, parameters, found, index), bits
-        bits *= 2
-    return not_settled(mechanism, found, numbers.keys() - found.keys()), bits // 2
+            break
+    index = solution.signs.count("-") if mechanism.has_potential and solution.signs else None
+    return assembled(mechanism, parameters, all_bounded(found, numbers), index), bits
 
 
 def numbers_of(
@@ -206,13 +196,20 @@ def numbers_of(
     tape, names = written
     numbers = {name: values[int(place)] for name, place in zip(names, tape.outputs[0], strict=True)}
     for angle in mechanism.angles:
-        radians = arb.atan2(numbers[f"sin {angle}"], numbers[f"cos {angle}"])
+        radians = angle_of(numbers[f"cos {angle}"], numbers[f"sin {angle}"])
         if angle in turns:
             radians = arb.pi() * turns[angle] / 2
         numbers |= {angle: radians, f"degrees {angle}": radians * 180 / arb.pi()}
     for n in range(len(mechanism.torsion)):
         numbers |= _deflection(found, n, numbers.pop(f"torsion cos {n}"), numbers.pop(f"torsion sin {n}"))
     return numbers
+
+
+def angle_of(cosine: arb, sine: arb) -> arb:
+    """The angle in (-pi, pi]; next to half a turn, where the sine may be zero, a ball around pi."""
+    if cosine < 0 and sine.contains(0):
+        return arb.pi() + (sine / cosine).atan()
+    return arb.atan2(sine, cosine)
 
 
 def settle(
@@ -232,6 +229,23 @@ def settle(
             found[name] = settled
 
 
+def all_bounded(found: Mapping[str, Enclosure], numbers: Mapping[str, arb]) -> dict[str, Enclosure]:
+    """The numbers that are found, and of those that no digits settle all of their balls.
+
+    Raises
+    ------
+    ArithmeticError
+        When one has no bounds, which would be a fault of this program: all are of smooth functions in a proved box.
+    """
+    held = dict(found)
+    for name in numbers.keys() - found.keys():
+        bounds = bounded(numbers[name])
+        if bounds is None:
+            raise ArithmeticError(f"no bounds of {name} in a proved pose")
+        held[name] = bounds
+    return held
+
+
 def _deflection(found: Mapping[str, Enclosure], number: int, cosine: arb, sine: arb) -> dict[str, arb]:
     """A torsion spring's deflection in radians and degrees; exact balls where it is known to be none.
 
@@ -244,7 +258,7 @@ def _deflection(found: Mapping[str, Enclosure], number: int, cosine: arb, sine: 
         known = found.get(f"torsion {part} {number}")
         if known is not None and known.exact == 0 and not other.contains(0):
             quarters = turns[0 if other > 0 else 1]
-    radians = arb.atan2(sine, cosine) if quarters is None else arb.pi() * quarters / 2
+    radians = angle_of(cosine, sine) if quarters is None else arb.pi() * quarters / 2
     degrees = radians * 180 / arb.pi() if quarters is None else arb(90 * quarters)
     return {f"torsion deflection {number}": radians, f"torsion degrees {number}": degrees}
 
@@ -257,9 +271,12 @@ def proved_digits(number: arb, digits: int, attempt: int) -> Enclosure | None:
     return enclosed(number, digits + 1) if found is None and attempt > 1 else found
 
 
-def all_pull(springs: Sequence[Spring]) -> bool:
-    """Whether every spring is longer than its free length, by forces of which each is told from zero or is zero."""
-    return all(spring.force.low > 0 for spring in springs)
+def is_tense(stable: bool | None, springs: Sequence[Spring]) -> bool | None:
+    """Whether a pose is stable with every spring longer than its free length; None where that is not decided."""
+    forces = [spring.force for spring in springs]
+    if stable is False or any(force.high < 0 or force.exact == 0 for force in forces):
+        return False
+    return True if stable and all(force.low > 0 for force in forces) else None
 
 
 def assembled(
@@ -273,7 +290,7 @@ def assembled(
 
     Parameters
     ----------
-    index : None where there is no Hessian.
+    index : None where there is no Hessian, or its index is not decided.
     """
     springs = tuple(
         Spring(
@@ -295,9 +312,9 @@ def assembled(
         )
         for n, spring in enumerate(mechanism.torsion)
     )
-    size = 0 if index is None else len(mechanism.unknowns)
-    eigenvalues = tuple(at[f"eigenvalue {n}"] for n in range(size))
-    if index is not None and sum(value.high < 0 for value in eigenvalues) != index:
+    stable = None if index is None else index == 0
+    eigenvalues = tuple(at[f"eigenvalue {n}"] for n in range(len(mechanism.unknowns)) if f"eigenvalue {n}" in at)
+    if index is not None and not all((v.low < 0) if n < index else (v.high > 0) for n, v in enumerate(eigenvalues)):
         raise ArithmeticError("the Hessian's eigenvalues contradict the index that was proved")
     return Pose(
         angles=tuple(at[angle] for angle in mechanism.angles),
@@ -305,13 +322,13 @@ def assembled(
         cosines_sines=tuple(at[f"{part} {angle}"] for angle in mechanism.angles for part in ("cos", "sin")),
         nodes={name: (at[f"{name} 0"], at[f"{name} 1"]) for name in mechanism.points},
         springs=springs,
-        energy=None if index is None else at["energy"],
+        energy=at.get("energy"),
         eigenvalues=eigenvalues,
         multiplicity=1,
         index=index,
-        stable=None if index is None else index == 0,
+        stable=stable,
         flat=flat,
-        admissible=None if index is None else index == 0 and all_pull(springs),
+        admissible=is_tense(stable, springs) if mechanism.has_potential else None,
         reals=tuple(at[f"real {name}"] for name in mechanism.reals),
         torsion=torsion,
     )

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from math import pi, prod
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 from flint import arb
 
@@ -110,18 +110,6 @@ def quarter_turns(mechanism: Mechanism, at: Point) -> dict[str, int]:
     return found
 
 
-def fixed_by_symmetry(mechanism: Mechanism, at: Point) -> dict[str, int]:
-    """The unknowns that `fixed_turns` fixed, where it did not fix all of them.
-
-    Parameters
-    ----------
-    at : values of unknowns that are proved; of all of them where a zero gradient proved them, which may be no symmetry.
-    """
-    if len(at) == len(mechanism.angles) + len(mechanism.unknowns):
-        return {}
-    return quarter_turns(mechanism, at) | {name: 0 for name in mechanism.reals if name in at}
-
-
 def _quarters(cosine: Fraction, sine: Fraction) -> int | None:
     """The quarter turns, from -1 to 2, of a direction; None of one that is not along an axis."""
     if not cosine.denominator == sine.denominator == 1:
@@ -133,21 +121,7 @@ def rational_numbers(
     mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Point, surds: Surds = NO_SURDS
 ) -> dict[str, Enclosure]:
     """Those numbers of an equilibrium that are rational by these fixed unknowns, by name, as exact enclosures."""
-    return numbers_by(mechanism, parameters, at, _Known(parameters, at, surds))
-
-
-class Known(Protocol):
-    """What is known of the values of trees at an equilibrium; None where that is nothing, or not rational."""
-
-    def value(self, tree: Tree) -> Fraction | None: ...
-
-    def squared_length(self, mechanism: Mechanism, start: str, end: str) -> Fraction | None: ...
-
-
-def numbers_by(
-    mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Point, known: Known
-) -> dict[str, Enclosure]:
-    """The same by other knowledge beside the fixed unknowns."""
+    known = _Known(parameters, at, surds)
     found = {name: value for name, value in at.items() if " " in name}
     found |= {f"real {name}": at[name] for name in mechanism.reals if name in at}
     for name, n in quarter_turns(mechanism, at).items():

@@ -70,27 +70,6 @@ class TrigonometricPolynomial:
                 found.append(((m, lower), (a * e[unknown], b * e[unknown])))
         return _collected(found)
 
-    def replaced(self, unknown: int, other: int | None, sign: int, quarters: int) -> TrigonometricPolynomial:
-        """With a sign times another unknown in an unknown's place, an angle with so many quarter turns more.
-
-        Parameters
-        ----------
-        other : of the same kind; None for zero.
-        """
-        found = []
-        for (m, e), (a, b) in self.terms.items():
-            turns, power = m[unknown], e[unknown]
-            if other is None and power:
-                continue
-            multiples, powers = list(m), list(e)
-            multiples[unknown] = powers[unknown] = 0
-            if other is not None:
-                multiples[other] += sign * turns
-                powers[other] += power
-            c, d = ((a, b), (b, -a), (-a, -b), (-b, a))[turns * quarters % 4]
-            found.append(((tuple(multiples), tuple(powers)), (c * sign**power, d * sign**power)))
-        return _collected(found)
-
     def substituted(self, rows: Sequence[Multi]) -> TrigonometricPolynomial:
         """With sums of whole multiples of other angles for the angles; real unknowns, whose multiples are 0, stay.
 

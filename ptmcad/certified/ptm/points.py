@@ -107,27 +107,16 @@ class PointCounter:
         """The equilibria that ``count`` needs, each once; None when they cannot be decided."""
         only_minima = count.is_of_stable
         written, creases = self.equilibria_at(x, y), creases_at(values_at(self.slice, x, y))
-        (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
-        second, first = (CREASED if crease else TURN for crease in creases)
-        start = np.array([[x_low, y_low, first[0], second[0], x_high, y_high, first[1], second[1]]])
-        system, equations = (written.minima if only_minima else written.all).arguments(), written.equations.arguments()
         for finest in MIN_BOX_WIDTHS:
-            budget = BUDGET if thorough else QUICK_BUDGET
-            found = isolate(system, equations, start, (finest, budget, MAX_OPEN_BOXES), EQUAL)
-            left = found.left()
-            if found.used < budget and len(left) <= MAX_OPEN_BOXES:
+            unique, narrow, left, ended = self._searched(
+                x, y, only_minima, finest, BUDGET if thorough else QUICK_BUDGET
+            )
+            if ended:
                 break
             if not thorough:
                 return None
         else:
             return None
-        # outside its turn a crease's formulas have zeros of their own, which are no equilibria a turn away either
-        unique, narrow = found.unique, found.narrow
-        inside = np.ones(len(narrow), np.bool_)
-        for angle, crease in zip((TH1, TH2), reversed(creases), strict=True):
-            if crease:
-                inside &= (narrow[:, 4 + angle] >= 0) & (narrow[:, angle] <= float(CREASED_END[1]))
-        unique, narrow = unique[inside], narrow[inside]
         kept = None if len(left) else distinct(unique, narrow, TH1)
         if kept is None and not thorough:
             return None
@@ -136,6 +125,36 @@ class PointCounter:
         else:
             zeros = _kinds(written, x, y, unique[kept], narrow[kept], only_minima)
         return None if zeros is None else _off_creases(zeros, creases)
+
+    def proved(self, x: Fraction, y: Fraction) -> tuple[list[Solution], int]:
+        """The equilibria that are proved where not all are told, and the number of boxes in which there may be more."""
+        written, creases = self.equilibria_at(x, y), creases_at(values_at(self.slice, x, y))
+        unique, narrow, left, _ = self._searched(x, y, False, MIN_BOX_WIDTHS[-1], BUDGET)
+        kept = distinct(unique, narrow, TH1)
+        if kept is None:
+            return [], len(left) + len(unique)
+        found = [_kinds(written, x, y, unique[[k]], narrow[[k]], False) for k in kept]
+        there = [zeros and _off_creases(zeros, creases) for zeros in found]
+        return [zero.solution for zeros in there for zero in zeros or ()], len(left) + there.count(None)
+
+    def _searched(
+        self, x: Fraction, y: Fraction, only_minima: bool, finest: float, budget: int
+    ) -> tuple[Boxes, Boxes, Boxes, bool]:
+        """Boxes with one zero each, narrower ones, those that are left, and whether the search came to an end."""
+        written, creases = self.equilibria_at(x, y), creases_at(values_at(self.slice, x, y))
+        (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
+        second, first = (CREASED if crease else TURN for crease in creases)
+        start = np.array([[x_low, y_low, first[0], second[0], x_high, y_high, first[1], second[1]]])
+        system, equations = (written.minima if only_minima else written.all).arguments(), written.equations.arguments()
+        found = isolate(system, equations, start, (finest, budget, MAX_OPEN_BOXES), EQUAL)
+        left = found.left()
+        # outside its turn a crease's formulas have zeros of their own, which are no equilibria a turn away either
+        inside = np.ones(len(found.narrow), np.bool_)
+        for angle, crease in zip((TH1, TH2), reversed(creases), strict=True):
+            if crease:
+                inside &= (found.narrow[:, 4 + angle] >= 0) & (found.narrow[:, angle] <= float(CREASED_END[1]))
+        ended = found.used < budget and len(left) <= MAX_OPEN_BOXES
+        return found.unique[inside], found.narrow[inside], left, ended
 
 
 def point_counter(slice: Slice) -> PointCounter:

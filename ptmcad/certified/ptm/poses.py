@@ -1,26 +1,33 @@
 """The equilibria at a point of a mechanism whose springs have free lengths, with everything asked of a pose.
 
-Guarantee: all equilibria are there, each proved; every number settles the digits asked for. A pose is called flat, and
-its numbers are exact, only when the flat configuration itself is an equilibrium, exactly, and lies in the box in which
-the pose is the only one. What could not be decided makes the whole answer UNDECIDED.
+Guarantee: each equilibrium is proved, and all are there unless the answer is UNDECIDED. Every number settles the digits
+asked for or, where it may be zero, is enclosed. A pose is called flat, and its numbers are exact, only when the flat
+configuration itself is an equilibrium, exactly, and lies in the box in which the pose is the only one.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import isqrt
 
 from flint import arb, ctx
 
 from ptmcad.answer.poses import Pose, Poses
-from ptmcad.answer.regionmap import Solution, Status
+from ptmcad.answer.regionmap import Solution
 from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.formula import Graph, Operation
-from ptmcad.certified.plain.poses import NOT_TOLD, all_settled, assembled, point_slice, proved_digits
-from ptmcad.certified.plain.unsettled import not_settled
+from ptmcad.certified.plain.poses import (
+    NOT_TOLD,
+    all_bounded,
+    angle_of,
+    answered,
+    assembled,
+    point_slice,
+    proved_digits,
+)
 from ptmcad.certified.potential import potential
 from ptmcad.certified.ptm.points import point_counter
 from ptmcad.certified.ptm.statics import TH1, TH2
@@ -59,14 +66,11 @@ def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
     prove_slice(slice)
     counter = point_counter(slice)
     counts = counter.at(Fraction(0), Fraction(0), Count.INDEX)
-    if not counts.decided:
-        return Poses(MECHANISM, parameters, (), Status.UNDECIDED, digits, 0, NOT_TOLD)
+    solutions, unclear = (counts.solutions, 0) if counts.decided else counter.proved(Fraction(0), Fraction(0))
     written, equations = _tape(parameters), counter.equilibria_at(Fraction(0), Fraction(0)).equations
-    poses, most = all_settled(_pose(parameters, written, equations, s, digits) for s in counts.solutions)
-    if isinstance(poses, str):
-        return Poses(MECHANISM, parameters, (), Status.UNDECIDED, digits, most, poses)
-    peaks = _PEAKS.get(counts.cones or 0, "")
-    return Poses(MECHANISM, parameters, tuple(_ordered(poses)), Status.CERTIFIED, digits, most, peaks)
+    poses = [_pose(parameters, written, equations, s, digits) for s in solutions]
+    found = answered(MECHANISM, parameters, digits, poses, unclear, NOT_TOLD, _PEAKS.get(counts.cones or 0, ""))
+    return replace(found, equilibria=tuple(_ordered(found.equilibria)))
 
 
 def _ordered(poses: Sequence[Pose]) -> list[Pose]:
@@ -103,11 +107,11 @@ def _pose(
     equations: System,
     solution: Solution,
     digits: int,
-) -> tuple[Pose | str, int]:
-    """The pose with all numbers settled, and the bits that this took; a sentence that says which number is not."""
+) -> tuple[Pose, int]:
+    """The pose with all numbers settled or, where they may be zero, enclosed; and the bits that this took."""
     tape, names = written
     flat = _flat(tape, solution)
-    bits, attempt = 64 + 4 * digits, 0
+    bits, attempt, numbers = 64 + 4 * digits, 0, dict[str, _Number]()
     found: dict[str, Enclosure] = {}
     while bits <= MORE_BITS + 8 * digits:
         box = refined(equations, _box(solution, bits), bits)
@@ -117,9 +121,10 @@ def _pose(
                 if (settled := numbers[name].enclosure(digits, attempt)) is not None:
                     found[name] = settled
         if found.keys() == numbers.keys():
-            return assembled(MECHANISM, parameters, found, solution.signs.count("-"), flat is not None), bits
+            break
         bits, attempt = 2 * bits, attempt + 1
-    return not_settled(MECHANISM, found, numbers.keys() - found.keys()), bits // 2
+    held = all_bounded(found, {name: number.ball for name, number in numbers.items()})
+    return assembled(MECHANISM, parameters, held, solution.signs.count("-"), flat is not None), bits
 
 
 def _box(solution: Solution, bits: int) -> Box:
@@ -209,7 +214,7 @@ def _numbers(tape: Tape, names: Sequence[str], box: Box, flat: list[Fraction] | 
         for name, place in zip(names, tape.outputs[1], strict=True):
             numbers[name] = _Number(balls[int(place)], tape.constants.get(int(place)))
         for angle in MECHANISM.angles:
-            radians = arb.atan2(numbers[f"sin {angle}"].ball, numbers[f"cos {angle}"].ball)
+            radians = angle_of(numbers[f"cos {angle}"].ball, numbers[f"sin {angle}"].ball)
             numbers[angle], numbers[f"degrees {angle}"] = _Number(radians), _Number(radians * 180 / arb.pi())
     trace, spread = numbers.pop("trace"), numbers.pop("spread")
     root = _Number(spread.ball.sqrt() if spread.ball > 0 else spread.ball.nonnegative_part().sqrt())

@@ -153,6 +153,7 @@ class SliceSystem(NamedTuple):
         matrix is definite the last one, its determinant.
     boundary : polynomials where the slice's equations lose their meaning: denominators of the parameters, and
         factors common to all coefficients of an equation (there that equation vanishes identically).
+    vanishing : the second kind of these, one for an equation that has such factors.
     unknowns : the number of coordinates.
     unbounded : those whose poles are all there are.
     is_compact : whether the real solutions stay bounded.
@@ -164,6 +165,7 @@ class SliceSystem(NamedTuple):
     inequalities: tuple[UnknownPolynomial, ...]
     stability: tuple[UnknownPolynomial, ...]
     boundary: tuple[Coefficient, ...]
+    vanishing: tuple[Coefficient, ...]
     unknowns: int
     unbounded: tuple[int, ...]
     is_compact: bool
@@ -184,11 +186,15 @@ def on_slice(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Slice
     ring = system.ring
     one = _one(parameters)
     boundary: list[Coefficient] = []
+    vanishing: list[Coefficient] = []
     equations: list[UnknownPolynomial] = []
     for equation in system.equations:
-        cleared, removed = _cleared(_substitute(system, equation, parameters, one))
-        equations.append(cleared)
-        boundary += removed
+        substituted = _substitute(system, equation, parameters, one)
+        scaled = _without_denominators(substituted)
+        common = common_factor(scaled.values())
+        equations.append({m: c / common for m, c in scaled.items()})
+        boundary += [q for q in (lcm(d for _, d in substituted.values()), common) if not q.is_constant()]
+        vanishing += [] if common.is_constant() else [common]
     equations += [{m: one * c for m, c in circle.items()} for circle in ring.circles]
     conditions = []
     asked = system.stability[-1:] if system.definite else system.stability
@@ -202,6 +208,7 @@ def on_slice(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Slice
         tuple(conditions[: len(system.inequalities)]),
         tuple(conditions[len(system.inequalities) :]),
         tuple(boundary),
+        tuple(vanishing),
         ring.width,
         ring.unbounded,
         not ring.reals,
@@ -273,14 +280,6 @@ def _substitute(
         if not total[0].is_zero():
             result[monomial] = total
     return result
-
-
-def _cleared(p: dict[tuple[int, ...], Ratio]) -> tuple[UnknownPolynomial, list[Coefficient]]:
-    """p without denominators and common factors; and the nonconstant polynomials by which it was scaled."""
-    scaled = _without_denominators(p)
-    common = common_factor(scaled.values())
-    removed = [q for q in (lcm(d for _, d in p.values()), common) if not q.is_constant()]
-    return {m: c / common for m, c in scaled.items()}, removed
 
 
 def _without_denominators(p: dict[tuple[int, ...], Ratio]) -> UnknownPolynomial:

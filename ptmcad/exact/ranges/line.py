@@ -23,7 +23,7 @@ from ptmcad.algebra.polynomials import Ratio, from_expression
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.counts import Counts, operation_number
 from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, End
-from ptmcad.answer.regionmap import Kind
+from ptmcad.answer.regionmap import Component
 from ptmcad.answer.words import noun
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
 from ptmcad.exact.folds import with_folds
@@ -64,10 +64,12 @@ def intervals(slice: Slice, along: str, at: Mapping[str, Any], working: int | No
     line = line_of(slice, along, at)
     found = critical_values(line)
     numbers = tuple(number for number, _ in found)
-    kinds = dict(found)
+    parts = dict(found)
     samples = samples_between(line.along, numbers)
     counts = [counts_at(line, sample) for sample in samples]
-    changes = tuple(Change(n, kinds[n], counts[k], counts[k + 1]) for k, n in enumerate(numbers))
+    changes = tuple(
+        Change(n, parts[n].kind, counts[k], counts[k + 1], parts[n].continuum) for k, n in enumerate(numbers)
+    )
     return CountIntervals(
         slice.name,
         slice.model,
@@ -86,8 +88,8 @@ def system_on(line: Line) -> tuple[ParametricSystem, dict[str, Ratio]]:
     return system, {name: from_expression(line.parameters[name]) for name in system.ring.parameters}
 
 
-def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Kind], ...]:
-    """The line's discriminant variety in the window, in increasing order.
+def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Component], ...]:
+    """The line's discriminant variety in the window, in increasing order, each number with its component.
 
     The isolating intervals are disjoint.
 
@@ -118,14 +120,14 @@ def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Kind], ...]:
             f"on the line {where} the equations have infinitely many solutions at every {line.along.name} (complex "
             "ones included); fix another value"
         ) from error
-    numbers, kinds = [], {}
+    numbers, parts = [], {}
     for component in variety.components:
         if not component.left_out:
             for number in roots_in(component.polynomial, low, high):
                 numbers.append(number)
-                kinds[number.polynomial] = component.kind
+                parts[number.polynomial] = component
     ordered = in_order(numbers, low, high, (high - low) * END_WIDTH)
-    return tuple((number, kinds[number.polynomial]) for number in ordered)
+    return tuple((number, parts[number.polynomial]) for number in ordered)
 
 
 def samples_between(along: Axis, numbers: tuple[AlgebraicNumber, ...]) -> tuple[Fraction, ...]:
@@ -140,6 +142,15 @@ def counts_at(line: Line, value: Fraction) -> Counts:
     """Numbers of solutions at a rational value that is not critical."""
     system, parameters = system_on(line)
     return count_at(line.place(value), system, parameters, (from_fraction(value), fmpq(0))).counts
+
+
+def is_regular(line: Line, value: Fraction) -> bool:
+    """Whether all solutions at a value are simple, so that each goes on beside it."""
+    try:
+        counts_at(line, value)
+    except DegenerateSliceError:
+        return False
+    return True
 
 
 def _joined(

@@ -27,7 +27,7 @@ from ptmcad.exact.models import system_from
 from ptmcad.exact.poses import exact_poses
 from ptmcad.exact.ranges.equations import Family, value_of
 from ptmcad.exact.ranges.landing import DIGITS, beside, landing
-from ptmcad.exact.ranges.line import critical_values
+from ptmcad.exact.ranges.line import critical_values, is_regular
 from ptmcad.exact.ranges.matrices import Vector
 from ptmcad.exact.ranges.meeting import parameters_at, value_at, what_meets
 from ptmcad.exact.ranges.tracking import (
@@ -76,7 +76,7 @@ def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, n
     if not axis.low < value < axis.high:
         raise ConfigError(f"{value} is outside the window of {along}, {axis.low} to {axis.high}", key="--path")
     numbers = tuple(n for n, _ in critical_values(line))
-    if any(n.compare(value) == 0 for n in numbers):
+    if any(n.compare(value) == 0 for n in numbers) and not is_regular(line, value):
         raise ConfigError(f"{along} = {value} is a critical value: start beside it", key="--path")
     system = system_from(slice.model)
     family = Family(slice.model, system, line.parameters)

@@ -14,6 +14,7 @@ from ptmcad.answer.regionmap import (
     Adjacency,
     Cell,
     Component,
+    Continuum,
     CriticalValue,
     Kind,
     Merge,
@@ -124,6 +125,7 @@ def sequences(names: tuple[str, str], certified: bool) -> dict[str, Codec[Any]]:
         kind=choice(Kind),
         separates=TRUTH,
         left_out=TEXT,
+        continuum=Key(optional(choice(Continuum)), default=None),
         polynomial=Codec(lambda p: p.text(names), lambda node: _polynomial(node, names)),
     )
     region = record(

@@ -1,8 +1,9 @@
 """The equilibria at a point as a JSON document, and back.
 
-Guarantee: reading what was written gives equal `Poses`. A number is written as text with all digits right, and as the
-middle and radius of its enclosure, both exact; a document whose texts and enclosures disagree is refused, like one
-with a key or a value that does not belong there, with the place of the first fault.
+Guarantee: reading what was written gives equal `Poses`. A number is written as text with all digits right, or with a
+bound of what it differs from them, and as the middle and radius of its enclosure, both exact; a document whose texts
+and enclosures disagree is refused, like one with a key or a value that does not belong there, with the place of the
+first fault.
 
 The schema is published as docs/poses.schema.json; its version is part of `FORMAT`.
 """
@@ -89,9 +90,10 @@ def _poses(digits: int) -> Codec[Poses]:
         digits=NATURAL,
         bits=NATURAL,
         units=codec.Key(codec.named(line(MAX_UNIT)), default={}),
+        undecided=codec.Key(NATURAL, default=0),
         equilibria=listed(
             Codec(
-                lambda pose: (bare if pose.admissible is None else free).write(pose),
+                lambda pose: (free if pose.may_be_admissible else bare).write(pose),
                 lambda node: (free if "admissible" in node.mapping() else bare).read(node),
             )
         ),
@@ -126,7 +128,7 @@ def _pose(digits: int, free: bool) -> Codec[Pose]:
     return record(
         Pose,
         stable=optional(TRUTH),
-        **({"admissible": TRUTH} if free else {}),
+        **({"admissible": optional(TRUTH)} if free else {}),
         index=codec.COUNT,
         multiplicity=NATURAL,
         flat=TRUTH,
@@ -160,6 +162,6 @@ def _number(node: Node, digits: int) -> Enclosure:
     entry = node.record("text", "center", "radius")
     center, radius = entry["center"].fraction(), entry["radius"].size()
     enclosure = Enclosure(center - radius, center + radius)
-    if enclosure.told_digits(digits) is None or enclosure.text(digits) != entry["text"].text():
+    if enclosure.text(digits) != entry["text"].text():
         raise node.fault(f"is not its enclosure rounded to {digits} digits")
     return enclosure

@@ -44,6 +44,7 @@ def line_data(found: CountIntervals, digits: int) -> dict[str, Any]:
                 "before": _counts(c.before),
                 "after": _counts(c.after),
                 "event": c.event.name.lower(),
+                **({} if c.continuum is None else {"continuum": c.continuum.value}),
                 "text": c.text,
             }
             for c in found.changes

@@ -137,12 +137,22 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int, wording:
         yield Entry((f"undetermined {percent(result.undetermined)}", *note), wording.undetermined)
     elif len(result.regions) > 1:
         yield Entry(("the count changes",), STRONG)
-    if thin:
+    for found in dict.fromkeys(result.continua.values()):
+        yield Entry((f"{found.value} {noun(result.slice.model)}",), _dashed)
+    if thin and not all(c.left_out or c.separates or c.continuum for c in result.components):
         yield thin_entry()
     if samples:
         yield Entry(("sample point of a cell",), "dot")
     if hidden:
         yield Entry((hidden_words(hidden),))
+
+
+def _dashed(figure: Any, left: float, middle: float) -> None:
+    from matplotlib.lines import Line2D
+
+    line = Line2D((left, left + SWATCH), (middle, middle), transform=figure.dpi_scale_trans, color=INK, linewidth=1)
+    line.set_linestyle("dashed")
+    figure.add_artist(line)
 
 
 def hidden_words(hidden: int) -> str:

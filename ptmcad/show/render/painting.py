@@ -77,11 +77,12 @@ def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = N
         if not separates and not paint.thin_walls:
             continue
         lines.setdefault((separates, component), []).append(line)
+    continua = result.continua
     for (separates, component), parts in sorted(lines.items()):
         axes.add_artist(
             LineCollection(
                 parts, transform=place, colors=INK, linewidths=paint.strong if separates else paint.thin,
-                linestyles="solid" if separates else paint.thin_lines,
+                linestyles="dashed" if component in continua else "solid" if separates else paint.thin_lines,
                 capstyle="round", joinstyle="round", zorder=3 if separates else 2,
                 gid=f"{prefix}curve-{component}" + ("" if separates else "-thin"),
             )

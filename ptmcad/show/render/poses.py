@@ -153,6 +153,8 @@ def number_text(number: Enclosure, digits: int = _DIGITS) -> str:
 
 def printed_number(text: str) -> str:
     """A number as print has it: a true minus, and powers of ten as such."""
+    if " ± " in text:
+        return " ± ".join(map(printed_number, text.split(" ± ")))
     mantissa, _, exponent = text.replace("-", "−").partition("e")
     if not exponent:
         return mantissa

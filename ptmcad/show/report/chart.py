@@ -191,7 +191,8 @@ def _areas(seen: Shapes) -> Iterator[str]:
         for paint in _paints(result.regions[number], result.slice.count):
             yield f'<path class="fill" fill="{paint}" d="{outline}"/>'
     for (separates, component), line in wall_lines(seen).items():
-        kind = "wall strong" if separates else "wall"
+        kind = "wall strong" if separates or component in result.continua else "wall"
+        kind += '" stroke-dasharray="6 4' if component in result.continua else ""
         yield f'<path class="{kind}" data-curve="{component}" d="{line}"/>'
     for number, polygons in seen.cells(_WALLS / SIDE):
         yield f'<path class="cell" data-cell="{number}" d="{"".join(map(_closed, polygons))}"/>'

@@ -142,6 +142,10 @@ def legend(result: RegionMap, chart: Chart) -> str:
                 line = f'<path class="{"wall strong" if width > 1 else "wall"}" d="M0 9H30"/>'
                 mark = f'<svg class="swatch line" viewBox="0 0 30 18" aria-hidden="true">{line}</svg>'
                 parts.append(f"<li>{mark}<span>{escape(' '.join(entry.lines))}</span></li>")
+            case _ if callable(entry.mark):  # of curves on which solutions are not isolated
+                line = '<path class="wall strong" stroke-dasharray="6 4" d="M0 9H30"/>'
+                mark = f'<svg class="swatch line" viewBox="0 0 30 18" aria-hidden="true">{line}</svg>'
+                parts.append(f"<li>{mark}<span>{escape(' '.join(entry.lines))}</span></li>")
             case _ if entry.lines:
                 parts.append(f"<li><b>{escape(' '.join(entry.lines))}</b></li>")
     return f'<ul class="legend" aria-label="Legend">{"".join(parts)}</ul>'
