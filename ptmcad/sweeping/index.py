@@ -157,8 +157,7 @@ class Index:
                     _result(self.folder, member)
                 else:
                     lost.append((member.number,))
-        for left in (self.folder / RESULTS).glob("*/.*.tmp*"):
-            _inside(self.folder, left.parent)
+        for left in (self.folder / RESULTS).rglob(".*.tmp*"):  # which does not look behind links
             left.unlink()
         with self.transaction():
             self.rows.executemany("UPDATE members SET state = 'waiting' WHERE number = ?", lost)
@@ -243,8 +242,10 @@ def opened(folder: Path) -> Iterator[Index]:
         When the folder cannot be written to, or another process uses it.
     """
     try:
-        for path in (folder / RESULTS, *folder.glob(f"{INDEX}*")):  # with SQLite's own beside it
-            _inside(folder, path)
+        _inside(folder, folder / RESULTS)
+        for path in folder.glob(f"{INDEX}*"):  # with SQLite's own beside it
+            if not _inside(folder, path).is_file():
+                raise ConfigError("is no file, so it is no index of a sweep: remove it", file=str(path))
         (folder / RESULTS).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(f"the folder {folder} cannot be written to: {reason(error)}") from error
@@ -256,15 +257,13 @@ def opened(folder: Path) -> Iterator[Index]:
         try:
             yield stack.enter_context(closing(Index(folder)))
         except sqlite3.DatabaseError as error:
-            is_full = getattr(error, "sqlite_errorcode", 0) & 0xFF in _OF_THE_DISK
-            remedy = "what is done stays, and the same command goes on" if is_full else _REMEDY
-            raise OutputError(f"{folder / INDEX}: {error}; {remedy}") from error
+            raise OutputError(f"{folder / INDEX}: {error}; once that is mended the same command goes on, and without "
+                              "this file it computes all members anew") from error  # fmt: skip
 
 
 # ------------------------------------------------------------------------------------------------------------- reading
 
 
-_OF_THE_DISK = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN)
 _REMEDY = "remove this file, and `ptmcad sweep` computes all members anew"
 
 
@@ -350,13 +349,10 @@ def _member(folder: Path, names: Sequence[str], row: tuple[Any, ...]) -> Member:
         if state == State.DONE.value:
             counted = tuple(CountedArea(count, n, (low, high)) for count, n, (low, high) in json.loads(areas))
             summary = Summary(status, cells, regions, open_share, counted, _widest(widest))
-            exact += [open_share, f"{cells}", f"{regions}"]
-            for area in counted:
-                exact += [f"{area.regions}", *area.count.replace("?", "0").split("-"), *filter(None, area.area)]
+            exact += [open_share, *(bound for area in counted for bound in area.area if bound)]
             if file != _name(number if same_as is None else same_as):
                 raise ValueError("it names another result")
-        for text in exact:
-            fraction_of(text)
+        _ = [fraction_of(text) for text in exact]
         return Member(number, values, State(state), summary, same_as, error, file, digest, seconds, attempts)
 
 
