@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import webbrowser
+from contextlib import ExitStack
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import click
 
@@ -50,7 +53,21 @@ def command(
         def announce(address: str) -> None:
             click.echo(f"explore   {address}\n          works once, in one browser; Ctrl-C ends it")
             if opened:
-                click.launch(address)
+                _open(address, folder.enter_context(TemporaryDirectory(prefix="ptmcad-explore-")))
 
         send(Topic.RESUMABLE, "")  # a signal is its usual end
-        asyncio.run(serve(panel, out, port, announce))
+        with ExitStack() as folder:
+            asyncio.run(serve(panel, out, port, announce))
+
+
+def _open(address: str, folder: str) -> None:
+    """Have the browser open a file of this user alone that leads to the address.
+
+    What a program is started with is seen by every user of the machine, and the address has the token.
+    """
+    path = Path(folder) / "explore.html"
+    send(Topic.TEMPORARY, str(path))
+    path.touch(0o600, exist_ok=False)
+    path.write_text(f'<!DOCTYPE html><meta http-equiv="refresh" content="0; url={address}">')
+    if click.launch(path.as_uri()):  # there is no program of the desktop for that
+        webbrowser.open(path.as_uri())

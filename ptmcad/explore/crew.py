@@ -79,6 +79,8 @@ class Worker:
                 self.wanted.clear()
                 while self.waiting:
                     key, (job, future) = self.waiting.popitem(last=False)
+                    if future.done():  # whoever asked has gone
+                        continue
                     answer = await self._answered(key, job)
                     if not future.done():
                         future.set_result(answer)

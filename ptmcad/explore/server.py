@@ -2,7 +2,8 @@
 
 Guarantee: it listens on 127.0.0.1 alone; without cookie every request but the first one with the token is refused,
 whatever its path; bodies are small JSON; every answer has headers that keep it out of caches, frames and other sites.
-It ends with its process and takes its workers with it.
+Whatever clients send, or do not send, it holds a bounded number of connections, none of them silent for long, answers
+the others, and prints nothing. It ends with its process and takes its workers with it.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
+import os
 import socket
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -25,6 +27,12 @@ from ptmcad.explore.page import ASSETS, asset, page, refusal
 from ptmcad.explore.panel import Panel
 
 MAX_BODY = 1 << 14
+MAX_CONNECTIONS = 64
+"""That are open, or a quarter of the files that the process may have open; the others wait in the system's queue."""
+SILENT_SECONDS = 10.0
+"""After which a connection without a request under way is closed, before the first one as well, and for a body."""
+_PAUSE = 0.1
+"""Seconds until another look at what is full."""
 MAX_ENTRIES, MAX_TEXT = 60, 100
 """Of a mapping in a question, and characters of a text."""
 HEADERS = {
@@ -52,6 +60,23 @@ class Server:
         self.panel, self.guard = panel, guard
         maps, points = Worker(panel, folder), Worker(panel, folder)
         self.workers = {"map": maps, "save": maps, "point": points, "record": points}
+        self.asking: set[web.RequestHandler] = set()
+
+    async def accept(self, own: socket.socket, make: web.Server) -> NoReturn:
+        """Take connections; where as many are open as may be, the oldest without a question under way makes room."""
+        loop = asyncio.get_running_loop()
+        most = min(MAX_CONNECTIONS, os.sysconf("SC_OPEN_MAX") // 4)
+        while True:
+            while len(make.connections) >= most:
+                ends = [c.transport for c in make.connections if c.transport and c not in self.asking]
+                for end in ends[:1]:
+                    end.abort()  # what it has not read of an answer is not waited for
+                await asyncio.sleep(0 if ends else _PAUSE)
+            try:
+                accepted, _ = await loop.sock_accept(own)
+                await loop.connect_accepted_socket(make, accepted)
+            except OSError:  # the client has gone already, or there is no room for another file at the moment
+                await asyncio.sleep(_PAUSE)
 
     def application(self) -> web.Application:
         """The routes, behind the guard."""
@@ -86,7 +111,9 @@ class Server:
         known = self.guard.knows(request.cookies)
         if not known and not self.guard.exchange(token):
             return _refused(403, "this address has been used already, or was never right: start ptmcad explore again")
-        answer = web.Response(status=303, headers={"Location": "/"})
+        # the cookie is sent with what a page of this server asks for: not where a file, or another site, has led here
+        led = request.headers.get("Sec-Fetch-Site") == "cross-site"
+        answer = web.Response(status=200 if led else 303, headers={"Refresh": "0; url=/"} if led else {"Location": "/"})
         if not known:
             answer.set_cookie(self.guard.cookie_name, self.guard.cookie, httponly=True, samesite="Strict", path="/")
         return answer
@@ -105,13 +132,22 @@ class Server:
             return _refused(415, "a question is JSON")
         kind = request.path.rpartition("/")[2]
         try:
-            job = job_of(kind, await request.read())
+            async with asyncio.timeout(SILENT_SECONDS):
+                body = await request.read()
+        except (OSError, web.RequestPayloadError) as error:  # too slow, gone, or cut in no chunks
+            raise web.HTTPBadRequest(reason="the question did not come whole") from error
+        try:
+            job = job_of(kind, body)
             self.panel.values(job["values"])  # what is wrong with them is said without a worker
         except ValueError as error:
             return web.json_response({"error": str(error)}, status=400)
         except ConfigError as error:
             return web.json_response({"error": str(error)}, status=422)
-        answer = await self.workers[kind].ask(job.pop("tab"), job)
+        self.asking.add(request.protocol)
+        try:
+            answer = await self.workers[kind].ask(job.pop("tab"), job)
+        finally:
+            self.asking.remove(request.protocol)
         return web.Response(body=answer.body, status=STATUS[answer.ended], content_type="application/json")
 
 
@@ -181,8 +217,9 @@ def listening(port: int) -> socket.socket:
     found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
+        found.setblocking(False)
         found.bind(("127.0.0.1", port))
-        found.listen(64)
+        found.listen(256)
     except OSError as error:
         found.close()
         raise ConfigError(f"port {port} cannot be listened on: {error.strerror}", key="--port") from error
@@ -208,14 +245,17 @@ async def serve(panel: Panel, folder: Path, port: int, announce: Callable[[str],
     server = Server(panel, folder, guard)
     _LOG.addFilter(_is_own_fault)
     app = server.application()
-    runner = web.AppRunner(app, access_log=None, logger=_LOG, handle_signals=False, shutdown_timeout=0.1)
+    runner = web.AppRunner(app, access_log=None, logger=_LOG, handle_signals=False, shutdown_timeout=0.1,
+                           handler_cancellation=True, auto_decompress=False, keepalive_timeout=SILENT_SECONDS)  # fmt: skip
     await runner.setup()
+    assert runner.server is not None
     try:
-        await web.SockSite(runner, own).start()
         async with asyncio.TaskGroup() as tasks:
             for worker in {id(w): w for w in server.workers.values()}.values():
                 tasks.create_task(worker.run())
+            tasks.create_task(server.accept(own, runner.server))
             announce(guard.address)
     finally:
         await runner.cleanup()
+        own.close()
     raise AssertionError("workers run until they are cancelled")

@@ -6,6 +6,7 @@ superseded is given up at the next step of its computation.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
@@ -144,14 +145,15 @@ class Tasks:
             raise ConfigError("no problem record gives this slice")
         names = [f"{name}.yaml", *(f"{name}.{kind}" for kind in PICTURES if kind in job["formats"]), f"{name}.json"]
         for file in names:
-            if (self.folder / file).exists():
+            if os.path.lexists(self.folder / file):
                 raise ConfigError(f"{file} is there already: choose another name")
         check_writable(self.folder, tuple(names))
         if is_certified(slice, "auto"):
             result = replace(self._certified(self.panel.slice(values), fine=True), slice=slice)
         else:
             result = replace(self._exact(slice, values, areas=True, sparing=False), slice=slice)
-        return {"files": [path.name for path in write_files(self.folder, _writers(result, record, names))]}
+        written = write_files(self.folder, _writers(result, record, names), new=True)
+        return {"files": [path.name for path in written]}
 
 
 def _writers(result: RegionMap, record: str, names: list[str]) -> dict[str, Writer]:

@@ -321,12 +321,23 @@ def _write(journal: Path, moves: tuple[Move, ...]) -> None:
     temporary = hidden(moves[-1].target.with_suffix(REDO))
     olds = [str(move.old) for move in moves if move.old is not None]
     send(Topic.TEMPORARY, str(temporary), *olds)
+    write_through(temporary, journal, as_text(moves).encode())
+
+
+def write_through(temporary: Path, target: Path, data: bytes) -> None:
+    """Put one file into place, whole and on disk: it is made under a hidden name, which nothing has, and then renamed.
+
+    Raises
+    ------
+    OSError
+        When it cannot be written; what is at the target is as it was.
+    """
     try:
-        with temporary.open("x", encoding="utf-8") as stream:
-            stream.write(as_text(moves))
+        with temporary.open("xb") as stream:
+            stream.write(data)
             stream.flush()
             os.fsync(stream.fileno())
-        disk.replace(temporary, journal)
+        disk.replace(temporary, target)
     except OSError:
         with suppress(OSError):  # the first error is the one to report, and the file is hidden
             disk.unlink(temporary)

@@ -107,7 +107,7 @@ _KINDS = ((stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK,
           (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"))  # fmt: skip
 
 
-def write_files(folder: Path, writers: Mapping[str, Writer]) -> tuple[Path, ...]:
+def write_files(folder: Path, writers: Mapping[str, Writer], *, new: bool = False) -> tuple[Path, ...]:
     """Write all files or none, and put them into place.
 
     Parameters
@@ -115,13 +115,28 @@ def write_files(folder: Path, writers: Mapping[str, Writer]) -> tuple[Path, ...]
     folder : where they go; it exists.
     writers : for each file's name, one at least, a function that writes the file at the path it is given (the path has
         the name's suffix). The last one is the file that vouches for the others.
+    new : that nothing, not even a link, may have these names yet.
 
     Raises
     ------
     OutputError
         If a file cannot be written or renamed.
     """
-    return _write(folder, writers, _under_own_names)
+    return _write(folder, writers, _under_new_names if new else _under_own_names)
+
+
+def _under_new_names(folder: Path, temporaries: Mapping[Path, Path]) -> tuple[Path, ...]:
+    """Take the names first, as one process alone can do, so that what is replaced is nobody else's."""
+    taken: list[Path] = []
+    try:
+        for target in temporaries:
+            os.close(os.open(target, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+            taken.append(target)
+        return _under_own_names(folder, temporaries)
+    except BaseException:
+        for target in taken:
+            target.unlink(missing_ok=True)
+        raise
 
 
 def _under_own_names(folder: Path, temporaries: Mapping[Path, Path]) -> tuple[Path, ...]:

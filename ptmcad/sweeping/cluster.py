@@ -10,6 +10,7 @@ common with this process.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from contextlib import suppress
 from queue import Empty, SimpleQueue
@@ -50,6 +51,8 @@ class Cluster:
         except (OSError, ValueError) as error:
             reason = shown(" ".join(str(error).split()), 200)
             raise ConfigError(f"no Dask scheduler answers at {address}: {reason}", key="--scheduler") from error
+        # what it says of a scheduler that is gone is said by this program, once, as an error
+        logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         self._answers: SimpleQueue[tuple[tuple[int, ...], Any]] = SimpleQueue()
         self._under_way: dict[tuple[int, ...], Any] = {}
         self._gathered: list[int] = []
@@ -61,7 +64,10 @@ class Cluster:
     def room(self) -> bool:
         if monotonic() >= self._looked + _LOOK_SECONDS:
             self._looked = monotonic()
-            self._threads = sum(self.client.nthreads().values())
+            try:
+                self._threads = sum(self.client.nthreads().values())
+            except (OSError, TimeoutError) as error:
+                raise self._gone() from error
         return len(self._under_way) < _AHEAD * max(self._threads, 1)
 
     @property
@@ -84,10 +90,11 @@ class Cluster:
                 found += self._taken(numbers, done)
         except Empty:
             if self.client.status not in ("running", "connecting"):
-                raise OutputError(
-                    f"the scheduler at {self.address} is gone; the same command goes on once there is one again"
-                ) from None
+                raise self._gone() from None
             return found
+
+    def _gone(self) -> OutputError:
+        return OutputError(f"the scheduler at {self.address} is gone")
 
     def _together(self) -> int:
         """How many members make a task: few at first, so that every thread has some."""

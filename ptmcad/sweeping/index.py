@@ -1,9 +1,11 @@
 """The folder of a sweep: an index in SQLite, and below it the members' results, one JSON file each.
 
 Guarantee: whatever ends the process (``kill -9`` at any moment included), the index can be opened again, and each row
-that says *done* has its whole file: the file is put into place before the row is written. One process at a time uses a
-folder. Rows are never removed; what is written of a member does not depend on when or by whom it was computed, but for
-the columns ``seconds`` and ``attempts``.
+that says *done* has its whole file: the file is on disk and in place before the row is written. One process at a time
+uses a folder. Rows are never removed; what is written of a member does not depend on when or by whom it was computed,
+but for the columns ``seconds`` and ``attempts``. Nothing is read or written through a link that leads out of the
+folder, or under a name that is not made of the member's number; a result that is not the one that was computed is
+neither used nor written over.
 
 Not guaranteed: that rows of the last moments survive a machine that loses power; then those members are computed again.
 """
@@ -14,9 +16,8 @@ import hashlib
 import json
 import os
 import sqlite3
-import sys
-from collections.abc import Iterable, Iterator
-from contextlib import closing, contextmanager
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack, closing, contextmanager
 from dataclasses import astuple
 from pathlib import Path
 from typing import Any
@@ -24,14 +25,14 @@ from typing import Any
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import CountedArea, Member, State, Summary, Sweep, Widest
 from ptmcad.errors import ConfigError, OutputError
+from ptmcad.process.commit import locked, reason, write_through
+from ptmcad.process.journal import hidden
 from ptmcad.sweeping.member import Failed, Found, Outcome, Refused
-from ptmcad.text.textfile import read_text
-
-if sys.platform != "win32":
-    import fcntl
+from ptmcad.text.numerals import fraction_of
+from ptmcad.text.textfile import read_bytes
 
 FORMAT = "ptmcad-sweep/1"
-INDEX, RESULTS, LOCK = "index.sqlite", "results", ".lock"
+INDEX, RESULTS = "index.sqlite", "results"
 MAX_BYTES = 60_000_000
 """Of a member's result."""
 _IN_A_FOLDER = 1000
@@ -71,7 +72,6 @@ class Index:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self._made: set[Path] = set()
         # every statement is a transaction of its own, which a kill undoes or leaves whole
         self.rows = sqlite3.connect(folder / INDEX, isolation_level=None)
         self.rows.execute("PRAGMA journal_mode = WAL")
@@ -141,13 +141,26 @@ class Index:
             yield from (number for (number,) in found)
             last = found[-1][0]
 
-    def check_files(self) -> int:
-        """Have members computed again whose file is not there or not whole; how many these are."""
-        rows = self.rows.execute("SELECT number, file, size FROM members WHERE state = 'done' AND same_as IS NULL")
-        lost = [(number,) for number, file, size in rows if _size(self.folder / file) != size]
+    def check(self, names: Sequence[str]) -> None:
+        """Have members computed again whose file is not there, and remove what killed runs have left beside the files.
+
+        Raises
+        ------
+        ConfigError
+            When a row is damaged, or a result has been changed: neither is written over.
+        """
+        lost = []
+        for row in self.rows.execute(f"SELECT {_MEMBER} FROM members"):
+            member = _member(self.folder, names, row)
+            if member.state is State.DONE and member.same_as is None:
+                if os.path.lexists(self.folder / member.file):
+                    _result(self.folder, member)
+                else:
+                    lost.append((member.number,))
+        for left in (self.folder / RESULTS).rglob(".*.tmp*"):  # which does not look behind links
+            left.unlink()
         with self.transaction():
             self.rows.executemany("UPDATE members SET state = 'waiting' WHERE number = ?", lost)
-        return len(lost)
 
     def record(self, number: int, outcome: Outcome) -> None:
         """Enter what became of a member; a failed one stays to be tried again."""
@@ -175,15 +188,14 @@ class Index:
         )
 
     def _write(self, number: int, data: bytes) -> str:
-        """Put a result's file into place, whole; its name below the folder."""
-        name = f"{RESULTS}/{number // _IN_A_FOLDER:03}/{number:06}.json"
+        """Put a result's file into place, whole and on disk; its name below the folder."""
+        name = _name(number)
         path = self.folder / name
-        if path.parent not in self._made:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            self._made.add(path.parent)
-        hidden = path.with_name(f".{path.name}.tmp")  # which a later run for the same member writes over
-        hidden.write_bytes(data)
-        hidden.replace(path)
+        try:
+            _inside(self.folder, path.parent).mkdir(exist_ok=True)
+            write_through(hidden(path), path, data)
+        except OSError as error:
+            raise OutputError(f"{path} cannot be written: {reason(error)}") from error
         return name
 
     def share(self) -> None:
@@ -203,11 +215,21 @@ class Index:
         self.rows.close()
 
 
-def _size(path: Path) -> int | None:
-    try:
-        return path.stat().st_size
-    except OSError:  # not there any more: the member is computed again
-        return None
+def _name(number: int) -> str:
+    """Of a member's result, below the folder."""
+    return f"{RESULTS}/{number // _IN_A_FOLDER:03}/{number:06}.json"
+
+
+def _inside(folder: Path, path: Path) -> Path:
+    """A path below the sweep's folder, if no link leads elsewhere from there.
+
+    Raises
+    ------
+    ConfigError
+    """
+    if not Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder)):
+        raise ConfigError("is or lies behind a link that leads out of the sweep's folder: remove it", file=str(path))
+    return path
 
 
 @contextmanager
@@ -220,31 +242,43 @@ def opened(folder: Path) -> Iterator[Index]:
         When the folder cannot be written to, or another process uses it.
     """
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        lock = os.open(folder / LOCK, os.O_CREAT | os.O_RDWR, 0o666)
+        _inside(folder, folder / RESULTS)
+        for path in folder.glob(f"{INDEX}*"):  # with SQLite's own beside it
+            if not _inside(folder, path).is_file():
+                raise ConfigError("is no file, so it is no index of a sweep: remove it", file=str(path))
+        (folder / RESULTS).mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OutputError(f"the folder {folder} cannot be written to: {error.strerror}") from error
-    try:
-        if sys.platform != "win32":
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError as error:
-                raise OutputError(f"another process is working on the sweep in {folder}") from error
+        raise OutputError(f"the folder {folder} cannot be written to: {reason(error)}") from error
+    with ExitStack() as stack:
         try:
-            with closing(Index(folder)) as index:
-                yield index
+            stack.enter_context(locked(folder / RESULTS, patience=0))
+        except BlockingIOError as error:
+            raise OutputError(f"another process is working on the sweep in {folder}") from error
+        try:
+            yield stack.enter_context(closing(Index(folder)))
         except sqlite3.DatabaseError as error:
-            raise OutputError(f"{folder / INDEX}: {error}") from error
-    finally:
-        os.close(lock)
+            raise OutputError(f"{folder / INDEX}: {error}; once that is mended the same command goes on, and without "
+                              "this file it computes all members anew") from error  # fmt: skip
 
 
 # ------------------------------------------------------------------------------------------------------------- reading
 
 
+_REMEDY = "remove this file, and `ptmcad sweep` computes all members anew"
+
+
+@contextmanager
+def _undamaged(folder: Path, what: str) -> Iterator[None]:
+    """Read a part of the index; whatever cannot be read there is a damage of the index."""
+    try:
+        yield
+    except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as error:
+        raise ConfigError(f"{what} is damaged ({error}): {_REMEDY}", file=str(folder / INDEX)) from error
+
+
 @contextmanager
 def _reading(folder: Path) -> Iterator[sqlite3.Connection]:
-    path = folder / INDEX
+    path = _inside(folder, folder / INDEX)
     if not path.is_file():
         raise ConfigError("there is no sweep in this folder", file=str(folder))
     try:
@@ -267,8 +301,10 @@ def read_sweep(folder: Path) -> Sweep:
         if known.get("format") != FORMAT:
             raise ConfigError(f"is no index of a sweep of the form {FORMAT}", file=str(folder / INDEX))
         states = _states(rows)
-        states[State.WAITING] = int(known["members"]) - sum(n for s, n in states.items() if s is not State.WAITING)
-        return Sweep(known["name"], folder, tuple(json.loads(known["names"])), {s: n for s, n in states.items() if n})
+        with _undamaged(folder, "what it says of the sweep"):
+            states[State.WAITING] = int(known["members"]) - sum(n for s, n in states.items() if s is not State.WAITING)
+            names = tuple(json.loads(known["names"]))
+            return Sweep(known["name"], folder, names, {s: n for s, n in states.items() if n})
 
 
 def _states(rows: sqlite3.Connection) -> dict[State, int]:
@@ -286,25 +322,38 @@ def members(sweep: Sweep, numbers: Iterable[int] | None = None) -> Iterator[Memb
     """
     with _reading(sweep.folder) as rows:
         if numbers is None:
-            yield from (_member(row) for row in rows.execute(f"SELECT {_MEMBER} FROM members ORDER BY number"))
+            for row in rows.execute(f"SELECT {_MEMBER} FROM members ORDER BY number"):
+                yield _member(sweep.folder, sweep.names, row)
             return
         for number in numbers:
             row = rows.execute(f"SELECT {_MEMBER} FROM members WHERE number = ?", (number,)).fetchone()
             if row is None:
                 raise IndexError(f"there is no member {number} yet")
-            yield _member(row)
+            yield _member(sweep.folder, sweep.names, row)
 
 
-def _member(row: tuple[Any, ...]) -> Member:
+def _member(folder: Path, names: Sequence[str], row: tuple[Any, ...]) -> Member:
+    """A row as data.
+
+    Raises
+    ------
+    ConfigError
+        When it is none that this program has written.
+    """
     number, parameters, same_as, seconds, attempts, state, status, cells, regions, open_share, areas, widest = row[:12]
     error, file, digest, _ = row[12:]
     summary = None
-    if state == State.DONE.value:
-        counted = tuple(CountedArea(count, n, (low, high)) for count, n, (low, high) in json.loads(areas))
-        summary = Summary(status, cells, regions, open_share, counted, _widest(widest))
-    return Member(
-        number, json.loads(parameters), State(state), summary, same_as, error, file, digest, seconds, attempts
-    )  # fmt: skip
+    with _undamaged(folder, f"the row of member {number}"):
+        values = json.loads(parameters)
+        exact = [values[name] for name in names]
+        if state == State.DONE.value:
+            counted = tuple(CountedArea(count, n, (low, high)) for count, n, (low, high) in json.loads(areas))
+            summary = Summary(status, cells, regions, open_share, counted, _widest(widest))
+            exact += [open_share, *(bound for area in counted for bound in area.area if bound)]
+            if file != _name(number if same_as is None else same_as):
+                raise ValueError("it names another result")
+        _ = [fraction_of(text) for text in exact]
+        return Member(number, values, State(state), summary, same_as, error, file, digest, seconds, attempts)
 
 
 def _widest(text: str | None) -> Widest | None:
@@ -324,11 +373,22 @@ def member_map(sweep: Sweep, member: Member) -> RegionMap:
     ConfigError
         When it has none, or the file is not the one that the index names.
     """
-    path = sweep.folder / member.file
     if member.state is not State.DONE:
         raise ConfigError(f"member {member.number} has no result: {member.error or member.state.value}")
-    text = read_text(path, MAX_BYTES, "a member's result")
-    if hashlib.sha256(text.encode()).hexdigest() != member.digest:
+    return RegionMap.from_json(_result(sweep.folder, member).decode())
+
+
+def _result(folder: Path, member: Member) -> bytes:
+    """What is in a member's file.
+
+    Raises
+    ------
+    ConfigError
+        When that is not what was computed.
+    """
+    path = _inside(folder, folder / member.file)
+    data = read_bytes(path, MAX_BYTES, "a member's result")
+    if hashlib.sha256(data).hexdigest() != member.digest:
         raise ConfigError("has been changed since it was computed: remove it, and `ptmcad sweep` makes it anew",
                           file=str(path))  # fmt: skip
-    return RegionMap.from_json(text)
+    return data

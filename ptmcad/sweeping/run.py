@@ -21,7 +21,7 @@ from typing import Any
 
 from ptmcad.answer.sweep import Sweep
 from ptmcad.ask.classification import prepare
-from ptmcad.errors import ConfigError, LimitReached, PtmcadError
+from ptmcad.errors import ConfigError, LimitReached, OutputError, PtmcadError
 from ptmcad.options import Progress
 from ptmcad.process.extras import Extra, require
 from ptmcad.question.config.sweeps import Sweeping, sweep_from
@@ -89,12 +89,12 @@ def sweep(
     work = Work(question, wanted)
     with opened(place) as index:
         index.claim(_facts(question), _asked(question, wanted))
-        index.check_files()
+        index.check(question.sweep.names)
         run = _Run(work, index, retries, progress, timeout)
         try:
             run.all(_workers(work, jobs, scheduler))
-        except LimitReached as stopped:
-            raise LimitReached(f"{stopped}; {_left(index, question)}; the same command goes on") from stopped
+        except (LimitReached, OutputError) as stopped:
+            raise type(stopped)(f"{stopped}; {_left(index, question)}; the same command goes on") from stopped
         finally:
             index.share()
     return read_sweep(place)
