@@ -4,8 +4,10 @@ stability. Read from the files that the commands write: fills, outlines and text
 
 from __future__ import annotations
 
+import csv
 import re
 import xml.etree.ElementTree as ET
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -121,3 +123,67 @@ def test_a_label_stands_on_a_region_of_its_own_count(name: str, style: str, tmp_
         own = fill(regions[arrow.replace("arrow", "region")])
         for corner in box(label):
             assert [fill(path) for path in regions.values() if outline(path).contains_point(corner)] == [own]
+
+
+SWEPT = """
+name: swept
+parameters: {L1: 1, k: 100, F3: F, F4: F}
+axes: {rho: [0, 2], L2: [0, 2]}
+sweep: {F: [0, -10]}
+count: stable
+"""
+
+
+def test_an_atlas_is_headed_by_what_all_members_have_in_common(tmp_path: Path) -> None:
+    (tmp_path / "swept.yaml").write_text(SWEPT)
+    folder = tmp_path / "out"
+    asked = ["sweep", str(tmp_path / "swept.yaml"), "--no-ranges", "--no-areas", "--jobs", "1", "--format", "html"]
+    assert run([*asked, "--out", str(folder)]) == 0
+    assert "<h1>L₁ = 1, k = 100</h1>" in (folder / "swept.html").read_text(encoding="utf-8")
+
+
+def test_bounds_of_an_area_are_the_same_everywhere_and_what_is_proved(
+    truss: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of regions alone with their counts: not more than the table of numbers proves, to two digits at least."""
+    assert run(["plot", str(truss / "truss.json"), "--format", "csv", "--out", str(truss)]) == 0
+    rows = list(csv.DictReader((truss / "truss-regions.csv").read_text().splitlines()))
+    proved = {f"({row['index'].replace(' ', ', ')})": (row["area_low"], row["area_high"]) for row in rows}
+    capsys.readouterr()
+    assert run(["classify", str(truss / "truss.yaml"), "--engine", "certified", "--tolerance", "1/10", "--out",
+                str(truss), "--format", "json"]) == 0  # fmt: skip
+    table = capsys.readouterr().out
+    legend = " ".join(texts(truss / "truss.svg"))
+    assert len(proved) == len(rows)
+    for count, bounds in proved.items():
+        low, high = map(Fraction, bounds)
+        shown = re.findall(rf"{re.escape(count)}: ([0-9.e-]+) to ([0-9.e-]+)", table)[0]
+        assert f"area {' to '.join(shown)}" in legend
+        assert 0 <= low - Fraction(shown[0]) <= max(low / 10, (high - low) / 100)
+        assert 0 <= Fraction(shown[1]) - high <= (high - low) / 100
+
+
+def lines(node: ET.Element) -> list[dict[str, str]]:
+    """The styles of the lines below a node."""
+    styles = [dict(re.findall(r"([a-z-]+): ?([^;]+)", path.get("style", ""))) for path in paths(node)]
+    return [style for style in styles if "stroke" in style and style.get("fill") == "none"]
+
+
+def test_stable_branches_are_solid_and_no_others_are(tmp_path: Path) -> None:
+    """In both pictures of a line; and no colour is that of a stable branch and of another."""
+    asked = ["range", str(CONFIGS / "fig4.yaml"), "--along", "rho", "--at", "L2=3/2", "--format", "svg"]
+    assert run([*asked, "--path", "3/4", "--quantity", "th1", "--out", str(tmp_path)]) == 0
+    solid: set[str] = set()
+    broken: set[str] = set()
+    for name, stable in (("fig4-range-path", r"pose \d at"), ("fig4-range-branches", "stable$")):
+        keys = [text for text in texts(tmp_path / f"{name}.svg") if re.match(rf"{stable}|saddle|maximum", text)]
+        marks = [style for style in lines(ET.parse(tmp_path / f"{name}.svg").getroot()) if style["stroke"] != "#111111"]
+        assert keys
+        of_legend = marks[-len(keys) :]
+        for text, style in zip(keys, of_legend, strict=True):
+            is_stable = re.match(stable, text) is not None
+            assert ("stroke-dasharray" not in style) == is_stable, text
+            (solid if is_stable else broken).add(style["stroke"])
+        drawn = {(style["stroke"], style.get("stroke-dasharray")) for style in of_legend}
+        assert {(s["stroke"], s.get("stroke-dasharray")) for s in marks if s["stroke"] in solid | broken} == drawn
+    assert len(solid) == 2 and not solid & broken

@@ -141,4 +141,5 @@ def _covered(image: Image, box: Box, sides: tuple[float, float]) -> list[int]:
     rows, columns = image.shape
     left, right = (int(min(max(v / sides[0], 0.0), 0.999) * columns) for v in (box[0], box[2]))
     bottom, top = (int(min(max(v / sides[1], 0.0), 0.999) * rows) for v in (box[1], box[3]))
-    return np.unique(image[bottom : top + 1, left : right + 1]).tolist()
+    found: list[int] = np.unique(image[bottom : top + 1, left : right + 1]).tolist()
+    return found

@@ -21,7 +21,7 @@ from matplotlib.figure import Figure
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import noun
 from ptmcad.errors import ConfigError
-from ptmcad.show.render.axes import dress
+from ptmcad.show.render.axes import dress, heading_of
 from ptmcad.show.render.fitting import Parts, fitted
 from ptmcad.show.render.labels import place
 from ptmcad.show.render.layout import SIDE, Layout, flowing
@@ -290,7 +290,7 @@ def draw_parts(figure: Figure, seen: _Seen, layout: Layout, style: Style, sample
 
 
 def whole_title(result: RegionMap) -> str:
-    return "".join(c if c.isprintable() else " " for c in result.slice.heading)
+    return "".join(c if c.isprintable() else " " for c in heading_of(result.slice))
 
 
 def _title(result: RegionMap) -> list[str]:
