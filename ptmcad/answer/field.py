@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ptmcad.answer import with_methods
-from ptmcad.answer.boundaries import extent_of
+from ptmcad.answer.boundaries import NONE, extent_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -31,7 +31,8 @@ class Field:
     x, y : shapes (columns,) and (rows,): the centres' coordinates.
     names : of the two axes.
     values : shape (rows, columns), from the bottom.
-    region : shape (rows, columns): numbers of the map's regions, -1 where there is none.
+    region : shape (rows, columns): numbers of the map's regions, -1 where the map says nothing: a certified map of what
+        is undetermined, an exact one of points on a curve.
     missed : number of pixels with such a solution that was not found.
     beyond : number of pixels where the quantity has a value that no double is near, larger than 1.8e308 or nearer to
         zero than 2.2e-308; nan is there.
@@ -60,6 +61,12 @@ class Field:
     def extent(self) -> tuple[float, float, float, float]:
         """The window as left, right, bottom, top: what `imshow` calls so, together with ``origin="lower"``."""
         return extent_of(self.x, self.y)
+
+    @property
+    def shares(self) -> str:
+        """At which share of the pixels there is a value, and of which the map says nothing, in words."""
+        known, open = (100 * float(part.mean()) for part in (self.values == self.values, self.region == NONE))
+        return f"at {known:.3g} % of the pixels" + (f"; {open:.3g} % undetermined" if open else "")
 
     def __repr__(self) -> str:
         rows, columns = self.values.shape

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import click
 
+from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.field import Field
 from ptmcad.cli.drawing import pixels_of, share_of, style_options
 from ptmcad.cli.formats import formats_of
@@ -177,7 +178,8 @@ def _expect_values(field: Field) -> None:
 
     if np.isnan(field.values).all() and not field.beyond and not field.missed:
         raise ConfigError(
-            f"no pixel has {field.pose}, or {field.quantity} has no value where it is: there is nothing to show",
+            f"no pixel has {field.pose}, or {field.quantity} has no value where it is: there is nothing to show"
+            + ("; some pixels are undetermined" if (field.region == NONE).any() else ""),
             key="--pose",
         )
 
@@ -191,10 +193,7 @@ def _summary(field: Field) -> str:
     if not known.size:
         return f"at no pixel was {field.pose} found"
     unit = f" {field.unit}" if field.unit else ""
-    lines = [
-        f"{field.quantity} of {field.pose}: {known.min():.6g} to {known.max():.6g}{unit}, "
-        f"at {100 * known.size / field.values.size:.3g} % of the pixels"
-    ]
+    lines = [f"{field.quantity} of {field.pose}: {known.min():.6g} to {known.max():.6g}{unit}, {field.shares}"]
     if field.jumps is not None and (jumps := sum(int(jump.sum()) for jump in field.jumps)):
         lines.append(f"its branch changes between {jumps} pairs of neighbouring pixels of one region")
     if field.missed:

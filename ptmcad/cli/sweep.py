@@ -174,7 +174,7 @@ class Made:
         shown = list(members(self.sweep, chosen(self.sweep)))
         done = [member.number for member in shown if member.state is State.DONE]
         drawn = dict(sketches(self.sweep.folder, done, self.jobs, self.progress))
-        frame = frame_of(self.sweep, self._some().slice)
+        frame = frame_of(self.sweep, self._some().slice, drawn.values())
         text_writer(atlas(self.sweep, frame, shown, drawn))(path)
 
     def _film(self, path: Path) -> None:

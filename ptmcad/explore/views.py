@@ -23,8 +23,7 @@ from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.report.chart import counts_text, hatch_id, pattern_defs, region_labels, region_outlines, wall_lines
 from ptmcad.show.report.frame import RIM, SIDE, frame, room
-from ptmcad.show.table import count_text
-from ptmcad.text.bounds import certified_digits
+from ptmcad.show.table import area_digits, count_text
 from ptmcad.text.numerals import approximate_text
 
 COARSE = 5e-4
@@ -53,7 +52,7 @@ def map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
                 "face": fills[number].face,
                 "hatch": hatch_id(fills[number].hatch) if fills[number].hatch else "",
                 "words": counts_text(region, slice.model),
-                "area": certified_digits(region.area) if fine or result.cover is not None else "",
+                "area": area_digits(result, region.area) if fine or result.cover is not None else "",
             }
             for number, region in enumerate(result.regions)
         ],

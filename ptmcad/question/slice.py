@@ -123,7 +123,12 @@ class Slice:
     @property
     def heading(self) -> str:
         """The title; without one, what is fixed and how parameters depend on the axes, such as "L1 = 1, k = 100"."""
-        return self.title or ", ".join(self._fixed()) or self.name
+        return self.title or ", ".join(self.fixed) or self.name
+
+    @property
+    def fixed(self) -> tuple[str, ...]:
+        """What is fixed and how parameters depend on the axes, one by one, such as "L1 = 1"."""
+        return tuple(self._fixed())
 
     def _fixed(self) -> Iterator[str]:
         values = {name: expression.to_text(self.axis_names) for name, expression in self.parameters.items()}

@@ -5,11 +5,10 @@ Guarantee: areas are certified, rounded as in the table of a map.
 
 from __future__ import annotations
 
-from ptmcad.answer.counts import counted_by
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.changestable import changes_table
-from ptmcad.show.table import NOT_COMPUTED, area_by_count, area_text, areas_are_known, count_text
+from ptmcad.show.table import NOT_COMPUTED, area_by_count, area_text, areas_are_known
 from ptmcad.text.numerals import shortest_text
 
 
@@ -34,9 +33,7 @@ def _degree(terms: tuple[tuple[tuple[int, int, int], int], ...]) -> int:
 
 
 def _areas(result: RegionMap) -> str:
-    found = area_by_count(result)
-    in_order = sorted(result.regions, key=lambda region: counted_by(region, result.slice.count))
-    known = {text: found[text] for text in (count_text(region, result.slice.count) for region in in_order)}
+    known = area_by_count(result)
     if known and not areas_are_known(result):
         return f"{NOT_COMPUTED}; counts {', '.join(known)}"
     return "; ".join(f"{count}: {area_text(result, bounds)}" for count, bounds in known.items())

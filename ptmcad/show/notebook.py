@@ -17,8 +17,7 @@ from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.mechanism import Mechanism
 from ptmcad.show.style import DEFAULT
-from ptmcad.show.table import NOT_COMPUTED, areas_are_known, count_text, index_heading
-from ptmcad.text.bounds import certified_digits
+from ptmcad.show.table import NOT_COMPUTED, area_digits, areas_are_known, count_text, index_heading
 from ptmcad.text.enclosure import Enclosure
 
 if TYPE_CHECKING:
@@ -65,7 +64,7 @@ def map_html(result: RegionMap) -> str:
 def _region_row(result: RegionMap, number: int, region: Region) -> tuple[str, ...]:
     index = " ".join(map(str, region.index)) if region.index else "varies"
     total = "varies" if region.total is None else str(region.total)
-    area = certified_digits(region.area, DIGITS) if areas_are_known(result) else NOT_COMPUTED
+    area = area_digits(result, region.area) if areas_are_known(result) else NOT_COMPUTED
     return str(number), count_text(region, result.slice.count), total, index, area
 
 

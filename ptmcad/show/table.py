@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -59,9 +58,13 @@ def _in_order(text: str) -> list[int]:
 
 def area_text(result: RegionMap, bounds: tuple[Fraction, Fraction]) -> str:
     """An area as it is printed everywhere: one number of an exact map, both bounds of a certified one, and its unit."""
-    text = certified_digits(bounds) if result.cover is None else interval_text(bounds)
     known = area_unit(result.slice)
-    return f"{text} {known}" if known else text
+    return f"{area_digits(result, bounds)} {known}" if known else area_digits(result, bounds)
+
+
+def area_digits(result: RegionMap, bounds: tuple[Fraction, Fraction]) -> str:
+    """The same without the unit."""
+    return certified_digits(bounds) if result.cover is None else interval_text(bounds)
 
 
 NOT_COMPUTED = "not computed"
@@ -74,30 +77,25 @@ def areas_are_known(result: RegionMap) -> bool:
 
 
 def region_area(result: RegionMap, number: int) -> str:
-    """The area of one region: that of its count, as the legend and the table have it, where no other one has it."""
-    region, count = result.regions[number], result.slice.count
-    if not areas_are_known(result):
-        return NOT_COMPUTED
-    text = count_text(region, count)
-    alone = sum(count_text(other, count) == text for other in result.regions) == 1
-    return area_text(result, area_by_count(result)[text] if alone else region.area)
+    """The area of one region, as the legend and the table have it where no other one has its count."""
+    return area_text(result, result.regions[number].area) if areas_are_known(result) else NOT_COMPUTED
 
 
 def area_by_count(result: RegionMap) -> dict[str, tuple[Fraction, Fraction]]:
-    """Bounds of the area of all points with each count, by the count's text.
+    """Bounds of the area of the regions with each count, by the count's text.
 
-    Of a certified map with all that is undetermined, in which there may be more regions.
+    What is undetermined is a part of several bounds of a certified map, but in their sum once.
     """
-    bounds = [(count_text(r, result.slice.count), r.area) for r in result.regions]
-    if result.cover is not None:
-        return dict(_by_count(bounds, result))
-    return {
-        text: (
-            sum((a[0] for t, a in bounds if t == text), Fraction(0)),
-            sum((a[1] for t, a in bounds if t == text), Fraction(0)),
-        )
-        for text in dict(bounds)
-    }
+    first, second = result.slice.axes
+    undetermined = result.undetermined * (first.high - first.low) * (second.high - second.low)
+    areas: dict[str, list[tuple[Fraction, Fraction]]] = {}
+    for region in result.regions:
+        areas.setdefault(count_text(region, result.slice.count), []).append(region.area)
+    found = {}
+    for text in sorted(areas, key=_in_order):
+        low, high = (sum((area[end] for area in areas[text]), Fraction(0)) for end in (0, 1))
+        found[text] = (low, high if result.cover is None else min(high, low + undetermined))
+    return found
 
 
 def _short(value: Fraction) -> str:
@@ -133,23 +131,6 @@ def _covered(cover: Cover) -> str:
     return f"cover     {n} rectangle{'s' * (n != 1)}{tubes} around the curves where counts change"
 
 
-_Bounds = tuple[str, tuple[Fraction, Fraction]]
-
-
-def _by_count(bounds: Sequence[_Bounds], result: RegionMap) -> list[_Bounds]:
-    """The area of all points with one count: at least that of its cells, and with all that is undetermined at most.
-
-    A certified map may have many small regions; this is also what they leave out.
-    """
-    first, second = result.slice.axes
-    undetermined = result.undetermined * (first.high - first.low) * (second.high - second.low)
-    found: list[_Bounds] = []
-    for text in sorted({text for text, _ in bounds}, key=_in_order):
-        low = sum((area[0] for other, area in bounds if other == text), Fraction(0))
-        found.append((text, (low, low + undetermined)))
-    return found
-
-
 def _time(result: RegionMap) -> str:
     """How long it took; what a machine does once, in its first run, is told apart."""
     seconds, once = result.timings.get("total"), result.timings.get(COMPILATION, 0.0)
@@ -168,7 +149,7 @@ def table(result: RegionMap) -> str:
     )
     bounds = [(count_text(r, count), r.area) for r in result.regions]
     if result.cover is not None:
-        bounds = _by_count(bounds, result)
+        bounds = list(area_by_count(result).items())
     areas = "; ".join(f"{text}: {area_text(result, area)}" for text, area in bounds)
     missing = bool(result.regions) and not areas_are_known(result)
     if missing:

@@ -44,17 +44,22 @@ def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:
 
 
 def interval_text(bounds: tuple[Fraction, Fraction]) -> str:
-    """Both bounds, rounded outwards by a hundredth of their distance at most.
+    """Both bounds, rounded outwards by a hundredth of their distance at most, each in two digits at least.
 
     >>> interval_text((Fraction("1.69822"), Fraction("1.75450"))), interval_text((Fraction(0), Fraction(2)))
     ('1.6982 to 1.7545', '0 to 2')
+    >>> interval_text((Fraction("0.00000432"), Fraction("0.0014367")))
+    '0.0000043 to 0.00144'
     """
     low, high = bounds
     if low >= high:
         return certified_digits(bounds)
     digits = max(2, magnitude(high) - magnitude(high - low) + 3)
     unit = Fraction(10) ** (magnitude(high) + 1 - digits)
-    return f"{decimal(rounded(low, unit, up=False), up=False)} to {decimal(high, up=True, digits=digits)}"
+    down = rounded(low, unit, up=False)
+    if low > 0:  # what is proved to be there is not rounded away
+        down = max(down, rounded(low, Fraction(10) ** (magnitude(low) - 1), up=False))
+    return f"{decimal(down, up=False)} to {decimal(high, up=True, digits=digits)}"
 
 
 def percent(share: Fraction) -> str:

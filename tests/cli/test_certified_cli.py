@@ -121,7 +121,7 @@ def test_a_result_to_files_and_on_from_it(
     assert "left out: terms of F3x, F4x (they are zero on this slice)" in lines[:at]
     assert lines[at + 1].startswith("computed: fold of a stable equilibrium")
     assert lines[at + 2] == "regions   3 of 3 cells, certified"
-    assert lines[-2].endswith("28 % undetermined; area bounds at most 1.1e+00 apart")
+    assert lines[-2].endswith("28 % undetermined; area bounds at most 9.7e-01 apart")
     assert lines[-1] == f"written   {tmp_path / SAVED}"
     stored = RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8"))
     assert stored == replace(certified_map(), slice=stored.slice)

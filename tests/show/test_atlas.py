@@ -73,7 +73,7 @@ def test_the_page_of_441_maps_is_below_a_megabyte() -> None:
     drawn = sketch(result)
     assert 200 < sum(len(data) for _, data in drawn.paths) < MAX_CHARACTERS
     sweep, members, sketches = family(21, 21)
-    text = atlas(sweep, frame_of(sweep, result.slice), members, dict.fromkeys(sketches, drawn))
+    text = atlas(sweep, frame_of(sweep, result.slice, [drawn]), members, dict.fromkeys(sketches, drawn))
     assert len(text.encode()) < 1_000_000
     assert text.count('<button type="button" class="small"') == 440
 

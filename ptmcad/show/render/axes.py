@@ -7,6 +7,7 @@ into the axis's name.
 from __future__ import annotations
 
 import re
+from collections.abc import Container
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -15,17 +16,11 @@ from ptmcad.question.slice import Slice
 from ptmcad.show.units import unit, with_unit
 from ptmcad.text.numerals import magnitude, power_of_ten
 
-_GREEK = {
-    "rho": "ρ",
-    "alpha": "α",
-    "beta": "β",
-    "theta": "θ",
-    "th": "θ",
-    "lambda": "λ",
-    "mu": "μ",
-    "phi": "φ",
-    "kappa": "κ",
-}
+_LETTERS = (
+    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi"
+)
+_GREEK = dict(zip((*_LETTERS.split(), "chi", "psi", "omega"), "αβγδεζηθικλμνξοπρστυφχψω", strict=True))
+_GREEK |= {name.capitalize(): letter.upper() for name, letter in _GREEK.items()} | {"th": "θ"}
 _SUBSCRIPT = str.maketrans("0123456789x", "₀₁₂₃₄₅₆₇₈₉ₓ")
 
 
@@ -88,15 +83,26 @@ def scale_of(low: Fraction, high: Fraction, digits: int = 4) -> Scale:
 
 def symbol(name: str) -> str:
     """A parameter's name as it is printed: ``L1`` as L₁, ``F3x`` as F₃ₓ, ``rho`` as ρ; other names as they are."""
-    match = re.fullmatch(r"([A-Za-z]|th)(\d{1,2}x?)", name)
-    if match:
-        return ("θ" if match[1] == "th" else match[1]) + match[2].translate(_SUBSCRIPT)
-    return _GREEK.get(name, name)
+    match = re.fullmatch(r"([A-Za-z]+?)(\d{1,2}x?)?", name)
+    if match is None or not (letter := _GREEK.get(match[1], match[1] if len(match[1]) == 1 else "")):
+        return name
+    return letter + (match[2] or "").translate(_SUBSCRIPT)
 
 
 def with_symbols(text: str) -> str:
     """A sum with the symbols of its names and true minus signs, such as ``φ − 2*θ``."""
     return re.sub(r"[A-Za-z]\w*", lambda match: symbol(match[0]), text).replace("-", "−")
+
+
+def heading_of(slice: Slice) -> str:
+    """The slice's heading, with the symbols of its names: where axes have them, so has all that is said."""
+    model = slice.model
+    return named(slice.heading, {*slice.parameters, *slice.axis_names, *model.unknowns, *model.shorthands})
+
+
+def named(text: str, names: Container[str]) -> str:
+    """A text with symbols in place of these names."""
+    return re.sub(r"[^\W\d]\w*", lambda match: symbol(match[0]) if match[0] in names else match[0], text)
 
 
 def axis_name(slice: Slice, axis: int) -> str:

@@ -15,20 +15,14 @@ from ptmcad.answer.branches import Branch, Branches
 from ptmcad.answer.paths import PosePaths
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.branches import kind
-from ptmcad.show.render.axes import scale_of, symbol
+from ptmcad.show.render.axes import heading_of, scale_of, symbol
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height, width
 from ptmcad.show.render.paths import draw_paths
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.rangeplate import LEFT, RIGHT, SIZE, WIDE, axes_in, axis_name, beside, scaled, short
+from ptmcad.show.render.rangeplate import LEFT, LOOKS, RIGHT, SIZE, WIDE, axes_in, axis_name, beside, scaled, short
 from ptmcad.show.units import with_unit
 
 PANEL, GAP, FOOT = 2.0, 0.25, 0.55
-_LOOKS: dict[str, dict[str, Any]] = {
-    "stable": {"color": "#0b5394", "linewidth": 2.0, "linestyle": "-"},
-    "saddle": {"color": "#b45f06", "linewidth": 1.2, "linestyle": (0, (5, 2))},
-    "unstable": {"color": "#b45f06", "linewidth": 1.2, "linestyle": (0, (5, 2))},
-    "maximum": {"color": "#666666", "linewidth": 1.2, "linestyle": (0, (1, 1.5))},
-}
 _OTHER: dict[str, Any] = {"color": INK, "linewidth": 1.4, "linestyle": "-"}
 _BEHIND: dict[str, Any] = {"color": "#8a8a8a", "linewidth": 0.9}
 """What changes where others are in front."""
@@ -46,7 +40,7 @@ def draw_branches(slice: Slice, found: Branches) -> Figure:
     tall = max((last + 1) * PANEL + last * GAP + FOOT, height(entries) + 0.2)
     words = f"{', '.join(found.quantities)} of all solutions along {found.along.name}: {', '.join(kinds)}."
     with settings():
-        figure = beside(f"{slice.heading}; {fixed}", width(entries), tall, words)
+        figure = beside(f"{heading_of(slice)}; {fixed}", width(entries), tall, words)
         scale = scale_of(found.along.low, found.along.high)
         for number, (name, unit) in enumerate(zip(found.quantities, found.units, strict=True)):
             bottom = tall - (number + 1) * PANEL - number * GAP
@@ -105,11 +99,11 @@ def _strokes(branch: Branch, number: int, found: Branches) -> Iterator[tuple[lis
 
 
 def _look(name: str) -> dict[str, Any]:
-    return _LOOKS.get(name, _OTHER)
+    return LOOKS.get(name, _OTHER)
 
 
 def _rank(name: str) -> int:
-    return list(_LOOKS).index(name) if name in _LOOKS else len(_LOOKS)
+    return list(LOOKS).index(name) if name in LOOKS else len(LOOKS)
 
 
 def _mark(name: str, **changes: Any) -> Callable[[Any, float, float], None]:

@@ -15,20 +15,20 @@ from typing import Any
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
-from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.colors import LinearSegmentedColormap, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ptmcad.answer.boundaries import Boundary
+from ptmcad.answer.boundaries import NONE, Boundary
 from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import System
 from ptmcad.show.render.axes import Dress, dress, scale_of, symbol
-from ptmcad.show.render.colours import Fill
+from ptmcad.show.render.colours import Fill, undetermined_fill
 from ptmcad.show.render.fieldlines import branch_edges, contour_lines
 from ptmcad.show.render.fitting import MIN_SIDE
-from ptmcad.show.render.legend import INK, STRONG, SWATCH, THIN, Entry, Type, draw_legend, in_rows
+from ptmcad.show.render.legend import INK, RIM_INK, STRONG, SWATCH, THIN, Entry, Type, draw_legend, in_rows
 from ptmcad.show.render.textwidth import ALLOWANCE, text_width, wrapped
 from ptmcad.show.render.view import Floats, View
 from ptmcad.show.style import DEFAULT, MIN_FONT, Place, Style
@@ -63,11 +63,7 @@ def description(field: Field) -> str:
     known = field.values[~np.isnan(field.values)]
     if not known.size:
         return f"{_absent(field)[0].upper()}{_absent(field)[1:]}."
-    share = 100 * known.size / field.values.size
-    return (
-        f"{field.quantity} of {field.pose} from {known.min():.6g} to {known.max():.6g}, "
-        f"which {share:.3g} % of the window has."
-    )
+    return f"{field.quantity} of {field.pose} from {known.min():.6g} to {known.max():.6g}, {field.shares}."
 
 
 def field_figure(
@@ -87,6 +83,8 @@ def field_figure(
     axes.set_facecolor(_EMPTY)
     known = field.values[~np.isnan(field.values)]
     view = View.whole(result)
+    if (field.region == NONE).any():
+        fill_empty(axes, field, _extent(view), undetermined_fill(style.palette))
     bar_axes = _fill(figure, axes, field, view, contours, style) if known.size else None
     if not known.size:
         axes.text(
@@ -104,15 +102,28 @@ def field_figure(
         many = [int(max(2, min(8, side / (ems * ticks / 72)))) for side, ems in zip(chart, (3.3, 2.0), strict=True)]
         how = Dress(ticks, max(MIN_FONT, 1.05 * font), (many[0], many[1]), scale=font / 9)
     dress(axes, result.slice, view.x, view.y, how)
-    legend = [] if style.legend is Place.NONE else _legend(result, field, boundaries)
+    legend = [] if style.legend is Place.NONE else _legend(result, field, boundaries, style)
     _Page(figure, axes, bar_axes, title_of(result, field) if style.title is None else style.title, legend, style).set()
     figure.set_label(f"{title_of(result, field)}\n{description(field)}")
     return figure
 
 
+def _extent(view: View) -> tuple[float, ...]:
+    return tuple(v for interval in (view.x, view.y) for s in [scale_of(*interval)] for v in (s.low, s.high))
+
+
+def fill_empty(axes: Any, field: Field, extent: Sequence[float], fill: Fill) -> None:
+    """The pixels of which the map says nothing, and in white those of its regions, over which the values come."""
+    axes.patch.set(facecolor=fill.face, hatch=fill.hatch or None, edgecolor=RIM_INK, linewidth=0)
+    axes.imshow(
+        np.where(field.region == NONE, np.nan, 0.0), origin="lower", extent=tuple(extent), aspect="auto",
+        cmap=ListedColormap([_EMPTY]), interpolation="nearest", gid="empty",
+    )  # fmt: skip
+
+
 def _fill(figure: Figure, axes: Any, field: Field, view: View, number: int, style: Style) -> Any:
     """The pixels with their lines, and the scale, whose axes are returned."""
-    extent = tuple(v for interval in (view.x, view.y) for s in [scale_of(*interval)] for v in (s.low, s.high))
+    extent = _extent(view)
     known = field.values[~np.isnan(field.values)]
     low, high = float(known.min()), float(known.max())
     image = axes.imshow(
@@ -164,15 +175,19 @@ def _edge(style: Style) -> Sequence[tuple[float, str, Any]]:
     return ((2.4 * style.line_scale, "white", "solid"), (1.1 * style.line_scale, INK, (0, (3.0, 1.6))))
 
 
-def _legend(result: RegionMap, field: Field, boundaries: Sequence[Boundary]) -> list[Entry]:
-    """What lines and white mean, as far as they are there."""
+def _legend(result: RegionMap, field: Field, boundaries: Sequence[Boundary], style: Style) -> list[Entry]:
+    """What lines, white and grey mean, as far as they are there."""
     told = [Entry(("the count changes",), STRONG)] if any(b.separates for b in boundaries) else []
     if field.jumps is not None and any(jump.any() for jump in field.jumps):
         told.append(Entry((f"the branch of {pose_words(result, field)} changes",), _edge_mark))
-    empty = np.isnan(field.values)
-    if empty.any() and not empty.all():
-        words = f"no {pose_words(result, field)}" if not field.missed + field.beyond else "no value"
-        told.append(Entry((words,), Fill(_EMPTY)))
+    unknown = field.region == NONE
+    if (np.isnan(field.values) & ~unknown).any() and not np.isnan(field.values).all():
+        what = "barrier" if field.quantity == "barrier" else pose_words(result, field)
+        told.append(Entry((f"no {what}" if not field.missed + field.beyond else "no value",), Fill(_EMPTY)))
+    if unknown.any():
+        # a pixel of an exact map is open where its centre is on a curve
+        words = "on a curve" if result.cover is None else "undetermined"
+        told.append(Entry((words,), undetermined_fill(style.palette)))
     return told
 
 

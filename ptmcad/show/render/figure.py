@@ -19,6 +19,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.mechanism import mechanism_in
 from ptmcad.question.slice import Slice
 from ptmcad.show.render import regionmap
+from ptmcad.show.render.axes import heading_of
 from ptmcad.show.render.layout import GAP, LEFT, SIDE
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.mechanism import spring_mark, symbol_mark
@@ -93,7 +94,7 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
             tall = float(figure.get_size_inches()[1])
             place = (left, chart.get_position().y1 * tall - panels)
         top = chart.get_position().y1 * tall
-        figure.set_label(f"{result.slice.heading}\n{regionmap.description(result)} Beside it: {describe(poses)}")
+        figure.set_label(f"{heading_of(result.slice)}\n{regionmap.description(result)} Beside it: {describe(poses)}")
         _mark(chart, result, (x, y))
         _write_head(figure, head, left, top)
         top -= _LINE * len(head) + 0.1

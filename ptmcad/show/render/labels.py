@@ -1,28 +1,31 @@
 """Places for the labels of arrows: near their tips, within the picture, apart from each other.
 
 Guarantee: the same for the same map, whatever the format. Labels overlap only where `TRIED` places for each do not
-suffice to keep them apart; which of them are clear of all others is known.
+suffice to keep them apart; which of them are clear of all others is known. A label stands on a region of another count
+only where none of these places on one of its own is as clear.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from math import cos, hypot, pi, sin
 
 import numpy as np
 
+from ptmcad.show.render.textwidth import text_width
 from ptmcad.show.render.view import Shapes
 
 FONT_SIZE = 8.0
-_EM = 0.64
-"""Width of a digit of DejaVu Sans against the font's size; letters are narrower, on the whole."""
-_DIRECTIONS = 16
-_DISTANCES = (34, 50, 70, 95, 125, 160, 200)
+_DIRECTIONS = 32
+_DISTANCES = (10, 20, 34, 50, 70, 95, 125, 160, 200)
+_SHORT, _EDGE = 30, 2
+"""Points: a shorter arrow is as bad as one that passes another region; from the picture's edge to a label."""
 _MET = 1e3
 """What a place costs at the least where something is in its way; distances are less."""
-_OTHER_REGION = 75
-"""What a place costs for every other region than one that its label or its arrow lies on."""
+_OTHER_REGION, _FOREIGN = 75, 300
+"""What a place costs for every other region than one that its label or its arrow lies on, and where its label lies on
+one of another count: more than all distances."""
 TRIED = _DIRECTIONS * len(_DISTANCES)
 
 Image = np.ndarray[tuple[int, int], np.dtype[np.int64]]
@@ -44,35 +47,37 @@ class Placement:
 
 def place(
     tips: Sequence[tuple[float, float]], texts: Sequence[str], seen: Shapes, sides: tuple[float, float],
-    size: float = FONT_SIZE, skip: bool = False,
+    size: float = FONT_SIZE, skip: bool = False, homes: Sequence[Collection[int]] = (),
 ) -> list[Placement]:  # fmt: skip
     """Places for the texts, one after the other.
 
     Parameters
     ----------
+    homes : for each text the regions of which it is true; if not given, of all.
     skip : whether those that are not clear are not to be drawn, so that nothing has to be clear of them.
     sides : width and height of the picture, in points.
     size : of the texts, in points.
     """
     image = seen.raster(96, 96) if tips else np.zeros((1, 1), dtype=np.int64)
     points = [(x * sides[0], y * sides[1]) for x, y in tips]
-    away = [distance * min(*sides, 331.2) / 331.2 for distance in _DISTANCES]
+    scale = min(*sides, 331.2) / 331.2
     taken: list[Box] = []
     arrows: list[tuple[tuple[float, float], tuple[float, float]]] = []
     result = []
     for number, (tip, text) in enumerate(zip(points, texts, strict=True)):
-        half = ((len(text) * _EM * size) / 2 + 4, size * 0.6 + 4)
+        half = (36 * text_width(text, size) + 0.25 * size + 1, 0.85 * size + 1)
         best, label, clear = float("inf"), tip, False
-        for distance in away:
+        for distance in (scale * each for each in _DISTANCES):
             for k in range(_DIRECTIONS):
                 angle = 2 * pi * (k + 0.5) / _DIRECTIONS
                 x, y = tip[0] + (half[0] + distance) * cos(angle), tip[1] + (half[1] + distance) * sin(angle)
                 # a tip at the frame has room beside itself, along the frame
                 x, y = (_within(v, h, side) for v, h, side in zip((x, y), half, sides, strict=True))
                 box = (x - half[0], y - half[1], x + half[0], y + half[1])
-                cost = float(distance)
+                cost = distance + (_OTHER_REGION if distance < scale * _SHORT else 0.0)
                 cost += 1e6 * sum(
-                    max(0.0, e) for e in (6 - box[0], 6 - box[1], box[2] - sides[0] + 6, box[3] - sides[1] + 6)
+                    max(0.0, e)
+                    for e in (_EDGE - box[0], _EDGE - box[1], box[2] - sides[0] + _EDGE, box[3] - sides[1] + _EDGE)
                 )
                 cost += 1e4 * sum(_overlap(box, other) for other in taken)
                 cost += 1e3 * sum(_near(box, p) for p in points)
@@ -80,7 +85,11 @@ def place(
                 cost += 1e3 * sum(_meets(box, a, b) for a, b in arrows)
                 cost += 1e3 * sum(_meets(other, tip, (x, y)) for other in taken) if skip else 0.0
                 met = cost >= _MET
-                cost += _OTHER_REGION * (_variety(image, box, sides) + _passed(image, tip, (x, y), sides))
+                if cost >= best:
+                    continue
+                if homes and not set(_covered(image, box, sides)) <= {-1, *homes[number]}:
+                    cost += _FOREIGN
+                cost += _OTHER_REGION * (len(_covered(image, box, sides)) - 1 + _passed(image, tip, (x, y), sides))
                 if cost < best:
                     best, label, clear = cost, (x, y), not met
         result.append(Placement(tips[number], (label[0] / sides[0], label[1] / sides[1]), size, clear))
@@ -93,7 +102,7 @@ def place(
 
 def _within(middle: float, half: float, side: float) -> float:
     """The middle of a label, moved so that it is within the picture, if it is not longer than that."""
-    return min(max(middle, half + 6), side - half - 6) if 2 * half + 12 <= side else middle
+    return min(max(middle, half + _EDGE), side - half - _EDGE) if 2 * (half + _EDGE) <= side else middle
 
 
 def _overlap(a: Box, b: Box) -> bool:
@@ -127,9 +136,10 @@ def _passed(image: Image, a: tuple[float, float], b: tuple[float, float], sides:
     return len(np.unique(image[row, column])) - 1
 
 
-def _variety(image: Image, box: Box, sides: tuple[float, float]) -> int:
-    """How many other regions than one the box covers."""
+def _covered(image: Image, box: Box, sides: tuple[float, float]) -> list[int]:
+    """The regions that the box covers."""
     rows, columns = image.shape
     left, right = (int(min(max(v / sides[0], 0.0), 0.999) * columns) for v in (box[0], box[2]))
     bottom, top = (int(min(max(v / sides[1], 0.0), 0.999) * rows) for v in (box[1], box[3]))
-    return len(np.unique(image[bottom : top + 1, left : right + 1])) - 1
+    found: list[int] = np.unique(image[bottom : top + 1, left : right + 1]).tolist()
+    return found

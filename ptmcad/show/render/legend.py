@@ -20,8 +20,8 @@ from ptmcad.text.bounds import percent
 
 STRONG, THIN, INK = 1.3, 0.5, "#111111"
 """Widths in points of walls that separate regions and of others, and the colour of both."""
-RIM, RIM_INK = 0.35, "#404040"
-"""The line around what is undetermined: less than a pixel at 150 dpi, so that a narrow strip is seen as a hairline."""
+RIM, CORE, RIM_INK = 0.45, 0.6, "#404040"
+"""Widths in points of the line around what is undetermined, and of the least of this that is seen within."""
 
 LINE, SWATCH, COLUMNS = 0.17, 0.26, 36
 """Inches between lines, width of a swatch, characters in a line."""

@@ -6,9 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.show.render.colours import Fill, filler, undetermined_fill
-from ptmcad.show.render.legend import INK, RIM, RIM_INK, STRONG, THIN
+from ptmcad.show.render.legend import CORE, INK, RIM, RIM_INK, STRONG, THIN
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import Style
 
@@ -52,8 +54,9 @@ def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = N
                 edgecolor=RIM_INK if paint.undetermined.hatch else None,
             )
         )  # fmt: skip
+    rim = (CORE + 2 * RIM) * paint.scale if result.cover is not None else 0.0
     for number, region in enumerate(result.regions):
-        polygons = [Curve(p, closed=False) for p in seen.polygons(number)]
+        polygons = [Curve(np.vstack([p, p[:1]]), closed=True) for p in seen.polygons(number)]
         if not polygons:
             continue
         fill = paint.fill(region)
@@ -61,15 +64,20 @@ def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = N
         axes.add_artist(
             PathPatch(
                 Curve.make_compound_path(*polygons), transform=place, facecolor=fill.face, edgecolor=INK,
-                hatch=fill.hatch or None, linewidth=0, snap=False, gid=f"{prefix}region-{number}",
+                hatch=fill.hatch or None, linewidth=rim, joinstyle="round", snap=False,
+                gid=f"{prefix}region-{number}",
             )
         )  # fmt: skip
-    edges = list(seen.edges())
+    edges = [Curve(edge, closed=True) for edge in seen.edges()]
     if edges:
+        # all but the regions, whose outlines have them at the left hand, and a line's width of them: what is
+        # undetermined is seen between its rims, however narrow it is
+        around = Curve([(-1, -1), (-1, 2), (2, 2), (2, -1), (-1, -1)], closed=True)
         axes.add_artist(
-            LineCollection(
-                edges, transform=place, colors=RIM_INK, linewidths=RIM * paint.scale, joinstyle="round",
-                zorder=2, gid=f"{prefix}edges",
+            PathPatch(
+                Curve.make_compound_path(around, *edges), transform=place, edgecolor=paint.undetermined.face,
+                facecolor="none" if paint.undetermined.hatch else paint.undetermined.face,
+                linewidth=CORE * paint.scale, joinstyle="round", snap=False, zorder=2, gid=f"{prefix}edges",
             )
         )  # fmt: skip
     lines: dict[tuple[bool, int], list[Any]] = {}

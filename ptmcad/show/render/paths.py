@@ -16,14 +16,24 @@ from matplotlib.lines import Line2D
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePaths, Target
 from ptmcad.mechanism import Mechanism
 from ptmcad.question.slice import Slice
-from ptmcad.show.render.axes import scale_of, symbol
+from ptmcad.show.render.axes import heading_of, scale_of, symbol
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height, width
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.rangeplate import LEFT, RIGHT, SIZE, WIDE, axes_in, axis_name, beside, scaled, short
+from ptmcad.show.render.rangeplate import (
+    EACH,
+    LEFT,
+    LOOKS,
+    RIGHT,
+    SIZE,
+    WIDE,
+    axes_in,
+    axis_name,
+    beside,
+    scaled,
+    short,
+)
 from ptmcad.show.units import unit_of_unknown, with_unit
 
-_COLOURS = ("#0b5394", "#b45f06", "#38761d", "#741b47")
-_DASHES: tuple[Any, ...] = ("-", (0, (6, 2)), (0, (2, 2)), (0, (6, 2, 1, 2)))
 _LOST = (Fate.VANISH, Fate.UNSTABLE, Fate.EXCLUDED)
 
 
@@ -33,7 +43,7 @@ def draw_paths(slice: Slice, found: PosePaths, further: Sequence[Entry] = ()) ->
     ``further`` are the legend's last entries, of what is going to be added.
     """
     fixed = ", ".join(f"{symbol(n)} = {short(v)}" for n, v in found.at.items())
-    heading = f"{slice.heading}; {fixed}"
+    heading = f"{heading_of(slice)}; {fixed}"
     model = found.model
     what = "pose" if isinstance(model, Mechanism) else "solution"
     stable = "stable " * model.tells_stability
@@ -61,9 +71,10 @@ def draw_paths(slice: Slice, found: PosePaths, further: Sequence[Entry] = ()) ->
         for number, name in enumerate(names):
             axes = axes_in(figure, (LEFT, foot + spare + (last - number) * (panel + 0.25), WIDE, panel))
             for k, path in enumerate(found.paths):
-                colour, dash = _COLOURS[k % len(_COLOURS)], _DASHES[k % len(_DASHES)]
+                look = _look(k)
+                colour = look["color"]
                 xs = [scaled(p.value, found.along) for p in path.points]
-                axes.plot(xs, [_angle(p, number) for p in path.points], color=colour, linestyle=dash, linewidth=1.6)
+                axes.plot(xs, [_angle(p, number) for p in path.points], **look)
                 for end in (path.low, path.high):
                     if end.fate in (Fate.WINDOW, Fate.UNDECIDED):
                         continue
@@ -85,11 +96,14 @@ def draw_paths(slice: Slice, found: PosePaths, further: Sequence[Entry] = ()) ->
     return figure
 
 
+def _look(number: int) -> dict[str, Any]:
+    return LOOKS["stable"] | {"color": EACH[number % len(EACH)]}
+
+
 def _line(number: int) -> Any:
     def mark(figure: Any, left: float, middle: float) -> None:
-        colour, dash = _COLOURS[number % len(_COLOURS)], _DASHES[number % len(_DASHES)]
-        figure.add_artist(Line2D((left, left + 0.28), (middle, middle), transform=figure.dpi_scale_trans,
-                                 color=colour, linestyle=dash, linewidth=1.6))  # fmt: skip
+        line = Line2D((left, left + 0.28), (middle, middle), transform=figure.dpi_scale_trans, **_look(number))
+        figure.add_artist(line)
 
     return mark
 

@@ -19,7 +19,7 @@ from ptmcad.answer.counts import Counts
 from ptmcad.answer.field import Field
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import UNDETERMINED, fill_of_counts
-from ptmcad.show.render.field import COLOURS, bar_text, description
+from ptmcad.show.render.field import COLOURS, bar_text, description, fill_empty
 from ptmcad.show.render.legend import INK
 from ptmcad.show.render.printing import printed, settings
 
@@ -44,7 +44,7 @@ def grid_png(grid: Grid, dpi: int) -> bytes:
         _walls(axes, grid, grid.region)
         shown = [k for k in range(len(colours)) if k or (counts == NONE).any()]
         bar = figure.colorbar(image, ax=axes, boundaries=[shown[0] - 0.5, *(k + 0.5 for k in shown)], ticks=shown)
-        bar.ax.set_yticklabels([str(known[k - 1]) if k else "none" for k in shown])
+        bar.ax.set_yticklabels([str(known[k - 1]) if k else "undetermined" for k in shown])
         bar.set_label("stable" if told else "in all")
         return printed(figure, "png", dpi, repr(grid), "")
 
@@ -53,6 +53,8 @@ def field_png(field: Field, dpi: int) -> bytes:
     """The values as the content of a PNG."""
     with settings():
         figure, axes = _chart(field, dpi)
+        if (field.region == NONE).any():
+            fill_empty(axes, field, field.extent, UNDETERMINED)
         if np.isfinite(field.values).any():
             image = axes.imshow(
                 field.values, origin="lower", extent=field.extent, aspect="auto", interpolation="nearest", cmap=COLOURS

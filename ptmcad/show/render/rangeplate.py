@@ -19,6 +19,15 @@ WIDE, LEFT, RIGHT, LINE, MARGIN = 6.2, 0.85, 0.3, 0.22, 0.15
 SIZE = 8.0
 TITLE = 11.0
 """In points: text, and a title's."""
+LOOKS: dict[str, dict[str, Any]] = {
+    "stable": {"color": "#0b5394", "linewidth": 2.0, "linestyle": "-"},
+    "saddle": {"color": "#b45f06", "linewidth": 1.2, "linestyle": (0, (5, 2))},
+    "unstable": {"color": "#b45f06", "linewidth": 1.2, "linestyle": (0, (5, 2))},
+    "maximum": {"color": "#666666", "linewidth": 1.2, "linestyle": (0, (1, 1.5))},
+}
+"""Lines of solutions, by what these are called: stable ones are solid, and no others are."""
+EACH = ("#0b5394", "#2a9d8f", "#741b47", "#7d9be0", "#274e13", "#c27ba0")
+"""Of solutions of one kind that are told from each other; no other kind has one of these colours."""
 
 
 def beside(heading: str, key: float, tall: float, words: str) -> Figure:

@@ -26,7 +26,7 @@ from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.ranges.certified import widest_text
 from ptmcad.show.ranges.numbers import end_text, width_text
 from ptmcad.show.ranges.table import maximum_text, operation_name, working_text
-from ptmcad.show.render.axes import scale_of, symbol
+from ptmcad.show.render.axes import heading_of, scale_of, symbol
 from ptmcad.show.render.colours import fill_of_counts, fill_of_index
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height, width
 from ptmcad.show.render.printing import settings
@@ -59,7 +59,7 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
     space = 0.95 if upright else LABELS
     legend = tuple(_bar_legend(found))
     fixed = ", ".join(f"{symbol(n)} = {short(v)}" for n, v in found.at.items())
-    heading = f"{slice.heading}; {fixed}"
+    heading = f"{heading_of(slice)}; {fixed}"
     below = ROOM + 0.35 + space
     tall = max(below + BAR + 0.45, height(legend) + 0.2)
     with settings():
@@ -115,7 +115,7 @@ def _unstable(index: MorseIndex | None) -> tuple[str, ...]:
     if index is None:
         return ()
     saddles, maxima = sum(index[1:-1]), index[-1]
-    between = [f"{saddles} saddles"] if len(index) > 2 else []
+    between = [f"{saddles} saddle{'s' * (saddles != 1)}"] if len(index) > 2 else []
     return (", ".join([*between, f"{maxima} maxim{'um' if maxima == 1 else 'a'}"]),)
 
 
@@ -151,7 +151,7 @@ def spread(places: Sequence[float], half: float) -> list[float]:
 
 def draw_widths(slice: Slice, found: OperationWidths | CertifiedWidths) -> Figure:
     """The operation ranges at the tabulated values, and their width with its largest value."""
-    title = textwrap.wrap(slice.heading, _COLUMNS)[:3]
+    title = textwrap.wrap(heading_of(slice), _COLUMNS)[:3]
     maxima = found.maxima if isinstance(found, OperationWidths) else ()
     if isinstance(found, OperationWidths):
         said = [maximum_text(m, found.over.name, _DIGITS) for m in maxima] or [

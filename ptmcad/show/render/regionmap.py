@@ -21,7 +21,7 @@ from matplotlib.figure import Figure
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import noun
 from ptmcad.errors import ConfigError
-from ptmcad.show.render.axes import dress
+from ptmcad.show.render.axes import dress, heading_of
 from ptmcad.show.render.fitting import Parts, fitted
 from ptmcad.show.render.labels import place
 from ptmcad.show.render.layout import SIDE, Layout, flowing
@@ -40,7 +40,7 @@ from ptmcad.show.render.painting import Paint, paint_map, paint_of
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import MAX_ZOOMS, Sliver, Zoom, seen_thin_walls, thin_regions, unstable_zooms, zooms
-from ptmcad.show.render.thinmarks import RESOLVED, Marks, draw_marks, ranked
+from ptmcad.show.render.thinmarks import RESOLVED, Marks, draw_marks, homes_of, ranked
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import DEFAULT, Place, Style
 from ptmcad.show.table import area_text, areas_are_known, count_text, region_area
@@ -107,7 +107,8 @@ class _Seen:
     def with_room(self, sides: tuple[float, float], size: float) -> _Seen:
         """The same but for what has no label of its own in a picture with sides in points, where no inset stands."""
         ranked = self.ranked
-        marks = place(*self._labels(ranked), self.whole, sides, size, skip=True)
+        homes = homes_of(self.whole.result, ranked)
+        marks = place(*self._labels(ranked), self.whole, sides, size, skip=True, homes=homes)
         kept = [sliver for sliver, mark in zip(ranked, marks, strict=True) if mark.clear]
         if len(kept) == len(ranked):
             return self
@@ -289,7 +290,7 @@ def draw_parts(figure: Figure, seen: _Seen, layout: Layout, style: Style, sample
 
 
 def whole_title(result: RegionMap) -> str:
-    return "".join(c if c.isprintable() else " " for c in result.slice.heading)
+    return "".join(c if c.isprintable() else " " for c in heading_of(result.slice))
 
 
 def _title(result: RegionMap) -> list[str]:
@@ -363,7 +364,8 @@ def _mark(
     tips = [seen.whole.view.approximate_position(sliver.at) for sliver in slivers]
     sides = (layout.chart[2] * 72, layout.chart[3] * 72)
     skip = not layout.insets
-    placed = place(tips, names, seen.whole, sides, layout.texts.arrow, skip=skip)
+    homes = homes_of(seen.whole.result, slivers)
+    placed = place(tips, names, seen.whole, sides, layout.texts.arrow, skip=skip, homes=homes)
     draw_marks(axes, Marks(slivers, placed, names), paint.scale)
 
 

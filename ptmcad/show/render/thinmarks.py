@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.labels import Placement, place
 from ptmcad.show.render.legend import INK
 from ptmcad.show.render.slivers import Sliver, inside, thin_regions
@@ -50,6 +51,12 @@ def ranked(whole: Shapes, slivers: Sequence[Sliver], thin: Sequence[int]) -> lis
     return [*first, *(sliver for sliver in by_size if sliver not in first)]
 
 
+def homes_of(result: RegionMap, slivers: Sequence[Sliver]) -> list[list[int]]:
+    """For each thin region all that have its count."""
+    texts = [count_text(region, result.slice.count) for region in result.regions]
+    return [[n for n, text in enumerate(texts) if text == texts[sliver.region]] for sliver in slivers]
+
+
 def marks_of(
     whole: Shapes, sides: tuple[float, float], dpi: int, size: float, names: Sequence[str] | None = None
 ) -> Marks:
@@ -71,7 +78,8 @@ def marks_of(
     slivers = ranked(whole, [Sliver(n, inside(whole, n)) for n in thin], thin)
     tips = [whole.view.approximate_position(sliver.at) for sliver in slivers]
     labels = [told[sliver.region] for sliver in slivers]
-    found = place(tips, labels, whole, (72 * sides[0], 72 * sides[1]), size, skip=True)
+    homes = [[n for n, name in enumerate(told) if name == label] for label in labels]
+    found = place(tips, labels, whole, (72 * sides[0], 72 * sides[1]), size, skip=True, homes=homes)
     clear = [k for k, placement in enumerate(found) if placement.clear]
     return Marks(
         [slivers[k] for k in clear], [found[k] for k in clear], [labels[k] for k in clear], len(thin) - len(clear)

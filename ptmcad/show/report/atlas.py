@@ -10,15 +10,15 @@ the page says so.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from html import escape
 from typing import Any
 
 from ptmcad.answer.sweep import Member, State, Sweep
-from ptmcad.show.render.axes import symbol
-from ptmcad.show.render.colours import Fill
+from ptmcad.show.render.axes import heading_of, named, symbol
+from ptmcad.show.render.colours import UNDETERMINED, Fill
 from ptmcad.show.report.chart import hatch_id, pattern_defs
 from ptmcad.show.report.page import asset, harmless, policy_of, template
 from ptmcad.show.sweeps.sketch import SIDE, Sketch
@@ -130,14 +130,18 @@ def _cell(sweep: Sweep, member: Member, sketch: Sketch | None) -> str:
     )
 
 
-def _legend(sketches: Iterable[Sketch], frame: Frame) -> Iterator[str]:
-    """The fills of all counts that occur, in the order of the counts."""
+def _legend(sketches: Collection[Sketch], frame: Frame) -> Iterator[str]:
+    """The fills of all counts that occur, in the order of the counts, and that of what is undetermined."""
     found = {text: fill for each in sketches for text, fill in each.legend}
-    for text, fill in sorted(found.items(), key=lambda item: [int(n) for n in re.findall(r"\d+", item[0])]):
+    in_order = sorted(found.items(), key=lambda item: [int(n) for n in re.findall(r"\d+", item[0])])
+    shown = [(f"{frame.counted}: {text}", fill) for text, fill in in_order]
+    if any(each.plate == UNDETERMINED for each in sketches):
+        shown.append(("undetermined", UNDETERMINED))
+    for text, fill in shown:
         hatch = f'<rect width="30" height="18" {_paint(fill, hatched=True)}/>' if fill.hatch else ""
         yield (
             f'<li><svg class="swatch" viewBox="0 0 30 18" aria-hidden="true"><rect width="30" height="18" '
-            f"{_paint(fill)}/>{hatch}</svg>{escape(frame.counted)}: {escape(text)}</li>"
+            f"{_paint(fill)}/>{hatch}</svg>{escape(text)}</li>"
         )
 
 
@@ -209,11 +213,13 @@ def _rounded(value: Fraction) -> float:
     return float(f"{float(value):.6g}")
 
 
-def frame_of(sweep: Sweep, slice: Any) -> Frame:
-    """What the maps have in common, from the slice of one of them."""
+def frame_of(sweep: Sweep, slice: Any, sketches: Iterable[Sketch]) -> Frame:
+    """What the maps have in common, from the slice of one of them and the drawings of all on the page."""
     axes = tuple((a.name, _shown_fraction(a.low), _shown_fraction(a.high)) for a in slice.axes)
-    fixed = [part for part in re.split(r", (?=\S+ = )", slice.heading) if part.partition(" = ")[0] not in sweep.names]
-    return Frame(axes, ", ".join(fixed) if not slice.title else slice.title, slice.count.value)
+    common = set[str](slice.fixed).intersection(*(sketch.fixed for sketch in sketches))
+    fixed = [part for part in slice.fixed if part in common and part.partition(" = ")[0] not in sweep.names]
+    heading = heading_of(slice) if slice.title else ", ".join(named(part, slice.parameters) for part in fixed)
+    return Frame(axes, heading, slice.count.value)
 
 
 def _shown_fraction(value: Fraction) -> str:

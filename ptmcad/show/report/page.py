@@ -23,7 +23,7 @@ from ptmcad.mechanism.description import UnknownKind
 from ptmcad.mechanism.joints import joints_of
 from ptmcad.mechanism.work import split_moments
 from ptmcad.question.slice import Slice
-from ptmcad.show.render.axes import symbol, with_symbols
+from ptmcad.show.render.axes import heading_of, symbol, with_symbols
 from ptmcad.show.render.colours import fill_of
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.view import Shapes
@@ -36,9 +36,8 @@ from ptmcad.show.report.frame import SIDE
 from ptmcad.show.report.packing import packed
 from ptmcad.show.report.pathdata import GRID
 from ptmcad.show.report.tape import tape
-from ptmcad.show.table import NOT_COMPUTED, areas_are_known
-from ptmcad.show.units import area_unit, declared_units
-from ptmcad.text.bounds import certified_digits
+from ptmcad.show.table import region_area
+from ptmcad.show.units import declared_units
 from ptmcad.version import __version__
 
 _POINT_DIGITS = 12
@@ -66,7 +65,7 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
     style, script = asset("page.css"), "".join(asset(name) for name in SCRIPTS)
     return template("page.html").substitute(
         policy=escape(policy_of(style, script)),
-        title=escape(result.slice.heading),
+        title=escape(heading_of(result.slice)),
         name=escape(result.slice.name),
         what=_shown(result.slice.model),
         banner=sections.banner(result),
@@ -204,7 +203,6 @@ def _unknowns(model: Model) -> tuple[str, ...]:
 def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
     """What the script shows and draws."""
     names, model = result.slice.axis_names, result.slice.model
-    known, of_area = areas_are_known(result), area_unit(result.slice)
     return {
         "side": SIDE,
         "grid": GRID,
@@ -222,10 +220,10 @@ def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
         "follow": tape(result),
         "regions": [
             {
-                "area": f"{certified_digits(r.area)} {of_area}".rstrip() if known else NOT_COMPUTED,
+                "area": region_area(result, number),
                 "counts": counts_text(r, model),
             }
-            for r in result.regions
+            for number, r in enumerate(result.regions)
         ],
         "stacks": [list(s.cells) for s in result.stacks],
         "names": list(names),

@@ -19,7 +19,7 @@ from ptmcad.show.report.bounds import exactly
 from ptmcad.show.report.chart import Chart, counts_text, hatch_id
 from ptmcad.show.report.equilibria import both, distinct_parameters
 from ptmcad.show.report.reproduction import reproduction
-from ptmcad.show.table import NOT_COMPUTED, areas_are_known, stability_in_words
+from ptmcad.show.table import NOT_COMPUTED, area_digits, areas_are_known, stability_in_words
 from ptmcad.show.units import area_unit, unit, with_unit
 from ptmcad.text.bounds import certified_digits, percent
 from ptmcad.text.numerals import decimal, text_of
@@ -163,7 +163,7 @@ def regions(result: RegionMap) -> str:
         index = "-".join(map(str, region.index)) if region.index else ""
         buttons = "".join(f'<button class="chip">{n}</button>' for n in region.cells)
         low, high = region.area
-        middle = certified_digits(region.area)
+        middle = area_digits(result, region.area)
         if not known:
             middle, bounds = NOT_COMPUTED, ""
         elif result.cover is not None:

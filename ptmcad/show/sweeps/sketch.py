@@ -30,11 +30,13 @@ class Sketch:
     Attributes
     ----------
     legend : the counts that occur, as text, with their fills.
+    fixed : what is fixed in the map's slice, in words.
     """
 
     plate: Fill
     paths: tuple[tuple[Fill, str], ...]
     legend: tuple[tuple[str, Fill], ...]
+    fixed: tuple[str, ...] = ()
 
 
 def sketch(result: RegionMap) -> Sketch:
@@ -59,7 +61,7 @@ def sketch(result: RegionMap) -> Sketch:
             pieces.setdefault(fill, []).extend(seen.polygons(number))
     for factor in (1, 3, 9):
         drawn = Sketch(plate, tuple((fill, _data(found, factor * TOLERANCE)) for fill, found in pieces.items()),
-                       tuple(legend.items()))  # fmt: skip
+                       tuple(legend.items()), result.slice.fixed)  # fmt: skip
         if sum(len(data) for _, data in drawn.paths) <= MAX_CHARACTERS:
             break
     return drawn
