@@ -12,8 +12,8 @@ from ptmcad.errors import MAX_FAULTS, ConfigError, HypothesisError
 from ptmcad.question.config import Family, with_place
 from ptmcad.question.config.asked import load_asked
 from ptmcad.question.config.record import record_of
+from ptmcad.question.shipped import record_tree
 from ptmcad.text.numerals import shortest_text
-from ptmcad.text.yamltree import read_file
 
 
 @click.command("check")
@@ -29,7 +29,7 @@ def command(*, record: Path, limits: Limits) -> int:
 
     \b
     Example:
-        ptmcad check configs/fig4.yaml
+        ptmcad check fig4
     """
     try:
         asked, sweeping, designed = load_asked(record)
@@ -48,7 +48,7 @@ def command(*, record: Path, limits: Limits) -> int:
         try:
             found = check(slice)
         except (ConfigError, HypothesisError) as error:
-            raise with_place(error, record_of(read_file(record))) from error
+            raise with_place(error, record_of(record_tree(record))) from error
         for line in cost_text(found):
             click.echo(line)
         if isinstance(asked, Family):

@@ -123,10 +123,10 @@ def command(*, asked: Asked, search: Search, output: Output, limits: Limits) -> 
 
     \b
     Examples:
-        ptmcad design configs/fig4.yaml --maximise range --along rho --over L2=1/3:5/3
-        ptmcad design configs/fig4.yaml --over L1=1/2:2 --over L2=1/2:2 --condition 'L1+L2<=2' --format json,png
-        ptmcad design configs/fig4.yaml --maximise area --over L1=1/2:1 --tolerance 1/10
-        ptmcad design configs/fig4.yaml --maximise barrier --pose stable:2 --over rho=1/4:2 --over L2=1/4:2
+        ptmcad design fig4 --maximise range --along rho --over L2=1/3:5/3
+        ptmcad design fig4 --over L1=1/2:2 --over L2=1/2:2 --condition 'L1+L2<=2' --format json,png
+        ptmcad design fig4 --maximise area --over L1=1/2:1 --tolerance 1/10
+        ptmcad design fig4 --maximise barrier --pose stable:2 --over rho=1/4:2 --over L2=1/4:2
     """
     question = asked.design()
     stem = output.stem(question)

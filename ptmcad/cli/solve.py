@@ -133,7 +133,7 @@ def command(
     Examples:
         ptmcad solve --at rho=1,L2=3/2
         ptmcad solve --at rho=7/10,L2=3/2,F3=-10,F4=-10 --format table,json,svg --out poses
-        ptmcad solve configs/fig4.yaml --at rho=7/10,L2=3/2 --digits 30
+        ptmcad solve fig4 --at rho=7/10,L2=3/2 --digits 30
     """
     if at is None and not sets and config is None:
         raise ConfigError(f"give a point, as in --at {POINT}")

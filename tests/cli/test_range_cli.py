@@ -66,7 +66,7 @@ def test_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ([FIG4], "Missing option '--along'"),
+        ([FIG4], "--along: is missing"),
         ([FIG4, "--along", "rho"], "--at: the other axis, L2, has no value: add L2=VALUE"),
         (["--along", "rho"], "--at: give the values"),
         ([FIG4, "--along", "rho", "--at", "rho=1"], "has no value"),
