@@ -18,6 +18,7 @@ from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.maps import made_map, stored_map
 from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.question import question_of
 from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.cli.stored import stored_in
 from ptmcad.cli.values import formats as formats_known
@@ -114,7 +115,7 @@ def command(
         with stored_in(asked.config if stored else None):
             motion = motion_of(result, film.path, film.pose, film.frames, progress)
             write_files(out, {each: picture(each, partial(_draw, motion, film)) for each in names})
-    click.echo(summary(motion))
+    click.echo(f"{question_of(result.slice)}\n{summary(motion)}")
     report_written(out, names)
 
 

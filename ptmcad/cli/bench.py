@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 
 import click
 
 from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import report_written
+from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError
 from ptmcad.process.extras import Extra, require
@@ -88,10 +88,13 @@ def command(
     check_writable(out, (*(f"{slice.name}.{suffix}" for slice, _ in slices for suffix in SUFFIXES), PAGE))
     chosen = tuple(Method(name) for name in methods) or tuple(Method)
     settings = Settings(chosen, rounds, seed, time_limit, quick)
-    report = partial(click.echo, err=True)
     for number, (slice, path) in enumerate(slices):
-        study = measure(slice, path, lambda m: verify(m).ok, settings, warm_up=number == 0, report=report)
-        save(study, out)
+        with ProgressBar() as progress:
+            study = measure(
+                slice, path, lambda m: verify(m).ok, settings, warm_up=number == 0,
+                report=lambda stage, progress=progress: progress(f"{stage} ...", 0, 1),
+            )  # fmt: skip
+            save(study, out)
         click.echo(f"{study.slice}: {study.heading}\n{terminal(study)}")
         report_written(out, (f"{slice.name}.{suffix}" for suffix in SUFFIXES))
         click.echo()

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
+from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.values import files
 from ptmcad.errors import MAX_FAULTS, ConfigError, HypothesisError
 from ptmcad.question.config import Family, with_place
@@ -46,7 +47,8 @@ def command(*, record: Path, limits: Limits) -> int:
         for line in asked_text(slice):  # whatever stops the rest, this is known
             click.echo(line)
         try:
-            found = check(slice)
+            with ProgressBar():
+                found = check(slice)
         except (ConfigError, HypothesisError) as error:
             raise with_place(error, record_of(record_tree(record))) from error
         for line in cost_text(found):

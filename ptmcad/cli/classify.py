@@ -20,6 +20,7 @@ from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.paths import file_option, out_option
 from ptmcad.cli.pictures import report_written, write_result
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.question import question_in, question_of
 from ptmcad.cli.slices import Asked, Third, slice_options
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.mechanism import ptm
@@ -278,7 +279,7 @@ def _classify_family(
     wanted = Wanted(output.out, output.formats, output.no_timings, output.drawing, *further)
     with held(limits):
         result, surface = family_to_files(family, options, wanted)
-    click.echo(result.table())
+    click.echo(f"{question_in(family.record, family.name)}\n{result.table()}")
     if surface is not None:
         click.echo(f"boundary surface: {surface.words()}")
     report_written(output.out, names_of_family(family.name, wanted))
@@ -386,11 +387,13 @@ def command(
             begun = time.monotonic()
             earlier = _resumed(slice, resume)  # of many rectangles that takes a while, which is part of the limit
             options, spent = replace(options, resume=earlier), time.monotonic() - begun
+        if output.explain:
+            click.echo(question_of(slice))
         steps = announced(slice, options) if output.explain else ()
         warn(slice, options)
         result = classify_to_files(slice, options, output, spent)
     further = [step for step in own_steps(result.plan) if step not in steps] if output.explain else []
     if further:
         click.echo(f"decided on the way:\n{explanation(further)}")
-    click.echo(result.table())
+    click.echo(result.table() if output.explain else f"{question_of(slice)}\n{result.table()}")
     report_written(output.out, names_of(slice.name, output.formats))

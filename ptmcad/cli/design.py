@@ -18,6 +18,7 @@ from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.question import question_in
 from ptmcad.cli.values import files, names, settings
 from ptmcad.cli.values import formats as formats_known
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
@@ -148,7 +149,7 @@ def command(*, asked: Asked, search: Search, output: Output, limits: Limits) -> 
                 timeout=None if limits.timeout is None else limits.timeout * _RESERVE,
                 progress=progress,
             )
-        click.echo(found.table())
+        click.echo(f"{question_in(question.record, question.record.name or stem)}\n{found.table()}")
         if wanted:
             _save(found, wanted, output.out)
             report_written(output.out, wanted)

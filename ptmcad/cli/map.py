@@ -19,6 +19,7 @@ from ptmcad.cli.maps import made_map, stored_map
 from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.question import question_of
 from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.cli.stored import stored_in
 from ptmcad.cli.values import poses, quantity_names
@@ -116,9 +117,10 @@ def command(
         result = stored or made_map(slice, options, tolerance)
         expect_somewhere(result, request.choice)
         with stored_in(asked.config if stored else None):
-            field = field_of(result, request, *pixels, checks=checks)
+            field = field_of(result, request, *pixels, checks=checks, progress=progress)
             _expect_values(field)
             written = write_files(out, _writers(result, field, names, Figure(contours, style, dpi)))
+    click.echo(question_of(slice))
     for path in written:
         click.echo(shown_path(path))
     _report(field)

@@ -239,14 +239,15 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
             check_writable(output.out, tuple(names))
         why = "no file is written, see --format"
         report_idle((Idle("out", not names, why), Idle("name", not names, why)))
-        if enclosed and not request.critical:
-            from ptmcad.ask.classification import load_certified
-            from ptmcad.options import DEFAULTS
+        with ProgressBar() as progress:
+            if enclosed and not request.critical:
+                from ptmcad.ask.classification import load_certified
+                from ptmcad.options import DEFAULTS
 
-            # the time that compiling takes is not the computation's
-            with clock_stopped(limits.timeout), ProgressBar() as progress:
-                load_certified(progress, DEFAULTS)
-        found = answer(slice, request)
+                with clock_stopped(limits.timeout):  # the time that compiling takes is not the computation's
+                    load_certified(progress, DEFAULTS)
+            progress("intervals ...", 0, 1)
+            found = answer(slice, request)
         click.echo(found.text)
         if names:
             _save(slice, found, stem, output)

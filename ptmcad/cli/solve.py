@@ -155,12 +155,14 @@ def command(
         from ptmcad.options import DEFAULTS
 
         # the time that imports and compiling take is not the computation's
-        with clock_stopped(limits.timeout), ProgressBar() as progress:
-            if needs_intervals(model, parameters):
-                load_certified(progress, DEFAULTS)
-        poses = replace(poses_at(model, parameters, digits), units={} if config is None else units_of(config))
-        if names:
-            save(poses, out, start, names)
+        with ProgressBar() as progress:
+            with clock_stopped(limits.timeout):
+                if needs_intervals(model, parameters):
+                    load_certified(progress, DEFAULTS)
+            progress("solutions ...", 0, 1)
+            poses = replace(poses_at(model, parameters, digits), units={} if config is None else units_of(config))
+            if names:
+                save(poses, out, start, names)
     if "table" in formats:
         click.echo(poses.table())
     report_written(out, names)

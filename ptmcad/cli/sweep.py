@@ -17,6 +17,7 @@ from ptmcad.cli.gathering import gathered
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.question import question_in
 from ptmcad.cli.values import files, names
 from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError, shown_path
@@ -142,7 +143,7 @@ def command(
         if wanted_files:
             made = Made(found, how.jobs, fps, progress)
             write_files(folder, {name: picture(name, made.write) for name in wanted_files})
-    click.echo(found.table())
+    click.echo(f"{question_in(question.record, question.name)}\n{found.table()}")
     report_written(folder, wanted_files)
     return _status(found)
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.errors import shown_path
 from ptmcad.process.output import check_writable, text_writer, write_files
@@ -48,7 +49,7 @@ def command(
     if out is not None:
         portable_file(out.name, "--out")
         check_writable(out.parent, (out.name,))
-    with held(limits):
+    with held(limits), ProgressBar():
         from ptmcad.exact.slicevariety import slice_variety
 
         text = slice_variety(slice).text(format)
