@@ -44,7 +44,7 @@ def test_a_record_with_a_design(record: Path, capsys: pytest.CaptureFixture[str]
         "best      a = 1, b = 0.5",
         "value     2, x from -0.5 to 1.5",
     ]
-    assert lines[5].startswith("proof     no design has more than 2.") and "by branch and bound" in lines[4]
+    assert lines[5].startswith("proof     no design has more than 2.") and "by branch and bound" in lines[5]
     assert lines[-1] == "written   ball-design.svg, ball-design.json"
     data = json.loads(Path("ball-design.json").read_text(encoding="utf-8"))
     jsonschema.validate(data, json.loads(SCHEMA.read_text(encoding="utf-8")))
