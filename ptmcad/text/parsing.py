@@ -24,9 +24,9 @@ from operator import add, mul, sub, truediv
 from ptmcad.errors import ConfigError, ExpressionError, shown
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.numerals import exactly
+from ptmcad.text.syntax import NOT_INTEGER, unknown_name
 from ptmcad.text.syntax import names_in as names_in_text
 from ptmcad.text.syntax import parse as tree_of
-from ptmcad.text.syntax import unknown_name
 from ptmcad.text.tree import Call, Name, Number, Power, Step, Tree, interpret
 
 MAX_EXPONENT = 64
@@ -169,7 +169,7 @@ class _InTheAxes:
 
     def power(self, base: Expression, power: Power, exponent: Expression) -> Expression:
         if not exponent.is_constant or exponent.constant().denominator != 1:
-            raise ExpressionError("the exponent is not an integer", power.position)
+            raise ExpressionError(NOT_INTEGER, power.position)
         n = exponent.constant().numerator
         if n < 0 and not base.numerator:
             raise ExpressionError("division by zero", power.position)
