@@ -7,8 +7,8 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
+from ptmcad.cli.paths import record_argument
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.values import files
 from ptmcad.errors import MAX_FAULTS, ConfigError, HypothesisError
 from ptmcad.question.config import Family, with_place
 from ptmcad.question.config.asked import load_asked
@@ -18,7 +18,7 @@ from ptmcad.text.numerals import shortest_text
 
 
 @click.command("check")
-@click.argument("record", type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"))
+@record_argument("record", required=True)
 @limit_options
 def command(*, record: Path, limits: Limits) -> int:
     """Say everything that is wrong with a problem record, or what it asks.

@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import click
 
-from ptmcad.cli.formats import formats_of
+from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.pictures import picture
-from ptmcad.cli.values import formats as formats_known
 from ptmcad.cli.values import palettes
 from ptmcad.errors import ConfigError
 from ptmcad.process.output import Writer, text_writer
@@ -216,9 +215,7 @@ def drawing_options(known: tuple[str, ...], default: str, what: str) -> Callable
                          metavar="EPS", help="How far boundaries in CSV and NPZ may be from the true curves, as a "
                                              "share of the window's side."),
             click.option("--samples", is_flag=True, help="Draw the cells' sample points."),
-            click.option("--format", "formats", callback=partial(formats_of, known=known),
-                         shell_complete=formats_known(known), default=default,
-                         show_default=True, metavar="LIST", help=f"{what}, of {', '.join(known)}."),
+            format_option(known, f"{what}, of {', '.join(known)}.", default),
         ):  # fmt: skip
             command = option(command)
         return command

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -12,7 +12,7 @@ import click
 
 from ptmcad.answer.field import Field
 from ptmcad.cli.drawing import pixels_of, share_of, style_options
-from ptmcad.cli.formats import formats_of
+from ptmcad.cli.formats import format_option
 from ptmcad.cli.idle import Idle, idle_style, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.maps import made_map, stored_map
@@ -64,8 +64,7 @@ class DifferenceError(PtmcadError):
               help="With free lengths: the share of the window that may stay undetermined.")  # fmt: skip
 @style_options
 @out_option
-@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="png",
-              show_default=True, metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
+@format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.", "png")
 @limit_options
 def command(
     *,

@@ -58,19 +58,18 @@ class ProgressBar:
 
     def _draw(self, now: float) -> None:
         stage, done, total = self._state
-        filled = _WIDTH * min(done, total) // total if total > 0 else 0
-        bar = "#" * filled + "." * (_WIDTH - filled)
         where = stage if stage.endswith(("%", "...")) else f"{stage} {done} of {total}"
-        seconds = f", {now - self.start:.0f} s"
-        room = _columns() - _WIDTH - 4 - len(seconds)  # the last column stays free: some terminals wrap at it
-        if len(where) > room:
-            where = f"{where[: max(room - 4, 0)]} ..."
+        text = f"{where}, {now - self.start:.0f} s"
+        room = _columns() - 4  # for bar and text; the last column stays free, since some terminals wrap at it
+        width = max(min(_WIDTH, room - len(text)), 4)
+        filled = width * min(done, total) // total if total > 0 else 0
+        line = f"[{'#' * filled}{'.' * (width - filled)}] {text}"[: room + 3]
         with self._lock:
             if self._ended.is_set():
                 return
             if not self.shown:
                 send(Topic.PROGRESS)  # this process may not live to clear the line
-            sys.stderr.write(f"\r\x1b[K[{bar}] {where}{seconds}")
+            sys.stderr.write(f"\r\x1b[K{line}")
             sys.stderr.flush()
             self.shown, self.last = True, now
 
@@ -89,6 +88,6 @@ class ProgressBar:
 
 def _columns() -> int:
     try:
-        return os.get_terminal_size(2).columns or _COLUMNS
+        return os.get_terminal_size(sys.stderr.fileno()).columns or _COLUMNS
     except OSError:
         return _COLUMNS

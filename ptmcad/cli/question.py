@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from textwrap import fill
 
-from ptmcad.errors import ExpressionError, shown
+from ptmcad.errors import shown
 from ptmcad.mechanism import Model
 from ptmcad.question.config.record import Record
-from ptmcad.question.slice import Count, Slice, merged
+from ptmcad.question.slice import Slice, merged
 from ptmcad.text.numerals import shortest_text
-from ptmcad.text.parsing import rational
 
 MAX_VALUE = 40
 """Characters of a value."""
@@ -18,55 +17,28 @@ MAX_VALUE = 40
 
 def question_of(slice: Slice) -> str:
     """The question that a slice is."""
-    windows = {axis.name: f"[{shortest_text(axis.low)}, {shortest_text(axis.high)}]" for axis in slice.axes}
-    known, shorthands = merged(slice.text, slice.model), slice.model.shorthands
+    known, written = merged(slice.text, slice.model), slice.text
+    # of a shorthand that a text names what was written, not its own name
     values = {
-        name: slice.text.get(name, text)  # of a shorthand what was written, not its own name
-        for name, text in {**slice.text, **known}.items()
-        if name in known or name in shorthands
+        n: written.get(n, known.get(n, "")) for n in (*written, *known) if n in known or n in slice.model.shorthands
     }
-    return _lines(slice.name, windows, values, slice.model, slice.count)
+    windows = {axis.name: f"{shortest_text(axis.low)}, {shortest_text(axis.high)}" for axis in slice.axes}
+    return _lines(slice.name, windows, values, slice.model, f"; count {slice.count.value}")
 
 
 def question_in(record: Record, name: str) -> str:
     """The question of a record of which a family, a sweep or a design is made: values as they are written."""
-    windows = {name: f"[{window.low.text}, {window.high.text}]" for name, window in record.axes.items()}
     values = {name: scalar.text for name, scalar in record.values.items()}
-    return _lines(name, windows, values, record.model, record.counting)
+    windows = {name: f"{window.low.text}, {window.high.text}" for name, window in record.axes.items()}
+    return _lines(name, windows, values, record.model, f"; count {record.counting.value}" if record.counting else "")
 
 
-def _lines(
-    name: str, windows: Mapping[str, str], values: Mapping[str, str], model: Model, count: Count | None
-) -> str:  # fmt: skip
-    fixed = [
-        f"{parameter} = {shown(text, MAX_VALUE)}"
-        for parameter, text in values.items()
-        if parameter not in windows and not _is_default(parameter, text, model)
-    ]
-    counted = [f"count {count.value}"] if count else []
-    parts = (", ".join(_unbroken(part) for part in some) for some in (
-        (f"{axis} in {window}" for axis, window in windows.items()), fixed, counted
-    ))  # fmt: skip
-    text = f"{name}: {'; '.join(part for part in parts if part)}"
-    return fill(
-        text,
-        80,
-        initial_indent="question  ",
-        subsequent_indent=" " * 10,
-        break_long_words=False,
-        break_on_hyphens=False,
-    ).replace("\N{NO-BREAK SPACE}", " ")
-
-
-def _unbroken(part: str) -> str:
-    """What stands on one line."""
-    return part.replace(" ", "\N{NO-BREAK SPACE}")
-
-
-def _is_default(name: str, text: str, model: Model) -> bool:
-    parameter = model.parameters.get(name)
-    default = parameter.default if parameter else None
-    try:
-        return default is not None and (text == default or rational(text) == rational(default))
-    except ExpressionError:  # an expression in other parameters
-        return False
+def _lines(name: str, windows: Mapping[str, str], values: Mapping[str, str], model: Model, counted: str) -> str:
+    defaults = {name: parameter.default for name, parameter in model.parameters.items()}
+    fixed = [f"{n} = {shown(v, MAX_VALUE)}" for n, v in values.items() if n not in windows and v != defaults.get(n)]
+    axes = ", ".join(f"{axis} in [{window}]" for axis, window in windows.items())
+    text = f"{name}: {axes}{'; ' * bool(fixed)}{', '.join(fixed)}{counted}"
+    for inside in (" = ", " in [", "count "):  # a line does not end there
+        text = text.replace(inside, inside.replace(" ", "\N{NO-BREAK SPACE}"))
+    lines = fill(text, 80, initial_indent="question  ", subsequent_indent=" " * 10, break_long_words=False)
+    return lines.replace("\N{NO-BREAK SPACE}", " ")

@@ -10,15 +10,14 @@ import click
 
 from ptmcad.answer.poses import MAX_DIGITS, Poses
 from ptmcad.answer.regionmap import Status
-from ptmcad.cli.formats import formats_of
+from ptmcad.cli.formats import format_option
 from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
-from ptmcad.cli.paths import out_option
+from ptmcad.cli.paths import out_option, record_argument
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.values import files, point, settings
-from ptmcad.cli.values import formats as formats_known
+from ptmcad.cli.values import point, settings
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Model, mechanism_in
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
@@ -90,7 +89,7 @@ def _write_picture(landscape: bool, poses: Poses, path: Path) -> None:
 
 
 @click.command("solve")
-@click.argument("config", required=False, type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"))
+@record_argument()
 @click.option(
     "--at",
     "at",
@@ -103,9 +102,7 @@ def _write_picture(landscape: bool, poses: Poses, path: Path) -> None:
 )
 @click.option("--digits", type=click.IntRange(1, MAX_DIGITS), default=DIGITS, show_default=True, metavar="N",
               help="Significant digits, all of them right.")  # fmt: skip
-@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS),
-              shell_complete=formats_known(FORMATS), default="table", show_default=True,
-              metavar="LIST", help=f"What to make, of {', '.join(FORMATS)}; the table is printed.")  # fmt: skip
+@format_option(FORMATS, f"What to make, of {', '.join(FORMATS)}; the table is printed.", "table")
 @out_option
 @click.option("--name", metavar="NAME", help="Start of the files' names.  [default: poses]")
 @click.option("--landscape", is_flag=True, help="Draw the energy over one or two unknowns too (NAME-landscape.png).")
