@@ -52,7 +52,7 @@ def classify(
 
     Parameters
     ----------
-    slice : a slice, the file of a record, or a mapping like a record.
+    slice : a slice, the file of a record or the name of a shipped one, or a mapping like a record.
     engine : ``"exact"``, ``"certified"``, or ``"auto"``: certified where springs have a free length, else exact.
     count : which count distinguishes regions; the slice's own when None.
     timeout : seconds after which `LimitReached` is raised; loading the certified engine, and compiling it in the first

@@ -88,8 +88,10 @@ def group() -> None:
     Over a 2-D slice of parameters: how many (stable) equilibria, and where does that number change?
 
     \b
-    Example, the unloaded slice of the paper's figure 2:
+    Examples: the slice of the paper's figure 4, a shipped record; the unloaded one of figure 2; a record of your own
+        ptmcad classify fig4
         ptmcad classify --slice L2,rho
+        ptmcad init --out mine.yaml
     """
 
 

@@ -90,10 +90,11 @@ def command(
     settings = Settings(chosen, rounds, seed, time_limit, quick)
     for number, (slice, path) in enumerate(slices):
         with ProgressBar() as progress:
-            study = measure(
-                slice, path, lambda m: verify(m).ok, settings, warm_up=number == 0,
-                report=lambda stage, progress=progress: progress(f"{stage} ...", 0, 1),
-            )  # fmt: skip
+
+            def report(stage: str, shown: ProgressBar = progress) -> None:
+                shown(f"{stage} ...", 0, 1)
+
+            study = measure(slice, path, lambda m: verify(m).ok, settings, warm_up=number == 0, report=report)
             save(study, out)
         click.echo(f"{study.slice}: {study.heading}\n{terminal(study)}")
         report_written(out, (f"{slice.name}.{suffix}" for suffix in SUFFIXES))

@@ -21,7 +21,7 @@ from ptmcad.text.numerals import shortest_text
 @record_argument("record", required=True)
 @limit_options
 def command(*, record: Path, limits: Limits) -> int:
-    """Say everything that is wrong with a problem record, or what it asks.
+    """Say everything that is wrong with a problem record (a file, or the name of a shipped one), or what it asks.
 
     Prints each fault on a line of its own, with file, line and key, and ends with exit status 2. Of a record without
     one, it prints what is asked, how many complex solutions there are, and roughly what the map will cost. Of a

@@ -341,8 +341,8 @@ def command(
 ) -> None:  # fmt: skip
     """Map the regions of a slice by their number of equilibria.
 
-    CONFIG is a problem record (YAML); options override it. Writes NAME.json and NAME.png, NAME.svg, and prints a table.
-    Without a record, parameters that are neither axes nor --set have their defaults: L1 = L2 = rho = 1, k = 100, no
+    CONFIG is a problem record: a YAML file, or the name of a shipped one (`ptmcad mechanisms` lists them); options
+    override it. Writes NAME.json and NAME.png, NAME.svg, and prints a table. Without a record, parameters that are neither axes nor --set have their defaults: L1 = L2 = rho = 1, k = 100, no
     load.
 
     With a third parameter (--free, or `free:` in the record) there is a map for each of its --members, computed from
@@ -358,6 +358,7 @@ def command(
 
     \b
     Examples:
+        ptmcad classify fig4
         ptmcad classify --slice L2,rho
         ptmcad classify --slice rho,L2 --range rho=0:2 --range L2=0:2 --set F3=-10 --set F4=-10 --out fig4
         ptmcad classify --slice rho,F --range rho=0:2 --range F=-10:0 --set F3=F --set F4=F --format json

@@ -129,7 +129,7 @@ def unknown_name(name: str, position: int, known: Iterable[str]) -> ExpressionEr
 def _tokens(text: str) -> list[_Token]:
     if len(text) > MAX_TEXT:
         raise ExpressionError(f"the expression has {len(text)} characters, more than {MAX_TEXT}")
-    tokens = []
+    tokens: list[_Token] = []
     position = _blank(text, 0)
     while position < len(text):
         match = _TOKEN.match(text, position)

@@ -73,7 +73,7 @@ __all__ = [
 
 
 def load(path: str | Path) -> Slice:
-    """Read a problem record.
+    """Read a problem record: a YAML file, or one that is shipped, by its name.
 
     Raises
     ------
