@@ -342,8 +342,8 @@ def command(
     """Map the regions of a slice by their number of equilibria.
 
     CONFIG is a problem record: a YAML file, or the name of a shipped one (`ptmcad mechanisms` lists them); options
-    override it. Writes NAME.json and NAME.png, NAME.svg, and prints a table. Without a record, parameters that are neither axes nor --set have their defaults: L1 = L2 = rho = 1, k = 100, no
-    load.
+    override it. Writes NAME.json and NAME.png, NAME.svg, and prints a table. Without a record, parameters that are
+    neither axes nor --set have their defaults: L1 = L2 = rho = 1, k = 100, no load.
 
     With a third parameter (--free, or `free:` in the record) there is a map for each of its --members, computed from
     what they have in common: NAME.png shows them side by side, NAME-3d.png one above the other, and NAME.json names the

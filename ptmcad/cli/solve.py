@@ -121,10 +121,11 @@ def command(
 ) -> int:
     """Find every equilibrium, or solution of a system, at one point, with stability, spring forces and energy.
 
-    CONFIG is a problem record, by file or name, for what --at and --set leave open. Without it, parameters that are not given have
-    their defaults: L1 = L2 = rho = 1, k = 100, no load. Every digit that is shown is right; a zero or another number
-    that is shown without trailing digits is exact; a degenerate equilibrium is named, with its multiplicity. Where no
-    equilibrium is told, as where there are infinitely many, the answer says why, and the exit status is 3.
+    CONFIG is a problem record, by file or name, for what --at and --set leave open. Without it, parameters that are not
+    given have their defaults: L1 = L2 = rho = 1, k = 100, no load. Every digit that is shown is right; a zero or
+    another number that is shown without trailing digits is exact; a degenerate equilibrium is named, with its
+    multiplicity. Where no equilibrium is told, as where there are infinitely many, the answer says why, and the exit
+    status is 3.
 
     \b
     Examples:

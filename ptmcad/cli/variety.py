@@ -30,8 +30,8 @@ def command(
 ) -> None:
     """Compute the curves off which the number of equilibria, or solutions, is locally constant.
 
-    CONFIG is a problem record, by file or name; options override it. Each curve is irreducible and has a kind: critical (an
-    equilibrium is singular there), infinity (a complex solution leaves every bounded set) or boundary (the slice's
+    CONFIG is a problem record, by file or name; options override it. Each curve is irreducible and has a kind: critical
+    (an equilibrium is singular there), infinity (a complex solution leaves every bounded set) or boundary (the slice's
     equations lose their meaning, or an inequality or condition of a system becomes zero at a solution).
 
     sympy, maple and mathematica are programs that define the list "variety". qepcad is a session that decomposes the
