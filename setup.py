@@ -16,7 +16,7 @@ RECORDS = "configs"
 
 
 class BuildWithRecords(build_py):
-    """Puts the records into the package, as `ptmcad.question.examples` looks for them."""
+    """Puts the records into the package, as `ptmcad.question.shipped` looks for them."""
 
     def run(self) -> None:
         super().run()

@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from types import NoneType
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, expect
 from ptmcad.text.syntax import did_you_mean
 
 ENGINES = ("auto", "exact", "certified")
@@ -62,6 +63,7 @@ class Options:
     sparing: bool = False
 
     def __post_init__(self) -> None:
+        expect(self.timeout, (int, float, NoneType), "timeout", "a number of seconds")
         if self.engine not in ENGINES:
             suggestion = did_you_mean(self.engine, ENGINES)
             raise ConfigError(f"{self.engine!r} is none of {', '.join(ENGINES)}{suggestion}", key="engine")

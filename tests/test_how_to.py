@@ -8,7 +8,6 @@ import doctest
 import io
 import re
 import shlex
-import shutil
 from pathlib import Path
 from typing import Any
 
@@ -49,12 +48,11 @@ def test_commands_and_python_say_what_the_page_shows(
     left_out: tuple[str, ...], least: tuple[int, int],
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
-    """In their order, in a folder with the record alone."""
+    """In their order, in a folder that is empty at first."""
     questions = re.split("^## ", HOW_TO, flags=re.MULTILINE)
     kept = [text for text in questions if text.partition("\n")[0] not in left_out]
     assert len(kept) == len(questions) - len(left_out)
     monkeypatch.chdir(tmp_path)
-    shutil.copy(CONFIGS / "fig4.yaml", tmp_path)
     names: dict[str, object] = {}
     commands = examples = 0
     for language, block in re.findall(

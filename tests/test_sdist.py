@@ -73,7 +73,7 @@ def test_a_wheel_has_the_records(wheel: Path) -> None:
 
 
 def test_bench_needs_no_record_where_a_wheel_is_installed(wheel: Path, tmp_path: Path) -> None:
-    code = "from ptmcad.question.examples import shipped_record; print(shipped_record('fig4'))"
+    code = "from ptmcad.question.shipped import record_file; print(record_file('fig4'))"
     environment = os.environ | {"PYTHONPATH": str(wheel)}
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=tmp_path, env=environment, check=True, capture_output=True, text=True

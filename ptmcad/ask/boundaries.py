@@ -25,7 +25,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.chains import Chain, chains, critical_shares
 from ptmcad.exact.cad.curves import lines_of
 from ptmcad.question.doubles import within_doubles
-from ptmcad.text.parsing import number_for
+from ptmcad.text.parsing import share_for
 
 TOLERANCE = Fraction(1, 1000)
 
@@ -45,9 +45,7 @@ def boundaries(result: RegionMap, tolerance: Any = TOLERANCE) -> tuple[Boundary,
     ConfigError
         When the tolerance is not between 0 and 1, or the map has no cells yet.
     """
-    wanted = number_for("tolerance", tolerance)
-    if not 0 < wanted < 1:
-        raise ConfigError(f"tolerance={tolerance} is not between 0 and 1")
+    wanted = share_for("tolerance", tolerance)
     if not result.cells:
         raise ConfigError(f"the map {result.slice.name} was stopped before it had cells: it has no boundaries")
     with within_doubles(result.slice):

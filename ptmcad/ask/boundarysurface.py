@@ -26,7 +26,7 @@ from ptmcad.exact.strips import Strips
 from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.doubles import within_doubles
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
-from ptmcad.text.parsing import number_for
+from ptmcad.text.parsing import share_for
 
 TOLERANCE = Fraction(1, 100)
 MAX_MEMBERS = 120
@@ -65,9 +65,7 @@ def boundary_surface(
         When the family's changes are not known, for a family that the exact engine does not take, and for a tolerance
         that is not between 0 and 1.
     """
-    share = number_for("tolerance", tolerance)
-    if not 0 < share < 1:
-        raise ConfigError(f"{tolerance} is not a share of the window between 0 and 1", key="tolerance")
+    share = share_for("tolerance", tolerance)
     if max_members < 2:
         raise ConfigError("a surface needs two members at least", key="max_members")
     if found.changes is None:

@@ -32,7 +32,8 @@ from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.config import Family, family_from
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
-from ptmcad.text.numerals import exactly, text_of
+from ptmcad.text.numerals import text_of
+from ptmcad.text.parsing import share_for
 
 TOLERANCE = Fraction(1, 10**6)
 """Of the free parameter's range: how wide enclosures are, and how near to a change members are compared in words."""
@@ -75,9 +76,7 @@ def changes(
     """
     options = Options(timeout=timeout, progress=progress)
     asked = family_from(question)
-    share = exactly(tolerance)
-    if not 0 < share < 1:
-        raise ConfigError(f"{text_of(share)} is not a share of the range between 0 and 1", key="tolerance")
+    share = share_for("tolerance", tolerance)
     return changes_of(in_common(asked, options), share, options)
 
 

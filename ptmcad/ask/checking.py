@@ -19,7 +19,7 @@ from ptmcad.algebra.bases import plan_text
 from ptmcad.algebra.fibre import Work
 from ptmcad.ask.classification import check_taken, flat_loops
 from ptmcad.ask.engines import is_certified
-from ptmcad.ask.estimate import WORDS, cost
+from ptmcad.ask.estimate import cost
 from ptmcad.ask.forecast import QUICK, Forecast, curve_text, forecast, seconds_to_discriminant, way_text
 from ptmcad.ask.forecast import cost_text as in_figures
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, LimitReached, shown
@@ -113,13 +113,20 @@ def check(slice: Slice, sized: bool = True) -> Check:
     at = (sample[0], sample[1])
     if is_certified(slice, "auto"):
         cost, flat = _CERTIFIED, flat_loops(slice)
-        if not _is_large(slice):
-            _check_certified(slice)
-        elif not returns_within(MAX_EXPANDING, _check_certified, slice):
-            cost = _LARGE
+        try:
+            if not _is_large(slice):
+                _check_certified(slice)
+            elif not returns_within(MAX_EXPANDING, _check_certified, slice):
+                cost = _LARGE
+        except ConfigError as error:
+            from ptmcad.certified.plain.problem import MAX_UNKNOWNS_AT_POINTS  # loaded by what refuses
+
+            if error.key != "unknowns" or len(slice.model.unknowns) > MAX_UNKNOWNS_AT_POINTS:
+                raise
+            cost = f"no map can be made, since {error.message}: ask for single points, by ptmcad solve"
         return Check(slice, at, None, "certified", f"{cost}; {flat}" if flat else cost)
     if len(slice.model.unknowns) > MAX_UNKNOWNS:
-        return Check(slice, at, None, "exact", WORDS[-1])
+        return Check(slice, at, None, "exact", _UNCOUNTED)
     found, bound = _counted(slice, at, sized)
     return replace(found, bases=plan_text(bound))
 

@@ -26,7 +26,7 @@ from ptmcad.process.memory import check_room, loading
 from ptmcad.question.config import slice_from
 from ptmcad.question.savings import load_all, switched_off
 from ptmcad.question.slice import NOTHING_ADMISSIBLE, Count, Slice, without_free_lengths
-from ptmcad.text.numerals import exactly
+from ptmcad.text.parsing import share_for
 
 if TYPE_CHECKING:
     from ptmcad.exact.variety import Known
@@ -52,7 +52,7 @@ def classify(
 
     Parameters
     ----------
-    slice : a slice, the file of a record, or a mapping like a record.
+    slice : a slice, the file of a record or the name of a shipped one, or a mapping like a record.
     engine : ``"exact"``, ``"certified"``, or ``"auto"``: certified where springs have a free length, else exact.
     count : which count distinguishes regions; the slice's own when None.
     timeout : seconds after which `LimitReached` is raised; loading the certified engine, and compiling it in the first
@@ -84,8 +84,8 @@ def classify(
     options = Options(
         engine=engine,
         timeout=timeout,
-        tolerance=_share(tolerance, "tolerance"),
-        area_tolerance=_share(area_tolerance, "area_tolerance"),
+        tolerance=None if tolerance is None else share_for("tolerance", tolerance),
+        area_tolerance=None if area_tolerance is None else share_for("area_tolerance", area_tolerance),
         jobs=jobs,
         progress=progress,
         without=_names(without, keep),
@@ -286,15 +286,3 @@ def check_count(slice: Slice) -> None:
     """Without free lengths every spring that is not of length zero is longer than its own: stable says it all."""
     if slice.count is Count.ADMISSIBLE and not slice.has_free_lengths:
         raise ConfigError(f"{NOTHING_ADMISSIBLE}: choose stable", key="count")
-
-
-def _share(value: Fraction | float | str | None, key: str) -> Fraction | None:
-    if value is None:
-        return None
-    try:
-        share = Fraction(value) if isinstance(value, str) else exactly(value)
-    except (ValueError, TypeError, ZeroDivisionError, OverflowError) as error:
-        raise ConfigError(f"{value!r} is not a number", key=key) from error
-    if not 0 < share < 1:
-        raise ConfigError(f"{value} is not between 0 and 1", key=key)
-    return share

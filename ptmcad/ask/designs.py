@@ -25,8 +25,7 @@ from ptmcad.process.extras import Extra, require
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.designs import design_from
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
-from ptmcad.text.numerals import text_of
-from ptmcad.text.parsing import number_for
+from ptmcad.text.parsing import share_for
 
 TOLERANCE = Fraction(1, 100)
 BOXES = 100_000
@@ -90,9 +89,7 @@ def design(
     (Fraction(1, 1), Fraction(2, 1), True)
     """
     asked = design_from(question, maximise=maximise, over=over, along=along, where=where, pose=pose)
-    share = number_for("tolerance", tolerance)
-    if not 0 < share < 1:
-        raise ConfigError(f"{text_of(share)} is not a share between 0 and 1", key="tolerance")
+    share = share_for("tolerance", tolerance)
     for key, number in (("evaluations", evaluations), ("boxes", boxes), ("seed", seed)):
         least = 0 if key == "seed" else 1
         if number is not None and (isinstance(number, bool) or not isinstance(number, int) or number < least):

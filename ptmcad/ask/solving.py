@@ -42,7 +42,7 @@ def solve(
     model : the mechanism or system where no question is given; the paper's mechanism when None.
     parameters : by the names of a problem record (of the paper's mechanism L1, L2, rho, k or k1, k2, k3, F3, F4, F3x,
         F4x, l0 or l0_1, l0_2, l0_3), with its defaults: lengths 1, stiffness 100, no load, free lengths 0. Text, int,
-        Fraction, Decimal, float (its exact binary value) or one of numpy's numbers.
+        Fraction, Decimal, float (its shortest decimal) or one of numpy's numbers.
 
     Raises
     ------

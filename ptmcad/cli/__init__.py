@@ -22,8 +22,9 @@ from typing import Any, NoReturn
 
 import click
 
-from ptmcad.errors import ConfigError, LimitReached, PtmcadError, PtmcadWarning, shown
+from ptmcad.errors import ConfigError, LimitReached, PtmcadError, PtmcadWarning, quoted, shown
 from ptmcad.process.handover import Topic, send, watched
+from ptmcad.text.syntax import did_you_mean
 from ptmcad.version import __version__
 
 COMPLETION = "_PTMCAD_COMPLETE"
@@ -64,8 +65,8 @@ class _LazyGroup(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         # click before 8.2 takes a name that begins with any sign for an option, and shows the help as if all were well
-        if args[0] not in COMMANDS and not args[0][:1].isalnum() and not ctx.resilient_parsing:
-            ctx.fail(f"No such command {args[0]!r}.")
+        if args[0] not in COMMANDS and not ctx.resilient_parsing:
+            raise click.UsageError(f"there is no command {quoted(args[0])}{did_you_mean(args[0], COMMANDS)}", ctx)
         return super().resolve_command(ctx, args)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
@@ -87,8 +88,10 @@ def group() -> None:
     Over a 2-D slice of parameters: how many (stable) equilibria, and where does that number change?
 
     \b
-    Example, the unloaded slice of the paper's figure 2:
+    Examples: the slice of the paper's figure 4, a shipped record; the unloaded one of figure 2; a record of your own
+        ptmcad classify fig4
         ptmcad classify --slice L2,rho
+        ptmcad init --out mine.yaml
     """
 
 
@@ -116,11 +119,11 @@ def run(arguments: Sequence[str] | None = None) -> int:
 
             return answer(group, os.environ[COMPLETION], "ptmcad", COMPLETION)
         with _warnings_as_lines():
-            status = group.main(args=arguments, prog_name="ptmcad", standalone_mode=False)
+            status = group.main(args=arguments if given else ["--help"], prog_name="ptmcad", standalone_mode=False)
         if sys.stdout is not None:  # None when it was closed by the caller
             sys.stdout.flush()
     except click.ClickException as error:
-        _show(error)
+        click.echo(f"error: {_one_line(error)}", err=True)
         return 2
     except click.Abort:
         return 130
@@ -169,12 +172,19 @@ def _exhausted() -> int:
     return 3
 
 
-def _show(error: click.ClickException) -> None:
-    """What click's own ``show`` prints, but with the message as one printable line of bounded length."""
-    context = getattr(error, "ctx", None)
-    if context is not None:
-        click.echo(f"{context.get_usage()}\nTry '{context.command_path} -h' for help.\n", err=True)
-    click.echo(f"Error: {shown(error.format_message())}", err=True)
+def _one_line(error: click.ClickException) -> str:
+    """What click refuses as a `ConfigError` would say it: the option or argument, and what is wrong with it."""
+    context: click.Context | None = getattr(error, "ctx", None)
+    command = context.command_path if context else "ptmcad"
+    text = error.format_message()
+    if isinstance(error, click.NoSuchOption):
+        options = [name for p in context.command.params for name in p.opts] if context else []
+        text = f"{error.option_name}: there is no such option{did_you_mean(error.option_name, options)}"
+    elif isinstance(error, click.BadParameter) and error.param is not None:
+        key = error.param.opts[0] if isinstance(error.param, click.Option) else error.param.human_readable_name
+        text = f"{key}: {'is missing' if isinstance(error, click.MissingParameter) else error.message}"
+    text = shown(text[:1].lower() + text[1:] if " " in text.partition(":")[0] else text).rstrip(".")
+    return text if text.endswith("?") else f"{text}; see {command} --help"
 
 
 def _terminate(_number: int, _frame: FrameType | None) -> NoReturn:

@@ -12,15 +12,15 @@ import click
 
 from ptmcad.answer.motion import Fall, Motion
 from ptmcad.cli.drawing import share_of
-from ptmcad.cli.formats import formats_of
+from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.maps import made_map, stored_map
 from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.question import question_of
 from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.cli.stored import stored_in
-from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism
 from ptmcad.options import Options
@@ -76,9 +76,7 @@ def _film(
               help="With free lengths: the share of the window that may stay undetermined.")  # fmt: skip
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
 @click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-motion]")
-@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), shell_complete=formats_known(FORMATS),
-              default="gif", show_default=True, metavar="LIST",
-              help=f"Files to write, of {', '.join(FORMATS)}; mp4 needs the program ffmpeg.")  # fmt: skip
+@format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}; mp4 needs the program ffmpeg.", "gif")
 @limit_options
 @gathered(film=_film)
 def command(
@@ -114,7 +112,7 @@ def command(
         with stored_in(asked.config if stored else None):
             motion = motion_of(result, film.path, film.pose, film.frames, progress)
             write_files(out, {each: picture(each, partial(_draw, motion, film)) for each in names})
-    click.echo(summary(motion))
+    click.echo(f"{question_of(result.slice)}\n{summary(motion)}")
     report_written(out, names)
 
 

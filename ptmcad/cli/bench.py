@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 
 import click
 
 from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import report_written
+from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError
 from ptmcad.process.extras import Extra, require
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import load
-from ptmcad.question.examples import shipped_record
+from ptmcad.question.shipped import record_file
 from ptmcad.question.slice import Slice
 
 METHODS = ("exact", "certified", "companion", "multistart", "qepcad", "gcad")
@@ -59,7 +59,7 @@ def command(
 ) -> int:
     """Error against run time of several methods on the slice of each CONFIG, side by side.
 
-    Without CONFIG: configs/fig4.yaml, which is installed with ptmcad. Methods are the exact engine at several area
+    Without CONFIG: fig4, which is shipped. Methods are the exact engine at several area
     tolerances, the certified engine at falling tolerances, grids of companion matrices and of scipy's root finder,
     and QEPCAD and gcad where they are installed. Each runs as a process of its own; methods take turns. Errors are
     measured exactly against the exact map.
@@ -69,7 +69,7 @@ def command(
 
     \b
     Examples:
-        ptmcad bench configs/fig4.yaml --quick --out out
+        ptmcad bench fig4 --quick --out out
         ptmcad bench --method exact --method companion --rounds 5
         ptmcad bench --compare docs/benchmarks/fig4.bench.json out/fig4.bench.json
     """
@@ -88,10 +88,14 @@ def command(
     check_writable(out, (*(f"{slice.name}.{suffix}" for slice, _ in slices for suffix in SUFFIXES), PAGE))
     chosen = tuple(Method(name) for name in methods) or tuple(Method)
     settings = Settings(chosen, rounds, seed, time_limit, quick)
-    report = partial(click.echo, err=True)
     for number, (slice, path) in enumerate(slices):
-        study = measure(slice, path, lambda m: verify(m).ok, settings, warm_up=number == 0, report=report)
-        save(study, out)
+        with ProgressBar() as progress:
+
+            def report(stage: str, shown: ProgressBar = progress) -> None:
+                shown(f"{stage} ...", 0, 1)
+
+            study = measure(slice, path, lambda m: verify(m).ok, settings, warm_up=number == 0, report=report)
+            save(study, out)
         click.echo(f"{study.slice}: {study.heading}\n{terminal(study)}")
         report_written(out, (f"{slice.name}.{suffix}" for suffix in SUFFIXES))
         click.echo()
@@ -102,7 +106,7 @@ def command(
 
 def _slices(configs: tuple[Path, ...]) -> list[tuple[Slice, Path]]:
     """The slices of the records, whose names differ, or that of `DEFAULT`."""
-    slices = [(load(path), path) for path in configs or (shipped_record(DEFAULT),)]
+    slices = [(load(path), record_file(path)) for path in configs or (Path(DEFAULT),)]
     names = [slice.name for slice, _ in slices]
     if len(set(names)) < len(names):
         raise ConfigError(f"two records have the name {next(n for n in names if names.count(n) > 1)}", key="CONFIG")

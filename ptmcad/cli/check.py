@@ -7,20 +7,21 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
-from ptmcad.cli.values import files
+from ptmcad.cli.paths import record_argument
+from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import MAX_FAULTS, ConfigError, HypothesisError
 from ptmcad.question.config import Family, with_place
 from ptmcad.question.config.asked import load_asked
 from ptmcad.question.config.record import record_of
+from ptmcad.question.shipped import record_tree
 from ptmcad.text.numerals import shortest_text
-from ptmcad.text.yamltree import read_file
 
 
 @click.command("check")
-@click.argument("record", type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"))
+@record_argument("record", required=True)
 @limit_options
 def command(*, record: Path, limits: Limits) -> int:
-    """Say everything that is wrong with a problem record, or what it asks.
+    """Say everything that is wrong with a problem record (a file, or the name of a shipped one), or what it asks.
 
     Prints each fault on a line of its own, with file, line and key, and ends with exit status 2. Of a record without
     one, it prints what is asked, how many complex solutions there are, and roughly what the map will cost. Of a
@@ -29,7 +30,7 @@ def command(*, record: Path, limits: Limits) -> int:
 
     \b
     Example:
-        ptmcad check configs/fig4.yaml
+        ptmcad check fig4
     """
     try:
         asked, sweeping, designed = load_asked(record)
@@ -46,9 +47,10 @@ def command(*, record: Path, limits: Limits) -> int:
         for line in asked_text(slice):  # whatever stops the rest, this is known
             click.echo(line)
         try:
-            found = check(slice)
+            with ProgressBar():
+                found = check(slice)
         except (ConfigError, HypothesisError) as error:
-            raise with_place(error, record_of(read_file(record))) from error
+            raise with_place(error, record_of(record_tree(record))) from error
         for line in cost_text(found):
             click.echo(line)
         if isinstance(asked, Family):

@@ -20,6 +20,7 @@ from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.paths import file_option, out_option
 from ptmcad.cli.pictures import report_written, write_result
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.question import question_in, question_of
 from ptmcad.cli.slices import Asked, Third, slice_options
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.mechanism import ptm
@@ -278,7 +279,7 @@ def _classify_family(
     wanted = Wanted(output.out, output.formats, output.no_timings, output.drawing, *further)
     with held(limits):
         result, surface = family_to_files(family, options, wanted)
-    click.echo(result.table())
+    click.echo(f"{question_in(family.record, family.name)}\n{result.table()}")
     if surface is not None:
         click.echo(f"boundary surface: {surface.words()}")
     report_written(output.out, names_of_family(family.name, wanted))
@@ -340,9 +341,9 @@ def command(
 ) -> None:  # fmt: skip
     """Map the regions of a slice by their number of equilibria.
 
-    CONFIG is a problem record (YAML); options override it. Writes NAME.json and NAME.png, NAME.svg, and prints a table.
-    Without a record, parameters that are neither axes nor --set have their defaults: L1 = L2 = rho = 1, k = 100, no
-    load.
+    CONFIG is a problem record: a YAML file, or the name of a shipped one (`ptmcad mechanisms` lists them); options
+    override it. Writes NAME.json and NAME.png, NAME.svg, and prints a table. Without a record, parameters that are
+    neither axes nor --set have their defaults: L1 = L2 = rho = 1, k = 100, no load.
 
     With a third parameter (--free, or `free:` in the record) there is a map for each of its --members, computed from
     what they have in common: NAME.png shows them side by side, NAME-3d.png one above the other, and NAME.json names the
@@ -357,6 +358,7 @@ def command(
 
     \b
     Examples:
+        ptmcad classify fig4
         ptmcad classify --slice L2,rho
         ptmcad classify --slice rho,L2 --range rho=0:2 --range L2=0:2 --set F3=-10 --set F4=-10 --out fig4
         ptmcad classify --slice rho,F --range rho=0:2 --range F=-10:0 --set F3=F --set F4=F --format json
@@ -386,11 +388,13 @@ def command(
             begun = time.monotonic()
             earlier = _resumed(slice, resume)  # of many rectangles that takes a while, which is part of the limit
             options, spent = replace(options, resume=earlier), time.monotonic() - begun
+        if output.explain:
+            click.echo(question_of(slice))
         steps = announced(slice, options) if output.explain else ()
         warn(slice, options)
         result = classify_to_files(slice, options, output, spent)
     further = [step for step in own_steps(result.plan) if step not in steps] if output.explain else []
     if further:
         click.echo(f"decided on the way:\n{explanation(further)}")
-    click.echo(result.table())
+    click.echo(result.table() if output.explain else f"{question_of(slice)}\n{result.table()}")
     report_written(output.out, names_of(slice.name, output.formats))

@@ -11,15 +11,15 @@ import click
 
 from ptmcad.answer.design import BestDesign
 from ptmcad.cli.drawing import share_of
-from ptmcad.cli.formats import formats_of
+from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
-from ptmcad.cli.paths import out_option
+from ptmcad.cli.paths import out_option, record_argument
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.values import files, names, settings
-from ptmcad.cli.values import formats as formats_known
+from ptmcad.cli.question import question_in
+from ptmcad.cli.values import names, settings
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import file_name
 from ptmcad.question.config.designed import Design
@@ -80,12 +80,8 @@ class Output:
         return asked.name if self.name is None else file_name(self.name, "--name")
 
 
-def _formats(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[str, ...]:
-    return () if value is None else formats_of(context, parameter, value, known=FORMATS)
-
-
 @click.command("design")
-@click.argument("config", type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"))
+@record_argument(required=True)
 @click.option("--maximise", metavar="WHAT",
               help="range, area, barrier, a quantity such as force:SPRING, or an expression.  "
                    "[default: range]")  # fmt: skip
@@ -109,8 +105,7 @@ def _formats(context: click.Context, parameter: click.Parameter, value: str | No
               help="Boxes of designs that the proof may take.")  # fmt: skip
 @out_option
 @click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-design]")
-@click.option("--format", "formats", callback=_formats, shell_complete=formats_known(FORMATS), metavar="LIST",
-              help=f"Files to write, of {', '.join(FORMATS)}.  [default: none]")  # fmt: skip
+@format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.  [default: none]")
 @limit_options
 @gathered(asked=Asked, search=Search, output=Output)
 def command(*, asked: Asked, search: Search, output: Output, limits: Limits) -> int:
@@ -123,10 +118,10 @@ def command(*, asked: Asked, search: Search, output: Output, limits: Limits) -> 
 
     \b
     Examples:
-        ptmcad design configs/fig4.yaml --maximise range --along rho --over L2=1/3:5/3
-        ptmcad design configs/fig4.yaml --over L1=1/2:2 --over L2=1/2:2 --condition 'L1+L2<=2' --format json,png
-        ptmcad design configs/fig4.yaml --maximise area --over L1=1/2:1 --tolerance 1/10
-        ptmcad design configs/fig4.yaml --maximise barrier --pose stable:2 --over rho=1/4:2 --over L2=1/4:2
+        ptmcad design fig4 --maximise range --along rho --over L2=1/3:5/3
+        ptmcad design fig4 --over L1=1/2:2 --over L2=1/2:2 --condition 'L1+L2<=2' --format json,png
+        ptmcad design fig4 --maximise area --over L1=1/2:1 --tolerance 1/10
+        ptmcad design fig4 --maximise barrier --pose stable:2 --over rho=1/4:2 --over L2=1/4:2
     """
     question = asked.design()
     stem = output.stem(question)
@@ -148,7 +143,7 @@ def command(*, asked: Asked, search: Search, output: Output, limits: Limits) -> 
                 timeout=None if limits.timeout is None else limits.timeout * _RESERVE,
                 progress=progress,
             )
-        click.echo(found.table())
+        click.echo(f"{question_in(question.record, question.record.name or stem)}\n{found.table()}")
         if wanted:
             _save(found, wanted, output.out)
             report_written(output.out, wanted)

@@ -14,15 +14,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import click
 
-from ptmcad.cli.formats import formats_of
+from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.pictures import picture
-from ptmcad.cli.values import formats as formats_known
 from ptmcad.cli.values import palettes
-from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.errors import ConfigError
 from ptmcad.process.output import Writer, text_writer
 from ptmcad.show.style import DEFAULT, LINES, PALETTES, STYLES, USER, Place, Style, styled
-from ptmcad.text.parsing import rational
+from ptmcad.text.parsing import share_for
 
 if TYPE_CHECKING:
     from ptmcad.answer.poses import Poses
@@ -112,14 +111,7 @@ def share_of(_context: click.Context, parameter: click.Parameter, value: str | N
     """A share between 0 and 1, where one is given."""
     if value is None:
         return None
-    option = parameter.opts[0]
-    try:
-        share = rational(value)
-    except ExpressionError as error:
-        raise ConfigError(str(error), key=option) from error
-    if not 0 < share < 1:
-        raise ConfigError(f"{value} is not between 0 and 1: write a number such as 1e-4", key=option)
-    return share
+    return share_for(parameter.opts[0], value)
 
 
 def pixels_of(_context: click.Context, parameter: click.Parameter, value: str) -> tuple[int, int]:
@@ -223,9 +215,7 @@ def drawing_options(known: tuple[str, ...], default: str, what: str) -> Callable
                          metavar="EPS", help="How far boundaries in CSV and NPZ may be from the true curves, as a "
                                              "share of the window's side."),
             click.option("--samples", is_flag=True, help="Draw the cells' sample points."),
-            click.option("--format", "formats", callback=partial(formats_of, known=known),
-                         shell_complete=formats_known(known), default=default,
-                         show_default=True, metavar="LIST", help=f"{what}, of {', '.join(known)}."),
+            format_option(known, f"{what}, of {', '.join(known)}.", default),
         ):  # fmt: skip
             command = option(command)
         return command

@@ -38,8 +38,8 @@ def command(
 
     \b
     Examples:
-        ptmcad explore configs/families/equal-loads.yaml
-        ptmcad explore configs/fig4.yaml --slider k=50:200 --open
+        ptmcad explore equal-loads
+        ptmcad explore fig4 --slider k=50:200 --open
         ptmcad explore --slice rho,L2 --set F3=F --set F4=F --free F=-40:0
     """
     require(Extra.explore)

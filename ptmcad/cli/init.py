@@ -11,7 +11,8 @@ from ptmcad.cli.mechanisms import known_starter
 from ptmcad.cli.values import mechanisms
 from ptmcad.errors import ConfigError, OutputError
 from ptmcad.process.commit import reason
-from ptmcad.question.config.starters import starter_text
+from ptmcad.question.config.starters import NAMES, starter_text
+from ptmcad.question.shipped import shipped_records
 
 
 @click.command("init")
@@ -20,7 +21,7 @@ from ptmcad.question.config.starters import starter_text
               help="The file to write; never one that is there. A missing folder is made.  "
                    "[default: standard output]")  # fmt: skip
 def command(*, mechanism: str, out: Path | None) -> None:
-    """Write a commented record to start from: of MECHANISM, or of a pendulum.
+    """Write a commented record to start from: of MECHANISM, or of a pendulum, or a shipped record of that name.
 
     `ptmcad mechanisms` lists what there is. The record runs as it is: `ptmcad classify FILE --out out`.
 
@@ -28,7 +29,8 @@ def command(*, mechanism: str, out: Path | None) -> None:
     Example:
         ptmcad init platform --out mine.yaml
     """
-    text = starter_text(known_starter(mechanism, "MECHANISM"))
+    record = shipped_records().get(mechanism) if mechanism not in NAMES else None
+    text = record.read_text("utf-8") if record else starter_text(known_starter(mechanism, "MECHANISM"))
     if out is None:
         click.echo(text, nl=False)
         return

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,13 +13,14 @@ import click
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.field import Field
 from ptmcad.cli.drawing import pixels_of, share_of, style_options
-from ptmcad.cli.formats import formats_of
+from ptmcad.cli.formats import format_option
 from ptmcad.cli.idle import Idle, idle_style, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.maps import made_map, stored_map
 from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.question import question_of
 from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.cli.stored import stored_in
 from ptmcad.cli.values import poses, quantity_names
@@ -64,8 +65,7 @@ class DifferenceError(PtmcadError):
               help="With free lengths: the share of the window that may stay undetermined.")  # fmt: skip
 @style_options
 @out_option
-@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="png",
-              show_default=True, metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
+@format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.", "png")
 @limit_options
 def command(
     *,
@@ -117,9 +117,10 @@ def command(
         result = stored or made_map(slice, options, tolerance)
         expect_somewhere(result, request.choice)
         with stored_in(asked.config if stored else None):
-            field = field_of(result, request, *pixels, checks=checks)
+            field = field_of(result, request, *pixels, checks=checks, progress=progress)
             _expect_values(field)
             written = write_files(out, _writers(result, field, names, Figure(contours, style, dpi)))
+    click.echo(question_of(slice))
     for path in written:
         click.echo(shown_path(path))
     _report(field)

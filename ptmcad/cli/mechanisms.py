@@ -12,8 +12,9 @@ from ptmcad.mechanism import Mechanism, Model
 from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config.model import model_of
 from ptmcad.question.config.starters import NAMES, starter_text
+from ptmcad.question.shipped import shipped_records
 from ptmcad.text.syntax import did_you_mean
-from ptmcad.text.yamltree import read_text
+from ptmcad.text.yamltree import plain_data, read_file, read_text
 
 
 def starter_model(name: str) -> Model:
@@ -57,12 +58,16 @@ def description(model: Model) -> str:
 @click.argument("names", nargs=-1, shell_complete=known_mechanisms)
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for drawings, NAME.svg for each mechanism.")
 def command(*, names: tuple[str, ...], out: Path | None) -> None:
-    """List the built-in mechanisms, with parameters and a drawing; or those of NAMES.
+    """List the built-in mechanisms, with parameters and a drawing, and the shipped records; or the mechanisms of NAMES.
 
     A record names one (mechanism: pendulum); `ptmcad init` writes a record of one to change.
     """
     models = [starter_model(known_starter(name, "NAMES")) for name in names or NAMES]
     click.echo("\n\n".join(description(model) for model in models))
+    if not names:
+        click.echo("\nrecords that are shipped, and found by name wherever one is (ptmcad classify fig4):")
+        for name, path in shipped_records().items():
+            click.echo(f"  {name:<26}{plain_data(read_file(path)).get('title', '')}".rstrip())
     if out is not None:
         from ptmcad.show.linedrawing import approximate_svg
 

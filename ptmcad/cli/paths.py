@@ -1,4 +1,4 @@
-"""Options that are paths: the folder that files are written to, and files that are read."""
+"""Arguments and options that are paths: records and files that are read, the folder that files are written to."""
 
 from __future__ import annotations
 
@@ -11,6 +11,12 @@ import click
 from ptmcad.cli.values import files
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+
+def record_argument(name: str = "config", *, required: bool = False) -> Callable[[F], F]:
+    """A problem record: a YAML file, or the name of one that is shipped."""
+    complete = files(".yaml", ".yml")
+    return click.argument(name, required=required, type=click.Path(path_type=Path), shell_complete=complete)
 
 
 def out_option(command: F) -> F:

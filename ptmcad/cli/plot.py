@@ -203,9 +203,11 @@ def command(
         drawing = _with_points(stored, drawing, added)
         _say_width(drawing.style, added)
         if added.compare is not None:
-            written = write_files(folder, _compared(stored, result, added.compare, stem, formats, drawing))
+            pictures = _compared(stored, result, added.compare, stem, formats, drawing)
+            with ProgressBar():
+                written = write_files(folder, pictures)
         else:
-            with stored_in(result):
+            with stored_in(result), ProgressBar():
                 written = write_files(folder, drawing.writers(stored, stem, formats))
     for path in written:
         click.echo(shown_path(path))

@@ -1,49 +1,93 @@
 """A progress bar on standard error that appears only when the work lasts and someone is watching.
 
-Guarantee: nothing is written when standard error is not a terminal or the work ends within a second; the line is
-cleared at the end.
+Guarantee: nothing is written when standard error is not a terminal or the work ends within a second. The bar is one
+line, however narrow the terminal, goes on while nothing is reported, and is cleared at the end.
 """
 
 from __future__ import annotations
 
+import os
 import sys
 import time
+from threading import Event, RLock, Thread
 from types import TracebackType
 
 from ptmcad.process.handover import Topic, send
 
 PATIENCE = 1.0
 _INTERVAL = 0.1
+_TICK = 0.5
+"""Seconds after which the time that is shown goes on."""
 _WIDTH = 24
+_COLUMNS = 80
+"""Of a terminal that does not say how many it has."""
 
 
 class ProgressBar:
-    """A context manager to call with (stage, done, total); a stage that ends with "%" or "..." says how far it is."""
+    """A context manager to call with (stage, done, total); a stage that ends with "%" or "..." says how far it is.
+
+    Inside of another one it is that one, so that there is one bar.
+    """
+
+    _shown_now: list[ProgressBar] = []  # noqa: RUF012 - of this process; the outermost one, if any
 
     def __init__(self) -> None:
         self.watched = sys.stderr is not None and sys.stderr.isatty()  # None when the caller has closed it
         self.start = self.last = time.monotonic()
         self.shown = False
+        self._state = ("computing ...", 0, 1)
+        self._ended, self._lock = Event(), RLock()
 
     def __enter__(self) -> ProgressBar:
+        if self._shown_now:
+            return self._shown_now[0]
+        if self.watched:
+            self._shown_now.append(self)
+            Thread(target=self._tick, daemon=True).start()
         return self
 
     def __call__(self, stage: str, done: int, total: int) -> None:
+        self._state = (stage, done, total)
         now = time.monotonic()
-        if not self.watched or now - self.start < PATIENCE or (self.shown and now - self.last < _INTERVAL):
-            return
-        filled = _WIDTH * min(done, total) // total if total > 0 else 0
-        bar = "#" * filled + "." * (_WIDTH - filled)
-        if not self.shown:
-            send(Topic.PROGRESS)  # this process may not live to clear the line
+        if self.watched and now - self.start >= PATIENCE and (not self.shown or now - self.last >= _INTERVAL):
+            self._draw(now)
+
+    def _tick(self) -> None:
+        while not self._ended.wait(_TICK):
+            self(*self._state)
+
+    def _draw(self, now: float) -> None:
+        stage, done, total = self._state
         where = stage if stage.endswith(("%", "...")) else f"{stage} {done} of {total}"
-        sys.stderr.write(f"\r\x1b[K[{bar}] {where}, {now - self.start:.0f} s")
-        sys.stderr.flush()
-        self.shown, self.last = True, now
+        text = f"{where}, {now - self.start:.0f} s"
+        room = _columns() - 4  # for bar and text; the last column stays free, since some terminals wrap at it
+        width = max(min(_WIDTH, room - len(text)), 4)
+        filled = width * min(done, total) // total if total > 0 else 0
+        line = f"[{'#' * filled}{'.' * (width - filled)}] {text}"[: room + 3]
+        with self._lock:
+            if self._ended.is_set():
+                return
+            if not self.shown:
+                send(Topic.PROGRESS)  # this process may not live to clear the line
+            sys.stderr.write(f"\r\x1b[K{line}")
+            sys.stderr.flush()
+            self.shown, self.last = True, now
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self.shown:
-            sys.stderr.write("\r\x1b[K")
-            sys.stderr.flush()
+        if self._shown_now != [self]:  # another one goes on, or nobody is watching
+            return
+        self._shown_now.clear()
+        with self._lock:
+            self._ended.set()
+            if self.shown:
+                sys.stderr.write("\r\x1b[K")
+                sys.stderr.flush()
+
+
+def _columns() -> int:
+    try:
+        return os.get_terminal_size(sys.stderr.fileno()).columns or _COLUMNS
+    except OSError:
+        return _COLUMNS

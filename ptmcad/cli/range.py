@@ -10,17 +10,16 @@ from pathlib import Path
 import click
 from click.core import ParameterSource
 
-from ptmcad.cli.formats import formats_of
+from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
-from ptmcad.cli.paths import out_option
+from ptmcad.cli.paths import out_option, record_argument
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.range_answers import Answer, Request, answer, is_enclosed
-from ptmcad.cli.values import files, names, pair_of_names, point, quantity_names, settings
-from ptmcad.cli.values import formats as formats_known
+from ptmcad.cli.values import names, pair_of_names, point, quantity_names, settings
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism import ptm
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
@@ -101,10 +100,6 @@ def _axes(asked: AskedLine) -> tuple[str, ...]:
     return () if asked.config is None else names_in_record(asked.config)[0]
 
 
-def _formats(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[str, ...]:
-    return () if value is None else formats_of(context, parameter, value, known=FORMATS)
-
-
 @dataclass(frozen=True, slots=True)
 class Wanted:
     """What is asked for beside the line, as it was typed; see `Request`."""
@@ -155,7 +150,7 @@ class Output:
 
 
 @click.command("range")
-@click.argument("config", required=False, type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"))
+@record_argument()
 @click.option("--along", required=True, metavar="NAME", shell_complete=names, help="The parameter or axis that varies.")
 @click.option(
     "--at",
@@ -185,8 +180,7 @@ class Output:
 @click.option("--digits", type=click.IntRange(1, 1000), default=10, show_default=True, help="Digits of decimals.")
 @out_option
 @click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-range]")
-@click.option("--format", "formats", callback=_formats, shell_complete=formats_known(FORMATS), metavar="LIST",
-              help=f"Files to write, of {', '.join(FORMATS)}.  [default: none]")  # fmt: skip
+@format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.  [default: none]")
 @click.option(
     "--over", metavar="NAME", shell_complete=names, help="The axis over which to tabulate the operation range's width."
 )
@@ -239,14 +233,15 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
             check_writable(output.out, tuple(names))
         why = "no file is written, see --format"
         report_idle((Idle("out", not names, why), Idle("name", not names, why)))
-        if enclosed and not request.critical:
-            from ptmcad.ask.classification import load_certified
-            from ptmcad.options import DEFAULTS
+        with ProgressBar() as progress:
+            if enclosed and not request.critical:
+                from ptmcad.ask.classification import load_certified
+                from ptmcad.options import DEFAULTS
 
-            # the time that compiling takes is not the computation's
-            with clock_stopped(limits.timeout), ProgressBar() as progress:
-                load_certified(progress, DEFAULTS)
-        found = answer(slice, request)
+                with clock_stopped(limits.timeout):  # the time that compiling takes is not the computation's
+                    load_certified(progress, DEFAULTS)
+            progress("intervals ...", 0, 1)
+            found = answer(slice, request)
         click.echo(found.text)
         if names:
             _save(slice, found, stem, output)

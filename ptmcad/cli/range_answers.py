@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.question import question_of
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Slice
 
@@ -66,14 +67,14 @@ def answer(slice: Slice, request: Request) -> Answer:
     from ptmcad.show.ranges import document, table
 
     if is_enclosed(slice, request):
-        known = _enclosed(slice, request) if request.at else Answer(slice.heading, {}, {})
+        known = _enclosed(slice, request) if request.at else Answer(question_of(slice), {}, {})
         known = _with_bands(known, slice, request) if request.over else known
         return _with_poses(known, slice, request)
     if request.critical:
         raise ConfigError("is for springs with a free length; ends are exact without", key="--critical")
     if request.over:
         refuse_free_lengths(slice)  # before the line is asked for, whose refusal would not say what to leave out
-    texts, parts = [slice.heading], {}
+    texts, parts = [question_of(slice)], {}
     pictures: dict[str, Callable[[Path], None]] = {}
     if request.at:
         found = ranges.intervals(slice, request.along, request.at)
@@ -159,7 +160,7 @@ def _enclosed(slice: Slice, request: Request) -> Answer:
     """The answer where springs have free lengths."""
     from ptmcad.show.ranges import certified, document, table
 
-    texts, parts = [slice.heading], dict[str, Any]()
+    texts, parts = [question_of(slice)], dict[str, Any]()
     if request.critical:
         from ptmcad.exact.ranges.free_lengths import critical_on_line
 

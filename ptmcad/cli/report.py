@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import read_result
 from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, shown_path
@@ -46,7 +47,7 @@ def command(
         ptmcad classify --slice L2,rho --format json
         ptmcad report slice-L2-rho.json
     """
-    with held(limits):
+    with held(limits), ProgressBar():
         stored = read_result(result)
         folder = result.parent if out is None else out
         file = portable_file(f"{name or result.stem}.html", "--name")

@@ -11,7 +11,8 @@ from typing import Any, NamedTuple, TypeVar
 import click
 
 from ptmcad.cli.gathering import gathered
-from ptmcad.cli.values import files, mechanisms, pair_of_names, settings
+from ptmcad.cli.paths import record_argument
+from ptmcad.cli.values import mechanisms, pair_of_names, settings
 from ptmcad.errors import ConfigError, HypothesisError, PtmcadError
 from ptmcad.question.config import (
     Family,
@@ -122,8 +123,7 @@ def slice_options(command: F) -> F:
                      help="The two axes, the horizontal one first."),
         click.option("--mechanism", metavar="NAME|FILE", shell_complete=mechanisms,
                      help="Without CONFIG: the mechanism.  [default: ptm]"),
-        click.argument("config", required=False, type=click.Path(path_type=Path),
-                       shell_complete=files(".yaml", ".yml")),
+        record_argument(),
     ):  # fmt: skip
         command = add(command)
     return command

@@ -10,15 +10,14 @@ import click
 
 from ptmcad.answer.poses import MAX_DIGITS, Poses
 from ptmcad.answer.regionmap import Status
-from ptmcad.cli.formats import formats_of
+from ptmcad.cli.formats import format_option
 from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
-from ptmcad.cli.paths import out_option
+from ptmcad.cli.paths import out_option, record_argument
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.values import files, point, settings
-from ptmcad.cli.values import formats as formats_known
+from ptmcad.cli.values import point, settings
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Model, mechanism_in
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
@@ -90,7 +89,7 @@ def _write_picture(landscape: bool, poses: Poses, path: Path) -> None:
 
 
 @click.command("solve")
-@click.argument("config", required=False, type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"))
+@record_argument()
 @click.option(
     "--at",
     "at",
@@ -103,9 +102,7 @@ def _write_picture(landscape: bool, poses: Poses, path: Path) -> None:
 )
 @click.option("--digits", type=click.IntRange(1, MAX_DIGITS), default=DIGITS, show_default=True, metavar="N",
               help="Significant digits, all of them right.")  # fmt: skip
-@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS),
-              shell_complete=formats_known(FORMATS), default="table", show_default=True,
-              metavar="LIST", help=f"What to make, of {', '.join(FORMATS)}; the table is printed.")  # fmt: skip
+@format_option(FORMATS, f"What to make, of {', '.join(FORMATS)}; the table is printed.", "table")
 @out_option
 @click.option("--name", metavar="NAME", help="Start of the files' names.  [default: poses]")
 @click.option("--landscape", is_flag=True, help="Draw the energy over one or two unknowns too (NAME-landscape.png).")
@@ -124,16 +121,17 @@ def command(
 ) -> int:
     """Find every equilibrium, or solution of a system, at one point, with stability, spring forces and energy.
 
-    CONFIG is a problem record (YAML) for what --at and --set leave open. Without it, parameters that are not given have
-    their defaults: L1 = L2 = rho = 1, k = 100, no load. Every digit that is shown is right; a zero or another number
-    that is shown without trailing digits is exact; a degenerate equilibrium is named, with its multiplicity. Where not
-    all equilibria are found, as where there are infinitely many, the answer says why, and the exit status is 3.
+    CONFIG is a problem record, by file or name, for what --at and --set leave open. Without it, parameters that are not
+    given have their defaults: L1 = L2 = rho = 1, k = 100, no load. Every digit that is shown is right; a zero or
+    another number that is shown without trailing digits is exact; a degenerate equilibrium is named, with its
+    multiplicity. Where not all equilibria are found, as where there are infinitely many, the answer says why, and the
+    exit status is 3.
 
     \b
     Examples:
         ptmcad solve --at rho=1,L2=3/2
         ptmcad solve --at rho=7/10,L2=3/2,F3=-10,F4=-10 --format table,json,svg --out poses
-        ptmcad solve configs/fig4.yaml --at rho=7/10,L2=3/2 --digits 30
+        ptmcad solve fig4 --at rho=7/10,L2=3/2 --digits 30
     """
     if at is None and not sets and config is None:
         raise ConfigError(f"give a point, as in --at {POINT}")
@@ -155,12 +153,14 @@ def command(
         from ptmcad.options import DEFAULTS
 
         # the time that imports and compiling take is not the computation's
-        with clock_stopped(limits.timeout), ProgressBar() as progress:
-            if needs_intervals(model, parameters):
-                load_certified(progress, DEFAULTS)
-        poses = replace(poses_at(model, parameters, digits), units={} if config is None else units_of(config))
-        if names:
-            save(poses, out, start, names)
+        with ProgressBar() as progress:
+            with clock_stopped(limits.timeout):
+                if needs_intervals(model, parameters):
+                    load_certified(progress, DEFAULTS)
+            progress("solutions ...", 0, 1)
+            poses = replace(poses_at(model, parameters, digits), units={} if config is None else units_of(config))
+            if names:
+                save(poses, out, start, names)
     if "table" in formats:
         click.echo(poses.table())
     report_written(out, names)

@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ptmcad.cli.formats import formats_of
+from ptmcad.cli.formats import format_option
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 
@@ -74,9 +73,7 @@ def _draw(found: Campaign, path: Path) -> None:
               help="Of the random cases.")  # fmt: skip
 @click.option("--repeats", type=click.IntRange(1, 1000), default=5, show_default=True, metavar="N",
               help="Timed runs of each case and of its tame sibling; slow cases have one.")  # fmt: skip
-@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS),
-              shell_complete=formats_known(FORMATS), default="table,json,csv,png,svg",
-              show_default=True, metavar="LIST", help="What to make; the table is printed.")  # fmt: skip
+@format_option(FORMATS, "What to make; the table is printed.", "table,json,csv,png,svg")
 @out_option
 @click.option("--list", "only_list", is_flag=True, help="Print the cases with their sources, and run none.")
 @limit_options

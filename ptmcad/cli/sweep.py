@@ -12,13 +12,14 @@ import click
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import State, Sweep
 from ptmcad.cli.drawing import share_of
-from ptmcad.cli.formats import formats_of
+from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.paths import record_argument
 from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.values import files, names
-from ptmcad.cli.values import formats as formats_known
+from ptmcad.cli.question import question_in
+from ptmcad.cli.values import names
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.process.extras import Extra, require, require_ffmpeg
 from ptmcad.process.handover import Topic, send
@@ -75,16 +76,14 @@ class How:
     retries: int
 
 
-def _formats(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[str, ...]:
-    return () if value is None else formats_of(context, parameter, value, known=FORMATS)
-
-
 @click.command("sweep")
-@click.argument("config", type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"))
+@record_argument(required=True)
 @click.option("--out", type=click.Path(path_type=Path), help="Folder of the sweep.  [default: NAME-sweep]")
-@click.option("--format", "formats", callback=_formats, shell_complete=formats_known(FORMATS), metavar="LIST",
-              help="What to write of the whole sweep beside the index and the results: csv (a line for each member), "
-                   "html (an atlas), gif or mp4 (a film of the maps).  [default: none]")  # fmt: skip
+@format_option(
+    FORMATS,
+    "What to write of the whole sweep beside the index and the results: csv (a line for each member), "
+    "html (an atlas), gif or mp4 (a film of the maps).  [default: none]",
+)
 @click.option("--fps", type=click.IntRange(1, 60), default=8, show_default=True, help="Pictures of a film in a second.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N",
               help="Number of worker processes on this machine.  [default: all processors]")  # fmt: skip
@@ -142,7 +141,7 @@ def command(
         if wanted_files:
             made = Made(found, how.jobs, fps, progress)
             write_files(folder, {name: picture(name, made.write) for name in wanted_files})
-    click.echo(found.table())
+    click.echo(f"{question_in(question.record, question.name)}\n{found.table()}")
     report_written(folder, wanted_files)
     return _status(found)
 

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ptmcad.errors import PtmcadError
+from ptmcad.question.shipped import shipped_records
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -67,7 +68,8 @@ def mechanisms(_context: click.Context, _parameter: click.Parameter, typed: str)
 
 
 def files(*suffixes: str) -> Complete:
-    """The files of these suffixes, and folders to look in; whatever there is where there are none of them."""
+    """The files of these suffixes, shipped records where those are asked for, and folders to look in; whatever there is
+    where there are none of them."""
 
     def propose(_context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
         folder, _, start = typed.rpartition("/")
@@ -79,6 +81,8 @@ def files(*suffixes: str) -> Complete:
         seen = [e for e in entries if e.name.startswith(start) and (start or not e.name.startswith("."))]
         found = [f"{base}{e.name}" for e in seen if e.name.endswith(suffixes) and e.is_file()]
         found += [f"{base}{e.name}/" for e in seen if e.is_dir()]
+        if ".yaml" in suffixes:
+            found += [name for name in shipped_records() if name.startswith(typed) and name not in found]
         return [_item(name) for name in found] or [_item(typed, type=_FILE)]
 
     return propose
@@ -149,7 +153,9 @@ def _typed_file(context: click.Context, *suffixes: str) -> Path | None:
 
     Click's own parser gives no arguments where the last word is an option that waits for its value.
     """
-    return next((Path(word) for word in context.obj or () if word.endswith(suffixes) and word[0] != "-"), None)
+    known = shipped_records() if ".yaml" in suffixes else ()
+    words = (word for word in context.obj or () if word[:1] != "-")
+    return next((Path(word) for word in words if word.endswith(suffixes) or word in known), None)
 
 
 def _model_of_result(context: click.Context) -> Model | None:

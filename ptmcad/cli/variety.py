@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.errors import shown_path
 from ptmcad.process.output import check_writable, text_writer, write_files
@@ -29,8 +30,8 @@ def command(
 ) -> None:
     """Compute the curves off which the number of equilibria, or solutions, is locally constant.
 
-    CONFIG is a problem record (YAML); options override it. Each curve is irreducible and has a kind: critical (an
-    equilibrium is singular there), infinity (a complex solution leaves every bounded set) or boundary (the slice's
+    CONFIG is a problem record, by file or name; options override it. Each curve is irreducible and has a kind: critical
+    (an equilibrium is singular there), infinity (a complex solution leaves every bounded set) or boundary (the slice's
     equations lose their meaning, or an inequality or condition of a system becomes zero at a solution).
 
     sympy, maple and mathematica are programs that define the list "variety". qepcad is a session that decomposes the
@@ -48,7 +49,7 @@ def command(
     if out is not None:
         portable_file(out.name, "--out")
         check_writable(out.parent, (out.name,))
-    with held(limits):
+    with held(limits), ProgressBar():
         from ptmcad.exact.slicevariety import slice_variety
 
         text = slice_variety(slice).text(format)

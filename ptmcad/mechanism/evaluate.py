@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import Any, Generic, Protocol, TypeVar
 
 from ptmcad.errors import ExpressionError
+from ptmcad.text.syntax import NOT_INTEGER
 from ptmcad.text.tree import Call, Name, Number, Power, Step, Tree, interpret
 
 MAX_EXPONENT = 64
@@ -21,6 +22,12 @@ MAX_MULTIPLE = 64
 FIXED_ANGLE = (
     "only multiples of pi/2 can be added to an angle: of other fixed angles use cosine and sine as two parameters, "
     "given as (1 - t^2)/(1 + t^2) and 2*t/(1 + t^2), t the tangent of the half, or turn the points of a body themselves"
+)
+
+
+_QUOTIENT = (
+    "division by what is not a number: only polynomials can be evaluated; multiply an equation by its denominator, and "
+    "list that, or its square, under positive; of parameters, make the quotient a parameter"
 )
 
 
@@ -232,7 +239,7 @@ def _sum_or_product(left: Any, operator: str, right: Any) -> Any:
 def _inverse(value: object, step: Step) -> Fraction:
     """One over a constant."""
     if not isinstance(value, Fraction):
-        raise ExpressionError("division by what is not a number: only polynomials can be evaluated", step.position)
+        raise ExpressionError(_QUOTIENT, step.position)
     if not value:
         raise ExpressionError("division by zero", step.position)
     return 1 / value
@@ -240,7 +247,7 @@ def _inverse(value: object, step: Step) -> Fraction:
 
 def _whole(exponent: object, position: int) -> int:
     if not isinstance(exponent, Fraction) or exponent.denominator != 1:
-        raise ExpressionError("the exponent is not an integer", position)
+        raise ExpressionError(NOT_INTEGER, position)
     return exponent.numerator
 
 

@@ -15,7 +15,7 @@ from ptmcad.mechanism.angles import PI, split_angle, without_quarter_turns
 from ptmcad.mechanism.description import Kind, Parameter, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate, value_at
 from ptmcad.mechanism.sizes import size_of
-from ptmcad.text.syntax import NAME, NOT_NUMBERS, did_you_mean, parse
+from ptmcad.text.syntax import FINITE, NAME, NOT_NUMBERS, did_you_mean, parse
 from ptmcad.text.tree import FUNCTIONS, Call, Negative, Number, Tree, names_of
 from ptmcad.text.tree import to_text as text_of
 
@@ -110,7 +110,8 @@ def new_name(name: object, key: str, taken: Mapping[str, object]) -> str:
             f"{as_written(name)} is no name: use ASCII letters, digits and '_', starting with a letter", key=key
         )
     if name in FUNCTIONS or name == PI or name.lower() in NOT_NUMBERS:
-        raise ConfigError(f"'{name}' has a meaning of its own: choose another name", key=key)
+        infinite = f"; {FINITE}" if name.lower() in NOT_NUMBERS else ""
+        raise ConfigError(f"'{name}' has a meaning of its own: choose another name{infinite}", key=key)
     if name in taken:
         raise ConfigError(f"the name '{name}' is given twice: choose another one", key=key)
     return name
@@ -340,7 +341,7 @@ class _Names:
         if name in self.excluded:
             raise ExpressionError(f"{name} is an unknown: only points may depend on it")
         if name == PI:
-            raise ExpressionError("pi is no rational number: name a parameter in its place")
+            raise ExpressionError(f"pi is no rational number: name a parameter in its place{did_you_mean(name, ())}")
         if name not in known:
             hint = did_you_mean(name, self.constants | self.angles) or (
                 f"; the names are {', '.join(known)}" if known else "; no name is known here"

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 def _locate(self: RegionMap, point: Any = None, /, **at: Any) -> Location:
     """The region of a rational point, exactly; names are the two axes, values numbers or text such as "7/10".
 
-    A float stands for its exact binary value: 0.1, unlike the text "0.1", is not 1/10. The values may be given as one
+    A float stands for its shortest decimal: 0.1 is 1/10. The values may be given as one
     mapping instead, such as the sample of a cell.
 
     Raises

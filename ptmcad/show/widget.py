@@ -19,6 +19,7 @@ from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import PtmcadError
 from ptmcad.show.report import page
+from ptmcad.text.numerals import exactly
 
 DIGITS = 6
 """Of the numbers in the table."""
@@ -58,7 +59,7 @@ class Explorer(anywidget.AnyWidget):  # type: ignore[misc]
             raise traitlets.TraitError(f"a point has numbers for {names}") from error
         for axis in axes:
             value = point[axis.name]
-            if not (isfinite(value) and axis.low < _written(value) < axis.high):
+            if not (isfinite(value) and axis.low < exactly(value) < axis.high):
                 raise traitlets.TraitError(f"{axis.name} = {value} is not inside the window, {axis.low} to {axis.high}")
         return point
 
@@ -68,15 +69,10 @@ class Explorer(anywidget.AnyWidget):  # type: ignore[misc]
         if not self.point:
             return
         try:
-            poses = self._solve(*(_written(self.point[name]) for name in self._names))
+            poses = self._solve(*(exactly(self.point[name]) for name in self._names))
         except PtmcadError as error:  # of a point where the question has no answer; the next one may have
             self.set_trait("poses", None)
             self._answer = str(error)
         else:
             self.set_trait("poses", poses)
             self._answer = f"Exact solutions at the point:\n{poses.table(DIGITS)}"
-
-
-def _written(value: float) -> Fraction:
-    """The decimal number that a float shows, which has few digits, unlike its binary value."""
-    return Fraction(repr(value))

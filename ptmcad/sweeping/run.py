@@ -31,7 +31,7 @@ from ptmcad.sweeping.member import Failed, Wanted, Work, reason
 from ptmcad.sweeping.pool import Pool
 from ptmcad.sweeping.tasks import Workers
 from ptmcad.text.numerals import text_of
-from ptmcad.text.parsing import rational
+from ptmcad.text.parsing import share_for
 from ptmcad.version import __version__
 
 RETRIES = 2
@@ -107,7 +107,7 @@ def _wanted(fields: Mapping[str, Any]) -> Wanted:
             raise ConfigError(
                 f"there is no option {name[:40]!r}; the options are {', '.join(sorted(known))}", key="wanted"
             )
-    shares = {name: rational(fields[name]) for name in _SHARES if fields.get(name) is not None}
+    shares = {name: share_for(name, fields[name]) for name in _SHARES if fields.get(name) is not None}
     return Wanted(**{**fields, **shares})
 
 

@@ -46,10 +46,12 @@ def integer_of(digits: str) -> int:
 
 
 def exactly(number: object) -> Fraction:
-    """The value of a number: an integer, a rational of any library's, or a float's exact binary value.
+    """The value of a number: an integer, a rational of any library's, or a float.
 
-    >>> exactly(0.5), exactly(0.1) == Fraction(1, 10)
-    (Fraction(1, 2), False)
+    A float is the shortest decimal that rounds to it, which is what it is printed as and what a record would say.
+
+    >>> exactly(0.5), exactly(-0.1)
+    (Fraction(1, 2), Fraction(-1, 10))
 
     Raises
     ------
@@ -59,8 +61,8 @@ def exactly(number: object) -> Fraction:
         For an infinite float, and one that is not a number.
     """
     # numpy's truth values are indices before numpy 2
-    truth = isinstance(number, bool) or getattr(getattr(number, "dtype", None), "kind", "") == "b"
-    if truth or isinstance(number, type):  # a class has its numbers' methods
+    kind = getattr(getattr(number, "dtype", None), "kind", "")
+    if isinstance(number, bool | type) or kind == "b":  # a class has its numbers' methods
         raise TypeError(_no_number(number))
     if isinstance(number, SupportsIndex):
         try:
@@ -74,7 +76,7 @@ def exactly(number: object) -> Fraction:
         raise TypeError(_no_number(number))
     try:
         # numerator and denominator of a Fraction made from numpy's integers are such
-        return Fraction(*map(int, ratio()))
+        return Fraction(str(number)) if isinstance(number, float) or kind == "f" else Fraction(*map(int, ratio()))
     except (ValueError, OverflowError) as error:
         raise ValueError(f"{number!r} is not a number that can be computed with") from error
 

@@ -21,12 +21,12 @@ from functools import partial
 from math import comb
 from operator import add, mul, sub, truediv
 
-from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.errors import ConfigError, ExpressionError, shown
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.numerals import exactly
+from ptmcad.text.syntax import NOT_INTEGER, unknown_name
 from ptmcad.text.syntax import names_in as names_in_text
 from ptmcad.text.syntax import parse as tree_of
-from ptmcad.text.syntax import unknown_name
 from ptmcad.text.tree import Call, Name, Number, Power, Step, Tree, interpret
 
 MAX_EXPONENT = 64
@@ -45,7 +45,7 @@ def parse(text: object, names: Mapping[str, Expression] | None = None) -> Expres
 
     Parameters
     ----------
-    text : the expression, or a number: an int, a Fraction, a float (its exact binary value), a Decimal, or one of
+    text : the expression, or a number: an int, a Fraction, a float (its shortest decimal), a Decimal, or one of
         numpy's.
     names : what each name stands for.
 
@@ -81,8 +81,8 @@ def value_in_axes(tree: Tree, names: Mapping[str, Expression]) -> Expression:
 def rational(text: object) -> Fraction:
     """Read an exact rational number: a text such as ``3/4``, ``-0.1`` or ``1e-30``, or a number as `parse` takes it.
 
-    >>> rational("-0.1"), rational(-0.125)
-    (Fraction(-1, 10), Fraction(-1, 8))
+    >>> rational("-0.1") == rational(-0.1)
+    True
 
     Raises
     ------
@@ -104,6 +104,20 @@ def number_for(key: str, value: object) -> Fraction:
         return rational(value)
     except ExpressionError as error:
         raise ConfigError(str(error), key=key) from error
+
+
+def share_for(key: str, value: object) -> Fraction:
+    """The share between 0 and 1, such as a tolerance, that a caller gave for something.
+
+    Raises
+    ------
+    ConfigError
+        With the key, if it is none.
+    """
+    share = number_for(key, value)
+    if not 0 < share < 1:
+        raise ConfigError(f"{shown(str(value), 60)} is not between 0 and 1", key=key)
+    return share
 
 
 def names_in(text: str | int | Fraction) -> tuple[str, ...]:
@@ -155,7 +169,7 @@ class _InTheAxes:
 
     def power(self, base: Expression, power: Power, exponent: Expression) -> Expression:
         if not exponent.is_constant or exponent.constant().denominator != 1:
-            raise ExpressionError("the exponent is not an integer", power.position)
+            raise ExpressionError(NOT_INTEGER, power.position)
         n = exponent.constant().numerator
         if n < 0 and not base.numerator:
             raise ExpressionError("division by zero", power.position)

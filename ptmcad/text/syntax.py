@@ -46,9 +46,32 @@ _TOKEN = re.compile(
 )
 _BLANK = re.compile(r"[ \t]*")
 NOT_NUMBERS = frozenset({"nan", "inf", "infinity"})
+FINITE = "all values are finite: write a large number, or make the reciprocal the parameter or the axis"
+NOT_INTEGER = "the exponent is not an integer: write one, such as 2, and make a root itself a parameter or an unknown"
+_RATIONAL = "values are rational: write a number near it, such as {}"
+_OF_ANGLES = "give a fixed angle by its cosine and sine, as two parameters such as 3/5 and 4/5"
+_NO_ROOT = f"{_RATIONAL.format('1.41421356')}, or in a system let r be an unknown with r^2 - (...) = 0 and r positive"
+_TRANSCENDENTAL = (
+    "of functions there are sin and cos of unknown angles only: write a rational number near its value, or where an "
+    "unknown occurs in it alone, make its value the unknown (that of exp is positive)"
+)
+_NO_CASES = "there are no cases: write its square, or a record for each case"
+_REMEDIES = {
+    "pi": f"{_RATIONAL.format('355/113')}, or {_OF_ANGLES}",
+    "sqrt": _NO_ROOT, "cbrt": _NO_ROOT, "root": _NO_ROOT,
+    **dict.fromkeys(("exp", "ln", "log", "log10", "sinh", "cosh", "tanh"), _TRANSCENDENTAL),
+    "tan": f"multiply by cos(...) and write sin(...) in its place; {_OF_ANGLES}",
+    **dict.fromkeys(("asin", "acos", "atan", "atan2", "arcsin", "arccos", "arctan", "sin", "cos"), _OF_ANGLES),
+    **dict.fromkeys(("abs", "min", "max", "sign"), _NO_CASES),
+}  # fmt: skip
+"""What is written in place of a name that means something elsewhere."""
+_UNIT = re.compile(r"[cdkmu]?m|inch|[kmM]?Nm{0,2}|J|[kMG]?Pa|k?g|m?s|rad|deg(rees)?")
 _WRITE_INSTEAD = {
     "−": "-", "–": "-", "—": "-", "×": "*", "·": "*", "⋅": "*", "∗": "*", "÷": "/", "⁄": "/", "∕": "/",
     "²": "^2", "³": "^3", "ρ": "rho", "½": "1/2", "¼": "1/4", "¾": "3/4", ",": "a decimal point",
+    "°": "the angle by its cosine and sine, as two parameters", "∞": "a large number, since all values are finite",
+    "√": "a rational number near the root, or make it an unknown", "%": "a share as a fraction, such as 1/2",
+    "π": "a rational number near it, such as 355/113",
 }  # fmt: skip
 
 
@@ -84,7 +107,9 @@ def names_in(text: str) -> tuple[str, ...]:
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """``"; did you mean 'rho'?"``, or the empty string when nothing known is close."""
+    """``"; did you mean 'rho'?"``, what to write in place of a name such as ``sqrt``, or the empty string."""
+    if name.lower() in _REMEDIES:
+        return f"; {_REMEDIES[name.lower()]}"
     from difflib import get_close_matches  # for messages only
 
     names = list(known)
@@ -97,21 +122,25 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
 def unknown_name(name: str, position: int, known: Iterable[str]) -> ExpressionError:
     """The error for a name that has no meaning."""
     if name.lower() in NOT_NUMBERS:
-        return ExpressionError(f"'{name}' is not a number that can be computed with", position)
+        return ExpressionError(f"'{name}' is not a number that can be computed with; {FINITE}", position)
     return ExpressionError(f"unknown name '{_short(name)}'{did_you_mean(name, known)}", position)
 
 
 def _tokens(text: str) -> list[_Token]:
     if len(text) > MAX_TEXT:
         raise ExpressionError(f"the expression has {len(text)} characters, more than {MAX_TEXT}")
-    tokens = []
+    tokens: list[_Token] = []
     position = _blank(text, 0)
     while position < len(text):
         match = _TOKEN.match(text, position)
         if match is None:
             raise _bad_character(text, position)
         kind = match.lastgroup or ""
+        if tokens and tokens[-1].kind == "number" and _UNIT.fullmatch(match.group()):
+            raise _with_unit(match.group(), position)
         if kind == "number" and (after := NAME.match(text, match.end())):
+            if _UNIT.fullmatch(after.group()):
+                raise _with_unit(after.group(), after.start())
             raise ExpressionError(
                 f"'{_short(match.group())}' and '{_short(after.group())}' stand side by side: write * between them",
                 after.start(),
@@ -143,6 +172,11 @@ def _bad_character(text: str, position: int) -> ExpressionError:
     return ExpressionError(f"the character {shown} cannot be used{remedy}", position)
 
 
+def _with_unit(unit: str, position: int) -> ExpressionError:
+    remedy = _OF_ANGLES if unit[:3] in ("rad", "deg") else "write all lengths in one unit, and all forces in one"
+    return ExpressionError(f"a number has no unit: leave '{unit}' out, or write * before a name; {remedy}", position)
+
+
 def _short(text: str) -> str:
     return text if len(text) <= 40 else f"{text[:30]}..."
 
@@ -163,9 +197,8 @@ class _Parser:
             raise ExpressionError("this ')' has no '(' before it", token.position)
         before = self.tokens[self.index - 1]
         if token.text == "(" and before.kind == "name":
-            raise ExpressionError(
-                f"'{_short(before.text)}' is no function here: is an operator missing?", token.position
-            )
+            hint = did_you_mean(before.text, FUNCTIONS) or ": is an operator missing?"
+            raise ExpressionError(f"'{_short(before.text)}' is no function here{hint}", token.position)
         raise ExpressionError(f"'{_short(token.text)}' is not expected here: is an operator missing?", token.position)
 
     def next(self) -> _Token:

@@ -137,9 +137,7 @@ def _cannot_start(text: str, mark: Any) -> str:
 
 
 def from_python(value: object, place: Place) -> Node:
-    """The same tree from Python data: mappings, lists, tuples, str, bool, None, and numbers, exactly.
-
-    A float stands for its binary value: 0.1, unlike the text "0.1", is not 1/10.
+    """The same tree from Python data: mappings, lists, tuples, str, bool, None, and numbers, as `exactly` takes them.
 
     Raises
     ------

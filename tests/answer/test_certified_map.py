@@ -209,7 +209,7 @@ def test_locate_prints_what_is_admissible(tmp_path: Path, capsys: pytest.Capture
         ({"engine": "exact"}, "engine", "an exact map is not computed for springs with a free length"),
         ({"engine": "certifed"}, "engine", "did you mean 'certified'?"),
         ({"tolerance": 0}, "tolerance", "0 is not between 0 and 1"),
-        ({"tolerance": "x"}, "tolerance", "'x' is not a number"),
+        ({"tolerance": "x"}, "tolerance", "unknown name 'x'"),
         ({"tolerance": float("nan")}, "tolerance", "is not a number"),
         ({"area_tolerance": "1e-3"}, "area_tolerance", "give tolerance instead"),
         ({"without": frozenset(("axis-order",))}, "without", "a saving of the exact engine"),

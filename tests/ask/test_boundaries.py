@@ -216,7 +216,7 @@ def test_the_outlines_of_a_certified_map_enclose_its_cells() -> None:
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda r: r.boundaries("0"), "tolerance=0 is not between 0 and 1"),
+        (lambda r: r.boundaries("0"), "tolerance: 0 is not between 0 and 1"),
         (lambda r: r.boundaries("x"), "x"),
         (lambda r: r.grid(0), "columns=0 is not a positive whole number"),
         (lambda r: r.grid(3, 2.5), "rows=2.5 is not a positive whole number"),

@@ -213,7 +213,7 @@ def test_a_family_of_which_the_changes_are_not_known_is_refused() -> None:
     found = replace(maps("cone"), changes=None)
     with pytest.raises(ConfigError, match="find them first"):
         found.boundary_surface()
-    with pytest.raises(ConfigError, match="not a share"):
+    with pytest.raises(ConfigError, match="is not between 0 and 1"):
         maps("cone").boundary_surface(2)
     with pytest.raises(ConfigError, match="two members"):
         maps("cone").boundary_surface(max_members=1)

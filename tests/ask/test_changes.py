@@ -170,7 +170,7 @@ def test_where_elimination_is_out_of_reach_that_is_said(monkeypatch: pytest.Monk
 
 
 def test_bad_questions_and_limits_are_told() -> None:
-    with pytest.raises(ConfigError, match="share of the range"):
+    with pytest.raises(ConfigError, match="is not between 0 and 1"):
         ptmcad.changes(of("u^2 - c", -1, 3), tolerance=0)
     free_length = {"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"l0": "1/5"}, "free": {"F3": [-4, 0]}}
     with pytest.raises(ConfigError, match="certified engine"):

@@ -180,7 +180,7 @@ def test_a_picture_and_a_notebook_show_it(tmp_path: Any) -> None:
     ("record", "options", "words"),
     [
         (IN_SPACE, {"maximise": "rang"}, "'rang' is neither an aim nor a parameter; did you mean 'range'"),
-        (IN_SPACE, {"over": {"a": [0, 2]}, "tolerance": 2}, "not a share between 0 and 1"),
+        (IN_SPACE, {"over": {"a": [0, 2]}, "tolerance": 2}, "is not between 0 and 1"),
         (IN_SPACE, {"over": {"b": [0, 2]}}, "design.over: a is an axis that a design fixes"),
         (IN_SPACE, {"maximise": "area", "over": {"a": [0, 2]}}, "design.over.a: a varies over its whole window"),
         (IN_SPACE, {"maximise": "area", "over": {"q": [0, 2]}}, "design.over.q: no parameter is called q"),

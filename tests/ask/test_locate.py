@@ -106,13 +106,12 @@ def test_a_rational_critical_abscissa_off_the_curves() -> None:
                 assert found.stable == (2 if abs(length - 1) < 2 * rho < length + 1 else 1)
 
 
-def test_a_float_stands_for_its_exact_binary_value() -> None:
-    """fig. 2 has a wall on 2 rho = L2 + 1, which the float 0.7, a little less than 7/10, misses."""
+def test_a_float_stands_for_its_shortest_decimal() -> None:
+    """fig. 2 has a wall on 2 rho = L2 + 1, which the binary value of the float 0.7, a little less than 7/10, misses."""
     result = shipped("fig2")
-    assert result.locate(rho="0.7", L2="2/5").status is Status.ON_VARIETY
-    beside = result.locate(rho=0.7, L2="2/5")
-    assert beside.status is Status.EXACT
-    assert beside == result.locate(rho=Fraction(0.7), L2="2/5") == result.locate(rho=np.float64(0.7), L2="2/5")
+    assert result.locate(rho=Fraction(0.7), L2="2/5").status is Status.EXACT
+    for number in ("0.7", 0.7, np.float64(0.7), np.float32(0.7)):
+        assert result.locate(rho=number, L2="2/5").status is Status.ON_VARIETY
     assert result.locate(rho=0.75, L2=np.float32(0.5)) == result.locate(rho="3/4", L2="1/2")
     assert result.locate(rho=np.int64(1), L2=np.int32(1)).status is Status.ON_VARIETY
 

@@ -116,7 +116,8 @@ def test_a_result_to_files_and_on_from_it(
 ) -> None:
     assert run(["classify", *HAND, "--out", str(tmp_path), "--tolerance", "0.3", "--explain"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0] == "plan of slice-rho-L2, certified engine, before it starts:"
+    assert lines[0].startswith("question  slice-rho-L2: rho in [0, 2], L2 in [1, 3]; ")
+    assert "plan of slice-rho-L2, certified engine, before it starts:" in lines[1:4]
     at = lines.index("decided on the way:")
     assert "left out: terms of F3x, F4x (they are zero on this slice)" in lines[:at]
     assert lines[at + 1].startswith("computed: fold of a stable equilibrium")

@@ -100,7 +100,8 @@ def test_files_and_table(engine: dict[str, Any], tmp_path: Path, capfd: pytest.C
     assert json.loads((out / "fig4.json").read_text()) == {"name": "fig4", "timings": True}
     captured = capfd.readouterr()
     written = ", ".join(str(out / f"fig4.{suffix}") for suffix in ("json", "png", "svg"))
-    assert captured.out == f"table of fig4\nwritten   {written}\n"
+    question = "question  fig4: rho in [0, 2], L2 in [0, 2]; F3 = -10, F4 = -10; count index"
+    assert captured.out == f"{question}\ntable of fig4\nwritten   {written}\n"
     assert captured.err == "note: --jobs has no effect here: the exact engine uses one thread\n"
     options = engine["options"]
     assert (options.engine, options.jobs, options.timeout, engine["samples"]) == ("exact", 2, 5.0, True)
@@ -116,7 +117,8 @@ def test_slice_options_formats_and_explain(
     assert names(tmp_path) == ["slice-L2-rho.json"]
     assert json.loads((tmp_path / "slice-L2-rho.json").read_text())["timings"] is False
     lines = capfd.readouterr().out.splitlines()
-    assert lines[0] == "plan of slice-L2-rho, exact engine, before it starts:"
+    assert lines[0] == "question  slice-L2-rho: L2 in [0, 4], rho in [0, 4]; count stable"
+    assert lines[1] == "plan of slice-L2-rho, exact engine, before it starts:"
     assert lines[-4:-1] == ["decided on the way:", *map(str, StandIn.plan), "table of slice-L2-rho"]
 
 

@@ -38,13 +38,13 @@ def test_a_record_with_a_design(record: Path, capsys: pytest.CaptureFixture[str]
     words = ["design", str(record), "--tolerance", "1/10", "--evaluations", "40", "--format", "json,svg"]
     assert run(words) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0] == "maximise  the range of x in [-2, 4] with 2 solutions"
-    assert lines[1:4] == [
+    assert lines[1] == "maximise  the range of x in [-2, 4] with 2 solutions"
+    assert lines[2:5] == [
         "over      a in [0, 2], b in [0, 1]",
         "best      a = 1, b = 0.5",
         "value     2, x from -0.5 to 1.5",
     ]
-    assert lines[4].startswith("proof     no design has more than 2.") and "by branch and bound" in lines[4]
+    assert lines[5].startswith("proof     no design has more than 2.") and "by branch and bound" in lines[5]
     assert lines[-1] == "written   ball-design.svg, ball-design.json"
     data = json.loads(Path("ball-design.json").read_text(encoding="utf-8"))
     jsonschema.validate(data, json.loads(SCHEMA.read_text(encoding="utf-8")))

@@ -24,7 +24,7 @@ SCHEMA = json.loads((ROOT / "docs" / "range.schema.json").read_text(encoding="ut
 def test_a_record(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["range", FIG4, "--along", "rho", "--at", "L2=3/2"]) == 0
     out = capsys.readouterr().out
-    assert out.startswith("Equal loads, L1 = 1, F3 = F4 = -10, k = 100\n")
+    assert out.startswith("question  fig4: rho in [0, 2], L2 in [0, 2]; F3 = -10, F4 = -10; count stable\n")
     assert "operation range: 0.4981306959 to 1.041432630, width 0.5433019346\n" in out
 
 
@@ -66,7 +66,7 @@ def test_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ([FIG4], "Missing option '--along'"),
+        ([FIG4], "--along: is missing"),
         ([FIG4, "--along", "rho"], "--at: the other axis, L2, has no value: add L2=VALUE"),
         (["--along", "rho"], "--at: give the values"),
         ([FIG4, "--along", "rho", "--at", "rho=1"], "has no value"),

@@ -314,8 +314,8 @@ def test_mappings() -> None:
     slice = slice_from_mapping({"axes": {"rho": [0, 2], "L2": ["1/2", Fraction(3, 2)]}, "reference": {"regions": 2}})
     assert slice.axes[1].low == Fraction(1, 2)
     assert slice.reference == {"regions": 2}
-    for number in (0.1, np.float64(0.1), Fraction(0.1)):
-        assert slice_from_mapping({"axes": {"rho": [0, number], "L2": [0, 2]}}).axes[0].high == Fraction(0.1)
+    for number in (0.1, np.float64(0.1), np.float32(0.1), Fraction(1, 10)):
+        assert slice_from_mapping({"axes": {"rho": [0, number], "L2": [0, 2]}}).axes[0].high == Fraction(1, 10)
     assert slice_from_mapping({"axes": {"rho": [0, Decimal("0.1")], "L2": [0, 2]}}).axes[0].high == Fraction(1, 10)
     assert slice_from_mapping({"axes": {"rho": [0, np.int64(2)], "L2": [0, 2]}}).axes[0].high == 2
     with pytest.raises(ConfigError, match=r"axes\.rho: 1j of type complex is not an exact number"):

@@ -19,7 +19,6 @@ from hypothesis import strategies as st
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load
-from ptmcad.question.examples import shipped_record
 from ptmcad.show.report.error_curve import read_error_curve
 from ptmcad.studies.bench import measuring
 from ptmcad.studies.bench.compare import BAD, Change, Verdict, compare, comparison_table
@@ -219,9 +218,9 @@ def test_comparing_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
 def test_a_record_is_there_in_any_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What ``ptmcad bench`` measures without CONFIG."""
     monkeypatch.chdir(tmp_path)
-    assert load(shipped_record("fig4")).name == "fig4"
-    with pytest.raises(ConfigError, match="there is no record fig6 in configs/"):
-        shipped_record("fig6")
+    assert load("fig4").name == "fig4"
+    with pytest.raises(ConfigError, match="fig6: there is no such file, and no record of this name is shipped"):
+        load("fig6")
 
 
 @pytest.mark.parametrize(

@@ -27,6 +27,7 @@ from ptmcad.errors import ConfigError, expect
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism.moments import acting
 from ptmcad.mechanism.work import split_moments
+from ptmcad.options import Progress
 from ptmcad.question.slice import Slice
 
 BATCH, LARGE_BATCH = 300, 20_000
@@ -113,6 +114,7 @@ def field_of(
     rows: int | None = None,
     checks: int = CHECKS,
     check: Callable[[], None] = lambda: None,
+    progress: Progress = lambda _stage, _done, _total: None,
 ) -> Field:
     """A quantity of a pose at the centres of columns x rows pixels.
 
@@ -121,6 +123,7 @@ def field_of(
     request : of the map's slice.
     checks : number of pixels that are compared with exact poses.
     check : called again and again; may raise to stop.
+    progress : called as progress(stage, done, total).
 
     Raises
     ------
@@ -142,6 +145,7 @@ def field_of(
     batch = LARGE_BATCH if quantity.is_barrier else BATCH
     for first in range(0, len(places[0]), batch):
         check()
+        progress("pixels", first, len(places[0]))
         r, c = (p[first : first + batch] for p in places)
         values[r, c], chosen[r, c] = _at_pixels(model, quantity, choice, follower, (r, c), solutions.at[:, r, c])
     if quantity.is_barrier:  # there is one wherever there is another stable pose

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from ptmcad.algebra.polynomials import SPACE, Coefficient, Ratio, add_ratios, ratio
 from ptmcad.errors import ExpressionError
-from ptmcad.text.syntax import parse, unknown_name
+from ptmcad.text.syntax import NOT_INTEGER, parse, unknown_name
 from ptmcad.text.tree import Call, Name, Number, Power, Step, interpret
 
 MAX_DEGREE = 32
@@ -79,7 +79,7 @@ class _Space(NamedTuple):
     def power(self, base: Ratio, power: Power, exponent: Ratio) -> Ratio:
         quotient = ratio(*exponent)
         if not (quotient[0].is_constant() and quotient[1].is_constant() and abs(_integer(quotient[1])) == 1):
-            raise ExpressionError("the exponent is not an integer", power.position)
+            raise ExpressionError(NOT_INTEGER, power.position)
         n = _integer(quotient[0]) * _integer(quotient[1])
         _check_size(abs(n) * _degree(base), abs(n) * _bits(base), power.position)
         above, below = base if n >= 0 else (base[1], base[0])

@@ -47,7 +47,7 @@ def intervals(slice: Slice, along: str, at: Mapping[str, Any], working: int | No
     Parameters
     ----------
     along : the axis that varies, over its window.
-    at : the other axis with its value: text or a number, of which a float stands for its exact binary value.
+    at : the other axis with its value: text or a number, of which a float stands for its shortest decimal.
     working : the number of stable solutions in an operation range; by `operation_number` on this line when None.
 
     Raises

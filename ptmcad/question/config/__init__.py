@@ -38,9 +38,10 @@ from ptmcad.question.config.resolution import checked_slice, slice_of
 from ptmcad.question.config.scalars import number_of
 from ptmcad.question.domain import MAX_DEGREE
 from ptmcad.question.examples import FIRST, SECOND
+from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.syntax import did_you_mean
-from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_python, read_file
+from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_python
 
 __all__ = [
     "MAX_DEGREE",
@@ -72,7 +73,7 @@ __all__ = [
 
 
 def load(path: str | Path) -> Slice:
-    """Read a problem record.
+    """Read a problem record: a YAML file, or one that is shipped, by its name.
 
     Raises
     ------
@@ -80,12 +81,12 @@ def load(path: str | Path) -> Slice:
         For anything wrong in it, with file, line and key; its ``faults`` are all there are.
     """
     expect(path, (str, Path), "path", "the file of a record")
-    return checked_slice(read_file(path))
+    return checked_slice(record_tree(path))
 
 
 def slice_from_mapping(mapping: Mapping[str, Any]) -> Slice:
-    """The slice of a record given as Python data: numbers as text, int, Fraction, float (its exact
-    binary value) or one of numpy's.
+    """The slice of a record given as Python data: numbers as text, int, Fraction, float (its
+    shortest decimal) or one of numpy's.
 
     Expressions may be SymPy's; ``mechanism`` and ``system`` may be objects that `ptmcad.Mechanism` and `ptmcad.System`
     have made.
@@ -122,7 +123,7 @@ def family_from(question: str | Path | Mapping[str, Any] | Family) -> Family:
     if isinstance(question, Family):
         return question
     expect(question, (str, Path, Mapping), "question", A_RECORD)
-    return checked_family(_tree_of(question) if isinstance(question, Mapping) else read_file(question))
+    return checked_family(_tree_of(question) if isinstance(question, Mapping) else record_tree(question))
 
 
 def slice_from_options(
@@ -168,7 +169,7 @@ def question_from_options(typed: Typed) -> Slice | Family:
         For anything wrong, with file, line and key, or the option.
     """
     if typed.config is not None and typed == Typed(typed.config):
-        tree = read_file(typed.config)
+        tree = record_tree(typed.config)
         return checked_family(tree) if "free" in tree.entries else checked_slice(tree)
     record = record_from_options(typed)
     if typed.members is not None:
@@ -195,7 +196,7 @@ def record_from_options(typed: Typed) -> Record:
     config, slice, sets, ranges, count, mechanism, free, _ = typed
     if config is not None and mechanism is not None:
         raise ConfigError("the record says which mechanism is meant: leave one out", key="--mechanism")
-    record = record_of(read_file(config)) if config is not None else Record(ptm())
+    record = record_of(record_tree(config)) if config is not None else Record(ptm())
     if mechanism is not None:
         record = Record(named_model(Scalar(mechanism, Place("--mechanism"))))
     if free is not None:
@@ -243,6 +244,6 @@ def names_in_record(config: str | Path) -> tuple[tuple[str, ...], frozenset[str]
     ConfigError
         For keys and shapes that are wrong; values are not looked at.
     """
-    record = record_of(read_file(config))
+    record = record_of(record_tree(config))
     others = [record.free[0]] if record.free is not None else []
     return tuple(record.axes), frozenset((*record.model.parameters, *others, *swept_names(record)))

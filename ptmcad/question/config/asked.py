@@ -14,8 +14,8 @@ from ptmcad.question.config.designs import checked_design
 from ptmcad.question.config.family import Family, checked_family
 from ptmcad.question.config.resolution import checked_slice
 from ptmcad.question.config.sweeps import Sweeping, checked_sweep
+from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Slice
-from ptmcad.text.yamltree import read_file
 
 
 class Asked(NamedTuple):
@@ -39,7 +39,7 @@ def load_asked(path: str | Path) -> Asked:
     ConfigError
         For anything wrong in it, with file, line and key; its ``faults`` are all there are.
     """
-    tree = read_file(path)
+    tree = record_tree(path)
     faults = Faults()
     question: Slice | Family | None = None
     sweep = design = None

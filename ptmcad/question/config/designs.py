@@ -21,9 +21,10 @@ from ptmcad.question.config.resolution import axis_of, note_values, unread_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
 from ptmcad.question.design import Condition, condition_of, named
 from ptmcad.question.examples import A_DESIGN, FIRST, SECOND
+from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Axis
 from ptmcad.text.syntax import did_you_mean
-from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_python, read_file
+from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_python
 
 KEYS = ("maximise", "along", "over", "where", "pose")
 WHERE_KEYS = ("stable", "tension", "conditions")
@@ -38,7 +39,7 @@ def load_design(path: str | Path) -> Design:
     ConfigError
         For anything wrong in it, with file, line and key; its ``faults`` are all there are.
     """
-    return checked_design(read_file(path))
+    return checked_design(record_tree(path))
 
 
 def asks_for_design(path: str | Path) -> bool:
@@ -49,7 +50,7 @@ def asks_for_design(path: str | Path) -> bool:
     ConfigError
         When it cannot be read.
     """
-    return "design" in read_file(path).entries
+    return "design" in record_tree(path).entries
 
 
 def design_from(question: str | Path | Mapping[str, Any] | Design, **changes: Any) -> Design:
@@ -74,7 +75,7 @@ def design_from(question: str | Path | Mapping[str, Any] | Design, **changes: An
         tree = from_python(plain(question), Place())
         assert isinstance(tree, Tree)  # of a mapping
     else:
-        tree = read_file(question)
+        tree = record_tree(question)
     return checked_design(
         tree, {n: from_python(plain(v), Place(f"design.{n}")) for n, v in changes.items() if v is not None}
     )
@@ -108,7 +109,7 @@ def design_from_options(
             option = Place(f"--{key.removesuffix('s') if key == 'conditions' else key}")
             node = from_python(list(value) if isinstance(value, tuple) else value, option)
             given["where"] = Tree({**_entries(given.get("where")), key: node}, option)
-    return checked_design(read_file(config), given)
+    return checked_design(record_tree(config), given)
 
 
 def _entries(node: Node | None) -> Mapping[str, Node]:

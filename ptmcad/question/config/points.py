@@ -16,9 +16,10 @@ from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.config.record import Record, record_of, swept_names
 from ptmcad.question.config.resolution import point_of, without_shorthands
 from ptmcad.question.config.scalars import number_of, number_text
+from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, constant
-from ptmcad.text.yamltree import Place, Scalar, Tree, from_python, read_file
+from ptmcad.text.yamltree import Place, Scalar, Tree, from_python
 
 
 def point_from_mapping(values: Mapping[str, object], model: Model | None = None) -> dict[str, Fraction]:
@@ -30,8 +31,8 @@ def point_from_mapping(values: Mapping[str, object], model: Model | None = None)
 
     Parameters
     ----------
-    values : text (a number, or arithmetic with other parameters), int, Fraction, Decimal, float (its exact binary
-        value) or one of numpy's numbers.
+    values : text (a number, or arithmetic with other parameters), int, Fraction, Decimal, float (its shortest
+        decimal) or one of numpy's numbers.
 
     Raises
     ------
@@ -64,7 +65,7 @@ def point_from_options(
     ConfigError
         For anything wrong, with file, line and key, or the option.
     """
-    record = record_of(read_file(config)) if config is not None else Record(ptm())
+    record = record_of(record_tree(config)) if config is not None else Record(ptm())
     given = {name: Scalar(text, Place(f"--at {name[:40]}")) for name, text in (at or {}).items()}
     return _at_point(record, given, sets)
 
@@ -113,7 +114,7 @@ def units_of(question: str | Path | Mapping[str, Any] | Slice) -> Mapping[str, s
 
 def _tree_of(question: str | Path | Mapping[str, Any]) -> Tree:
     expect(question, (str, Path, Mapping), "question", f"{A_SLICE}, {A_RECORD}")
-    tree = from_python(plain(question), Place()) if isinstance(question, Mapping) else read_file(question)
+    tree = from_python(plain(question), Place()) if isinstance(question, Mapping) else record_tree(question)
     assert isinstance(tree, Tree)  # of a mapping, or checked where it was read
     return tree
 

@@ -8,6 +8,7 @@ from fractions import Fraction
 from ptmcad.errors import ConfigError, ExpressionError, excerpt
 from ptmcad.text.expressions import Expression
 from ptmcad.text.parsing import names_in, parse
+from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import Node, Scalar
 
 
@@ -26,7 +27,8 @@ def number_of(scalar: Scalar, what: str = "the end of a range") -> Fraction:
     """The number that a scalar is."""
     names = names_in_scalar(scalar)
     if names and names[0].lower() not in ("nan", "inf", "infinity"):
-        raise scalar.place.error(f"{what} is a number, not an expression in {names[0][:40]}")
+        hint = did_you_mean(names[0], ())
+        raise scalar.place.error(f"{what} is a number, not an expression in {names[0][:40]}{hint}")
     return parsed(scalar, {}).constant()
 
 

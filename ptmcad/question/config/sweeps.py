@@ -20,10 +20,11 @@ from ptmcad.question.config.record import Record, check_axis_name, read_record, 
 from ptmcad.question.config.resolution import check_number, note_values, slice_of, unread_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
 from ptmcad.question.examples import A_SWEEP, FIRST
+from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Slice
 from ptmcad.question.sweep import Listed, Product, Spaced, Sweep, Values
 from ptmcad.text.syntax import did_you_mean
-from ptmcad.text.yamltree import Node, Place, Sequence, Tree, from_python, read_file
+from ptmcad.text.yamltree import Node, Place, Sequence, Tree, from_python
 
 MAX_MEMBERS = 1_000_000
 """Of a sweep; more would rather be asked in parts."""
@@ -69,7 +70,7 @@ def load_sweep(path: str | Path) -> Sweeping:
     ConfigError
         For anything wrong in it, with file, line and key; its ``faults`` are all there are.
     """
-    return checked_sweep(read_file(path))
+    return checked_sweep(record_tree(path))
 
 
 def asks_for_sweep(path: str | Path) -> bool:
@@ -80,7 +81,7 @@ def asks_for_sweep(path: str | Path) -> bool:
     ConfigError
         When it cannot be read.
     """
-    return "sweep" in read_file(path).entries
+    return "sweep" in record_tree(path).entries
 
 
 def sweep_from(question: str | Path | Mapping[str, Any] | Sweeping) -> Sweeping:
