@@ -1,6 +1,6 @@
 """The program's entry: ``ptmcad`` and ``python -m ptmcad``.
 
-Guarantee: from the first statement of `main` on, SIGINT, SIGTERM and SIGHUP end the program without a traceback; they
+Guarantee: from the first statement of `main` on, the signals of `STOPPING` end the program without a traceback; they
 stay without effect where the caller has had them ignored (``nohup``, a shell's background jobs).
 
 Nothing is imported here but what the signals need, because a signal that comes during an import must find its handler.
@@ -20,7 +20,9 @@ _ROOM = [bytearray(96 << 10)]
 _YOUNG_OBJECTS = 100_000
 """More than a short run makes: the collector looks at those made since its last look when they are so many."""
 
-STOPPING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+_NAMES = ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT", "SIGUSR1", "SIGUSR2", "SIGALRM")
+STOPPING = tuple(getattr(signal, name) for name in _NAMES if hasattr(signal, name))
+"""The signals that people and batch systems send to end a program, and whose default is to do so."""
 
 
 def main() -> "NoReturn":

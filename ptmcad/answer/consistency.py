@@ -78,7 +78,7 @@ def check_numbers(result: RegionMap) -> None:
 
 def _check_counts(part: Cell | Region, place: str) -> None:
     """The Morse index has to add up to the other counts, as far as these are known."""
-    if part.index is not None and (part.total, part.stable) != (sum(part.index), part.index[0]):
+    if part.index is not None and (part.total, part.stable) != (sum(part.index), next(iter(part.index), None)):
         raise _fault(f"{place} has index {part.index}, {part.total} equilibria and {part.stable} stable ones")
 
 

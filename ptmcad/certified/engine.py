@@ -37,6 +37,7 @@ from ptmcad.cover.simplification import combined, gathered, simplified
 from ptmcad.cover.subdivision import rectangle_array
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import DEFAULTS, Options
+from ptmcad.process.handover import LAST_SECONDS
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice
 from ptmcad.text.bounds import percent
@@ -71,6 +72,8 @@ MAP_SHRINK_RATIO = Fraction(9, 10)
 """A map on the way is worth making when the boxes' share is at most this part of what it was at the last one."""
 SLANTED_SHARE = Fraction(1, 500)
 """Slanted pieces are tried once the boxes have at most this part of the window."""
+LAST_SHARE = 0.7
+"""Of the time that a process has when it is asked to leave: the rest is for tasks to end and for the map's text."""
 EARLY = 1.5
 """Seconds before the time limit: a search that ends earlier says so."""
 LATTICE_STEPS = 2**24
@@ -128,11 +131,24 @@ class _Run:
         """The strips of the boxes as they are, when they are known."""
         self.enclosed = Fraction(1)
         """The share that the boxes had when it was made."""
+        self.uncounted = Fraction(0)
+        """The share that it leaves outside of its cover."""
         self.exhausted = False
         """Whether slanted pieces alone left more than the tolerance."""
         self.seconds["plan"] = self.clock() - self.pace.started
 
     def run(self) -> RegionMap:
+        """The map; where a signal ends this process, what is known by then is handed over first."""
+        try:
+            return self._search()
+        except SystemExit:
+            if self.options.partial is not None:
+                until = self.clock() + LAST_SHARE * LAST_SECONDS
+                self.pace.deadline = until if self.pace.deadline is None else min(until, self.pace.deadline)
+                self._hand_over(Fraction(1))
+            raise
+
+    def _search(self) -> RegionMap:
         undetermined = Fraction(1)
         tolerance = self.tolerance
         if self.resumed is not None and _share(self.resumed) <= tolerance:
@@ -150,7 +166,7 @@ class _Run:
             cover = self._box_cover()
             undetermined = _share(cover)
             if undetermined > tolerance and self._slantable(undetermined):
-                slanted = self._slanted(self.area * 4.0**-level)
+                slanted = self._slanted(undetermined, self.area * 4.0**-level)
                 if slanted is not None:
                     return slanted
                 if self.exhausted:
@@ -184,14 +200,18 @@ class _Run:
         """Whether it is time for slanted pieces: the tolerance is small, and so are the boxes."""
         return may_be_slanted(self.options) and undetermined <= SLANTED_SHARE
 
-    def _slanted(self, area: float) -> RegionMap | None:
+    def _slanted(self, undetermined: Fraction, area: float) -> RegionMap | None:
         """The map of a cover with slanted pieces; None where it leaves too much, and then it may be the best so far.
 
         Parameters
         ----------
+        undetermined : the boxes' share of the window.
         area : of a box's projection, below which the search has left it alone.
         """
-        start, boxes = self.clock(), self.boxes()
+        boxes = self.boxes()
+        if self.options.partial is not None and self.pace.due(boxes):  # it may take long
+            self._hand_over(undetermined)
+        start = self.clock()
         lattice = Lattice(self.lattice.window, MAX_STEPS)
         cover = slanting(self.enclosures, lattice).cover(self.tolerance, self.jobs, lambda: self.pace.late(boxes))
         self.seconds["curves"] += self.clock() - start
@@ -298,12 +318,13 @@ class _Run:
         start = self.clock()
         found = self.partial() if enclosed <= COARSE_SHARE else self.map(self._box_cover(), Status.PARTIAL)
         self.enclosed = min(enclosed, self.enclosed)
-        least = Fraction(1) if self.best is None else self.best.undetermined
-        if found.undetermined < least and self.options.partial is not None:
-            self.best = found
+        if found.undetermined < self._least() and self.options.partial is not None:
             made = self.clock()
             self.options.partial(found)
+            self.best = found
             self.pace.text.record(self.boxes(), self.clock() - made)
+            if found.cover is not None:
+                self.uncounted = found.undetermined - _share(found.cover)
         self.pace.spent += self.clock() - start
 
     def _stopped(self, why: str) -> RegionMap:
@@ -331,14 +352,25 @@ class _Run:
         progress = self.options.progress
         if progress is None:
             return None
-        best = min(undetermined, Fraction(1) if self.best is None else self.best.undetermined)
-        what, share = f"undetermined {percent(best)}", float(best)
 
         def report(treated: int, waiting: int) -> None:
             level = treated / max(treated + 8 * waiting, 1)  # most of those that wait are cut again
-            progress(what, self.headway.at(share, level), PARTS)
+            share = self._kept(undetermined)
+            progress(f"undetermined {percent(share)}", self.headway.at(float(share), level), PARTS)
 
         return report
+
+    def _least(self) -> Fraction:
+        """What the best map leaves undetermined of those that were handed over, and the one to go on from."""
+        return min((found.undetermined for found in (self.best, self.options.resume) if found), default=Fraction(1))
+
+    def _kept(self, enclosed: Fraction) -> Fraction:
+        """What a stop would leave undetermined, where the boxes have at most this share of the window.
+
+        It is what the map leaves that `run` makes then, if there is the time to make it: else what the best one leaves.
+        """
+        in_time = SAFETY * self.pace.map.of(self.boxes()) < LAST_SHARE * LAST_SECONDS
+        return min(self._least(), enclosed + self.uncounted) if in_time else self._least()
 
 
 def _rectangles(slice: Slice, resume: Cover | None) -> Boxes:

@@ -116,7 +116,11 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
 
             _report_why_none(slice, options, output, "the engine was still being loaded or compiled")
             compiling = prepare(slice, options)
-        _report_why_none(slice, options, output, "the first level of the search was not done")
+        earlier = options.resume
+        reason = "the first level of the search was not done"
+        if earlier is not None:
+            reason = f"no less than {percent(earlier.undetermined)} was undetermined"
+        _report_why_none(slice, options, output, reason)
         left = None if options.timeout is None else max(options.timeout - spent, MIN_SECONDS)
         try:
             result = with_compilation(region_map(slice, replace(options, timeout=left)), compiling)

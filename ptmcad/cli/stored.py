@@ -7,7 +7,6 @@ may.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,9 +18,10 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown
 from ptmcad.process.commit import recover
 from ptmcad.show.document.design import FORMAT as DESIGN
+from ptmcad.show.document.node import NEWER, is_newer
 from ptmcad.show.document.writing import FORMAT
 from ptmcad.show.style import Style
-from ptmcad.text.textfile import read_text
+from ptmcad.text.textfile import format_named, json_data, read_text
 
 MAX_BYTES = 60_000_000
 """Twice what a certified map with a million rectangles takes."""
@@ -129,7 +129,8 @@ def _other_kind(text: str) -> str:
     if not isinstance(kind, str) or not kind.startswith("ptmcad-") or kind == FORMAT:
         return ""
     if kind.partition("/")[0] == own:
-        return f"this is a {shown(kind, 40)} file, and this program reads version {version}: make it anew"
+        way = NEWER if is_newer(kind, FORMAT) else "make it anew"
+        return f"this is a {shown(kind, 40)} file, and this program reads version {version}: {way}"
     if kind.startswith("ptmcad-family/"):
         return "this is a family: give the file of one of its members, which it names (plot and verify take it whole)"
     return f"this is a {shown(kind, 40)} file, not a region map: `ptmcad classify` makes one"
@@ -137,9 +138,11 @@ def _other_kind(text: str) -> str:
 
 def _format_of(text: str) -> Any:
     """What a JSON text says that its format is."""
+    if named := format_named(text):
+        return named
     try:
-        data = json.loads(text)
-    except (ValueError, RecursionError):
+        data = json_data(text)
+    except ValueError:
         return None
     return data.get("format") if isinstance(data, dict) else None
 

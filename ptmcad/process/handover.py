@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from enum import Enum
 
+LAST_SECONDS = 5.0
+"""What a process that is asked to leave has at most for a last result, where it makes one."""
 _HEAD = 9  # a topic's letter and the length of the body in 8 bytes
 
 
@@ -55,14 +57,15 @@ def watched() -> bool:
 
 
 def send(topic: Topic, *texts: str) -> None:
-    """Send a message."""
+    """Send a message, whole: what a signal's handler raises comes before it or after."""
     if _Sender.pipe is None:
         return
     body = "\0".join(texts).encode("utf-8", "surrogateescape")
     rest = memoryview(topic.value + len(body).to_bytes(_HEAD - 1, "big") + body)
     try:
-        while rest:
-            rest = rest[os.write(_Sender.pipe, rest) :]
+        with undisturbed():
+            while rest:
+                rest = rest[os.write(_Sender.pipe, rest) :]
     except BrokenPipeError:
         os._exit(1)  # the watching process is gone, and this one has to go with it
 
@@ -98,8 +101,9 @@ def undisturbed() -> Iterator[None]:
     if mask is None:
         yield
         return
-    before = mask(signal.SIG_BLOCK, signal.valid_signals())
+    before = mask(signal.SIG_BLOCK, ())
     try:
+        mask(signal.SIG_BLOCK, signal.valid_signals())  # the handler of one that came before may raise here
         yield
     finally:
         mask(signal.SIG_SETMASK, before)

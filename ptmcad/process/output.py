@@ -25,7 +25,7 @@ from ptmcad.errors import ConfigError, OutputError
 from ptmcad.process.commit import UNCHANGED, discard, identity, locked, put_into_place, reason, settle
 from ptmcad.process.handover import Topic, send, undisturbed
 from ptmcad.process.journal import HIDDEN, REDO, hidden, journals
-from ptmcad.text.textfile import read_text
+from ptmcad.text.textfile import json_data, read_text
 
 if sys.platform != "win32":
     import fcntl
@@ -260,8 +260,8 @@ def where_saved(target: Path, place: Path, beside: Iterable[str] = ()) -> str:
 def _stored(path: Path) -> dict[str, Any] | None:
     """The document in a file; None when there is no result in it."""
     try:
-        found = json.loads(read_text(path, MAX_BYTES, "a result"))
-    except (ConfigError, ValueError, RecursionError):
+        found = json_data(read_text(path, MAX_BYTES, "a result"))
+    except (ConfigError, ValueError):
         return None
     return found if isinstance(found, dict) else None
 

@@ -3,8 +3,9 @@
 C code that runs for minutes never returns to the interpreter, and may abort: neither a signal handler nor an exception
 can stop or save anything there. So the computation runs in a forked child, and the parent, which only waits, acts.
 
-Guarantee: a signal, or the time limit, ends the child within a second whatever it does: it is asked to leave first and
-killed after `ptmcad.process.watch.GRACE_SECONDS`. A library that waits for memory in vain (`ptmcad.process.shortage`)
+Guarantee: a signal to either process, or the time limit, ends the child within a second whatever it does: it is asked
+to leave first and killed after `ptmcad.process.watch.GRACE_SECONDS`. After a signal, one that searches a certified map
+has up to `ptmcad.process.handover.LAST_SECONDS` to hand over what it knows; a second signal ends that. A library that waits for memory in vain (`ptmcad.process.shortage`)
 is ended in seconds. What the caller has made of signals, masks and standard streams is no obstacle. No temporary file
 that the child has reported stays. When a limit ends it (time; the caller's on processor time; memory, also where a
 library aborts on a failed allocation or the system kills the child), the last result that it handed over is saved and
@@ -24,7 +25,7 @@ from collections.abc import Callable, Sequence
 from types import FrameType, TracebackType
 from typing import NoReturn, TextIO
 
-from ptmcad.process.handover import Topic, connect, disconnect, send
+from ptmcad.process.handover import Topic, connect, send
 from ptmcad.process.lifeline import PIPE_SIGNAL, end_with
 from ptmcad.process.streams import open_standard_streams, quiet_stream, report
 from ptmcad.process.watch import Watch
@@ -48,6 +49,7 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     _check_descriptors()
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)  # where it is ignored, nobody learns how a child has ended
     messages, printed, lifeline, wake = os.pipe(), os.pipe(), os.pipe(), os.pipe()
+    os.set_blocking(wake[1], False)
     gc.freeze()  # what there is by now is not looked through again, which would copy its pages in the child
     parent = os.getpid()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, (*heeded, signal.SIGCHLD))
@@ -64,29 +66,36 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     for number in heeded:
         signal.signal(number, _terminate)
     if child == 0:
-        for descriptor in (messages[0], printed[0], lifeline[1], *wake):
+        for descriptor in (messages[0], printed[0], lifeline[1], wake[0]):
             os.close(descriptor)
+        # a signal to this process alone is the parent's to answer, too, which hears of it whatever code runs here
+        signal.set_wakeup_fd(wake[1], warn_on_full_buffer=False)
         end_with(lifeline[0], parent)
         connect(messages[1])
         _redirect(printed[1])
     elif sys.stderr is not None:
         sys.stderr = quiet_stream(2, sys.stderr, for_messages=True)
     signal.pthread_sigmask(signal.SIG_SETMASK, before)
-    status = work()
+    asked = False
+    try:
+        status = work()
+    except SystemExit as leaving:  # by `_terminate`
+        asked, status = True, int(leaving.code or 0)
     # Taking the interpreter down object by object costs more time than watching does; multiprocessing ends so, too.
     atexit._run_exitfuncs()
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:
             stream.flush()
-    send(Topic.DONE)
+    if not asked:
+        send(Topic.DONE)
     os._exit(status)
 
 
 def _terminate(number: int, _frame: FrameType | None) -> NoReturn:
     """Leave through every ``finally``, once, and without a word: the interrupted code may be in any state."""
-    for other in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(other, signal.SIG_IGN)
-    disconnect()  # a message may have been cut
+    for other in signal.valid_signals():
+        if signal.getsignal(other) is _terminate:
+            signal.signal(other, signal.SIG_IGN)
     for stream in (sys.stderr, sys.__stderr__):  # libraries that are being loaded have one of their own
         if stream is not None:
             null = os.open(os.devnull, os.O_WRONLY)

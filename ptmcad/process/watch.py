@@ -12,7 +12,7 @@ import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ptmcad.process.handover import Receiver, Topic
+from ptmcad.process.handover import LAST_SECONDS, Receiver, Topic
 from ptmcad.process.salvage import clean_up, save_last, what_is_there
 from ptmcad.process.streams import report
 
@@ -31,6 +31,14 @@ OVERRUN_SECONDS = 0.25
 POLL_SECONDS = 0.25
 """Seconds between two looks at the child's memory."""
 
+LONG_SECONDS = 1.0
+"""Seconds after which it is said why the child has not left yet."""
+
+_CRASHES = frozenset(
+    getattr(signal, name)
+    for name in ("SIGSEGV", "SIGBUS", "SIGFPE", "SIGILL", "SIGABRT", "SIGSYS", "SIGTRAP")
+    if hasattr(signal, name)
+)
 _HOW_ENDED = {
     getattr(signal, name): words
     for name, words in (
@@ -51,6 +59,11 @@ class Watch:
         self.messages = messages
         self.printed = printed
         self.heeded = heeded
+        self.wake = -1
+        self.asked: float | None = None
+        """When the child was asked to leave, or killed."""
+        self.heard = 0
+        """How many of the signals are taken for one."""
         self.receiver = Receiver()
         self.caught: list[int] = []
         self.text = bytearray()
@@ -64,7 +77,8 @@ class Watch:
 
     def run(self, wake: tuple[int, int], before: set[int | signal.Signals]) -> int:
         """Watch until the child has ended, tidy up, and return the exit status."""
-        for descriptor in (self.messages, self.printed, *wake):
+        self.wake = wake[0]
+        for descriptor in (self.messages, self.printed, self.wake):
             os.set_blocking(descriptor, False)
         signal.set_wakeup_fd(wake[1], warn_on_full_buffer=False)
         for number in self.heeded:
@@ -72,18 +86,18 @@ class Watch:
         signal.signal(signal.SIGCHLD, lambda _number, _frame: None)  # it has to be caught to wake the parent
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
         try:
-            ended = self._wait(wake[0])
-            self._read(self.messages)
-            self._read(self.printed)
+            ended = self._wait()
+            for descriptor in (self.messages, self.printed, self.wake):
+                self._read(descriptor)
             return self._end(ended)
         except MemoryError:  # of this process, which needs little: it is the caller's limit
             os.kill(self.child, signal.SIGKILL)  # it may be there, or wait to be asked for its end: not for another yet
             report("stopped: memory ran out, also for the process that watches; no result could be saved\n")
             return 3
 
-    def _wait(self, wake: int) -> int:
+    def _wait(self) -> int:
         """The child's exit code, or minus the signal that ended it."""
-        open_ends = {self.messages, self.printed, wake}
+        open_ends = {self.messages, self.printed, self.wake}
         kill_at: float | None = None
         look_at = time.monotonic() + POLL_SECONDS
         while True:
@@ -98,7 +112,7 @@ class Watch:
                 return os.waitstatus_to_exitcode(status)
             now = time.monotonic()
             if kill_at is not None:
-                if now >= kill_at:
+                if now >= kill_at or self._asked_again(now):
                     os.kill(self.child, signal.SIGKILL)
                     kill_at = now + 60
                 continue
@@ -109,10 +123,29 @@ class Watch:
                 if self._waits_for_memory(now):
                     self.waits_for_memory = True
                     os.kill(self.child, signal.SIGKILL)  # it would not listen
-                    kill_at = now + 60
+                    self.asked, kill_at = now, now + 60
             if self.caught or self.out_of_time:
                 os.kill(self.child, signal.SIGTERM if signal.SIGTERM in self.heeded else signal.SIGKILL)
-                kill_at = now + GRACE_SECONDS
+                self.asked, kill_at = now, now + (LAST_SECONDS if self._makes_a_last_map() else GRACE_SECONDS)
+
+    def _makes_a_last_map(self) -> bool:
+        """Whether the child, asked to leave, hands over what it knows of a map that can be gone on from."""
+        state = self.reports.get(Topic.RESULT, ["partial"])[0]
+        resumable = self.reports.get(Topic.RESUMABLE, [""]) != [""]
+        return bool(self.caught) and Topic.TARGET in self.reports and resumable and state == "partial"
+
+    def _asked_again(self, now: float) -> bool:
+        """Whether a signal has come after those that ended the work, as a second Ctrl-C; one at once is of the first.
+
+        A terminal is told in time what is waited for.
+        """
+        assert self.asked is not None
+        if now < self.asked + GRACE_SECONDS:
+            self.heard = len(self.caught)
+        elif now >= self.asked + LONG_SECONDS and self.caught and os.isatty(2):
+            report("\r\x1b[Kmaking the map of what is known by now; a second Ctrl-C saves an earlier one")
+            self.reports[Topic.PROGRESS] = []
+        return len(self.caught) > self.heard
 
     def _waits_for_memory(self, now: float) -> bool:
         """Look at the child's memory."""
@@ -160,6 +193,8 @@ class Watch:
                         report(f"waiting   another process is writing in {texts[0]}\n")
             elif end == self.printed:
                 self.text += data
+            elif self.asked is None:  # afterwards it is the child's echo of what asked it
+                self.caught += [number for number in data if number in self.heeded]
 
     def _end(self, ended: int) -> int:
         """Leave nothing behind, say what there is to say, and return the exit status."""
@@ -168,7 +203,7 @@ class Watch:
         if ended < 0 or deserted or self.caught or self.out_of_time or Topic.EXHAUSTED in self.reports:
             clean_up(self.reports, self.temporaries, GRACE_SECONDS)
         if self.caught:
-            how = _HOW_ENDED.get(self.caught[0], f"stopped by signal {self.caught[0]}")
+            how = _HOW_ENDED.get(self.caught[0], f"stopped by {_name(self.caught[0])}")
             if self.reports.get(Topic.RESUMABLE) == [""]:
                 return 128 + self.caught[0]
             if Topic.RESUMABLE in self.reports or self.reports.get(Topic.RESULT, [""])[0] == "complete":
@@ -181,14 +216,15 @@ class Watch:
         if why:
             return save_last(self.reports, f"stopped: {why}")
         report(text)
-        if deserted:
-            report(f"error: the computation ended by itself with status {ended}; this is a bug, please report it\n")
-            return ended or 1
-        if ended >= 0:
+        if ended >= 0 and not deserted:
             return ended
-        if -ended not in self.heeded:
-            report(f"error: the computation crashed ({signal.Signals(-ended).name}); this is a bug, please report it\n")
-        return 128 - ended
+        how = f"ended by itself with status {ended}" if deserted else f"crashed ({_name(-ended)})"
+        how = f"error: the computation {how}; this is a bug, please report it"
+        if Topic.RESUMABLE in self.reports and Topic.RESULT in self.reports:
+            save_last(self.reports, how)
+        else:
+            report(f"{how}\n")
+        return 128 - ended if ended < 0 else ended or 1
 
     def _why_stopped(self, ended: int, deserted: bool, text: str) -> str:
         """What ended the child before it was done, in words; empty when nothing did."""
@@ -200,7 +236,9 @@ class Watch:
             return "the limit on processor time that the caller has set (ulimit -t) was reached"
         if ended == -signal.SIGKILL:
             return "the computation was killed from outside, most likely because memory ran out"
-        crashed = ended < 0 and -ended not in self.heeded
+        crashed = -ended in _CRASHES
+        if ended < 0 and not crashed:
+            return f"the computation was ended from outside ({_name(-ended)})"
         if deserted or crashed:
             from ptmcad.process.shortage import speaks_of_memory
 
@@ -208,7 +246,7 @@ class Watch:
                 return f"the memory limit of {self._limit_reached()} was reached"
             if self._little_memory():
                 last = "".join(text.rstrip().rpartition("\n")[2:])[:200] or "without a word"
-                how = signal.Signals(-ended).name if crashed else last
+                how = _name(-ended) if crashed else last
                 return f"most likely the memory limit of {self._limit_reached()} was reached ({how})"
         return ""
 
@@ -241,3 +279,11 @@ class Watch:
 
         soft, hard = resource.getrlimit(resource.RLIMIT_CPU)
         return any(limit != resource.RLIM_INFINITY and self.processor_time >= limit - 0.5 for limit in (soft, hard))
+
+
+def _name(number: int) -> str:
+    """A signal's name; most real-time signals have none."""
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f"signal {number}"

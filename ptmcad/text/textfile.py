@@ -8,15 +8,23 @@ executed. Every refusal is a `ConfigError` that names the file.
 from __future__ import annotations
 
 import errno
+import json
 import os
+import re
 import stat
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from ptmcad.errors import ConfigError
 
 T = TypeVar("T")
+
+MAX_UNNAMED = 1_000_000
+"""Characters of a JSON text that does not begin with its format: in memory its data may take fifty times as much."""
+MAX_PARTS = 3_000_000
+"""Lists and objects in a JSON text: more than a map has with as many slanted pieces as are read."""
+_FORMAT = re.compile(r'\s*\{\s*"format"\s*:\s*"(ptmcad-[a-z-]{1,40}/[0-9]{1,9})"')
 
 
 def read_bytes(path: str | Path, most: int, what: str) -> bytes:
@@ -67,6 +75,38 @@ def read_as(path: str | Path, most: int, kind: str, decode: Callable[[str], T]) 
         return decode(text)
     except (ValueError, RecursionError) as error:
         raise ConfigError(f"is not a {kind} file: {error}", file=str(path)) from error
+
+
+def format_named(text: str) -> str:
+    """The format with which a document of this program begins; empty for every other text.
+
+    >>> format_named('{"format": "ptmcad-poses/1", "name": 1}'), format_named('{"name": "ptmcad-poses/1"}')
+    ('ptmcad-poses/1', '')
+    """
+    found = _FORMAT.match(text)
+    return found[1] if found else ""
+
+
+def json_data(text: str, **hooks: Callable[[Any], Any]) -> Any:
+    """The data of a JSON text, in bounded memory: a long one that is no document of this program is not read.
+
+    Parameters
+    ----------
+    hooks : as of `json.loads`.
+
+    Raises
+    ------
+    ValueError
+        For such a text, for no JSON, and for what is nested too deeply.
+    """
+    if len(text) > MAX_UNNAMED and not format_named(text):
+        raise ValueError(f"it has more than {MAX_UNNAMED} characters and does not begin with a format of ptmcad")
+    if text.count("[") + text.count("{") > MAX_PARTS:
+        raise ValueError(f"it has more than {MAX_PARTS} lists and objects")
+    try:
+        return json.loads(text, **hooks)
+    except RecursionError as error:
+        raise ValueError("the document is nested too deeply") from error
 
 
 def lines_of(path: str | Path, longest: int, what: str) -> Iterator[str]:

@@ -101,13 +101,13 @@ def test_a_member_has_ranges(folder: Path, capsys: pytest.CaptureFixture[str]) -
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda data: data | {"format": "ptmcad-family/2"}, "not of the format ptmcad-family/1"),
+        (lambda data: data | {"format": "ptmcad-family/2"}, "not 'ptmcad-family/1'; it needs a newer ptmcad"),
         (lambda data: data | {"members": []}, "do not increase"),
         (lambda data: data | {"members": data["members"][::-1]}, "do not increase"),
         (lambda data: data | {"members": [{"value": "1", "file": "../loads-F-10.json"}]}, "a file beside it"),
         (lambda data: data | {"members": [{"value": "1", "file": "none.json"}]}, "none.json"),
         (lambda data: data | {"free": {"name": "F"}}, "missing"),
-        (lambda data: {k: v for k, v in data.items() if k != "title"}, "other keys"),
+        (lambda data: {k: v for k, v in data.items() if k != "title"}, "lacks the key 'title'"),
     ],
 )
 def test_damaged_families_are_refused(

@@ -87,6 +87,7 @@ main()
 NEVER = (
     "import ptmcad.process.watch\n"
     "ptmcad.process.watch.GRACE_SECONDS = ptmcad.process.watch.OVERRUN_SECONDS = 0.01\n"
+    "ptmcad.process.watch.LAST_SECONDS = 0.01\n"
 )  # fmt: skip
 """Before work that never returns to the interpreter: whatever time it gets to do so is waited for in vain."""
 IN_C = f"{NEVER}def engine(progress, partial):\n    arrived()\n    for_long_in_c()\n"
@@ -325,7 +326,7 @@ def test_a_signal_stops_drawing(tmp_path: Path, stay: str) -> None:
 def test_a_signal_to_the_computing_process_alone(tmp_path: Path) -> None:
     running = Running(tmp_path, "def engine(progress, partial):\n    arrived()\n    time.sleep(3600)\n")
     os.kill(running.arrive(), signal.SIGTERM)
-    assert running.end() == (143, "")
+    assert running.end() == (143, "terminated (SIGTERM); nothing was saved\n")
 
 
 @linux
@@ -344,7 +345,7 @@ def test_what_is_cleaned_up_is_cleaned_up_silently_and_to_the_end(tmp_path: Path
     )
     running = Running(tmp_path, work)
     os.kill(running.arrive(), signal.SIGINT)
-    assert running.end() == (130, "")
+    assert running.end() == (130, "interrupted; nothing was saved\n")
     assert (tmp_path / "clean").exists()
 
 

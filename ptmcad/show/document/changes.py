@@ -45,7 +45,7 @@ def changes_from(data: Any, free: Axis) -> Changes:
     others = tuple(_value(number) for number in data["others"])
     low, high = data["at_ends"]
     if not isinstance(data["complete"], bool):
-        raise TypeError("complete is neither true nor false")
+        raise ValueError("complete is neither true nor false")
     exact = [number for number in others if isinstance(number, AlgebraicNumber)]
     if len(exact) != len(others) or (data["complete"] and not all(change.is_exact for change in found)):
         raise ValueError("a value that is not exact stands where one has to be")
@@ -113,5 +113,5 @@ def _arrangement(data: Any) -> Arrangement:
 
 def _words(data: Any) -> tuple[str, ...]:
     if not isinstance(data, list) or not all(isinstance(text, str) and text.isprintable() for text in data):
-        raise TypeError("expected a list of sentences")
+        raise ValueError("expected a list of sentences")
     return tuple(data)

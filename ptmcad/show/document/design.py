@@ -11,19 +11,20 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.answer.design import BestDesign, BoundedBox, Evaluation
-from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Model, built_in, described, described_system, known_of, recognised, without_loops
 from ptmcad.question.slice import Axis
+from ptmcad.show.document.node import opened, placed
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import fraction_of, text_of
 from ptmcad.version import __version__
 
 FORMAT = "ptmcad-design/1"
+MAX_DOCUMENT = 60_000_000
 MAX_TEXT = 10_000
-_KEYS = frozenset((
+_KEYS = (
     "format", "name", "model", "maximise", "along", "window", "over", "stable", "conditions", "parameters", "best",
     "value", "span", "bound", "tolerance", "proved", "reason", "seed", "points", "boxes", "versions",
-))  # fmt: skip
+)  # fmt: skip
 
 
 def write_design(found: BestDesign) -> str:
@@ -75,21 +76,15 @@ def read_design(text: str) -> BestDesign:
     ValueError
         When the text is not such a document, or contradicts itself.
     """
-    data = json.loads(text)
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise ValueError(f"it is not of the format {FORMAT}")
-    if set(data) != _KEYS:
-        raise ValueError("it has other keys than a design")
-    try:
+    document = opened(text, FORMAT, MAX_DOCUMENT, "ptmcad design")
+    document.record(*_KEYS)
+    with placed(document) as data:
         found = _design(data)
-    except (KeyError, TypeError, AttributeError, IndexError, ConfigError) as error:
-        raise ValueError(f"a part of it is missing or of another kind: {error}") from error
     _check(found)
     return found
 
 
 def _design(data: Mapping[str, Any]) -> BestDesign:
-    best, value, span, bound = (data[key] for key in ("best", "value", "span", "bound"))
     return BestDesign(
         name=_line(data["name"]),
         model=_model_from(data["model"]),
@@ -99,10 +94,10 @@ def _design(data: Mapping[str, Any]) -> BestDesign:
         over=tuple(map(_axis_from, data["over"])),
         working=_whole(data["stable"]),
         conditions=tuple(map(_line, data["conditions"])),
-        best=None if best is None else {_line(name): fraction_of(x) for name, x in best.items()},
-        value=None if value is None else _enclosure(value),
-        span=None if span is None else (_enclosure(span[0]), _enclosure(span[1])),
-        bound=None if bound is None else fraction_of(bound),
+        best=None if data["best"] is None else {_line(name): fraction_of(x) for name, x in data["best"].items()},
+        value=None if data["value"] is None else _enclosure(data["value"]),
+        span=None if data["span"] is None else (_enclosure(data["span"][0]), _enclosure(data["span"][1])),
+        bound=None if data["bound"] is None else fraction_of(data["bound"]),
         tolerance=fraction_of(data["tolerance"]),
         proved=_truth(data["proved"]),
         reason=_line(data["reason"]),
@@ -150,6 +145,8 @@ def _model(model: Model) -> Any:
 
 def _model_from(data: Any) -> Model:
     if isinstance(data, str):
+        if data not in built_in():
+            raise ValueError(f"{data[:40]!r} is no mechanism that is known by its name")
         return known_of(data)
     ((kind, description),) = data.items()
     return described_system(description) if kind == "system" else without_loops(recognised(described(description)))
@@ -176,17 +173,17 @@ def _enclosure(data: Any) -> Enclosure:
 
 def _line(value: Any) -> str:
     if not isinstance(value, str) or not value.isprintable() or len(value) > MAX_TEXT:
-        raise TypeError("expected a line of text")
+        raise ValueError("expected a line of text")
     return value
 
 
 def _whole(value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-        raise TypeError("expected a whole number")
+        raise ValueError("expected a whole number")
     return value
 
 
 def _truth(value: Any) -> bool:
     if not isinstance(value, bool):
-        raise TypeError("expected true or false")
+        raise ValueError("expected true or false")
     return value

@@ -14,12 +14,13 @@ from typing import Any, NamedTuple
 
 from ptmcad.answer.changes import Changes
 from ptmcad.answer.family import FamilyMap, SpaceTerms
-from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Axis
 from ptmcad.show.document.changes import changes_from, written_changes
+from ptmcad.show.document.node import opened, placed
 from ptmcad.text.numerals import fraction_of, text_of
 
 FORMAT = "ptmcad-family/1"
+MAX_DOCUMENT = 60_000_000
 MAX_MEMBERS = 10_000
 MAX_TEXT = 10_000
 """Characters of a parameter."""
@@ -68,13 +69,10 @@ def read_family(text: str) -> StoredFamily:
     ValueError
         When the text is not such a document.
     """
-    data = json.loads(text)
-    keys = {"format", "name", "title", "free", "parameters", "surfaces", "members"}
-    if not isinstance(data, dict) or not keys <= set(data) <= keys | {"changes"}:
-        raise ValueError("it has other keys than a family")
-    if data["format"] != FORMAT:
-        raise ValueError(f"it is not of the format {FORMAT}")
-    try:
+    document = opened(text, FORMAT, MAX_DOCUMENT, "ptmcad classify")
+    document.record("format", "name", "title", "free", "parameters", "surfaces", "members", "changes?")
+    with placed(document) as data:
+        name, title = _text(data["name"]), _text(data["title"])
         free = data["free"]
         axis = Axis(_text(free["name"]), fraction_of(free["low"]), fraction_of(free["high"]))
         members = data["members"]
@@ -83,18 +81,18 @@ def read_family(text: str) -> StoredFamily:
         surfaces = tuple(
             tuple(((int(i), int(j), int(k)), int(c)) for i, j, k, c in terms) for terms in data["surfaces"]
         )
+        if not all(surfaces):
+            raise ValueError("a surface has no terms")
         changes = changes_from(data["changes"], axis) if "changes" in data else None
         parameters = {_text(name): _text(written, MAX_TEXT) for name, written in data["parameters"].items()}
-    except (KeyError, TypeError, AttributeError, IndexError, ConfigError) as error:
-        raise ValueError(f"a part of it is missing or of another kind: {error}") from error
     if not 1 <= len(values) <= MAX_MEMBERS or any(a >= b for a, b in pairwise(values)):
         raise ValueError("the members' values do not increase")
-    return StoredFamily(_text(data["name"]), _text(data["title"]), axis, values, files, surfaces, parameters, changes)
+    return StoredFamily(name, title, axis, values, files, surfaces, parameters, changes)
 
 
 def _text(value: Any, most: int = 300) -> str:
     if not isinstance(value, str) or not value.isprintable() or len(value) > most:
-        raise TypeError("expected a short text")
+        raise ValueError("expected a short text")
     return value
 
 
@@ -102,5 +100,5 @@ def _file(value: Any) -> str:
     """A name of a file beside the document, none elsewhere."""
     name = _text(value)
     if PurePath(name).name != name or not name.endswith(".json"):
-        raise TypeError("expected the name of a file beside it")
+        raise ValueError("expected the name of a file beside it")
     return name

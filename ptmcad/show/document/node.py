@@ -6,14 +6,16 @@ the place of the fault, such as ``cells[3].sample``.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from enum import Enum
 from fractions import Fraction
 from typing import Any, NamedTuple, TypeVar
 
+from ptmcad.errors import ConfigError
 from ptmcad.question.slice import unstorable
 from ptmcad.text.numerals import fraction_of
+from ptmcad.text.textfile import json_data
 
 # Limits far beyond any slice's result; they bound the time in which a damaged document is refused.
 MAX_ITEMS = 100_000
@@ -153,14 +155,78 @@ def opened(text: str, expected: str, longest: int, command: str) -> Node:
     """
     if len(text) > longest:
         raise ValueError(f"the document has {len(text)} characters, more than {longest}")
-    try:
-        data = json.loads(text, object_pairs_hook=_distinct, parse_constant=_refused)
-    except RecursionError as error:
-        raise ValueError("the document is nested too deeply") from error
+    data = json_data(text, object_pairs_hook=_distinct, parse_constant=_refused)
     found = data.get("format") if isinstance(data, dict) else None
     if found != expected:
-        raise ValueError(f"its format is {str(found)[:40]!r}, not {expected!r}; make it anew with {command}")
+        way = NEWER if is_newer(found, expected) else f"make it anew with {command}"
+        raise ValueError(f"its format is {str(found)[:40]!r}, not {expected!r}; {way}")
     return Node(data, "")
+
+
+NEWER = "it needs a newer ptmcad"
+
+
+def is_newer(found: Any, expected: str) -> bool:
+    """Whether what a document says of its format is a later version of the expected one.
+
+    >>> is_newer("ptmcad-poses/2", "ptmcad-poses/1"), is_newer("ptmcad-poses/0", "ptmcad-poses/1")
+    (True, False)
+    """
+    (kind, _, version), (own, _, current) = str(found)[:40].partition("/"), expected.partition("/")
+    return kind == own and version.isdecimal() and int(version) > int(current)
+
+
+@contextmanager
+def placed(node: Node) -> Iterator[Any]:
+    """A part's data for a reader that knows no places: what it raises names the part that was asked for last.
+
+    Raises
+    ------
+    ValueError
+        For a ValueError, and for what comes of a key that is missing or a value of another type.
+    """
+    trail = [node.place]
+    try:
+        yield _traced(node.value, node.place, trail)
+    except (KeyError, TypeError, AttributeError, IndexError) as error:
+        raise ValueError(f"{trail[0] or 'the document'} is missing or of another kind") from error
+    except (ValueError, ConfigError) as error:
+        raise ValueError(f"{trail[0]} is wrong: {error}" if trail[0] else str(error)) from error
+
+
+def _traced(value: Any, place: str, trail: list[str]) -> Any:
+    """The same, but that lists and objects write down in ``trail`` which part of them is asked for."""
+    trail[0] = place
+    kind = _Object if isinstance(value, dict) else _Items if isinstance(value, list) else None
+    if kind is None:
+        return value
+    found = kind(value)
+    found.place, found.trail = place, trail
+    return found
+
+
+class _Object(dict[str, Any]):
+    place: str
+    trail: list[str]
+
+    def __getitem__(self, key: str) -> Any:
+        place = f"{self.place}.{key[:40]}" if self.place else key[:40]
+        self.trail[0] = place
+        return _traced(super().__getitem__(key), place, self.trail)
+
+    def items(self) -> Any:
+        return [(key, self[key]) for key in self]
+
+
+class _Items(list[Any]):
+    place: str
+    trail: list[str]
+
+    def __getitem__(self, k: Any) -> Any:
+        return _traced(super().__getitem__(k), f"{self.place}[{k}]", self.trail)
+
+    def __iter__(self) -> Iterator[Any]:
+        return (self[k] for k in range(len(self)))
 
 
 def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -225,7 +225,10 @@ def _slice(
     **rest: Any,
 ) -> Slice:
     known = {name: _parsed(node, axes) for name, node in parameters.items()}
-    return Slice(model=either(mechanism, system), axes=axes, parameters=known, **rest)
+    model = either(mechanism, system)
+    for name in rest["text"].keys() - model.parameters.keys():
+        raise ValueError(f"slice.text has the unknown key {name[:40]!r}")
+    return Slice(model=model, axes=axes, parameters=known, **rest)
 
 
 SLICE = record(
