@@ -189,7 +189,7 @@ def _check_non_adjacency(claims: Claims, number: int, a: NonAdjacency) -> None:
     else:
         bottom = claims.height[0] if a.below is None else from_fraction(a.below[2])
         top_height = claims.height[1] if a.above is None else from_fraction(a.above[2])
-        heights = Heights(claims, result.critical_values[a.critical_value])
+        heights = Heights(claims.curves, result.critical_values[a.critical_value])
         # at the window's edge the branches may only run into its corner over the critical value
         holds = len(at_edges) < 2 and heights.between(bottom, top_height) <= 1 - len(at_edges)
     if not holds:
@@ -201,7 +201,7 @@ def _search(claims: Claims, s: int, bottom: fmpq, top: fmpq, pairs: set[tuple[in
     """Try a free segment in each interval between the points of the curves over a critical value."""
     value = claims.result.critical_values[s]
     left, right = claims.result.stacks[s], claims.result.stacks[s + 1]
-    for v in Heights(claims, value).separated(bottom, top):
+    for v in Heights(claims.curves, value).separated(bottom, top):
         low, high = from_fraction(left.sample), from_fraction(right.sample)
         while claims.free(low, high, v) is not None:
             low, high = _closer(low, high, value)

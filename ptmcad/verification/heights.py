@@ -15,6 +15,7 @@ Otherwise, where several roots are multiple, roots are counted of the polynomial
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, pairwise
@@ -23,7 +24,7 @@ from math import prod
 from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 
 from ptmcad.answer.regionmap import CriticalValue
-from ptmcad.verification.claims import Claims, ball, is_root
+from ptmcad.verification.claims import PlaneCurve, ball, is_root
 from ptmcad.verification.elimination import discriminant, resultant
 from ptmcad.verification.structure import points_over
 from ptmcad.verification.sturm import ends_of, isolated, parting, real_roots
@@ -41,12 +42,12 @@ class _Undecided(ArithmeticError):
 class Heights:
     """The points over one critical value."""
 
-    claims: Claims
+    curves: Sequence[PlaneCurve]
     value: CriticalValue
 
     def between(self, low: fmpq, high: fmpq) -> int:
         """The number of points, or of what may be points, with heights in the open interval (low, high)."""
-        if low >= high or not self.claims.curves:
+        if low >= high or not self.curves:
             return 0
         for bits in _BITS:
             try:
@@ -69,7 +70,7 @@ class Heights:
                 first, last = ends_of(v)
                 if last < low or high < first or any(first <= end <= last for end in ends):
                     continue
-                number += any(arb_poly([c(value) for c in curve.in_v])(v).contains(0) for curve in self.claims.curves)
+                number += any(arb_poly([c(value) for c in curve.in_v])(v).contains(0) for curve in self.curves)
         return number
 
     def separated(self, low: fmpq, high: fmpq) -> list[fmpq]:
@@ -77,7 +78,7 @@ class Heights:
         return parting(isolated(self.between, self._is_point, low, high), low, high)
 
     def _is_point(self, v: fmpq) -> bool:
-        return any(is_root(c.along(v), self.value) for c in self.claims.curves)
+        return any(is_root(c.along(v), self.value) for c in self.curves)
 
     def _changes(self, v: fmpq, bits: int) -> int:
         """Changes of sign in the Sturm sequence at a height.
@@ -117,8 +118,8 @@ class Heights:
         _Undecided
         """
         value = ball(self.value, fmpq(1, 1 << bits))
-        product = prod((arb_poly([c(value) for c in curve.in_v]) for curve in self.claims.curves), start=arb_poly([1]))
-        degree = sum(curve.degrees[1] for curve in self.claims.curves)
+        product = prod((arb_poly([c(value) for c in curve.in_v]) for curve in self.curves), start=arb_poly([1]))
+        degree = sum(curve.degrees[1] for curve in self.curves)
         sequence = [_exact_degree(product, degree), _exact_degree(product.derivative(), degree - 1)]
         while sequence[-1].degree() > 1:
             sequence.append(_exact_degree(-(sequence[-2] % sequence[-1]), sequence[-1].degree() - 1))
@@ -129,15 +130,14 @@ class Heights:
     @cached_property
     def _has_multiple_root(self) -> bool:
         """Whether one of the curves has a multiple root over the value, or two have one in common."""
-        curves = self.claims.curves
-        return any(is_root(discriminant(c.terms), self.value) for c in curves) or any(
-            is_root(resultant(c.terms, d.terms), self.value) for c, d in combinations(curves, 2)
+        return any(is_root(discriminant(c.terms), self.value) for c in self.curves) or any(
+            is_root(resultant(c.terms, d.terms), self.value) for c, d in combinations(self.curves, 2)
         )
 
     @cached_property
     def _polynomial(self) -> fmpz_poly:
         """A polynomial in v among whose roots are all points."""
-        return prod((points_over(c, self.value) for c in self.claims.curves), start=fmpz_poly([1]))
+        return prod((points_over(c, self.value) for c in self.curves), start=fmpz_poly([1]))
 
 
 def _exact_degree(p: arb_poly, degree: int) -> arb_poly:

@@ -2,18 +2,19 @@
 
 Guarantee: the first is exact, the second up to the probability of `ptmcad.verification.variety`, which checks it. Signs
 of coefficients on boxes prove most of the first; what they do not settle is settled by Sturm counts over a point in
-each interval that the curve's discriminant and edge values leave, and by balls around what may be isolated points.
+each interval that the curve's discriminant and edge values leave, and over its roots, where isolated points would be.
 """
 
 from __future__ import annotations
 
-from flint import arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly
+from flint import fmpq, fmpq_poly, fmpz_poly
 
 from ptmcad.answer.regionmap import HARMLESS, NO_POINT, CriticalValue, Kind
 from ptmcad.text.flint_numbers import to_fraction
-from ptmcad.verification.claims import Claims, PlaneCurve, ball, short
+from ptmcad.verification.claims import Claims, PlaneCurve, short
+from ptmcad.verification.heights import Heights
 from ptmcad.verification.report import Violation
-from ptmcad.verification.structure import points_over, projection_of_one
+from ptmcad.verification.structure import projection_of_one
 from ptmcad.verification.sturm import isolating_intervals, roots_between, separated_points
 
 BOXES = 600
@@ -59,11 +60,8 @@ def _point_in_window(curve: PlaneCurve, claims: Claims) -> str | None:
     for f in singular:
         for a, b in isolating_intervals(f, *claims.base):
             place = CriticalValue(tuple(int(c) for c in f.coeffs()), to_fraction(a), to_fraction(b), "")
-            points = points_over(curve, place)
-            for c, d in isolating_intervals(points, *claims.height):
-                at = CriticalValue(tuple(int(k) for k in points.coeffs()), to_fraction(c), to_fraction(d), "")
-                if not _excluded(curve, place, at):
-                    return f"an isolated point near {short(a)}, {short(c)} could not be excluded"
+            if Heights((curve,), place).between(*claims.height):
+                return f"it has an isolated point near {short(a)}"
     return None
 
 
@@ -134,14 +132,3 @@ def _on_half_line(p: fmpq_poly, degree: int, interval: tuple[fmpq, fmpq]) -> fmp
     )  # (1 + x)^degree q(x/(1+x)) = x^degree r(1 + 1/x)
     shifted = reversed_(fmpq_poly([1, 1]))
     return fmpq_poly([shifted[degree - i] for i in range(degree + 1)])
-
-
-def _excluded(curve: PlaneCurve, place: CriticalValue, at: CriticalValue) -> bool:
-    """Whether the curve is proved not to pass through the point with these coordinates."""
-    rows = [arb_poly(c) for c in curve.in_v]
-    for bits in (64, 128, 256, 512, 1024):
-        with ctx.workprec(2 * bits):
-            u, v = (ball(value, fmpq(1, 2**bits)) for value in (place, at))
-            if not arb_poly([row(u) for row in rows])(v).contains(0):
-                return True
-    return False

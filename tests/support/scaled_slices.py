@@ -159,11 +159,11 @@ def _about_a_change(record: Record, dice: random.Random) -> Record | None:
         return None
     size = Fraction(dice.choice(["1e-2", "1e-4", "1e-6", "1e-8", "1e-10"]))
     axes = {}
-    for (name, (first, last)), middle in zip(_window(record).items(), low, strict=True):
+    for (name, (first, last)), place in zip(_window(record).items(), low, strict=True):
         half = (last - first) * size
         axes[name] = [
-            str(middle - half * Fraction(dice.randint(1, 9), 10)),
-            str(middle + half * Fraction(dice.randint(1, 9), 10)),
+            str(place - half * Fraction(dice.randint(1, 9), 10)),
+            str(place + half * Fraction(dice.randint(1, 9), 10)),
         ]
     return {**record, "axes": axes}
 

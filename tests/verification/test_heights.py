@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import pairwise
-from types import SimpleNamespace
-from typing import Any
 
 import pytest
 from flint import fmpq, fmpz_poly
@@ -38,8 +36,7 @@ def engine(known: KnownCurves) -> PointsOver:
 def checker(known: KnownCurves) -> Heights:
     """The checker's view of the curves."""
     curves = [PlaneCurve.of(n, PlanePolynomial.of(t), 0) for n, t in enumerate(known.terms)]
-    claims: Any = SimpleNamespace(curves=curves)
-    return Heights(claims, CriticalValue(polynomial=(-2, 0, 1), low=Fraction(1), high=Fraction(2), origin=""))
+    return Heights(curves, CriticalValue(polynomial=(-2, 0, 1), low=Fraction(1), high=Fraction(2), origin=""))
 
 
 @given(known_curves())
