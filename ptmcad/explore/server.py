@@ -245,8 +245,10 @@ async def serve(panel: Panel, folder: Path, port: int, announce: Callable[[str],
     server = Server(panel, folder, guard)
     _LOG.addFilter(_is_own_fault)
     app = server.application()
-    runner = web.AppRunner(app, access_log=None, logger=_LOG, handle_signals=False, shutdown_timeout=0.1,
-                           handler_cancellation=True, auto_decompress=False, keepalive_timeout=SILENT_SECONDS)  # fmt: skip
+    runner = web.AppRunner(
+        app, access_log=None, logger=_LOG, handle_signals=False, shutdown_timeout=0.1, lingering_time=1,
+        keepalive_timeout=SILENT_SECONDS, handler_cancellation=True, auto_decompress=False,
+    )  # fmt: skip
     await runner.setup()
     assert runner.server is not None
     try:
