@@ -133,14 +133,10 @@ class Server:
         kind = request.path.rpartition("/")[2]
         try:
             async with asyncio.timeout(SILENT_SECONDS):
-                body = await request.read()
-        except (OSError, web.RequestPayloadError) as error:  # too slow, gone, or cut in no chunks
-            raise web.HTTPBadRequest(reason="the question did not come whole") from error
-        try:
-            job = job_of(kind, body)
+                job = job_of(kind, await request.read())
             self.panel.values(job["values"])  # what is wrong with them is said without a worker
-        except ValueError as error:
-            return web.json_response({"error": str(error)}, status=400)
+        except (ValueError, OSError, web.RequestPayloadError) as error:  # or it is too slow, gone, or cut in no chunks
+            return web.json_response({"error": str(error) or "a question comes whole, and at once"}, status=400)
         except ConfigError as error:
             return web.json_response({"error": str(error)}, status=422)
         self.asking.add(request.protocol)
