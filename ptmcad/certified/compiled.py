@@ -79,7 +79,7 @@ def in_turn(part: str) -> Iterator[float]:
         return
     try:
         _FOLDER.mkdir(parents=True, exist_ok=True)
-        descriptor = os.open(_FOLDER / f"{part}.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+        descriptor = os.open(_FOLDER / f"{part}.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o666)
     except OSError:  # numba has ways of its own where this folder may not be written
         yield 0.0
         return

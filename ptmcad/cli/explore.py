@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import webbrowser
-from contextlib import ExitStack
+from contextlib import nullcontext
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -53,19 +53,19 @@ def command(
         def announce(address: str) -> None:
             click.echo(f"explore   {address}\n          works once, in one browser; Ctrl-C ends it")
             if opened:
-                _open(address, folder.enter_context(TemporaryDirectory(prefix="ptmcad-explore-")))
+                _open(address, Path(folder))
 
         send(Topic.RESUMABLE, "")  # a signal is its usual end
-        with ExitStack() as folder:
+        with TemporaryDirectory(prefix="ptmcad-explore-") if opened else nullcontext("") as folder:
             asyncio.run(serve(panel, out, port, announce))
 
 
-def _open(address: str, folder: str) -> None:
+def _open(address: str, folder: Path) -> None:
     """Have the browser open a file of this user alone that leads to the address.
 
     What a program is started with is seen by every user of the machine, and the address has the token.
     """
-    path = Path(folder) / "explore.html"
+    path = folder / "explore.html"
     send(Topic.TEMPORARY, str(path))
     path.touch(0o600, exist_ok=False)
     path.write_text(f'<!DOCTYPE html><meta http-equiv="refresh" content="0; url={address}">')

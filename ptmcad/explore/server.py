@@ -133,14 +133,10 @@ class Server:
         kind = request.path.rpartition("/")[2]
         try:
             async with asyncio.timeout(SILENT_SECONDS):
-                body = await request.read()
-        except (OSError, web.RequestPayloadError) as error:  # too slow, gone, or cut in no chunks
-            raise web.HTTPBadRequest(reason="the question did not come whole") from error
-        try:
-            job = job_of(kind, body)
+                job = job_of(kind, await request.read())
             self.panel.values(job["values"])  # what is wrong with them is said without a worker
-        except ValueError as error:
-            return web.json_response({"error": str(error)}, status=400)
+        except (ValueError, OSError, web.RequestPayloadError) as error:  # or it is too slow, gone, or cut in no chunks
+            return web.json_response({"error": str(error) or "a question comes whole, and at once"}, status=400)
         except ConfigError as error:
             return web.json_response({"error": str(error)}, status=422)
         self.asking.add(request.protocol)
@@ -245,8 +241,10 @@ async def serve(panel: Panel, folder: Path, port: int, announce: Callable[[str],
     server = Server(panel, folder, guard)
     _LOG.addFilter(_is_own_fault)
     app = server.application()
-    runner = web.AppRunner(app, access_log=None, logger=_LOG, handle_signals=False, shutdown_timeout=0.1,
-                           handler_cancellation=True, auto_decompress=False, keepalive_timeout=SILENT_SECONDS)  # fmt: skip
+    runner = web.AppRunner(
+        app, access_log=None, logger=_LOG, handle_signals=False, shutdown_timeout=0.1, lingering_time=1,
+        keepalive_timeout=SILENT_SECONDS, handler_cancellation=True, auto_decompress=False,
+    )  # fmt: skip
     await runner.setup()
     assert runner.server is not None
     try:

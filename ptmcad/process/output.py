@@ -130,7 +130,7 @@ def _under_new_names(folder: Path, temporaries: Mapping[Path, Path]) -> tuple[Pa
     taken: list[Path] = []
     try:
         for target in temporaries:
-            os.close(os.open(target, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+            target.open("x").close()
             taken.append(target)
         return _under_own_names(folder, temporaries)
     except BaseException:

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from ptmcad.errors import PtmcadError
+from ptmcad.process.output import text_writer, write_files
 from ptmcad.question.config import load
 from ptmcad.question.slice import Slice
 from ptmcad.studies.bench import qepcad
@@ -137,9 +138,8 @@ class Command(argparse.ArgumentParser):
             text = page(found)
             if out is not None:
                 record = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
-                (out / f"{self.record}.json").write_text(record, encoding="utf-8")
-                if text:
-                    (out / f"{self.record}.md").write_text(text, encoding="utf-8")
+                pages = {f"{self.record}.md": text_writer(text)} if text else {}
+                write_files(out, {**pages, f"{self.record}.json": text_writer(record)})
                 more(found, out)
         except (PtmcadError, OSError) as error:
             print(f"{self.prog}: {error}", file=sys.stderr)
