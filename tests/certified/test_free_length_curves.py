@@ -165,9 +165,12 @@ def test_enclosures_are_thin() -> None:
 
 def test_creases_are_the_lines_where_a_spring_can_have_no_length() -> None:
     total = {c.name: c for c in curves(slice_of("1/5", **LOADED), Count.TOTAL)}
-    for name, p in (("crease l1 = 0", (0.7, 0.7)), ("crease l2 = 0", (1.0, 0.7))):
+    for name, p in (
+        ("crease where spring 1 has no length", (0.7, 0.7)),
+        ("crease where spring 2 has no length", (1.0, 0.7)),
+    ):
         assert covers(rectangles((total[name],), np.array(p), 0.01, 1e-7), np.array(p), 0.0)
-    assert not len(rectangles((total["crease l2 = 0"],), np.array([0.9, 0.7]), 0.01, 1e-7))
+    assert not len(rectangles((total["crease where spring 2 has no length"],), np.array([0.9, 0.7]), 0.01, 1e-7))
 
 
 def test_curves_of_each_count() -> None:
@@ -176,7 +179,12 @@ def test_curves_of_each_count() -> None:
     assert names[Count.TOTAL] == names[Count.INDEX]
     cone = "point where spring 3 has no length"
     assert cone in names[Count.TOTAL] and cone not in names[Count.STABLE]
-    assert names[Count.ADMISSIBLE] == [*names[Count.STABLE], "l1 = l0_1", "l2 = l0_2", "l3 = l0_3"]
+    assert names[Count.ADMISSIBLE] == [
+        *names[Count.STABLE],
+        "point where spring 1 has its free length",
+        "point where spring 2 has its free length",
+        "point where spring 3 has its free length",
+    ]
     assert [c.name for c in curves(slice_of("0", **LOADED), Count.TOTAL)] == ["fold"]
 
 

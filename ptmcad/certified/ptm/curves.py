@@ -285,7 +285,10 @@ def _creases(slice: Slice) -> Iterator[Curve]:
                     "point, so that total counts need not be constant in regions; --count stable has an answer"
                 )
             yield Curve(
-                f"crease l{spring} = 0", f"spring {spring} has no length on a circle", system([line], (0, 1)), ()
+                f"crease where spring {spring} has no length",
+                f"spring {spring} has no length on a circle",
+                system([line], (0, 1)),
+                (),
             )
 
 
