@@ -17,8 +17,8 @@ class Fate(Enum):
     """What happens to a stable pose at the end of its path."""
 
     WINDOW = "is stable up to the window's edge"
-    SNAP = "vanishes and the mechanism snaps"
-    MERGE = "merges with others into one stable pose, without a snap"
+    SNAP = "vanishes, with a snap"
+    MERGE = "goes on, without a snap"
     VANISH = "vanishes, and where it goes from there is not decided"
     UNSTABLE = "loses its stability"
     EXCLUDED = "leaves what the inequalities allow"

@@ -20,6 +20,7 @@ from ptmcad.algebra.points import Points, RealPoint, points, real_values
 from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
+from ptmcad.answer.words import noun
 from ptmcad.exact.continua import has_others
 from ptmcad.exact.models.potential import deflections_of, geometry_of, system_from
 from ptmcad.exact.models.potential import potential as potential_of
@@ -94,12 +95,12 @@ def _vanishing(given: Model, model: PointModel, states: Sequence[State], order: 
         return
     for k, condition in enumerate(given.stability, len(model.inequalities)):
         if numbers := [n for n, s in enumerate(order, 1) if states[s].conditions[k].is_zero]:
-            what = f"solution{'s' if len(numbers) > 1 else ''} {', '.join(map(str, numbers))}"
+            several = len(numbers) > 1
+            what = f"{noun(given, len(numbers))} {', '.join(map(str, numbers))}"
             if isinstance(given, ClosedMechanism):  # the condition is a determinant, pages long
-                yield f"{what} is degenerate: poses meet there, or the loop is flat, at rest or not"
+                yield f"{what} {'are' if several else 'is'} degenerate: poses meet there, or the loop is flat"
                 continue
-            counted = "count" if len(numbers) > 1 else "counts"
-            yield f"{text_of(condition)} is zero at {what}, which {counted} as unstable"
+            yield f"{text_of(condition)} is zero at {what}, which {'count' if several else 'counts'} as unstable"
 
 
 def _remark(found: Points) -> str:

@@ -64,12 +64,13 @@ function changed(name, text) {
 
 function drawMap(data, question) {
   byId("patterns").innerHTML = data.patterns;
+  const lines = (kind, width) => data.regions.map((region) => svg("path", { class: kind, "stroke-width": width, d: region.d }));
+  const rims = data.certified ? [...lines("rim", DATA.rim), ...lines("core", DATA.core)] : [];
   byId("fills").replaceChildren(...data.regions.flatMap((region, number) => {
     const parts = [svg("path", { class: "fill", fill: region.face, d: region.d, "data-region": number })];
     if (region.hatch) parts.push(svg("path", { class: "fill", fill: `url(#map-${region.hatch})`, d: region.d }));
-    if (data.certified) parts.push(svg("path", { class: "rim", "stroke-width": DATA.rim, d: region.d }));
     return parts;
-  }));
+  }), ...rims);
   byId("strong").setAttribute("d", data.strong);
   byId("thin").setAttribute("d", data.thin);
   byId("labels").replaceChildren(...data.labels.map(([text, x, y]) => svg("text", { class: "count", x, y, dy: ".36em" }, text)));

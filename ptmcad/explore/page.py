@@ -15,7 +15,7 @@ from ptmcad.explore.panel import Panel
 from ptmcad.mechanism import Mechanism
 from ptmcad.question.config.scalars import number_of
 from ptmcad.show.render.axes import symbol
-from ptmcad.show.report.chart import RIM_WIDTH
+from ptmcad.show.report.chart import CORE_WIDTH, RIM_WIDTH
 from ptmcad.show.report.frame import SIDE
 from ptmcad.show.report.packing import packed
 from ptmcad.show.report.page import drawing_of, harmless
@@ -75,6 +75,7 @@ def _data(panel: Panel, secret: str) -> dict[str, Any]:
         "side": SIDE,
         "grid": GRID,
         "rim": RIM_WIDTH * GRID,
+        "core": CORE_WIDTH * GRID,
         "cells": packed([]),
         "name": record.name,
         "title": record.title or record.name,

@@ -62,7 +62,8 @@ _WHAT_AND_WHY = {
     ),
     Engine.CERTIFIED: (
         ("folds-of-saddles", "folds of saddles and maxima", "the number of stable equilibria does not change"),
-        ("cones-and-creases", "cones and creases", "no minimum appears or vanishes there without a fold"),
+        ("cones-and-creases", "points where a spring has no length",
+         "no minimum appears or vanishes there without a fold"),
         ("dependent-equations", "boxes on which dependent equations do not vanish", "they vanish at every equilibrium"),
         ("mirror-images", "mirror images of folds, and what is singular on the mirror",
          "the mechanism is its own mirror image on the slice"),

@@ -137,7 +137,7 @@ def _time(result: RegionMap) -> str:
     if seconds is None:
         return "not recorded"
     total = f"{seconds + once:.2f} s" if seconds + once < 10 else f"{seconds + once:.1f} s"
-    return f"{total}, of which {once:.0f} s compilation (once)" if once else total
+    return f"{total}, of which {once:.0f} s compilation (once)" if round(once) else total
 
 
 def table(result: RegionMap) -> str:

@@ -192,7 +192,7 @@ AT: dict[str, list[Any]] = {"a": [-2, 2], "b": [-1, 2]}
 def test_a_solution_stops_to_count_where_an_inequality_vanishes_and_nowhere_else() -> None:
     """The roots of x^2 = b beyond a: on one side of a parabola, whose vertex is the fold's only point that matters."""
     slice = small({**ROOTS, "positive": ["x - a"]}, AT)
-    assert [curve.name for curve in curves(slice, Count.TOTAL)] == ["fold", "boundary x - a = 0"]
+    assert [curve.name for curve in curves(slice, Count.TOTAL)] == ["fold", "point where x - a is 0"]
     result = ptmcad.classify(slice, engine="certified", tolerance="1/100", jobs=1)
     for number, area in ((1, 2 ** (7 / 2) / 3), (2, 4 - 2 ** (5 / 2) / 3), (0, 8 - 2 ** (5 / 2) / 3)):
         low, high = bounds(result, "total", number)
@@ -245,7 +245,7 @@ def test_a_condition_that_is_zero_at_a_solution_all_over_the_window_is_named() -
 def test_a_condition_without_unknowns_is_a_curve_and_a_number_is_none() -> None:
     system = {"unknowns": {"x": "real"}, "equations": ["x - a"], "positive": ["a - b", "2"]}
     slice = small(system, {"a": [0, 1], "b": [0, 1]})
-    assert [curve.name for curve in curves(slice, Count.TOTAL)] == ["fold", "boundary a - b = 0"]
+    assert [curve.name for curve in curves(slice, Count.TOTAL)] == ["fold", "point where a - b is 0"]
     result = ptmcad.classify(slice, engine="certified", tolerance="1/50", jobs=1)
     assert (result.locate(a="3/4", b="1/4").total, result.locate(a="1/4", b="3/4").total) == (1, 0)
     for never in ("0", "-1", "x - x"):

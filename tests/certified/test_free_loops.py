@@ -381,7 +381,7 @@ def test_where_a_spring_has_no_length_there_is_an_equilibrium_less(monkeypatch: 
     total, _ = counts_along(p, energy_of(p))  # with the peak
     assert beside.decided and beside.total == total
     assert not counter.at(MET["x"], MET["y"], Count.TOTAL).decided
-    without_curves(monkeypatch, "cone")
+    without_curves(monkeypatch, "point where")
     assert ptmcad.classify(slice, tolerance="1/20").locate(**MET).cell is not None
 
 
@@ -389,7 +389,7 @@ def test_without_short_springs_counts_are_wrong(monkeypatch: pytest.MonkeyPatch)
     """Folds at which a spring is shorter than an eighth of what is usual have a search of their own."""
     slice = slice_of("anchored", **SMALL)
     assert not wrong_counts(ptmcad.classify(slice, tolerance="1/50"))
-    without_curves(monkeypatch, "fold, spring")
+    without_curves(monkeypatch, "fold with spring")
     assert wrong_counts(ptmcad.classify(slice, tolerance="1/50"))
 
 

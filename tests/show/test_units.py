@@ -228,4 +228,4 @@ def test_the_page_names_the_units_of_areas_and_axes() -> None:
     }))  # fmt: skip
     text = page(found)
     assert "area (N·mm)" in text
-    assert "rho from 0 to 2 mm; F3 from -20 to 0 N" in text
+    assert "ρ from 0 to 2 mm; F₃ from -20 to 0 N" in text

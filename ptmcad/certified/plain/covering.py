@@ -79,21 +79,6 @@ def in_half_angle(problem: Problem, turn: Multi) -> Problem:
     )
 
 
-def sum_of_angles(problem: Problem, turn: Multi) -> str:
-    """A sum of whole multiples of a problem's angles in words, by the description's; empty where it is nothing."""
-    twice = [2 * n for n in turn]
-    if problem.covering:
-        inverse = _inverse(problem.covering)
-        twice = [int(sum(n * row[k] for n, row in zip(twice, inverse, strict=True))) for k in range(len(turn))]
-    whole = not any(n % 2 for n in twice)
-    text = ""
-    for name, n in zip(problem.unknowns, twice, strict=True):
-        if multiple := abs(n) // 2 if whole else abs(n):
-            sign = (" - " if n < 0 else " + ") if text else "-" if n < 0 else ""
-            text += sign + (f"{multiple}*" if multiple > 1 else "") + name
-    return text if whole else f"({text})/2" if " " in text else f"{text}/2"
-
-
 def located(
     problem: Problem, equations: System, point: tuple[Fraction, Fraction], solution: Solution, precision: int
 ) -> tuple[Solution, Box]:

@@ -87,7 +87,7 @@ def _of_patch(slice: Slice, count: Count, without: frozenset[str], patch: Patch)
         not stable or "cones-and-creases" in without,
         "dependent-equations" not in without,
         problem.conditions(count),
-        problem.where + "".join(f", {problem.unknowns[k]} large" for k in patch.inverse),
+        problem.where + "".join(f" with {problem.unknowns[k]} large" for k in patch.inverse),
     )
     yield from _smooth(search, at)
     yield from _boundaries(search, at)
@@ -104,7 +104,7 @@ def _infinite(search: _Search, patch: Patch) -> Iterator[Curve]:
         ranges = (*search.ranges[:k], (0.0, 0.0), *search.ranges[k + 1 :])
         name = search.problem.unknowns[k]
         yield Curve(
-            f"{name} infinite{search.where}",
+            f"solution of which {name} is infinite{search.where}",
             f"a solution leaves to infinity with {name}",
             system(
                 equations,
@@ -189,7 +189,7 @@ def _boundaries(search: _Search, at: Chart) -> Iterator[Curve]:
     for k, condition in enumerate(search.conditions):
         others = _values([*search.conditions[:k], *search.conditions[k + 1 :]], at)
         yield Curve(
-            f"boundary {condition.text} = 0{search.where}",
+            f"point where {condition.text} is 0{search.where}",
             f"solutions count where {condition.text} > 0, and at one of them it is zero",
             system(
                 [*at.equations, *_values([condition], at)],
@@ -230,7 +230,7 @@ def _short_folds(search: _Search, at: Chart) -> Iterator[Curve]:
         if search.stable:
             semidefinite = [*at.diagonal_times_length(s), *(turned.stiffness for turned in at.turned)]
         yield Curve(
-            f"{_name(search)}, spring {cone.name} short",
+            f"{_name(search)} with spring {cone.name} short",
             f"{_reason(search)}; spring {cone.name} is at most {search.short[s]} long",
             system(
                 [at.aligned, *at.equations, at.determinant()],
@@ -254,7 +254,7 @@ def _points_without_length(search: _Search, at: Chart) -> Iterator[Curve]:
     for cone in search.problem.cones:
         vanishing = [d.formula(unknown.graph, [unknown]) for d in cone.difference]
         yield Curve(
-            f"cone {cone.name}{search.where}",
+            f"point where spring {cone.name} has no length{search.where}",
             f"an equilibrium is swallowed where spring {cone.name} has no length",
             system(
                 [f for f in vanishing if f.value != 0],
@@ -276,7 +276,7 @@ def _cones(search: _Search) -> Iterator[Curve]:
         # a coordinate that is zero everywhere says nothing
         vanishing = [f for f in (d.formula(graph, unknowns) for d in cone.difference) if f.value != 0]
         yield Curve(
-            f"cone {cone.name}{search.where}",
+            f"point where spring {cone.name} has no length{search.where}",
             f"an equilibrium is swallowed where spring {cone.name} has no length",
             system(
                 [*vanishing, *at.equations],

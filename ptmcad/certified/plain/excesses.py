@@ -62,7 +62,7 @@ def boundaries(given: Sequence[Excess], unknowns: Sequence[Formula]) -> Iterator
     for k, excess in enumerate(given):
         zero, *others = (f.formula(graph, unknowns) for f in excess.boundary)
         yield Boundary(
-            f"spring {excess.spring} at its free length",
+            f"point where spring {excess.spring} has its free length",
             f"spring {excess.spring} of a stable equilibrium has its free length",
             zero,
             others,

@@ -40,7 +40,7 @@ def curves_of_loops(slice: Slice, count: Count, patch: Patch) -> Iterator[Curve]
     stable = [at.determinant()] if count.is_of_stable else []
     for k, (side, condition) in enumerate(zip(sides, problem.inequalities, strict=True)):
         yield Curve(
-            f"boundary {condition.text} = 0{problem.where}",
+            f"point where {condition.text} is 0{problem.where}",
             f"solutions count where {condition.text} > 0, and at one of them it is zero",
             system([*at.equations, side], variables, nonnegative=[*sides[:k], *sides[k + 1 :], *stable]),
             ranges,
@@ -65,7 +65,7 @@ def curves_of_loops(slice: Slice, count: Count, patch: Patch) -> Iterator[Curve]
         turned = loop_chart(problem, s)
         aligned, along, *_ = turned.turning
         yield Curve(
-            f"fold{problem.where}, spring {cone.name} short",
+            f"fold{problem.where} with spring {cone.name} short",
             f"{_REASON}; spring {cone.name} is at most {short} long",
             system(
                 [aligned, *turned.equations, turned.extended_determinant()],
@@ -80,7 +80,7 @@ def curves_of_loops(slice: Slice, count: Count, patch: Patch) -> Iterator[Curve]
         # configurations are a curve: two equations d = 0 leave curves in the window and need no direction
         vanishing = [f for f in (d.formula(graph, unknowns) for d in cone.difference) if f.value != 0]
         yield Curve(
-            f"cone {cone.name}{problem.where}",
+            f"point where spring {cone.name} has no length{problem.where}",
             f"an equilibrium is swallowed where spring {cone.name} has no length",
             system(
                 [*at.equations[: problem.closing], *vanishing], variables, ((), at.equations[problem.closing :]), sides

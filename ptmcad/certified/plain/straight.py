@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
-from ptmcad.certified.plain.covering import in_half_angle, sum_of_angles
+from ptmcad.certified.plain.covering import in_half_angle
 from ptmcad.certified.plain.divisors import common_divisor, quotient, square_root
 from ptmcad.certified.plain.ends import Vector
 from ptmcad.certified.plain.problem import Condition, Cone, Problem, Push
@@ -82,12 +82,13 @@ def _branch(problem: Problem, lines: list[_Line], sides: tuple[int, ...], axes: 
     for line, side in zip(lines, sides, strict=True):
         ex, ey = line.direction
         pull, norm = line.cone.pull * side, _rational_norm(line.direction, axes)
-        ahead = f"({', '.join((side * e).to_text() for e in (ex, ey))})"
-        if angle := sum_of_angles(problem, line.turn):
-            ahead += f" turned by {angle}"
-        text = f"length of spring {line.cone.name} along {ahead}"
-        inequalities = (*problem.inequalities, Condition(text, line.way.scaled(Fraction(side))))
-        problem = replace(problem, inequalities=inequalities, where=f"{problem.where}, {line.cone.name} along {ahead}")
+        ahead = f"along ({', '.join((side * e).to_text() for e in (ex, ey))})"
+        if any(line.turn):  # the directions of such lines are those of no part of the mechanism
+            ahead = f"{'forwards' if side > 0 else 'backwards'} along its line"
+        longer = Condition(f"the length of spring {line.cone.name}", line.way.scaled(Fraction(side)))
+        inequalities = (*problem.inequalities, longer)
+        where = f"{problem.where} with spring {line.cone.name} {ahead}"
+        problem = replace(problem, inequalities=inequalities, where=where)
         if norm is None:
             problem = replace(problem, pushes=(*problem.pushes, Push(pull, line.direction, line.weights)))
             continue

@@ -118,7 +118,7 @@ def _folds(slice: Slice, without: frozenset[str], *, stable: bool) -> Iterator[C
     there = m.at_equilibrium
     short = SHORT_LENGTH * parameter_formulas(graph, slice)["L1"]
     yield Curve(
-        f"{name}, spring 3 short",
+        f"{name} with spring 3 short",
         f"{reason}; l3 is at most {SHORT_LENGTH} L1",
         system(
             [*present(m.aligned), *m.equilibrium, m.hessian.determinant_times_l3],
@@ -261,8 +261,8 @@ def _cone(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
     m = slice_statics(Graph(), slice, phi=True)
     if m.unit is not None:
         yield Curve(
-            "cone",
-            "an equilibrium is swallowed by the cone l3 = 0",
+            "point where spring 3 has no length",
+            "an equilibrium is swallowed where l3 = 0",
             system(
                 [*m.vectors[2], *m.equilibrium],
                 (0, 1, 2, 3, 4),
@@ -285,7 +285,10 @@ def _creases(slice: Slice) -> Iterator[Curve]:
                     "point, so that total counts need not be constant in regions; --count stable has an answer"
                 )
             yield Curve(
-                f"crease l{spring} = 0", f"spring {spring} has no length on a circle", system([line], (0, 1)), ()
+                f"crease where spring {spring} has no length",
+                f"spring {spring} has no length on a circle",
+                system([line], (0, 1)),
+                (),
             )
 
 
@@ -295,7 +298,7 @@ def _admissible(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
     for spring, (extent, free, vector) in enumerate(zip(m.lengths, m.free, m.vectors, strict=True), start=1):
         third, dependent = (vector[0], [vector[1]]) if free.value == 0 else (extent - free, [])
         yield Curve(
-            f"l{spring} = l0_{spring}",
+            f"point where spring {spring} has its free length",
             f"spring {spring} of a stable equilibrium has its free length",
             system(
                 [*m.equilibrium, third],

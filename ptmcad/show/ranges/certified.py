@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from ptmcad.answer.intervals import CertifiedIntervals
+from ptmcad.answer.intervals import CertifiedChange, CertifiedIntervals
 from ptmcad.answer.widths import CertifiedWidths
 from ptmcad.show.ranges.numbers import known
 from ptmcad.show.ranges.table import aligned, nowhere, working_text
@@ -40,12 +40,17 @@ def table(found: CertifiedIntervals, digits: int) -> str:
             place = _text(change.at, digits)
             if not change.at.settles(digits):
                 place = f"{place} to {_text(change.at, digits, up=True)}"
-            note = "" if change.proved else "undecided whether there is a "
-            changes.append([place, note + " and a ".join(change.names)])
+            changes.append([place, met(change)])
         lines += ["", *aligned(changes)]
     if peaks:
         lines += ["", "peaks: configurations without length of spring A3A4 in which the energy has a peak"]
     return "\n".join(lines)
+
+
+def met(change: CertifiedChange) -> str:
+    """What is met, in words, without how it was looked for: folds with and without a short spring may be the same."""
+    kinds = dict.fromkeys(name.partition(" with ")[0] for name in change.names)
+    return " and ".join(kinds) if change.proved else f"undecided whether there is a {' or a '.join(kinds)}"
 
 
 def width_table(found: CertifiedWidths, digits: int) -> str:

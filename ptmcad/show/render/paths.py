@@ -51,9 +51,9 @@ def draw_paths(slice: Slice, found: PosePaths, further: Sequence[Entry] = ()) ->
     for k, path in enumerate(found.paths):
         entries.append(Entry((f"{what} {path.number} at {symbol(found.along.name)} = {short(found.start)}",), _line(k)))
     if any(e.fate is Fate.SNAP for p in found.paths for e in (p.low, p.high)):
-        entries.append(Entry(("a pose vanishes (ring), and the", "mechanism snaps (arrow)"), _snap_mark))
+        entries.append(Entry((f"a {what} vanishes (ring), with a", "snap to another one (arrow)"), _snap_mark))
     if any(e.fate is Fate.MERGE for p in found.paths for e in (p.low, p.high)):
-        entries.append(Entry(("poses merge into one (square),", "without a snap"), _merge_mark))
+        entries.append(Entry((f"the {what} goes on (square),", "without a snap"), _merge_mark))
     if any(e.fate in _LOST for p in found.paths for e in (p.low, p.high)):
         entries.append(Entry((f"a {what} ends (cross)",), _loss_mark))
     entries += further

@@ -41,8 +41,9 @@ MAP_PIXELS = 300
 _WALLS, _RIMS, SLACK = 0.1, 0.25, 0.3
 """By how much, in the picture's units, walls and a certified map's rims may depart to have fewer corners, and these
 together with the rounding to the grid. A unit is less than a pixel where the page is largest."""
-RIM_WIDTH = 0.7
-"""Of a certified map's rims, in the picture's units: no less than twice `SLACK`."""
+RIM_WIDTH, CORE_WIDTH, _OPEN_WIDTH = 2.0, 1.0, 0.7
+"""Of a certified map's rims, of what is undetermined between them at least, and of what keeps the pointer from it, in
+the picture's units: no less than twice `SLACK`."""
 LABEL, _LETTER = 42, 0.55
 """Size of the counts' type on phones, in the picture's units, and a character's width against it, on the whole."""
 
@@ -225,8 +226,8 @@ def wall_lines(seen: Shapes, simpler: bool = True) -> dict[tuple[bool, int], str
 def _rimmed_areas(seen: Shapes, name: str) -> Iterator[str]:
     """A certified map's cells: their outlines once, what fills them, their rims, and what can be pointed at.
 
-    Between two cells is what is undetermined, however narrow: it is seen by the rims, which are over all fills, and the
-    last of them, which nobody sees, keeps the pointer from the areas below.
+    Between two cells is what is undetermined, however narrow: it is seen within the rims, which are over all fills, and
+    the last of them, which nobody sees, keeps the pointer from the areas below.
     """
     result = seen.result
     outlines = {n: "".join(map(_closed, p)) for n, p in seen.cells(_RIMS / SIDE)}
@@ -237,11 +238,14 @@ def _rimmed_areas(seen: Shapes, name: str) -> Iterator[str]:
         if used:
             for paint in _paints(region, result.slice.count):
                 yield f'<g class="fill" fill="{paint}">{used}</g>'
-    rims = f'href="#{name}-rims" stroke-width="{RIM_WIDTH * GRID:g}"'
-    yield f'<use class="rim" {rims}/>'
+    rims = [
+        f'<use class="{kind}" href="#{name}-rims" stroke-width="{width * GRID:g}"/>'
+        for kind, width in (("rim", RIM_WIDTH), ("core", CORE_WIDTH), ("open", _OPEN_WIDTH))
+    ]
+    yield "".join(rims[:2])
     for n in outlines:
         yield f'<use class="cell" href="#{name}-{n}" data-cell="{n}"/>'
-    yield f'<use class="open" {rims}/>'
+    yield rims[2]
 
 
 def counts_text(part: Cell | Region, model: Model) -> str:

@@ -13,6 +13,7 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.words import index_words, noun
 from ptmcad.mechanism import Mechanism
 from ptmcad.question.slice import Count
+from ptmcad.show.render.axes import named, symbol
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.legend import entries
 from ptmcad.show.report.bounds import exactly
@@ -92,13 +93,14 @@ def question(result: RegionMap) -> str:
     """What was asked: mechanism, axes, parameters, count."""
     slice = result.slice
     axes = "; ".join(
-        f"{a.name} from {both(a.low)} to {both(a.high)}{f' {unit(slice, k)}' if slice.units else ''}"
+        f"{symbol(a.name)} from {both(a.low)} to {both(a.high)}{f' {unit(slice, k)}' if slice.units else ''}"
         for k, a in enumerate(slice.axes)
     )
     names = slice.axis_names
     values = [
-        (n, e.to_text(names)) for n, e in distinct_parameters(slice.parameters, slice.model).items() if n not in names
-    ]
+        (symbol(n), named(e.to_text(names), names))
+        for n, e in distinct_parameters(slice.parameters, slice.model).items() if n not in names
+    ]  # fmt: skip
     shown = ", ".join(f"{n} = {v}" for n, v in values if v != "0")
     zero = ", ".join(n for n, v in values if v == "0")
     index = ", ".join(index_words(len(slice.model.unknowns) + 1).split("-"))
@@ -173,7 +175,7 @@ def regions(result: RegionMap) -> str:
         else:
             width = certified_digits(exactly(high - low), 1)
             bounds = f"bounds {width} apart"
-        sample = ", ".join(f"{escape(n)} = {escape(both(region.sample[n]))}" for n in region.sample.names)
+        sample = ", ".join(f"{escape(symbol(n))} = {escape(both(region.sample[n]))}" for n in region.sample.names)
         rows.append(
             (
                 f"{swatch(fill_of(region, result.slice.count))} {number}",
