@@ -56,6 +56,7 @@ def test_make_command(line: str) -> None:
     assert dry.returncode == 0, dry.stderr
     expected = {"make demo": "ptmcad classify fig4 --format json,png,svg --out out", "make test": "pytest"}
     assert expected[line] in dry.stdout
+    assert "warm-up" not in dry.stdout  # nothing is compiled that the target does not use
 
 
 FEWER = {"frames": 4, "pixels": 20, "boxes": 1}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import email
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -79,6 +80,24 @@ def test_bench_needs_no_record_where_a_wheel_is_installed(wheel: Path, tmp_path:
         [sys.executable, "-c", code], cwd=tmp_path, env=environment, check=True, capture_output=True, text=True
     )
     assert done.stdout == f"{wheel / 'ptmcad' / 'configs' / 'fig4.yaml'}\n"
+
+
+@pytest.mark.slow
+def test_a_new_user_finds_the_records_in_a_wheel(wheel: Path, tmp_path: Path) -> None:
+    """In an empty folder: the commands of the README and of the page of questions that ask a shipped record."""
+    pages = (ROOT / "README.md", ROOT / "docs" / "how-to.md")
+    shown = "\n".join(page.read_text(encoding="utf-8") for page in pages)
+    lines = re.findall(r"^(?:\$ |\.venv/bin/)ptmcad ((?:\w+) fig\d .*)$", shown, re.MULTILINE)
+    quick = [shlex.split(line) for line in lines if line.split()[0] in ("classify", "range", "solve", "variety")]
+    assert len(quick) > 6
+    environment = os.environ | {"PYTHONPATH": str(wheel)}
+    for words in quick:
+        done = subprocess.run(
+            [sys.executable, "-m", "ptmcad", *words],
+            cwd=tmp_path, env=environment, check=False, capture_output=True, text=True,
+        )  # fmt: skip
+        assert (done.returncode, done.stderr) == (0, ""), words
+    assert (tmp_path / "out" / "fig4.json").is_file()
 
 
 def test_what_a_wheel_says_of_itself(wheel: Path) -> None:
