@@ -1,6 +1,7 @@
 """msolve, an optional program: Groebner bases over Q, and all real solutions in boxes where they are finitely many.
 
-Guarantee: an answer is the whole answer of a run that ended well; all else is a `MsolveError` with what was said.
+Guarantee: an answer is the whole answer of a run that ended well; all else is a `MsolveError` with what was said. On
+Linux no file is left, whatever is killed: those that msolve reads and writes have no names.
 
 Not guaranteed here: that msolve is right. Its Groebner basis over Q is lifted from bases modulo primes, and checked
 modulo another prime; `ptmcad.algebra.proved` proves it before it is used. The boxes are isolating, as msolve says.
@@ -15,6 +16,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import sysconfig
 import tempfile
 from collections.abc import Sequence
@@ -81,25 +83,28 @@ def _answer(names: Sequence[str], equations: Sequence[str], options: Sequence[st
     command = program()
     if command is None:
         raise MsolveError("msolve is not installed (pip install 'ptmcad[large]', or put it on the PATH)")
-    with tempfile.TemporaryDirectory() as folder:
-        asked, answer = Path(folder) / "system", Path(folder) / "answer"
-        asked.write_text(f"{','.join(names)}\n0\n" + ",\n".join(equations) + "\n", encoding="ascii")
-        status, said = _run([command, *options, "-f", str(asked), "-o", str(answer)], timeout)
-        if status or not answer.exists():
-            raise MsolveError(
-                f"msolve failed with status {status}: {said[-300:].decode('ascii', 'backslashreplace')!r}"
-            )
-        if answer.stat().st_size > MAX_ANSWER:
-            raise MsolveError(f"msolve's answer has more than {MAX_ANSWER} bytes")
-        return answer.read_text(encoding="ascii", errors="backslashreplace")
+    # only Linux opens a file anew, from its start, by the number of a descriptor
+    made = tempfile.TemporaryFile if sys.platform == "linux" else tempfile.NamedTemporaryFile
+    with made() as asked, made() as answer:
+        asked.write((f"{','.join(names)}\n0\n" + ",\n".join(equations) + "\n").encode("ascii"))
+        asked.flush()
+        files = (asked.fileno(), answer.fileno())
+        paths = [f"/proc/self/fd/{k}" for k in files] if sys.platform == "linux" else [asked.name, answer.name]
+        status, said = _run([command, *options, "-f", paths[0], "-o", paths[1]], files, timeout)
+        data = answer.read(MAX_ANSWER + 1)
+    if status or not data:
+        raise MsolveError(f"msolve failed with status {status}: {said[-300:].decode('ascii', 'backslashreplace')!r}")
+    if len(data) > MAX_ANSWER:
+        raise MsolveError(f"msolve's answer has more than {MAX_ANSWER} bytes")
+    return data.decode("ascii", errors="backslashreplace")
 
 
-def _run(command: Sequence[str], timeout: float | None) -> tuple[int, bytes]:
+def _run(command: Sequence[str], files: tuple[int, int], timeout: float | None) -> tuple[int, bytes]:
     """The status of a program that ends with this one, whatever ends it, and what it prints as errors."""
     end, lifeline = os.pipe()
     try:
         with subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, pass_fds=(end,)
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, pass_fds=(end, *files)
         ) as process:
             if hasattr(os, "O_ASYNC"):  # the kernel signals it when our end is closed
                 fcntl.fcntl(end, fcntl.F_SETOWN, process.pid)
