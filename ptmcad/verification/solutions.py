@@ -15,9 +15,9 @@ the number of solutions at which one is, and in the other boxes it is not. A box
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from fractions import Fraction
-from itertools import combinations, islice
+from itertools import combinations, islice, product
 from typing import NamedTuple
 
 from flint import arb, arb_mat, ctx
@@ -48,10 +48,13 @@ def check_solutions(claims: Claims) -> str:
         _check_disjoint(n, cell, claims.model)
         values = claims.parameters_at(*cell.sample)
         for k, solution in enumerate(cell.solutions):
-            center = ", ".join(map(approximate_text, solution.center))
-            box = f"box {k} of cell {n} around ({center}), radius {approximate_text(solution.radius)}"
-            _check_signs(claims, cell, values, solution, box)
-            undecided += not _is_alone(claims, cell, values, solution, box)
+            try:
+                _check_signs(claims, cell, values, solution)
+                undecided += not _is_alone(claims, cell, values, solution)
+            except Violation as violation:
+                center = ", ".join(map(approximate_text, solution.center))
+                radius = approximate_text(solution.radius)
+                raise Violation(f"box {k} of cell {n} around ({center}), radius {radius}: {violation}") from None
             number += 1
         _check_zeros(claims, n, cell)
         if claims.describes_equilibria:
@@ -63,28 +66,29 @@ def check_solutions(claims: Claims) -> str:
     return f"{number} boxes"
 
 
-def _check_signs(claims: Claims, cell: Cell, values: Mapping[str, Fraction], solution: Solution, box: str) -> None:
+def _check_signs(claims: Claims, cell: Cell, values: Mapping[str, Fraction], solution: Solution) -> None:
     """The box holds a solution that counts with these signs: by Newton's method, else by trace forms.
 
     Raises
     ------
     Violation
     """
-    found = (_signs(claims.model, values, solution, bits) for bits in _precisions(solution)[:_ATTEMPTS])
+    tried = product(range(1 + 2 * len(claims.model.unknowns)), _precisions(solution)[:_ATTEMPTS])
+    found = (_signs(claims.model, values, solution, bits, start) for start, bits in tried)
     true = next((signs for signs in found if signs is not None), None)
     if true is None:
         fibre = claims.fibre_at(*cell.sample)
         number, place = fibre.within(solution.center, solution.radius, counted=True)
         if number != 1:
-            raise Violation(f"{number or 'no'} solution{'s' * (number > 1)} found in {box}")
+            raise Violation(f"{number or 'no'} solution{'s' * (number > 1)} found in it")
         true = fibre.signs(place)
     if true != solution.signs:
         what = "Hessian" if claims.describes_equilibria else "list of conditions for stability"
         are = "eigenvalues of signs" if claims.describes_equilibria else "the signs"
-        raise Violation(f"the {what} at the solution in {box} has {are} {true!r}, not {solution.signs[:10]!r}")
+        raise Violation(f"the {what} at the solution in it has {are} {true!r}, not {solution.signs[:10]!r}")
 
 
-def _is_alone(claims: Claims, cell: Cell, values: Mapping[str, Fraction], solution: Solution, box: str) -> bool:
+def _is_alone(claims: Claims, cell: Cell, values: Mapping[str, Fraction], solution: Solution) -> bool:
     """Whether a box that holds a solution that counts is proved to hold no other real one.
 
     Raises
@@ -101,7 +105,7 @@ def _is_alone(claims: Claims, cell: Cell, values: Mapping[str, Fraction], soluti
             return True
     number, _ = fibre.within(solution.center, solution.radius, counted=False)
     if number > 1:
-        raise Violation(f"{number} real solutions are in {box}")
+        raise Violation(f"{number} real solutions are in it")
     return not fibre.saturated
 
 
@@ -189,14 +193,14 @@ class _Functions:
         )
 
 
-def _signs(model: Model, values: Mapping[str, Fraction], solution: Solution, bits: int) -> str | None:
-    """The signs at a solution that counts and is proved to be in the box; None when none is found.
+def _signs(model: Model, values: Mapping[str, Fraction], solution: Solution, bits: int, start: int) -> str | None:
+    """The signs at a solution that counts and is proved to be in the box; None when none is found from a start.
 
     Those of the Hessian's eigenvalues, or of the conditions for stability; where one of these is said to be zero it is
     left to `_check_zeros`.
     """
     with ctx.workprec(bits):
-        found = _proved(_Functions(model, values), solution)
+        found = _proved(_Functions(model, values), solution, start)
         if found is None or not all(p > 0 for p in found.inequalities):
             return None
         if has_index(model):
@@ -230,22 +234,22 @@ def _of_conditions(conditions: list[arb], stored: str) -> str | None:
     return signs
 
 
-def _proved(functions: _Functions, solution: Solution) -> _Values | None:
+def _proved(functions: _Functions, solution: Solution, start: int) -> _Values | None:
     """The functions' values on a box within the stored one that is proved to contain a solution.
 
     Angles are moved along the circles: turned by an angle a, the point (c, s) that Newton's method has reached becomes
     (c cos a - s sin a, s cos a + c sin a), so that c^2 + s^2 = 1 holds by construction.
+
+    Parameters
+    ----------
+    start : 0 at the box's center; other numbers half way to one of its sides.
     """
     turning = 2 * len(functions.model.angles)
     center = _normal([ball_of(x) for x in solution.center], turning)
-    starts = (_normal(_moved(center, by, turning), turning) for by in _steps_aside(functions, solution))
-    found = (_proved_near(functions, solution, start, turning) for start in starts)
-    return next((values for values in found if values is not None), None)
-
-
-def _proved_near(functions: _Functions, solution: Solution, start: list[arb], turning: int) -> _Values | None:
-    """The same at the solution that Newton's method reaches from a point."""
-    reached = _iterated(functions, start)
+    # the Jacobian may be singular at the center itself, as at a cusp whose coordinates the box has
+    step = arb(from_fraction(solution.radius) / (-2 if start % 2 else 2))
+    aside = [step if start and k == (start - 1) // 2 else arb(0) for k in range(len(functions.model.unknowns))]
+    reached = _iterated(functions, _normal(_moved(center, aside, turning), turning))
     if reached is None:
         return None
     point, step = reached
@@ -262,19 +266,6 @@ def _proved_near(functions: _Functions, solution: Solution, start: list[arb], tu
         for x, center in zip(around, solution.center, strict=True)
     )
     return values if inside else None
-
-
-def _steps_aside(functions: _Functions, solution: Solution) -> Iterator[list[arb]]:
-    """Where Newton's method may start, from a box's center: there, or half way to a side.
-
-    The Jacobian may be singular at the center itself, as at a cusp whose coordinates the box has.
-    """
-    size = len(functions.model.unknowns)
-    half = arb(from_fraction(solution.radius) / 2)
-    yield [arb(0)] * size
-    for k in range(size):
-        for step in (half, -half):
-            yield [step if i == k else arb(0) for i in range(size)]
 
 
 def _iterated(functions: _Functions, point: list[arb]) -> tuple[list[arb], arb] | None:

@@ -346,7 +346,7 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (check_solutions, "fig3", lambda r: of("cells", 0, solutions=r.cells[0].solutions[:1] * (r.cells[0].total or 0))(r),
      "the boxes 0 and 1 of its solutions meet"),
     (check_solutions, "fig3", lambda r: of("cells", 0, solutions=put(r.cells[0].solutions, 0,
-        center=(Fraction(3, 5), Fraction(4, 5), Fraction(5, 13), Fraction(12, 13))))(r), "no solution found in box"),
+        center=(Fraction(3, 5), Fraction(4, 5), Fraction(5, 13), Fraction(12, 13))))(r), "no solution found in it"),
     (check_solutions, "fig3", lambda r: of("cells", 0, solutions=put(r.cells[0].solutions, 0, signs="??"))(r),
      "has eigenvalues of signs"),
     (check_solutions, "fig3", of("cells", 0, total=None), "boxes of solutions, but None equilibria"),
