@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from fractions import Fraction
 from math import lcm
 
+from flint import fmpz_mpoly
+
 from ptmcad.answer.regionmap import Continuum, Kind
 from ptmcad.errors import ExpressionError
 from ptmcad.mechanism import Mechanism, Model, System
@@ -23,8 +25,6 @@ from ptmcad.verification.derivation import has_index
 from ptmcad.verification.model import equation_factors
 from ptmcad.verification.report import Violation
 from ptmcad.verification.variety import BITS, check_identity, condition_exponents, factors, random_points
-
-_VANISHES = "an equation vanishes on it, number"
 
 
 def auxiliary(model: Model) -> tuple[str, ...]:
@@ -108,11 +108,11 @@ def check_boundary(claims: Claims, seed: str) -> str:
         if c.kind is Kind.BOUNDARY and c.polynomial not in needed:
             raise Violation(f"component {n} is stored as boundary, but bounds nothing: {c.polynomial.text(names)[:60]}")
         if c.continuum is Continuum.PROVED:
-            _check_continuum(claims, n, needed.get(c.polynomial, ""))
+            _check_continuum(claims, n, c.polynomial)
     return f"{len(needed)} factors of parameters and equations"
 
 
-def _check_continuum(claims: Claims, number: int, why: str) -> None:
+def _check_continuum(claims: Claims, number: int, curve: PlanePolynomial) -> None:
     """On a component on which an equation vanishes: all solutions of the others are, whatever its unknown is.
 
     There are some where the equations are the slopes of a function on a torus, or there is no other.
@@ -120,7 +120,8 @@ def _check_continuum(claims: Claims, number: int, why: str) -> None:
     model = claims.result.slice.model
     free = not (model.inequalities if isinstance(model, System) else isinstance(model, Mechanism) and model.moments)
     alone = len(model.unknowns) == 1
-    if not why.startswith(_VANISHES) or model.reals or not free or not (alone or has_index(model)):
+    vanishes = any(curve in _vanishing(common) for common in equation_factors(claims))
+    if not vanishes or model.reals or not free or not (alone or has_index(model)):
         raise Violation(f"component {number} is said to have infinitely many solutions, which is not proved")
 
 
@@ -136,9 +137,14 @@ def _needed(claims: Claims) -> dict[PlanePolynomial, str]:
             for factor in _expression_factors(terms):
                 needed[factor] = f"it bounds the domain of {name}"
     for k, common in enumerate(equation_factors(claims)):
-        for factor in factors(common) if not common.is_constant() else []:
-            needed.setdefault(factor, f"{_VANISHES} {k}")
+        for factor in _vanishing(common):
+            needed.setdefault(factor, f"equation {k} vanishes on it")
     return needed
+
+
+def _vanishing(common: fmpz_mpoly) -> list[PlanePolynomial]:
+    """The curves on which an equation vanishes, by the common factor of its coefficients."""
+    return [] if common.is_constant() else factors(common)
 
 
 def _of_conditions(claims: Claims, seed: str) -> dict[PlanePolynomial, str]:
