@@ -20,7 +20,9 @@ def family_table(family: FamilyMap) -> str:
     for value, result in zip(values, family.members, strict=True):
         lines.append(f"{value:>{width}}  {len(result.regions):>7}  {len(result.cells):>5}  {_areas(result)}")
     if family.surfaces:
-        sizes = ", ".join(f"{len(terms)} terms of degree {_degree(terms)}" for terms in family.surfaces)
+        sizes = ", ".join(
+            f"{len(terms)} term{'s' * (len(terms) > 1)} of degree {_degree(terms)}" for terms in family.surfaces
+        )
         many = "surfaces" if len(family.surfaces) > 1 else "surface"
         lines.append(f"computed once for all: {many} where solutions meet, {sizes}")
     if family.changes is not None:

@@ -172,9 +172,9 @@ def test_the_table_tells_what_is_open() -> None:
     assert result.table().splitlines() == [
         "regions   3 of 3 cells, certified",
         "counts    1 stable: 1 region; 2 stable: 2 regions",
-        "areas     1: 1.09 to 2.21; 2: 1.79 to 2.91",
+        "areas     1: 1.093 to 1.579; 2: 1.796 to 2.766",
         "cover     3 rectangles around the curves where counts change",
-        "time      1.50 s; 28 % undetermined; area bounds at most 1.1e+00 apart",
+        "time      1.50 s; 28 % undetermined; area bounds at most 9.7e-01 apart",
     ]
     admissible = certified_map(Count.ADMISSIBLE).table()
     assert "1 stable and admissible: 2 regions; 2 stable and admissible: 1 region" in admissible

@@ -187,3 +187,18 @@ def test_stable_branches_are_solid_and_no_others_are(tmp_path: Path) -> None:
         drawn = {(style["stroke"], style.get("stroke-dasharray")) for style in of_legend}
         assert {(s["stroke"], s.get("stroke-dasharray")) for s in marks if s["stroke"] in solid | broken} == drawn
     assert len(solid) == 2 and not solid & broken
+
+
+def test_names_have_greek_letters_in_all_of_a_picture_or_in_none(tmp_path: Path) -> None:
+    """The record's title has rho and L1, as a keyboard has them."""
+    record = CONFIGS / "forces.yaml"
+    assert run(["classify", str(record), "--no-areas", "--format", "json,svg", "--out", str(tmp_path)]) == 0
+    assert "The two loads, L₁ = 1, L₂ = 3/2, ρ = 3/4, k = 100" in texts(tmp_path / "forces.svg")
+    assert run(["report", str(tmp_path / "forces.json"), "--out", str(tmp_path)]) == 0
+    page = (tmp_path / "forces.html").read_text(encoding="utf-8")
+    assert "<dd>L₁ = 1, L₂ = 3/2, ρ = 3/4, k = 100; zero: F₃ₓ, F₄ₓ</dd>" in page
+    names = {"omega1": [-1, 1], "Sigma": [0, 1]}
+    system = {"unknowns": {"x": "real"}, "equations": ["x^2 - omega1 - Sigma"]}
+    (tmp_path / "greek.yaml").write_text(yaml.safe_dump({"name": "greek", "system": system, "axes": names}))
+    assert run(["classify", str(tmp_path / "greek.yaml"), "--no-areas", "--format", "svg", "--out", str(tmp_path)]) == 0
+    assert {"ω₁", "Σ"} <= set(texts(tmp_path / "greek.svg"))

@@ -142,8 +142,7 @@ class _Page:
         return Dress(ticks, names, (intervals[0], intervals[1]), small, self.font / 9)
 
     def title(self) -> list[str]:
-        # no line ends within "k = 100"
-        title = self.parts.title.replace(" = ", "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}")
+        title = self.parts.title
         lines = wrapped(title, self.size[0] - 2 * self.rim, self.texts.title) if title else []
         if len(lines) > MAX_TITLE_LINES:
             lines = [*lines[: MAX_TITLE_LINES - 1], f"{lines[MAX_TITLE_LINES - 1]} …"]

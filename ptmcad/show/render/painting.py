@@ -11,8 +11,11 @@ import numpy as np
 from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.show.render.colours import Fill, filler, undetermined_fill
 from ptmcad.show.render.legend import CORE, INK, RIM, RIM_INK, STRONG, THIN
-from ptmcad.show.render.view import Shapes
+from ptmcad.show.render.view import Floats, Shapes
 from ptmcad.show.style import Style
+
+_OVER = 0.004
+"""Of the view's sides: more than half a rim's width."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +59,7 @@ def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = N
         )  # fmt: skip
     rim = (CORE + 2 * RIM) * paint.scale if result.cover is not None else 0.0
     for number, region in enumerate(result.regions):
-        polygons = [Curve(np.vstack([p, p[:1]]), closed=True) for p in seen.polygons(number)]
+        polygons = [Curve(_beyond(np.vstack([p, p[:1]])), closed=True) for p in seen.polygons(number)]
         if not polygons:
             continue
         fill = paint.fill(region)
@@ -68,7 +71,7 @@ def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = N
                 gid=f"{prefix}region-{number}",
             )
         )  # fmt: skip
-    edges = [Curve(edge, closed=True) for edge in seen.edges()]
+    edges = [Curve(_beyond(edge), closed=True) for edge in seen.edges()]
     if edges:
         # all but the regions, whose outlines have them at the left hand, and a line's width of them: what is
         # undetermined is seen between its rims, however narrow it is
@@ -95,3 +98,9 @@ def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = N
                 gid=f"{prefix}curve-{component}" + ("" if separates else "-thin"),
             )
         )  # fmt: skip
+
+
+def _beyond(outline: Floats) -> Floats:
+    """An outline with what is on the frame moved over it, so that the frame has no rim."""
+    moved: Floats = outline + _OVER * (np.isclose(outline, 1, 0, 1e-9) * 1.0 - np.isclose(outline, 0, 0, 1e-9))
+    return moved

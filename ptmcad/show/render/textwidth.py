@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import lru_cache
 
 from matplotlib import rcParams
@@ -13,9 +14,9 @@ ALLOWANCE = 1.03
 
 
 def wrapped(text: str, width: float, size: float, strong: bool = False) -> list[str]:
-    """Lines of whole words, each as long as the width in inches allows."""
+    """Lines of whole words, each as long as the width in inches allows; none ends within ``k = 100``."""
     lines: list[str] = []
-    for word in filter(None, text.split(" ")):
+    for word in re.findall(r"\S+(?: = \S+)*", text):
         longer = f"{lines[-1]} {word}" if lines else word
         if lines and text_width(longer, size, strong) <= width:
             lines[-1] = longer
