@@ -16,6 +16,7 @@ from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.maps import made_map, stored_map
+from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_of
@@ -74,7 +75,7 @@ def _film(
 @click.option("--title", metavar="TEXT", help="Title, '' for none.  [default: the slice's heading]")
 @click.option("--tolerance", callback=share_of, default="1/100", show_default=True, metavar="EPS",
               help="With free lengths: the share of the window that may stay undetermined.")  # fmt: skip
-@click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
+@out_option
 @click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-motion]")
 @format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}; mp4 needs the program ffmpeg.", "gif")
 @limit_options

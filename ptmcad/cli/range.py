@@ -19,7 +19,8 @@ from ptmcad.cli.paths import out_option, record_argument
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.range_answers import Answer, Request, answer, is_enclosed
-from ptmcad.cli.values import names, pair_of_names, point, quantity_names, settings
+from ptmcad.cli.slices import range_option, set_option
+from ptmcad.cli.values import names, pair_of_names, point, quantity_names
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism import ptm
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
@@ -166,17 +167,8 @@ class Output:
     shell_complete=pair_of_names,
     help="The slice's two axes, where a name is no parameter.",
 )
-@click.option(
-    "--set",
-    "sets",
-    multiple=True,
-    metavar="NAME=VALUE",
-    shell_complete=settings,
-    help="Fix a parameter: a number or an expression.",
-)
-@click.option(
-    "--range", "ranges", multiple=True, metavar="NAME=LO:HI", shell_complete=settings, help="The range of an axis."
-)
+@set_option
+@range_option
 @click.option("--digits", type=click.IntRange(1, 1000), default=10, show_default=True, help="Digits of decimals.")
 @out_option
 @click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-range]")

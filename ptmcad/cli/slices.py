@@ -108,6 +108,15 @@ def _with_places(command: F) -> F:
     return placed  # type: ignore[return-value]
 
 
+range_option = click.option(
+    "--range", "ranges", multiple=True, metavar="NAME=LO:HI", shell_complete=settings, help="The range of an axis."
+)
+set_option = click.option(
+    "--set", "sets", multiple=True, metavar="NAME=VALUE", shell_complete=settings,
+    help="Fix a parameter: a number or an expression.",
+)  # fmt: skip
+
+
 def slice_options(command: F) -> F:
     """Add CONFIG, ``--mechanism``, ``--slice``, ``--set`` and ``--range``, which the command gets as ``asked``.
 
@@ -115,10 +124,8 @@ def slice_options(command: F) -> F:
     """
     command = gathered(asked=Asked)(_with_places(command))
     for add in (
-        click.option("--range", "ranges", multiple=True, metavar="NAME=LO:HI", shell_complete=settings,
-                     help="The range of an axis."),
-        click.option("--set", "sets", multiple=True, metavar="NAME=VALUE", shell_complete=settings,
-                     help="Fix a parameter: a number or an expression."),
+        range_option,
+        set_option,
         click.option("--slice", "axes", metavar="X,Y", shell_complete=pair_of_names,
                      help="The two axes, the horizontal one first."),
         click.option("--mechanism", metavar="NAME|FILE", shell_complete=mechanisms,

@@ -17,7 +17,8 @@ from ptmcad.cli.locate import point_of
 from ptmcad.cli.paths import out_option, record_argument
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.values import point, settings
+from ptmcad.cli.slices import set_option
+from ptmcad.cli.values import point
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Model, mechanism_in
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
@@ -97,9 +98,7 @@ def _write_picture(landscape: bool, poses: Poses, path: Path) -> None:
     shell_complete=point,
     help="The point: parameters, or axes of CONFIG, exact numbers.",
 )
-@click.option(
-    "--set", "sets", multiple=True, metavar="NAME=VALUE", shell_complete=settings, help="Fix one more parameter."
-)
+@set_option
 @click.option("--digits", type=click.IntRange(1, MAX_DIGITS), default=DIGITS, show_default=True, metavar="N",
               help="Significant digits, all of them right.")  # fmt: skip
 @format_option(FORMATS, f"What to make, of {', '.join(FORMATS)}; the table is printed.", "table")

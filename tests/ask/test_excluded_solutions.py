@@ -95,10 +95,10 @@ def test_an_inequality_that_is_zero_at_every_solution_leaves_nothing_to_count() 
 def test_check_refuses_what_the_certified_engine_refuses() -> None:
     mechanism = {
         "parameters": {"c": {"kind": "stiffness"}, "F": {"kind": "force"}},
-        "unknowns": dict.fromkeys(("th", "s", "t", "u"), "angle"),
+        "unknowns": dict.fromkeys(("th", "s", "t", "u", "v", "w"), "angle"),
         "points": {"A": [2, 0], "P": ["cos(th)", "sin(th)"]},
         "springs": [{"between": ["A", "P"], "k": "c", "free": "1/2"}],
-        "torsion": [{"angle": angle, "k": 1} for angle in ("s", "t", "u")],
+        "torsion": [{"angle": angle, "k": 1} for angle in ("s", "t", "u", "v", "w")],
         "loads": {"P": [0, "F"]},
     }
     slice = slice_from({"mechanism": mechanism, "axes": {"c": [1, 3], "F": [-3, 3]}})

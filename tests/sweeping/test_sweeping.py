@@ -353,7 +353,8 @@ def test_the_command(squares: Path, tmp_path: Path, capsys: pytest.CaptureFixtur
     ]
     assert run(arguments) == 3
     said, err = capsys.readouterr()
-    assert said.startswith("sweep squares over F, L: 6 members, 5 done; 1 refused, as no map")
+    assert said.startswith("question  squares: a in [-2, 2], b in [-1, 1]; ")
+    assert "\nsweep squares over F, L: 6 members, 5 done; 1 refused, as no map" in said
     assert err.startswith(f"stopped: 1 refused of 6 members, see {out}; the first is member 4: ")
     assert (out / "squares.csv").read_text(encoding="utf-8").count("\n") == 7
     assert (command.RETRIES, command.FORMATS[0]) == (engine.RETRIES, "csv")
