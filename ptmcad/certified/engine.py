@@ -37,7 +37,7 @@ from ptmcad.cover.simplification import combined, gathered, simplified
 from ptmcad.cover.subdivision import rectangle_array
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import DEFAULTS, Options
-from ptmcad.process.handover import LAST_SECONDS
+from ptmcad.process.handover import LAST_SECONDS, Leaving
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice
 from ptmcad.text.bounds import percent
@@ -213,7 +213,7 @@ class _Run:
             self._hand_over(undetermined)
         start = self.clock()
         lattice = Lattice(self.lattice.window, MAX_STEPS)
-        cover = slanting(self.enclosures, lattice).cover(self.tolerance, self.jobs, lambda: self.pace.late(boxes))
+        cover = slanting(self.enclosures, lattice).cover(self.tolerance, self.jobs, lambda: self._must_end(boxes))
         self.seconds["curves"] += self.clock() - start
         if not self.pace.late(boxes):
             cover = without_specks(cover, self.enclosures, lattice, area)
@@ -292,10 +292,15 @@ class _Run:
         pieces = max(self.boxes(), len(cover.rectangles))
         return SAFETY * (self.pace.map.of(pieces) + self.pace.text.of(pieces)) < self.pace.left()
 
+    def _must_end(self, boxes: int) -> bool:
+        """Whether the search has to end for the last map of so many boxes; a process that is to leave ends here."""
+        Leaving.check()
+        return self.pace.late(boxes)
+
     def _late(self) -> bool:
         """Whether the search has to end for the last map; between its tasks maps are handed over."""
         boxes = self.boxes()
-        if self.pace.late(boxes):
+        if self._must_end(boxes):
             self._thinned = None
             return True
         if self.options.partial is not None and self.pace.due(boxes):

@@ -41,6 +41,21 @@ class _Sender:
     pipe: int | None = None
 
 
+class Leaving:
+    """Whether this process has been asked to leave, by which signal: what its handler has raised may be lost.
+
+    Code that C code calls, such as a callback of the collector, loses what is raised in it.
+    """
+
+    status: int | None = None
+
+    @classmethod
+    def check(cls) -> None:
+        """Raise again what ends the process."""
+        if cls.status is not None:
+            raise SystemExit(cls.status)
+
+
 def connect(pipe: int) -> None:
     """Send messages of this process into a pipe from now on."""
     _Sender.pipe = pipe

@@ -87,7 +87,7 @@ def format_named(text: str) -> str:
     return found[1] if found else ""
 
 
-def json_data(text: str, **hooks: Callable[[Any], Any]) -> Any:
+def json_data(text: str, **hooks: Any) -> Any:
     """The data of a JSON text, in bounded memory: a long one that is no document of this program is not read.
 
     Parameters

@@ -51,7 +51,7 @@ READING = {
     "poses": ("verify",),
     "range": ("verify",),
 }
-WRONG = (None, True, -1, "x", [], {"a": 1})
+WRONG: tuple[Any, ...] = (None, True, -1, "x", [], {"a": 1})
 
 ASKING = """
 from ptmcad.algebra import bases
