@@ -53,7 +53,7 @@ def _film(
     path: str, pose: str, frames: int, fps: int, size: str | None, palette: str | None, title: str | None, dpi: int
 ) -> Film:
     try:
-        style = styled("default", None, size=size, palette=palette, title=title)
+        style = styled("default", size=size, palette=palette, title=title)
     except ConfigError as error:
         raise ConfigError(error.message, key=f"--{error.key}") from error
     return Film(path, pose, frames, fps, style, dpi)

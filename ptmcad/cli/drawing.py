@@ -6,7 +6,7 @@ Guarantee: the names of all files are known before anything is computed.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from fractions import Fraction
 from functools import cache, partial
 from pathlib import Path
@@ -20,7 +20,7 @@ from ptmcad.cli.pictures import picture
 from ptmcad.cli.values import palettes
 from ptmcad.errors import ConfigError
 from ptmcad.process.output import Writer, text_writer
-from ptmcad.show.style import DEFAULT, LINES, PALETTES, STYLES, USER, Place, Style, styled
+from ptmcad.show.style import DEFAULT, LINES, PALETTES, PRESETS, Place, Style, styled
 from ptmcad.text.parsing import share_for
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-PICTURES = ("png", "svg", "pdf", "eps", "pgf")
+PICTURES = ("png", "svg", "pdf", "eps")
 DATA = ("csv", "npz")
 MESHES = ("obj", "ply")
 """Of a family's boundary surface."""
@@ -132,7 +132,7 @@ def _drawing(samples: bool, dpi: int, boundary_tolerance: Fraction, pixels: tupl
 
 def _style(
     style: str, size: str | None, font_size: str | None, font_family: str | None, palette: str | None,
-    title: str | None, legend: str | None, line_width: str | None, thin_lines: str | None, mpl_style: str | None,
+    title: str | None, legend: str | None, line_width: str | None, thin_lines: str | None,
 ) -> Style:  # fmt: skip
     """The options of a style together."""
     options = {
@@ -140,20 +140,12 @@ def _style(
         "legend": legend, "line_width": line_width, "thin_lines": thin_lines,
     }  # fmt: skip
     try:
-        made = _made(style, mpl_style, options)
+        made = styled(style, **options)
     except ConfigError as error:
         raise ConfigError(error.message, key=f"--{(error.key or 'style').replace('_', '-')}") from error
     if made.font_family:
         _check_fonts(made.font_family)
     return made
-
-
-def _made(style: str, mpl_style: str | None, options: Mapping[str, str | None]) -> Style:
-    if mpl_style is None and style != USER:
-        return styled(style, None, **options)
-    from ptmcad.show.render.usersettings import user_styled  # brings matplotlib
-
-    return user_styled(style, mpl_style, **options)
 
 
 def _check_fonts(families: tuple[str, ...]) -> None:
@@ -187,11 +179,9 @@ def style_options(command: F) -> F:
         click.option("--font-family", metavar="NAME,..", help="Fonts that are installed; the first that has a letter."),
         click.option("--font-size", metavar="PT", help="Of the legend, at the printed size; none below 6 points."),
         click.option("--size", metavar="WxH", help="Of the whole picture, as 3.5x2.6in or 90x70mm."),
-        click.option("--mpl-style", metavar="FILE|NAME",
-                     help="Settings of matplotlib's in a file, or a style of its; other options override."),
-        click.option("--style", type=click.Choice(STYLES), default="default", show_default=True,
-                     help="Size, font and lines for a journal's column, a slide or a poster; 'user' is your own "
-                          "matplotlibrc. Other options override."),
+        click.option("--style", type=click.Choice(tuple(PRESETS)), default="default", show_default=True,
+                     help="Size, font and lines for a journal's column, a slide or a poster. Other options "
+                          "override."),
     ):  # fmt: skip
         command = option(command)
     return command

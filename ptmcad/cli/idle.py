@@ -13,7 +13,7 @@ import click
 from click.core import ParameterSource
 
 STYLE = (
-    "style", "size", "font_size", "font_family", "palette", "title", "legend", "line_width", "thin_lines", "mpl_style",
+    "style", "size", "font_size", "font_family", "palette", "title", "legend", "line_width", "thin_lines",
 )  # fmt: skip
 """The options that make a picture's style, by their parameters' names."""
 

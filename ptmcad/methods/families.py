@@ -51,9 +51,9 @@ def _family_plot(
     ConfigError
         For an unknown style or option, or what does not fit into the size.
     """
-    from ptmcad.show.render.usersettings import user_styled
+    from ptmcad.show.style import styled
 
-    made = user_styled(style, **options)
+    made = styled(style, **options)
     if solid or surface is not None:
         from ptmcad.show.render.solid import solid_figure
 

@@ -207,7 +207,7 @@ def _motion_save(
     load_matplotlib()
     from ptmcad.show.render.film import save_film
 
-    save_film(self, Path(path), styled("default", None, size=size, palette=palette, title=title), fps, dpi)
+    save_film(self, Path(path), styled("default", size=size, palette=palette, title=title), fps, dpi)
 
 
 def _motion_repr_html(self: Motion) -> str:
@@ -260,11 +260,11 @@ def _map_plot(
 
     Parameters
     ----------
-    style : "default", "ieee", "elsevier", "springer", "beamer", "poster" or "user".
+    style : "default", "ieee", "elsevier", "springer", "beamer" or "poster".
     samples : whether to draw the cells' sample points.
     dpi : resolution for which thin regions get arrows and insets.
-    options : ``size``, ``font_size``, ``font_family``, ``palette``, ``title``, ``legend``, ``line_width``,
-        ``thin_lines`` and ``mpl_style``, as on the command line.
+    options : ``size``, ``font_size``, ``font_family``, ``palette``, ``title``, ``legend``, ``line_width`` and
+        ``thin_lines``, as on the command line.
 
     Raises
     ------

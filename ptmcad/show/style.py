@@ -19,13 +19,6 @@ PAGE_HEIGHT = 9.0
 MAX_LINE = 10.0
 MAX_TITLE = 200
 _TO_INCHES = {"in": 1.0, "mm": 1 / 25.4, "cm": 1 / 2.54, "pt": 1 / 72}
-_SETTINGS = {
-    "size": "figure.figsize",
-    "font_size": "font.size",
-    "font_family": "font.family",
-    "line_width": "lines.linewidth",
-}
-"""Options by matplotlib's names for them."""
 NAMED = {
     "white": "#ffffff", "silver": "#c0c0c0", "grey": "#808080", "gray": "#808080", "black": "#000000",
     "red": "#ff0000", "maroon": "#800000", "orange": "#ffa500", "gold": "#ffd700", "yellow": "#ffff00",
@@ -65,7 +58,6 @@ class Style(NamedTuple):
     legend : where it stands; None where it fits best.
     line_width : in points, of curves where the count changes; other lines are in proportion.
     thin_lines : one of `LINES`, for curves where it does not.
-    mpl : further settings of matplotlib, a user's own, by their names.
     wide : width in inches of a picture over both columns of a journal, which is what needs more room than one column
         has (poses around a map, two maps and their difference); None where the size is given.
     """
@@ -78,7 +70,6 @@ class Style(NamedTuple):
     legend: Place | None = None
     line_width: float | None = None
     thin_lines: str = "solid"
-    mpl: tuple[tuple[str, Any], ...] = ()
     wide: float | None = None
 
     @property
@@ -125,17 +116,13 @@ PRESETS: Mapping[str, Style] = {
     "poster": Style(size=_mm(600, 420), font_size=28.0),
 }
 """For a column of a journal, whose captions are the titles; for a slide and for a poster."""
-USER = "user"
-"""The style of the user's own matplotlibrc."""
-STYLES = (*PRESETS, USER)
 
 
-def styled(name: str | Style = "default", settings: Mapping[str, Any] | None = None, **options: Any) -> Style:
+def styled(name: str | Style = "default", **options: Any) -> Style:
     """A preset, or a style, with options of its own; those that are None are the preset's.
 
     Parameters
     ----------
-    settings : of matplotlib's, which count for more than the preset and less than options.
     options : fields of `Style`, each as its type or as text: ``size="90x70mm"``, ``palette="grey"``,
         ``legend="below"``.
 
@@ -152,14 +139,10 @@ def styled(name: str | Style = "default", settings: Mapping[str, Any] | None = N
     elif name in PRESETS:
         base = PRESETS[name]
     else:
-        raise ConfigError(f"{name!r} is not among {', '.join(STYLES)}", key="style")
+        raise ConfigError(f"{name!r} is not among {', '.join(PRESETS)}", key="style")
     unknown = [key for key in options if key not in _READERS]
     if unknown:
-        raise ConfigError(
-            f"a picture has no {unknown[0]!r}; there are {', '.join(_READERS)}, mpl_style", key=unknown[0]
-        )
-    if settings is not None:
-        base = _with_settings(base, settings)
+        raise ConfigError(f"a picture has no {unknown[0]!r}; there are {', '.join(_READERS)}", key=unknown[0])
     given = {key: _READERS[key](value) for key, value in options.items() if value is not None}
     made = base._replace(**given)
     if "size" in given:
@@ -168,16 +151,6 @@ def styled(name: str | Style = "default", settings: Mapping[str, Any] | None = N
         # a preset's font is for its size: on a narrower one it stays, on a much wider one it would be lost
         return made._replace(font_size=max(made.font_size, round(1.06 * given["size"][0], 1)))
     return made
-
-
-def _with_settings(base: Style, settings: Mapping[str, Any]) -> Style:
-    """A style with settings of matplotlib's, of which some are options of a style."""
-    options = {key: settings[name] for key, name in _SETTINGS.items() if name in settings}
-    try:
-        made = base._replace(**{key: _READERS[key](value) for key, value in options.items()})
-    except ConfigError as error:
-        raise ConfigError(f"{_SETTINGS[error.key or 'size']}: {error.message}", key="mpl_style") from error
-    return made._replace(mpl=tuple(settings.items()), wide=None if "size" in options else base.wide)
 
 
 def _size(value: Any) -> Size:

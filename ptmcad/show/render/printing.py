@@ -1,4 +1,4 @@
-"""Printing: a figure as the content of a PNG, SVG, PDF, EPS or PGF file, for screen readers with a title and a
+"""Printing: a figure as the content of a PNG, SVG, PDF or EPS file, for screen readers with a title and a
 description where the format has room for them.
 
 Guarantee: the same figure gives the same bytes with the same matplotlib, whatever the user's settings, the date and
@@ -22,7 +22,7 @@ from matplotlib.figure import Figure
 
 from ptmcad.show.style import DEFAULT, Style
 
-FORMATS = ("png", "svg", "pdf", "eps", "pgf")
+FORMATS = ("png", "svg", "pdf", "eps")
 
 _SETTINGS: dict[str, Any] = {
     "font.family": ["DejaVu Sans"],  # comes with matplotlib
@@ -52,10 +52,9 @@ _KEPT = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
 def settings(style: Style = DEFAULT) -> Iterator[None]:
     """Matplotlib's own defaults and the project's fonts, not a user's matplotlibrc; for drawing and for printing.
 
-    A style's font comes first; letters that it lacks are taken from the one that comes with matplotlib. Settings of a
-    user's own count where the style has them.
+    A style's font comes first; letters that it lacks are taken from the one that comes with matplotlib.
     """
-    own: Any = {k: v for k, v in matplotlib.rcParamsDefault.items() if k not in _KEPT} | _SETTINGS | dict(style.mpl)
+    own: Any = {k: v for k, v in matplotlib.rcParamsDefault.items() if k not in _KEPT} | _SETTINGS
     if style.font_family:
         own["font.family"] = [*style.font_family, *_SETTINGS["font.family"]]
     with matplotlib.rc_context(own), warnings.catch_warnings():
@@ -115,10 +114,6 @@ def printed(figure: Figure, suffix: str, dpi: int, title: str, description: str)
         described = f"{head}\n <desc>{escape(description, quote=False)}</desc>"
         content = _TEXT_STYLE.sub(rf"\g<0>, {_SIMILAR}", text.getvalue())
         return content.replace(head, described, 1).replace("<svg ", '<svg role="img" ', 1).encode()
-    if suffix == "pgf":
-        from ptmcad.show.render.pgf import pgf_text
-
-        return pgf_text(figure, title).encode()
     data = BytesIO()
     if suffix == "pdf":
         from matplotlib.backends.backend_pdf import FigureCanvasPdf
