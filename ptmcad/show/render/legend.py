@@ -139,7 +139,7 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int, wording:
         yield Entry(("the count changes",), STRONG)
     for found in dict.fromkeys(result.continua.values()):
         yield Entry((f"{found.value} {noun(result.slice.model)}",), _dashed)
-    if thin and not all(c.left_out or c.separates or c.continuum for c in result.components):
+    if thin:
         yield thin_entry()
     if samples:
         yield Entry(("sample point of a cell",), "dot")

@@ -84,11 +84,10 @@ def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = N
             )
         )  # fmt: skip
     lines: dict[tuple[bool, int], list[Any]] = {}
-    for component, separates, line in seen.walls():
-        if not separates and not paint.thin_walls:
-            continue
-        lines.setdefault((separates, component), []).append(line)
     continua = result.continua
+    for component, separates, line in seen.walls():
+        if separates or component in continua or paint.thin_walls:
+            lines.setdefault((separates, component), []).append(line)
     for (separates, component), parts in sorted(lines.items()):
         axes.add_artist(
             LineCollection(

@@ -91,16 +91,20 @@ def _part(result: RegionMap, finer: RegionMap, sliver: Sliver) -> Sliver:
 
 
 def seen_thin_walls(whole: Shapes, sides: tuple[float, float]) -> bool:
-    """Whether a wall that separates nothing is further than a line's width from the frame of a picture somewhere.
+    """Whether a wall that separates nothing is further than a line's width from the frame of a picture somewhere;
+    of solutions that are not isolated there is a line of another kind.
 
     Parameters
     ----------
     sides : of the picture, in points.
     """
     x, y = (_FRAME / side for side in sides)
+    continua = whole.result.continua
     return any(
-        not separates and ((x < line[:, 0]) & (line[:, 0] < 1 - x) & (y < line[:, 1]) & (line[:, 1] < 1 - y)).any()
-        for _, separates, line in whole.walls()
+        not separates
+        and component not in continua
+        and ((x < line[:, 0]) & (line[:, 0] < 1 - x) & (y < line[:, 1]) & (line[:, 1] < 1 - y)).any()
+        for component, separates, line in whole.walls()
     )
 
 

@@ -73,7 +73,7 @@ def chart(seen: Shapes) -> Chart:
         whole=_picture(seen, "map", tips, region_labels(seen)),
         details=tuple(_picture(zoom.outline, f"detail-{letter}", (), ()) for letter, zoom in marks),
         places=places,
-        thin_walls=any(not separates for _, separates, _ in seen.walls()),
+        thin_walls=any(not separates and n not in result.continua for n, separates, _ in seen.walls()),
         hidden=len(thin) - sum(len(zoom.slivers) for zoom in views),
     )
 
