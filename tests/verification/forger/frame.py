@@ -37,12 +37,12 @@ def area_shifted(r: RegionMap) -> Iterator[Alteration]:
 
 
 def area_known_exactly(r: RegionMap) -> Iterator[Alteration]:
-    """Bounds without width, or nearly so, which nothing can confirm."""
+    """Bounds without width, or nearly so; not about their middle, which may be the area itself."""
     for k, g in enumerate(r.regions):
-        middle = (g.area[0] + g.area[1]) / 2
+        off = g.area[0] + (g.area[1] - g.area[0]) / 3
         if len(r.regions) > 1:
-            yield partial(replace, r, regions=put(r.regions, k, area=(middle, middle)))
-            yield partial(replace, r, regions=put(r.regions, k, area=(middle, middle * (1 + Fraction(1, 10**90)))))
+            yield partial(replace, r, regions=put(r.regions, k, area=(off, off)))
+            yield partial(replace, r, regions=put(r.regions, k, area=(off, off * (1 + Fraction(1, 10**90)))))
 
 
 def area_out_of_order(r: RegionMap) -> Iterator[Alteration]:
