@@ -46,7 +46,7 @@ def continuum(
 
 
 def is_free(system: ParametricSystem, values: Mapping[str, fmpq]) -> bool:
-    """Whether at a point the potential stays as it is where some angles turn together: solutions are infinitely many."""
+    """Whether at a point the potential stays where some angles turn together: solutions are infinitely many."""
     return has_minima(system) and any(not polynomial_at(system, p, values) for p in _sums(system.equations))
 
 
