@@ -87,7 +87,7 @@ _ON_REGULAR = "on a curve of the variety; counted at the point itself, where all
 
 
 def _on_curves(result: RegionMap, met: Sequence[Component], at: tuple[fmpq, fmpq]) -> Location:
-    """A point on curves of the variety: with the counts there, where they are those of one region all around it."""
+    """A point on curves of the variety: with the counts there, where solutions are regular and no count changes."""
     many = next((c.continuum for c in met if c.continuum is not None), None)
     remark = "" if many is None else f"{many.value} {noun(result.slice.model)}"
     if remark or any(c.separates for c in met) or any(c.kind is Kind.BOUNDARY for c in met):
@@ -99,36 +99,29 @@ def _on_curves(result: RegionMap, met: Sequence[Component], at: tuple[fmpq, fmpq
         counts = count_at("the point", system, parameters, at if result.base == 0 else at[::-1]).counts
     except DegenerateSliceError:
         return Location(Status.ON_VARIETY)
-    around = [result.cells[number] for number in _cells_around(result, at)]
-    for cell in around:
-        known = [(cell.total, counts.total), (cell.stable, counts.stable)]
-        if cell.region != around[0].region or any(there not in (None, here) for there, here in known):
-            return Location(Status.ON_VARIETY)
-    if not around:
+    cell = next((result.cells[number] for number in _cells_beside(result, at)), None)
+    if cell is None or any(
+        there not in (None, here) for there, here in ((cell.total, counts.total), (cell.stable, counts.stable))
+    ):
         return Location(Status.ON_VARIETY)
-    return Location(Status.EXACT, around[0].region, None, counts.total, counts.stable, counts.index, remark=_ON_REGULAR)
+    return Location(Status.EXACT, cell.region, None, counts.total, counts.stable, counts.index, remark=_ON_REGULAR)
 
 
-def _cells_around(result: RegionMap, at: tuple[fmpq, fmpq]) -> Iterator[int]:
+def _cells_beside(result: RegionMap, at: tuple[fmpq, fmpq]) -> Iterator[int]:
     """Cells beside a point on curves, each reached along a segment that meets no other point of the curves."""
-    base, axes = result.base, result.slice.axes
     curves = [from_plane(c.polynomial) for c in result.components if not c.left_out]
-    for direction, axis in enumerate((axes[base], axes[1 - base])):
-        varying = base if direction == 0 else 1 - base
+    for direction, varying in enumerate((result.base, 1 - result.base)):
         traces = [univariate(coefficients_in(p, varying), at[1 - direction]) for p in curves]
         if all(traces):  # no curve runs in this direction through the point
-            for end in (axis.low, axis.high):
-                step = (from_fraction(end) - at[direction]) / 2
-                while any(_meets(p, at[direction], step) for p in traces):
-                    step = step / 2
-                beside = (at[0] + step, at[1]) if direction == 0 else (at[0], at[1] + step)
-                yield _cell_at(result, *beside)
+            step = (from_fraction(result.slice.axes[varying].high) - at[direction]) / 2
+            while any(_meets(p, at[direction], step) for p in traces):
+                step = step / 2
+            yield _cell_at(result, *((at[0] + step, at[1]) if direction == 0 else (at[0], at[1] + step)))
 
 
 def _meets(p: UnivariatePolynomial, start: fmpq, step: fmpq) -> bool:
     """Whether a polynomial has a root after the start, up to the end of a step."""
-    low, high = sorted((start, start + step))
-    return sign_at(p, start + step) == 0 or bool(isolate(squarefree_part(p), low, high))
+    return sign_at(p, start + step) == 0 or bool(isolate(squarefree_part(p), start, start + step))
 
 
 _KEPT = 4

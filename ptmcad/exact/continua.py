@@ -1,20 +1,22 @@
 """Curves of a slice on which there are infinitely many solutions.
 
-Guarantee: what is PROVED is. Where an equation vanishes identically on a curve, one of one unknown holds everywhere;
-and a potential on a torus does not depend on an unknown there: it has a critical point in the others, as every
-function on a torus has, with any value of that one. POSSIBLE is said of a line where complex solutions are infinitely
-many at some points of it.
+Guarantee: what is PROVED is. Where an equation of one unknown vanishes identically on a curve, every value solves it.
+A potential on a torus that stays as it is there where some angles turn together has a minimum, as every function on a
+torus has, and all that it is turned to are minima. POSSIBLE is said of a curve on which an equation vanishes, and of a
+line with points at which complex solutions are infinitely many.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import Coefficient, Ratio, evaluate, multiplicity
+from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.answer.regionmap import Continuum
-from ptmcad.exact.models.system import ParametricSystem, SliceSystem
+from ptmcad.exact.models.system import ParametricSystem, SliceSystem, common_on_slice, polynomial_at
 from ptmcad.exact.point_system import DegeneratePoint, point_system
 
 
@@ -32,12 +34,27 @@ def continuum(
     equations : the system's, on the slice.
     jacobian_norm : of the Jacobian's determinant, over the solutions at a generic point.
     """
-    if any(divmod(common, curve)[1].is_zero() for common in equations.vanishing):
-        return Continuum.PROVED if has_others(system) else Continuum.POSSIBLE
-    # the limits of solutions in a continuum are singular, so that the norm vanishes more than once
-    if curve.total_degree() > 1 or multiplicity(jacobian_norm, curve) < 2:
-        return None
-    return Continuum.POSSIBLE if all(_is_infinite(system, parameters, at) for at in _points(curve)) else None
+    if not any(divmod(common, curve)[1].is_zero() for common in equations.vanishing):
+        # the limits of solutions in a continuum are singular, so that the norm vanishes more than once
+        if curve.total_degree() > 1 or multiplicity(jacobian_norm, curve) < 2:
+            return None
+        if not all(_is_infinite(system, parameters, at) for at in _points(curve)):
+            return None
+    slopes = (common_on_slice(system, slope, parameters) for slope in _sums(system.equations))
+    is_free = has_minima(system) and any(divmod(slope, curve)[1].is_zero() for slope in slopes)
+    return Continuum.PROVED if is_free else Continuum.POSSIBLE
+
+
+def is_free(system: ParametricSystem, values: Mapping[str, fmpq]) -> bool:
+    """Whether at a point the potential stays where some angles turn together: solutions are infinitely many."""
+    return has_minima(system) and any(not polynomial_at(system, p, values) for p in _sums(system.equations))
+
+
+def _sums(equations: Sequence[TrigonometricPolynomial]) -> Iterator[TrigonometricPolynomial]:
+    """The slopes where some angles turn together, to one side or the other."""
+    for weights in product((-1, 0, 1), repeat=len(equations)):
+        if any(weights):
+            yield sum((w * e for w, e in zip(weights, equations, strict=True)), start=0 * equations[0])
 
 
 def _is_infinite(system: ParametricSystem, parameters: Mapping[str, Ratio], at: tuple[fmpq, fmpq]) -> bool:
@@ -66,8 +83,8 @@ def _points(line: Coefficient) -> Iterator[tuple[fmpq, fmpq]]:
             yield v, -constant / (second - constant)
 
 
-def has_others(system: ParametricSystem) -> bool:
-    """Whether all but one of the equations are known to have a common real solution, whichever is left out."""
+def has_minima(system: ParametricSystem) -> bool:
+    """Whether the equations are the slopes of a function on a torus, or there is one that may vanish everywhere."""
     return system.is_on_torus and (system.dimension == 1 or _is_gradient(system))
 
 

@@ -21,10 +21,10 @@ from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.answer.words import noun
-from ptmcad.exact.continua import has_others
+from ptmcad.exact.continua import is_free
 from ptmcad.exact.models.potential import deflections_of, geometry_of, system_from
 from ptmcad.exact.models.potential import potential as potential_of
-from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, at_point, polynomial_at, specialised
+from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, polynomial_at, specialised
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
 from ptmcad.exact.statics import PointModel, State, is_positive, pose_of, state_at
 from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, mechanism_in
@@ -58,8 +58,7 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int, m
         point, found = _solutions(system, values, most)
     except DegeneratePoint:
         what = "equilibria" if system.has_index or mechanism_in(given) is not None else "solutions"
-        proved = has_others(system) and not all(at_point(system, values)[0])
-        remark = f"infinitely many {what}{'' if proved else ', complex ones included'}"
+        remark = f"infinitely many {what}{'' if is_free(system, values) else ', complex ones included'}"
         return Poses(given, parameters, (), Status.UNDECIDED, digits, 0, remark)
     # where equations are simpler in other angles there are more coordinates than those of the unknowns
     real = [replace(p, unknowns=p.unknowns[: system.ring.width]) for p in found.real]

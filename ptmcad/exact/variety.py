@@ -93,6 +93,7 @@ def discriminant_variety(
     InfiniteSolutionsError, DegenerateSliceError
         When every point of the slice is exceptional.
     """
+    described = system
     if system.turns is not None:
         system = system.turns.system  # with the same solutions, and the same determinant but for its sign
     given = on_slice(system, parameters)
@@ -126,7 +127,7 @@ def discriminant_variety(
         for part in determinant(trace_form(algebra)):
             seen.adopt(irreducible_factors(part), Kind.AUXILIARY)
     components = tuple(
-        replace(c, continuum=continuum(from_plane(c.polynomial), system, parameters, given, jacobian_norm[0]))
+        replace(c, continuum=continuum(from_plane(c.polynomial), described, parameters, given, jacobian_norm[0]))
         if not c.left_out
         else c
         for c in seen.in_order()

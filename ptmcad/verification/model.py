@@ -229,11 +229,12 @@ def _check_free_lengths(claims: Claims, ring: _Ring) -> None:
             raise Violation(f"the spring {spring.name} has a free length, so that the map is of another mechanism")
 
 
-def equation_factors(claims: Claims) -> list[fmpz_mpoly]:
-    """For each equation on the slice, the common factor of its coefficients in Z[x, y]."""
+def equation_factors(claims: Claims, weights: Sequence[Sequence[int]] = ()) -> list[fmpz_mpoly]:
+    """For each equation on the slice, or sum of some by weights, the common factor of its coefficients in Z[x, y]."""
     true = _polynomials(claims.model)
     found = []
-    for equation in true.equations:
+    sums = [sum((w * e for w, e in zip(row, true.equations, strict=True)), 0 * true.equations[0]) for row in weights]
+    for equation in sums or true.equations:
         common = _PLANE.constant(0)
         for a, b in _on_slice(claims, true.ring, true.ring.normal(equation)).values():
             if not a.is_zero():

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from itertools import product
 from math import lcm
 
 from flint import fmpz_mpoly
@@ -113,14 +114,15 @@ def check_boundary(claims: Claims, seed: str) -> str:
 
 
 def _check_continuum(claims: Claims, number: int, curve: PlanePolynomial) -> None:
-    """On a component on which an equation vanishes: all solutions of the others are, whatever its unknown is.
+    """On a component on which an equation vanishes, or a sum of some, that is where some angles turn together.
 
     There are some where the equations are the slopes of a function on a torus, or there is no other.
     """
     model = claims.result.slice.model
     free = not (model.inequalities if isinstance(model, System) else isinstance(model, Mechanism) and model.moments)
     alone = len(model.unknowns) == 1
-    vanishes = any(curve in _vanishing(common) for common in equation_factors(claims))
+    weights = [row for row in product((-1, 0, 1), repeat=len(model.unknowns)) if any(row)]
+    vanishes = any(curve in _vanishing(common) for common in equation_factors(claims, weights))
     if not vanishes or model.reals or not free or not (alone or has_index(model)):
         raise Violation(f"component {number} is said to have infinitely many solutions, which is not proved")
 

@@ -39,6 +39,26 @@ axes: {a: [-1, 2], b: [-1, 1]}
 """
 """At a = b the potential depends on q alone, which is 0 or half a turn, with any p."""
 
+CHAIN = """
+name: chain
+mechanism:
+  parameters: {k: {kind: stiffness}, W: {kind: force, default: 1}}
+  unknowns: {a: angle, b: angle}
+  points:
+    O: [0, 0]
+    C: [0, 1]
+    A: [sin(a)/2, cos(a)/2]
+    P: [2*sin(a), 2*cos(a)]
+    B: [2*sin(a) + sin(b), 2*cos(a) + cos(b)]
+  bars: [[O, P], [P, B]]
+  supports: {O: pin, C: pin}
+  springs: [{between: [C, A], k: k}, {between: [O, B], k: 1}]
+  loads: {P: {weight: W}}
+axes: {k: [1, 8], W: [0, 2]}
+count: stable
+"""
+"""The balancer with a second bar that a spring pulls to the pivot: at k = 4 W both turn together."""
+
 PRODUCT = """
 name: product
 system:
@@ -67,13 +87,17 @@ def classified(record: str, folder: Path) -> dict[str, Any]:
 
 @pytest.mark.parametrize(
     ("record", "line", "at"),
-    [(BALANCER, "k - 4*W", {"k": "4", "W": "1"}), (PAIR, "a - b", {"a": "1/2", "b": "1/2"})],
-    ids=["one angle", "two angles"],
+    [
+        (BALANCER, "k - 4*W", {"k": "4", "W": "1"}),
+        (CHAIN, "k - 4*W", {"k": "4", "W": "1"}),
+        (PAIR, "a - b", {"a": "1/2", "b": "1/2"}),
+    ],
+    ids=["one angle", "two angles that turn together", "one of two angles"],
 )
 def test_every_command_names_the_line(
     record: str, line: str, at: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    many = "infinitely many equilibria" if record is BALANCER else "infinitely many solutions"
+    many = "infinitely many solutions" if record is PAIR else "infinitely many equilibria"
     document = classified(record, tmp_path)
     assert f"continua  {many} where {line} = 0" in capsys.readouterr().out
     assert [c["polynomial"] for c in document["components"] if c.get("continuum") == "infinitely many"] == [line]

@@ -264,6 +264,13 @@ def _one(parameters: Mapping[str, Ratio]) -> Coefficient:
     return next((constant_like(numerator, 1) for numerator, _ in parameters.values()), PLANE.constant(1))
 
 
+def common_on_slice(
+    system: ParametricSystem, p: TrigonometricPolynomial, parameters: Mapping[str, Ratio]
+) -> Coefficient:
+    """The common factor of an element's coefficients on a slice: where it is zero, the element vanishes identically."""
+    return common_factor(_without_denominators(_substitute(system, p, parameters, _one(parameters))).values())
+
+
 def _substitute(
     system: ParametricSystem, p: TrigonometricPolynomial, parameters: Mapping[str, Ratio], one: Coefficient
 ) -> dict[tuple[int, ...], Ratio]:
