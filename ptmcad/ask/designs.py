@@ -15,7 +15,7 @@ from typing import Any
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.design import BestDesign, Evaluation
 from ptmcad.ask.designing.optimiser import Enough, Point, best_of, within
-from ptmcad.ask.designing.proof import Limits, Proof, bounded, bounder_of, exact_maximum, place_of
+from ptmcad.ask.designing.proof import Limits, Proof, bounded, bounder_of, exact_maximum, place_of, special_lines
 from ptmcad.ask.designing.values import Evaluate, Value, evaluator
 from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError
@@ -138,10 +138,16 @@ class _Search:
         self._search(seed, evaluations or (UNPROVED * usual if isinstance(bounder, str) else usual))
         if isinstance(bounder, str):
             return Proof(None, bounder)
+        lines = special_lines(asked)
+        alone = evaluator(asked)
+        for line in lines:
+            if isinstance(line.value, Fraction):
+                self.look((line.value,), alone)
         proof = bounded(asked, bounder, self._improved, Limits(tolerance, boxes, self._go_on))
         if space is not None:
             self._confirm()
-        return proof
+        bound = None if proof.bound is None else max([proof.bound, *(line.most for line in lines)])
+        return proof._replace(bound=bound)
 
     def _search(self, seed: int, most: int) -> None:
         bounds = [(axis.low, axis.high) for axis in self.asked.over]
@@ -190,11 +196,12 @@ class _Search:
     def _named(self, point: Point) -> dict[str, Fraction]:
         return dict(zip((axis.name for axis in self.asked.over), point, strict=True))
 
-    def look(self, point: Point) -> Value | None:
+    def look(self, point: Point, value_of: Evaluate | None = None) -> Value | None:
         """The value at a design, evaluated once."""
-        if point not in self.points:
-            assert self.value_of is not None  # made before the first look
-            found = self.points[point] = self.value_of(self._named(point))
+        value_of = value_of or self.value_of
+        if self.points.get(point) is None:
+            assert value_of is not None  # made before the first look
+            found = self.points[point] = value_of(self._named(point))
             if found is not None and (self.best is None or found.value.low > self.best[1].value.low):
                 self.best = (point, found)
         return self.points[point]
@@ -211,8 +218,6 @@ class _Search:
     def _exactly(self, maxima: Sequence[Any], evaluations: int) -> Proof:
         """The proof by exact critical values of the one parameter, and a curve of values for the picture."""
         (axis,) = self.asked.over
-        if not maxima:
-            return Proof(Fraction(0), "by exact critical values: there is no such range within the bounds")
         places = [place_of(m) for m in maxima]
         inside = [min(max(p, axis.low), axis.high) for p in places]
         steps = evaluations
@@ -225,8 +230,9 @@ class _Search:
                 break
             self.report("designs", number, len(wanted))
             self.look((value,))
-        where = " and ".join(sorted({m.place.value.replace("the other axis", axis.name) for m in maxima}))
-        return Proof(max(m.width.high for m in maxima), f"by exact critical values: {where}")
+        where = "; ".join(m.words(axis.name) for m in maxima) or "there is no such range within the bounds"
+        bound = max((m.width.high for m in maxima), default=Fraction(0))
+        return Proof(bound, f"by exact critical values: {where}", maxima=tuple(maxima))
 
     def answer(self, proof: Proof, tolerance: Fraction, seed: int) -> BestDesign:
         """What was found and proved, as data."""
@@ -256,4 +262,5 @@ class _Search:
             points=tuple(Evaluation(p, None if v is None else v.value) for p, v in self.points.items()),
             boxes=proof.boxes,
             parameters=asked.text,
+            maxima=proof.maxima,
         )

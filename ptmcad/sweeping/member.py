@@ -169,15 +169,22 @@ def bounds(low: Fraction, high: Fraction) -> Bounds:
 def _widest(slice: Slice, along: str) -> Widest:
     """The widest operation range, or why that is not known."""
     from ptmcad.exact.ranges.strips import strips
-    from ptmcad.exact.ranges.width import largest
+    from ptmcad.exact.ranges.width import widest
 
     try:
-        maxima = largest(strips(slice, along).found)
+        maxima = widest(slice, along, strips(slice, along))
     except (ConfigError, HypothesisError) as error:
         return Widest(along, remark=str(error))
     if not maxima:
         return Widest(along)
-    return Widest(along, _width(maxima), tuple(bounds(m.at.low, m.at.high) for m in maxima), maxima[0].place.value)
+    over = next(name for name in slice.axis_names if name != along)
+    return Widest(
+        along,
+        _width(maxima),
+        tuple(bounds(m.at.low, m.at.high) for m in maxima),
+        "; ".join(m.words(over) for m in maxima),
+        attainment=maxima[0].attainment.value,
+    )
 
 
 def _width(maxima: tuple[Maximum, ...]) -> Bounds:

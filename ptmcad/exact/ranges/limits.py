@@ -1,7 +1,8 @@
-"""The limits of an operation range at a rational end of a strip, and chords from them that bound its width.
+"""The limits of an operation range at an end of a strip, and a neighbourhood in which it is narrower than there.
 
 Guarantee: `limit` is the branch's limit, and over `chord_length` the range stays between two parallel chords from its
-limits; None means that this was not proved.
+limits; over `narrowing_length` its two ends draw nearer to one another, seen from a line of some slope, all the way
+from the limits. None means that this was not proved.
 """
 
 from __future__ import annotations
@@ -13,10 +14,14 @@ from flint import fmpq
 
 from ptmcad.algebra.chords import side_of_chord
 from ptmcad.algebra.numbers import as_interval, fibre_roots, refined, root_of
-from ptmcad.algebra.real_roots import simplest_between
+from ptmcad.algebra.polynomials import PLANE, UnivariatePolynomial
+from ptmcad.algebra.real_roots import isolate, sign, sign_at, simplest_between
+from ptmcad.algebra.resultants import resultant
+from ptmcad.algebra.slopes import tangent_resultant
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.intervals import End
-from ptmcad.exact.ranges.strips import Branch, Strip, at_abscissa, bound_over
+from ptmcad.exact.cad.stacks import BaseEnd
+from ptmcad.exact.ranges.strips import Branch, Strip, at_abscissa, bound_over, end_interval
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 
@@ -27,26 +32,95 @@ def ends_of(end: End) -> Interval:
     return as_interval(end)
 
 
-def limit(branch: Branch, strip: Strip, end: fmpq, width: fmpq) -> End | None:
-    """The limit of a branch at a rational end of its strip; None when it could not be separated from other points."""
+def limit(branch: Branch, strip: Strip, end: BaseEnd, width: fmpq) -> End | None:
+    """The limit of a branch at an end of its strip; None when it could not be separated from other points."""
     if branch.curve is None:
         return to_fraction(branch.edge)
     margin = strip.fibre[1] - strip.fibre[0]
     wide = (strip.fibre[0] - margin, strip.fibre[1] + margin)
-    distance = strip.sample - end
-    fibre = branch.curve.fibre(end)
-    for _ in range(60):
-        u = end + distance
-        over = (min(u, end), max(u, end))
-        at = at_abscissa(branch, u, strip.fibre, abs(distance) / 2**10)
-        top = bound_over(branch, at.high, 1, over, wide)
-        bottom = bound_over(branch, at.low, -1, over, wide)
+    at = end_interval(end, width)
+    distance = strip.sample - at[0]
+    if at[0] == at[1]:
+        fibre = branch.curve.fibre(at[0])
+    else:
+        assert end.root is not None
+        fibre = resultant(branch.curve.in_u, [UnivariatePolynomial([c]) for c in end.root.polynomial.coeffs()])
+    for _ in range(50):
+        u = at[0] + distance
+        over = (min(u, at[0]), max(u, at[1]))
+        found = at_abscissa(branch, u, strip.fibre, abs(distance) / 2**10)
+        top = bound_over(branch, found.high, 1, over, wide)
+        bottom = bound_over(branch, found.low, -1, over, wide)
         if top is not None and bottom is not None:
-            found = fibre_roots(fibre, bottom, top)
-            if len(found) == 1:
-                return refined(found[0], to_fraction(width))
+            roots = fibre_roots(fibre, bottom, top)
+            if len(roots) == 1:
+                return refined(roots[0], to_fraction(width))
         distance = distance / 4
     return None
+
+
+def narrowing_length(strip: Strip, end: BaseEnd, width: fmpq) -> fmpq | None:
+    """A length from an end within which the range gets narrower away from it; None if not proved.
+
+    For some slope s, v - s u of the lower branch does not fall away from the end, that of the upper one does not rise,
+    and one of them moves: no point of either has a tangent of this slope, but over the end itself.
+    """
+    at = end_interval(end, width)
+    whole = strip.sample - at[0]
+    slopes = [fmpq(0)]
+    for bits in (6, 20):
+        run = whole / 2**bits
+        rises = []
+        for branch in (strip.low, strip.high):
+            near, far = (at_abscissa(branch, at[0] + r, strip.fibre, abs(run) / 2**40) for r in (run / 2**bits, run))
+            rises.append((far.middle - near.middle) / (run - run / 2**bits))
+        if rises[0] != rises[1]:
+            slopes.append(simplest_between(*sorted(rises)))
+    for slope in slopes:
+        length = abs(whole)
+        for branch in (strip.low, strip.high):
+            length = min((length, *(abs(u - at[0]) / 2 for u in _tangents(branch, strip, end, slope))))
+        run = length if whole > 0 else -length
+        if (at[1] - at[0]) * 4 < length:
+            over = (at[0] + run / 2, at[0] + run)
+            lower, upper = (_moves(branch, strip, over, slope) for branch in (strip.low, strip.high))
+            if lower is not None and upper is not None and lower >= 0 >= upper and lower > upper:
+                return length
+    return None
+
+
+def _tangents(branch: Branch, strip: Strip, end: BaseEnd, slope: fmpq) -> list[fmpq]:
+    """Bounds, from the end, of the other abscissae of the strip at which the curve may have a tangent of a slope."""
+    if branch.curve is None:
+        return []
+    p = PLANE.from_dict(
+        {(v, u): int(c) for v, row in enumerate(branch.curve.in_v) for u, c in enumerate(row.coeffs()) if c}
+    )
+    try:
+        found = tangent_resultant(p, (int(slope.p), int(slope.q)))
+    except ArithmeticError:  # the curve is a line of this slope
+        return []
+    if end.root is not None and not divmod(found, end.root.polynomial)[1]:
+        found = found // end.root.polynomial
+    elif end.root is None and sign_at(found, end.value) == 0:
+        found = found // UnivariatePolynomial([-int(end.value.p), int(end.value.q)])
+    at = end_interval(end, fmpq(1, 2**80))
+    low, high = (at[0], strip.sample) if strip.sample > at[0] else (strip.sample, at[1])
+    return [root.low if strip.sample > at[0] else root.high for root in isolate(found, low, high)]
+
+
+def _moves(branch: Branch, strip: Strip, over: Interval, slope: fmpq) -> int | None:
+    """The sign of what v - s u grows by from one abscissa to another; None when it is too small to be seen."""
+    first, second = over
+    difference = -slope * (second - first)
+    if branch.curve is None:
+        return sign(difference)
+    if len(branch.curve.in_v) == 2 and branch.curve.in_v[1].degree() == 0 and branch.curve.in_v[0].degree() <= 1:
+        row = branch.curve.in_v
+        return sign(difference - fmpq(row[0][1], row[1][0]) * (second - first))
+    near, far = (at_abscissa(branch, u, strip.fibre, abs(second - first) / 2**200) for u in (first, second))
+    low, high = difference + far.low - near.high, difference + far.high - near.low
+    return sign(low) if low > 0 or high < 0 else None
 
 
 def chord_length(strip: Strip, end: fmpq, direction: int, limits: tuple[End, End]) -> fmpq | None:

@@ -19,12 +19,12 @@ def written_changes(found: Changes) -> dict[str, Any]:
     return {
         "complete": found.complete,
         "reason": found.reason,
-        "found": [{"value": _written(change.value), "words": list(change.words)} for change in found.changes],
+        "found": [{"value": number_data(change.value), "words": list(change.words)} for change in found.changes],
         "between": [
             {"value": text_of(value), "arrangement": _written_arrangement(arrangement)}
             for value, arrangement in zip(found.between, found.arrangements, strict=True)
         ],
-        "others": [_written(number) for number in found.others],
+        "others": [number_data(number) for number in found.others],
         "at_ends": [list(words) for words in found.at_ends],
     }
 
@@ -41,8 +41,8 @@ def changes_from(data: Any, free: Axis) -> Changes:
     ValueError, KeyError, TypeError, AttributeError
         When the data are not of this kind.
     """
-    found = tuple(Change(_value(change["value"]), _words(change["words"])) for change in data["found"])
-    others = tuple(_value(number) for number in data["others"])
+    found = tuple(Change(number_from(change["value"]), _words(change["words"])) for change in data["found"])
+    others = tuple(number_from(number) for number in data["others"])
     low, high = data["at_ends"]
     if not isinstance(data["complete"], bool):
         raise TypeError("complete is neither true nor false")
@@ -67,14 +67,22 @@ def changes_from(data: Any, free: Axis) -> Changes:
     )
 
 
-def _written(value: AlgebraicNumber | Enclosure) -> dict[str, Any]:
+def number_data(value: AlgebraicNumber | Enclosure) -> dict[str, Any]:
+    """A number for JSON: what `number_from` reads."""
     ends = {"low": text_of(value.low), "high": text_of(value.high)}
     if isinstance(value, AlgebraicNumber):
         return {"polynomial": [integer_text(c) for c in value.polynomial], **ends}
     return ends
 
 
-def _value(data: Any) -> AlgebraicNumber | Enclosure:
+def number_from(data: Any) -> AlgebraicNumber | Enclosure:
+    """An algebraic number, or an enclosure where there is no polynomial.
+
+    Raises
+    ------
+    ValueError, KeyError, TypeError, AttributeError
+        When the data are not of this kind.
+    """
     low, high = fraction_of(data["low"]), fraction_of(data["high"])
     if low > high:
         raise ValueError("the ends of an interval are exchanged")

@@ -14,6 +14,7 @@ from ptmcad.answer.design import BestDesign, BoundedBox, Evaluation
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Model, built_in, described, described_system, known_of, recognised, without_loops
 from ptmcad.question.slice import Axis
+from ptmcad.show.document.extremes import maximum_data, maximum_from
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import fraction_of, text_of
 from ptmcad.version import __version__
@@ -24,6 +25,9 @@ _KEYS = frozenset((
     "format", "name", "model", "maximise", "along", "window", "over", "stable", "conditions", "parameters", "best",
     "value", "span", "bound", "tolerance", "proved", "reason", "seed", "points", "boxes", "versions",
 ))  # fmt: skip
+_EXTREMES = "extremes"
+"""A key that older documents do not have."""
+_DIGITS = 10
 
 
 def write_design(found: BestDesign) -> str:
@@ -46,6 +50,7 @@ def write_design(found: BestDesign) -> str:
         "tolerance": text_of(found.tolerance),
         "proved": found.proved,
         "reason": found.reason,
+        _EXTREMES: [maximum_data(m, found.over[0].name, _DIGITS) for m in found.maxima],
         "seed": found.seed,
         "points": [
             {"at": [text_of(x) for x in point.at], "value": None if point.value is None else _ends(point.value)}
@@ -78,7 +83,7 @@ def read_design(text: str) -> BestDesign:
     data = json.loads(text)
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise ValueError(f"it is not of the format {FORMAT}")
-    if set(data) != _KEYS:
+    if set(data) | {_EXTREMES} != _KEYS | {_EXTREMES}:
         raise ValueError("it has other keys than a design")
     try:
         found = _design(data)
@@ -106,6 +111,7 @@ def _design(data: Mapping[str, Any]) -> BestDesign:
         tolerance=fraction_of(data["tolerance"]),
         proved=_truth(data["proved"]),
         reason=_line(data["reason"]),
+        maxima=tuple(map(maximum_from, data.get(_EXTREMES, ()))),
         seed=_whole(data["seed"]),
         points=tuple(
             Evaluation(
