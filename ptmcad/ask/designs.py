@@ -15,7 +15,16 @@ from typing import Any
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.design import BestDesign, Evaluation
 from ptmcad.ask.designing.optimiser import Enough, Point, best_of, within
-from ptmcad.ask.designing.proof import Limits, Proof, bounded, bounder_of, exact_maximum, place_of, special_lines
+from ptmcad.ask.designing.proof import (
+    Limits,
+    Proof,
+    bounded,
+    bounder_of,
+    exact_maximum,
+    place_of,
+    special_lines,
+    with_lines,
+)
 from ptmcad.ask.designing.values import Evaluate, Value, evaluator
 from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError
@@ -146,8 +155,7 @@ class _Search:
         proof = bounded(asked, bounder, self._improved, Limits(tolerance, boxes, self._go_on))
         if space is not None:
             self._confirm()
-        bound = None if proof.bound is None else max([proof.bound, *(line.most for line in lines)])
-        return proof._replace(bound=bound)
+        return with_lines(proof, lines)
 
     def _search(self, seed: int, most: int) -> None:
         bounds = [(axis.low, axis.high) for axis in self.asked.over]

@@ -150,7 +150,9 @@ def _beside(value: AlgebraicNumber | Enclosure, gap: Fraction) -> tuple[Fraction
     """Values below and above a change; the ends of an enclosure, which are members."""
     if isinstance(value, AlgebraicNumber):
         near = value.refined(gap / 4)
-        return simple_between(near.low - gap * 3 / 4, near.low - gap / 2), simple_between(near.high + gap / 2, near.high + gap * 3 / 4)
+        return simple_between(near.low - gap * 3 / 4, near.low - gap / 2), simple_between(
+            near.high + gap / 2, near.high + gap * 3 / 4
+        )
     return value.low, value.high
 
 

@@ -20,11 +20,13 @@ from ptmcad.answer.design import BestDesign, BoundedBox
 from ptmcad.answer.intervals import End, Span, lower, upper
 from ptmcad.errors import ExpressionError
 from ptmcad.options import Progress
+from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import shortest_text
 from ptmcad.text.parsing import names_in, parse
+from ptmcad.verification.attainment import Lines, check_maxima
 from ptmcad.verification.derivation import parameters_of
 from ptmcad.verification.line import Line, NotKnown
 from ptmcad.verification.report import Check, Headway, Unchecked, VerifyReport, Violation, checked
@@ -56,7 +58,11 @@ class _Lines:
         if not self.holds(design):
             return []
         known = {name: constant(at) for name, at in design.items()} | {along.name: axis(0)}
-        return Line(self.found.model, self._parameters(known), along.low, along.high).ranges(self.found.working)
+        return self.line(known, along).ranges(self.found.working)
+
+    def line(self, known: dict[str, Expression], along: Axis) -> Line:
+        """The line along an axis, by what the other parameters are on it."""
+        return Line(self.found.model, self._parameters(known), along.low, along.high)
 
     def _parameters(self, known: dict[str, Expression]) -> dict[str, Expression]:
         """The model's parameters, by what the document and the model say of them."""
@@ -117,6 +123,7 @@ def verify_design(found: BestDesign, seed: int | None = None, progress: Progress
         ("boxes", "disjoint; what is left, halved", _check_boxes),
         ("values", "ranges of each design by itself", partial(_check_values, within=headway.within)),
         ("bound", "ranges of random designs", partial(_check_bound, seed=drawn)),
+        ("extremes", "ranges on the lines themselves", _check_extremes),
     )
     checks = checked(_Lines(found), steps, (), headway)
     checks.append(Check("bound of every design", "", None, "that no design exceeds its box's bound, beyond samples"))
@@ -187,7 +194,9 @@ def _check_boxes(lines: _Lines) -> str:
             if halvings == _HALVINGS:
                 open_ += 1
                 continue
-            k = max(range(len(part)), key=lambda k: (part[k][1] - part[k][0]) / (found.over[k].high - found.over[k].low))
+            k = max(
+                range(len(part)), key=lambda k: (part[k][1] - part[k][0]) / (found.over[k].high - found.over[k].low)
+            )
             cuts, halvings = [(k, sum(part[k]) / 2)], halvings + 1
         k, cut = cuts[0]
         for ends in ((part[k][0], cut), (cut, part[k][1])):
@@ -272,6 +281,27 @@ def _check_bound(lines: _Lines, seed: str) -> str:
     if not settled:
         return Unchecked(f"of {len(boxes)} random designs nothing was found out")
     return f"at {settled} random designs no range is longer than the bound of their box"
+
+
+def _check_extremes(lines: _Lines) -> str:
+    found = lines.found
+    if not found.maxima or found.along is None:
+        return Unchecked("none is claimed")
+    along, over = found.along, found.over[0]
+    words = "; ".join(m.words(over.name) for m in found.maxima)
+    if found.reason != f"by exact critical values: {words}" or len(found.over) > 1 or found.conditions:
+        raise Violation("the reason does not say what the extremes do")
+    if found.bound != max(m.width.high for m in found.maxima):
+        raise Violation("the bound is not the largest of the extremes")
+    both = Lines(
+        lambda value: lines.line({over.name: constant(value), along.name: axis(0)}, along),
+        lambda value: lines.line({along.name: constant(value), over.name: axis(0)}, over),
+        along, over, found.working,
+    )  # fmt: skip
+    try:
+        return check_maxima(both, found.maxima)
+    except NotKnown as reason:
+        return Unchecked(str(reason))
 
 
 def _share(source: random.Random) -> Fraction:

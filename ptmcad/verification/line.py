@@ -1,4 +1,4 @@
-"""Solutions along one parameter: the values at which counts can change, read off one fibre, and the counts between them.
+"""Solutions along one parameter: the values at which counts can change, read off one fibre, and counts between.
 
 The norms of the Jacobian's determinant and of all conditions, and a sum of traces, whose poles are where solutions
 leave every bounded set, are rational functions of the parameter. The digits of its value over a large integer are the
@@ -73,13 +73,20 @@ class Line:
         NotKnown
             When there are infinitely many solutions, or a parameter has a pole.
         """
-        values = self._values_at(value)
+        values = self.values_at(value)
         try:
             return None if not_positive(self.model, values) is not None else fibre(self.model, values).counts()
         except NotFinite:
             raise NotKnown("there are infinitely many solutions") from None
 
-    def _values_at(self, value: Fraction) -> dict[str, Fraction]:
+    def values_at(self, value: Fraction) -> dict[str, Fraction]:
+        """The parameters at a point.
+
+        Raises
+        ------
+        NotKnown
+            When one has a pole there.
+        """
         try:
             return {n: e.evaluate(value, Fraction(0)) for n, e in self.parameters.items()}
         except PoleError as error:
@@ -114,7 +121,7 @@ class Line:
         NotKnown
         """
         try:
-            found = fibre(self.model, self._values_at(Fraction(at)))
+            found = fibre(self.model, self.values_at(Fraction(at)))
         except NotFinite:
             raise NotKnown("there are infinitely many solutions at random points") from None
         norms = [found.norm(), *(found.norm_where_nonzero(p) for p in found.conditions)]

@@ -353,3 +353,53 @@ def test_the_picture_says_it(tmp_path: Path) -> None:
     asked(["range", "--along", "a", "--over", "b", "--rows", "1", "--format", "svg"], tmp_path, record)
     (path,) = (tmp_path / "out").glob("*.svg")
     assert "approached but not attained at b = 0" in path.read_text(encoding="utf-8")
+
+
+def verdict(folder: Path, data: Any, capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
+    path = folder / "altered.json"
+    path.write_text(json.dumps(data), encoding="utf-8")
+    capsys.readouterr()
+    status = run(["verify", str(path)])
+    return status, capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_verify_checks_what_a_design_says_of_attainment(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The true document holds; with the other word, or without the exception, it is false."""
+    equation, count, *_ = DESIGNS[name]
+    record = (
+        f"system: {{unknowns: {{x: real}}, equations: [{equation}]}}\naxes: {{a: [-2, 2], b: [-1, 1]}}\n"
+        f"design: {{maximise: range, along: a, over: {{b: [-1, 1]}}, where: {{stable: {count}}}}}\n"
+    )
+    asked(["design", "--format", "json", "--evaluations", "5"], tmp_path, record)
+    data = document(tmp_path)
+    status, out = verdict(tmp_path, data, capsys)
+    assert status == 0 and "FALSE" not in out
+    (extreme,) = data["extremes"]
+    before = extreme["text"]
+    if extreme["except"]:
+        extreme |= {"except": [], "attainment": ATTAINED, "text": before.partition(" except")[0]}
+    else:
+        other = ATTAINED if extreme["attainment"] == APPROACHED else APPROACHED
+        extreme |= {"attainment": other, "text": before.replace(extreme["attainment"], other)}
+    data["reason"] = data["reason"].replace(before, extreme["text"])
+    status, out = verdict(tmp_path, data, capsys)
+    assert status == 1 and "FALSE        extremes" in out
+
+
+def test_words_that_are_not_those_of_the_numbers_are_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    equation, count, *_ = DESIGNS["approached"]
+    record = (
+        f"system: {{unknowns: {{x: real}}, equations: [{equation}]}}\naxes: {{a: [-2, 2], b: [-1, 1]}}\n"
+        f"design: {{maximise: range, along: a, over: {{b: [-1, 1]}}, where: {{stable: {count}}}}}\n"
+    )
+    asked(["design", "--format", "json", "--evaluations", "5"], tmp_path, record)
+    data = document(tmp_path)
+    data["extremes"][0]["text"] = f"attained at b = 0{CRITICAL}"
+    assert verdict(tmp_path, data, capsys)[0] == 2
+    del data["extremes"]  # as older documents, which say nothing that could be wrong
+    assert verdict(tmp_path, data, capsys)[0] == 0

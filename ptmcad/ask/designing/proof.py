@@ -5,7 +5,8 @@ Guarantee: that of `exact.ranges.width` and `exact.design.search`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -79,6 +80,19 @@ def special_lines(design: Design) -> tuple[SpecialLine, ...]:
     slice, (axis,) = design.slice({}), design.over
     lines = lines_of(slice, design.along, strips(slice, design.along, design.working))
     return tuple(line for line in lines if design.may_hold({axis.name: (lower(line.value), upper(line.value))}))
+
+
+def with_lines(proof: Proof, lines: Sequence[SpecialLine]) -> Proof:
+    """The proof with bounds that hold on special lines too."""
+    boxes = tuple(
+        replace(
+            box, bound=max([box.bound, *(x.most for x in lines if low <= upper(x.value) and lower(x.value) <= high)])
+        )
+        for box in proof.boxes
+        for low, high in box.ranges[:1]
+    )
+    bound = None if proof.bound is None else max([proof.bound, *(line.most for line in lines)])
+    return proof._replace(bound=bound, boxes=boxes)
 
 
 def place_of(maximum: Maximum) -> Fraction:

@@ -111,7 +111,7 @@ def _design(data: Mapping[str, Any]) -> BestDesign:
         tolerance=fraction_of(data["tolerance"]),
         proved=_truth(data["proved"]),
         reason=_line(data["reason"]),
-        maxima=tuple(map(maximum_from, data.get(_EXTREMES, ()))),
+        maxima=tuple(maximum_from(entry, data["over"][0]["name"], _DIGITS) for entry in data.get(_EXTREMES, ())),
         seed=_whole(data["seed"]),
         points=tuple(
             Evaluation(

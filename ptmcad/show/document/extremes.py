@@ -36,17 +36,17 @@ def maximum_data(found: Maximum, over: str, digits: int) -> dict[str, Any]:
     }
 
 
-def maximum_from(data: Mapping[str, Any]) -> Maximum:
+def maximum_from(data: Mapping[str, Any], over: str, digits: int) -> Maximum:
     """What `maximum_data` wrote; attainment is not decided where it is not told, as in older documents.
 
     Raises
     ------
     ValueError, KeyError, TypeError, AttributeError
-        When the data are not of this kind.
+        When the data are not of this kind, or words and decimals are not those of the numbers.
     """
     attainment = Attainment(data.get("attainment", Attainment.UNDECIDED.value))
     ends = data["ends"]
-    return Maximum(
+    found = Maximum(
         Place[data["place"].upper()],
         _enclosure_from(data["at"]),
         _enclosure_from(data["width"]),
@@ -56,6 +56,9 @@ def maximum_from(data: Mapping[str, Any]) -> Maximum:
         tuple(map(_value_from, data.get("except", ()))),
         tuple(map(_value_from, data.get("undecided", ()))),
     )
+    if "attainment" in data and maximum_data(found, over, digits) != data:
+        raise ValueError("the words or the decimals of an extreme are not those of its numbers")
+    return found
 
 
 def _enclosure_data(value: Enclosure, digits: int) -> dict[str, Any]:
