@@ -158,11 +158,14 @@ class Fibre:
         wanted = [*required, *(self.matrix(p) for p in self.point.stability)]
         return Counts(total, self._sum_of_signs(wanted, _identity(self.dimension)), None)
 
+    def number_of_real_solutions(self) -> int:
+        """Of different ones that count, degenerate ones among them."""
+        return self._sum_of_signs([self.matrix(q) for q in self.point.inequalities], _identity(self.dimension))
+
     def number_of_zeros(self, p: fmpq_mpoly) -> int:
         """Of the real solutions that count, the number of those at which a polynomial is zero."""
         required, square = [self.matrix(q) for q in self.point.inequalities], self.matrix(p) * self.matrix(p)
-        one = _identity(self.dimension)
-        return self._sum_of_signs(required, one) - self._sum_of_signs(required, square)
+        return self.number_of_real_solutions() - self._sum_of_signs(required, square)
 
     def balance(self) -> int:
         """The sum of the signs of the Jacobian's determinant over all real solutions."""
