@@ -6,13 +6,10 @@ Guarantee: a member's file is written as soon as its map is complete, so that an
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
-
-import click
+from typing import TYPE_CHECKING, NamedTuple
 
 from ptmcad.answer.changes import Changes
 from ptmcad.answer.family import FamilyMap
@@ -248,12 +245,3 @@ def read_family_file(path: Path, *, whole: bool = True) -> FamilyMap:
     return FamilyMap(
         stored.name, stored.free, stored.values, members, stored.surfaces, stored.title, stored.changes, stored.text
     )
-
-
-def each_member(family: FamilyMap, ask: Callable[[RegionMap], Any]) -> list[Any]:
-    """What is asked of every member of a family, each announced by its value."""
-    answers = []
-    for value, member in family:
-        click.echo(f"{family.free.name} = {text_of(value)}")
-        answers.append(ask(member))
-    return answers

@@ -46,8 +46,9 @@ has none."""
 
 
 def verify_changes(
-    found: Changes, maps_at: MapsAt, seed: int | None = None, progress: Progress | None = None
-) -> tuple[Check, ...]:
+    found: Changes, maps_at: MapsAt, seed: int | None = None,
+    progress: Progress | None = None,
+) -> tuple[Check, ...]:  # fmt: skip
     """Check where a family changes.
 
     Parameters
@@ -150,9 +151,8 @@ def _beside(value: AlgebraicNumber | Enclosure, gap: Fraction) -> tuple[Fraction
     """Values below and above a change; the ends of an enclosure, which are members."""
     if isinstance(value, AlgebraicNumber):
         near = value.refined(gap / 4)
-        return simple_between(near.low - gap * 3 / 4, near.low - gap / 2), simple_between(
-            near.high + gap / 2, near.high + gap * 3 / 4
-        )
+        places = ((near.low - gap * 3 / 4, near.low - gap / 2), (near.high + gap / 2, near.high + gap * 3 / 4))
+        return simple_between(*places[0]), simple_between(*places[1])
     return value.low, value.high
 
 

@@ -194,9 +194,8 @@ def _check_boxes(lines: _Lines) -> str:
             if halvings == _HALVINGS:
                 open_ += 1
                 continue
-            k = max(
-                range(len(part)), key=lambda k: (part[k][1] - part[k][0]) / (found.over[k].high - found.over[k].low)
-            )
+            shares = [(high - low) / (axis.high - axis.low) for axis, (low, high) in zip(found.over, part, strict=True)]
+            k = shares.index(max(shares))
             cuts, halvings = [(k, sum(part[k]) / 2)], halvings + 1
         k, cut = cuts[0]
         for ends in ((part[k][0], cut), (cut, part[k][1])):

@@ -49,6 +49,7 @@ class Gap(Span):
     """An interval without a critical value, and the counts in it."""
 
     counts: Counts
+    sample: Fraction
 
     @property
     def working(self) -> int:
@@ -147,10 +148,12 @@ class Line:
         ends: list[End] = [self.low, *inner, self.high]
         found = []
         for a, b in pairwise(ends):
-            counts = self.counts_at(simple_between(upper(a), lower(b)))
+            third = (lower(b) - upper(a)) / 3
+            sample = simple_between(upper(a) + third, lower(b) - third)
+            counts = self.counts_at(sample)
             if counts is None:
                 raise NotKnown("a solution is degenerate between critical values, or a parameter has no meaning")
-            found.append(Gap(a, b, counts))
+            found.append(Gap(a, b, counts, sample))
         return found
 
     def ranges(self, working: int) -> list[Span]:

@@ -41,7 +41,7 @@ def check_solutions(claims: Claims) -> str:
     for n, cell in enumerate(claims.result.cells):
         if len(cell.solutions) != cell.total:
             raise Violation(f"cell {n} has {len(cell.solutions)} boxes of solutions, but {cell.total} equilibria")
-        _check_disjoint(n, cell, claims.model)
+        check_disjoint(n, cell, claims.model)
         values = claims.parameters_at(*cell.sample)
         for k, solution in enumerate(cell.solutions):
             _check_signs(claims, values, solution, f"cell {n}: ", k)
@@ -59,7 +59,7 @@ def _check_signs(claims: Claims, values: Mapping[str, Fraction], solution: Solut
     ------
     Violation
     """
-    true = _signs(claims.model, values, solution)
+    true = signs_of(claims.model, values, solution)
     if true is None:
         raise Violation(f"{where}no solution was found in the box {k} around {_center(solution)}, "
                         f"radius {approximate_text(solution.radius)}")  # fmt: skip
@@ -94,7 +94,7 @@ def _center(solution: Solution) -> str:
     return "(" + ", ".join(map(approximate_text, solution.center)) + ")"
 
 
-def _check_disjoint(n: int, cell: Cell, model: Model) -> None:
+def check_disjoint(n: int, cell: Cell, model: Model) -> None:
     turning = 2 * len(model.angles)
     for k, s in enumerate(cell.solutions):
         far = any(abs(x) > 2 for x in s.center[:turning])
@@ -153,7 +153,7 @@ class _Functions:
         )
 
 
-def _signs(model: Model, values: Mapping[str, Fraction], solution: Solution) -> str | None:
+def signs_of(model: Model, values: Mapping[str, Fraction], solution: Solution) -> str | None:
     """The signs at a solution that counts and is proved to be in the box; None when none is found.
 
     Those of the Hessian's eigenvalues, or of the conditions for stability; where one of these is said to be zero it is

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from ptmcad.answer.arrangement import SIDES, Arrangement
-from ptmcad.answer.changes import Change, Changes
+from ptmcad.answer.changes import TOLERANCE, Change, Changes
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.numerals import fraction_of, integer_of, integer_text, text_of
@@ -19,6 +19,7 @@ def written_changes(found: Changes) -> dict[str, Any]:
     return {
         "complete": found.complete,
         "reason": found.reason,
+        "tolerance": text_of(found.tolerance),
         "found": [{"value": number_data(change.value), "words": list(change.words)} for change in found.changes],
         "between": [
             {"value": text_of(value), "arrangement": _written_arrangement(arrangement)}
@@ -64,6 +65,7 @@ def changes_from(data: Any, free: Axis) -> Changes:
         (_words(low), _words(high)),
         data["complete"],
         str(data["reason"]),
+        fraction_of(data["tolerance"]) if "tolerance" in data else TOLERANCE,
     )
 
 
