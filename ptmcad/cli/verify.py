@@ -151,6 +151,7 @@ def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> Ver
     from ptmcad.ask.classification import load_certified
     from ptmcad.cli.range_answers import answer, is_enclosed, request_codec
     from ptmcad.options import DEFAULTS
+    from ptmcad.show.document.extremes import maximum_from
     from ptmcad.show.document.node import Node
     from ptmcad.show.document.parts import SLICE
     from ptmcad.show.ranges.document import document
@@ -161,7 +162,9 @@ def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> Ver
     try:
         slice = SLICE.read(Node(data["slice"], "slice"))
         request = request_codec().read(Node(data["request"], "request"))
-        report = verify_range(data, slice, progress)
+        over = data.get("over", {"maxima": ()})
+        maxima = [maximum_from(entry, over["over"]["name"], request.digits) for entry in over["maxima"]]
+        report = verify_range(data, slice, progress, maxima)
     except (ValueError, KeyError, TypeError, AttributeError, IndexError) as error:
         raise ConfigError(f"is damaged or not a ptmcad-range/1 file: {error}", file=str(path)) from error
     if not report.ok:

@@ -30,9 +30,10 @@ from ptmcad.verification.report import Unchecked, Violation
 ACROSS = 3
 """Lines across, of which common critical values are taken."""
 INSIDE = 5
+"""Random values in an interval."""
 _POINTS = 40
 _NEAR = Fraction(1, 2**100)
-"""How far from a value a limit is looked at, as a share of the window, and what of it must be left."""
+"""How far from a value a limit is looked at, as a share of the window; and what of it is there at least."""
 _LEFT = Fraction(99, 100)
 
 
@@ -53,8 +54,10 @@ class Lines:
     over: Axis
     working: int
 
-    def has(self, value: Fraction, width: Fraction) -> bool | None:
+    def has(self, value: End, width: Fraction) -> bool | None:
         """Whether the longest range on a line is at least so long; None where that was not found out."""
+        if not isinstance(value, Fraction):
+            return None
         line = self.at(value)
         try:
             return max((span.width.high for span in line.ranges(self.working)), default=Fraction(0)) >= width
@@ -64,27 +67,20 @@ class Lines:
             low, high = max(pairwise(others), key=lambda pair: pair[1] - pair[0])
             if high - low < width:
                 return False
-            point = low + (high - low) * Fraction(7, 15)
-            if self._counted(line, point) is not False:
-                return None
-            others = sorted([*others, point])
+            others = sorted([*others, low + (high - low) * Fraction(7, 15)])
+            if self._may_count(line, low + (high - low) * Fraction(7, 15)):
+                break
         return None
 
-    def _counted(self, line: Line, point: Fraction) -> bool | None:
-        """Whether there is the wanted count, of different solutions, at a point where some may be degenerate."""
+    def _may_count(self, line: Line, point: Fraction) -> bool:
+        """Whether there may be the wanted count at a point, at which solutions may be degenerate."""
         try:
             found = fibre(line.model, line.values_at(point))
         except NotFinite:  # of one unknown infinitely many count, or none
-            return False if len(line.model.unknowns) == 1 and self.working else None
+            return len(line.model.unknowns) > 1 or not self.working
         except NotKnown:  # a parameter has a pole
             return False
-        if found.dimension == 0:
-            return self.working == 0
-        counts, number = found.counts(), found.number_of_real_solutions()
-        if counts is not None:
-            return (counts.total if counts.stable is None else counts.stable) == self.working
-        tells = found.point.has_index or bool(found.point.stability)
-        return number == self.working if number < self.working or not tells else None
+        return bool(found.dimension) and found.number_of_real_solutions() >= self.working
 
     def exceptional(self) -> list[Fraction]:
         """The rational values inside of the window at which the whole line is exceptional.
@@ -93,17 +89,17 @@ class Lines:
         ------
         NotKnown
         """
-        source = random.Random(f"{self.along} {self.over}")
         common = fmpz_poly([0])
-        for _ in range(ACROSS):
-            common = common.gcd(self.across(_between(source, self.along.low, self.along.high)).critical)
+        for value in _between(self.along.low, self.along.high, ACROSS):
+            common = common.gcd(self.across(value).critical)
         linear = [factor for factor, _ in common.factor()[1] if factor.degree() == 1]
         values = [Fraction(-int(factor[0]), int(factor[1])) for factor in linear]
         return [value for value in values if self.over.low < value < self.over.high]
 
 
-def _between(source: random.Random, low: Fraction, high: Fraction) -> Fraction:
-    return low + (high - low) * Fraction(source.randrange(1, 2**20), 2**20)
+def _between(low: Fraction, high: Fraction, number: int) -> list[Fraction]:
+    source = random.Random(f"{low} {high}")
+    return [low + (high - low) * Fraction(source.randrange(1, 64), 64) for _ in range(number)]
 
 
 def check_maxima(lines: Lines, maxima: Sequence[Maximum]) -> str:
@@ -111,41 +107,31 @@ def check_maxima(lines: Lines, maxima: Sequence[Maximum]) -> str:
 
     Raises
     ------
-    Violation
+    Violation, NotKnown
     """
     over, unknown = lines.over, 0
-    most = max((m.width.high for m in maxima), default=Fraction(0))
+    reach = (over.high - over.low) * _NEAR
     special = [over.low, *lines.exceptional(), over.high]
-    for value in special:
-        if lines.has(value, most + (lines.along.high - lines.along.low) * _NEAR):
-            raise Violation(f"at {over.name} = {shortest_text(value)} there is a longer range than the longest one")
-    source = random.Random(str(maxima))
+    claims: list[tuple[End, Fraction, bool]] = []
+    most = max((m.width.high for m in maxima), default=Fraction(0))
+    claims += [(value, most + reach, False) for value in special]
     for m in maxima:
-        claims: dict[End, bool] = {}
+        known = len(claims)
         if m.place is Place.PLATEAU:
-            inside = [_between(source, m.at.low, m.at.high) for _ in range(INSIDE)]
-            whole: list[End] = [
-                m.at.low,
-                *inside,
-                *(value for value in special if m.at.low <= value <= m.at.high),
-                m.at.high,
-            ]
-            claims = dict.fromkeys(whole, True)
-            claims |= dict.fromkeys(m.exceptions, False)
-            claims = {at: attained for at, attained in claims.items() if at not in m.doubtful}
+            inside = [*_between(m.at.low, m.at.high, INSIDE), *(v for v in special if m.at.low <= v <= m.at.high)]
+            claims += [(v, m.width.low, True) for v in inside if v not in (*m.exceptions, *m.doubtful)]
+            claims += [(v, m.width.low, False) for v in m.exceptions]
         elif m.at.exact is not None and m.attained is not None:
-            claims = {m.at.exact: m.attained}
-        unknown += not claims
-        for at, attained in claims.items():
-            found = lines.has(at, m.width.low) if isinstance(at, Fraction) else None
-            unknown += found is None
-            if found is (not attained):
-                words = "no range so long" if attained else "a range so long"
-                raise Violation(f"at {over.name} = {shortest_text(lower(at))} there is {words} as the longest one")
-        if m.attained is False and m.at.exact is not None:
-            reach = (over.high - over.low) * _NEAR
+            claims.append((m.at.exact, m.width.low, m.attained))
             sides = [v for v in (m.at.exact - reach, m.at.exact + reach) if over.low < v < over.high]
-            if all(lines.has(value, m.width.low * _LEFT) is False for value in sides):
-                raise Violation(f"beside {over.name} = {shortest_text(m.at.exact)} ranges do not come near the longest")
-    told = f"{len(maxima)} places, {len(special)} lines"
-    return Unchecked(f"{told}; {unknown} claims were not decided") if unknown else told
+            if not m.attained and all(lines.has(v, m.width.low * _LEFT) is False for v in sides):
+                raise Violation(f"beside {over.name} = {shortest_text(m.at.exact)} no range comes near the longest one")
+        unknown += len(claims) == known
+    for value, width, expected in claims:
+        found = lines.has(value, width)
+        unknown += found is None
+        if found is (not expected):
+            words = "no range so long as is said" if expected else "a longer range than is said"
+            raise Violation(f"at {over.name} = {shortest_text(lower(value))} there is {words}")
+    told = f"{len(claims)} claims of {len(maxima)} places"
+    return Unchecked(f"{told}; {unknown} were not decided") if unknown else told

@@ -9,11 +9,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 from flint import fmpz_poly
 
 from ptmcad.answer.intervals import End
+from ptmcad.answer.widths import Maximum
 from ptmcad.options import Progress
 from ptmcad.question.slice import Count, Point, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
@@ -21,6 +23,7 @@ from ptmcad.text.expressions import axis, constant
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import fraction_of, integer_of, shortest_text
 from ptmcad.text.parsing import parse
+from ptmcad.verification.attainment import Lines, check_maxima
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.points import counting_of
 from ptmcad.verification.claims import Claims
@@ -33,7 +36,6 @@ from ptmcad.verification.sturm import roots_within
 _NEAR = 2**7
 """Counts of enclosed intervals are looked at so small shares of them beside both ends."""
 UNCHECKED = {
-    "over": ("largest widths", "where the width is largest, and whether it is attained"),
     "path": ("paths", "that poses are joined as it is said, and where a mechanism snaps to"),
     "critical": ("critical free lengths", "that they are all"),
     "branches": ("branches", "the points of the curves"),
@@ -42,19 +44,23 @@ UNCHECKED = {
 }
 
 
-def verify_range(data: Mapping[str, Any], slice: Slice, progress: Progress | None = None) -> VerifyReport:
+def verify_range(
+    data: Mapping[str, Any], slice: Slice, progress: Progress | None = None, maxima: Sequence[Maximum] = ()
+) -> VerifyReport:
     """Check the document of ``ptmcad range`` without the code that made it.
 
     Parameters
     ----------
     slice : of which the document is.
+    maxima : where it says that ranges over the other axis are longest.
     """
     steps = [
-        (part, f"intervals of the {name}", method, check)
+        (part, name, method, check)
         for part, name, method, check in (
-            ("line", "line", "norms read off one fibre, signatures", _check_line),
-            ("over", "rows", "norms read off one fibre, signatures", _check_rows),
-            ("enclosed", "enclosed line", "Krawczyk's test and exclusion in balls", _check_enclosed),
+            ("line", "intervals of the line", "norms read off one fibre, signatures", _check_line),
+            ("over", "intervals of the rows", "norms read off one fibre, signatures", _check_rows),
+            ("over", "extremes", "ranges on the lines themselves", partial(_check_extremes, maxima=maxima)),
+            ("enclosed", "intervals of the enclosed line", "Krawczyk's test and exclusion in balls", _check_enclosed),
         )
         if part in data
     ]
@@ -101,6 +107,21 @@ def _check_rows(asked: _Asked) -> str:
     if unknown:
         return Unchecked(f"{len(found['rows']) - unknown} rows; of {unknown} more nothing was found out")
     return f"{len(found['rows'])} rows"
+
+
+def _check_extremes(asked: _Asked, maxima: Sequence[Maximum]) -> str:
+    data, slice = asked
+    found = data["over"]
+    if "stable" not in found:
+        return Unchecked("an earlier version made it: attainment is not told")
+    along, over = (next(a for a in slice.axes if a.name == found[key]["name"]) for key in ("along", "over"))
+    lines = Lines(
+        partial(_line, slice, found["along"]), partial(_line, slice, found["over"]), along, over, found["stable"]
+    )
+    try:
+        return check_maxima(lines, maxima)
+    except NotKnown as reason:
+        return Unchecked(str(reason))
 
 
 def _check_intervals(line: Line, entries: Sequence[Mapping[str, Any]], working: int | None) -> None:

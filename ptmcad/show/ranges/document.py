@@ -105,6 +105,7 @@ def over_data(found: OperationWidths, digits: int) -> dict[str, Any]:
     return {
         "along": _axis(found.along),
         "over": _axis(found.over),
+        "stable": found.working,
         "rows": [
             {
                 "value": text_of(row.value),
