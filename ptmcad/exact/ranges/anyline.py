@@ -18,7 +18,7 @@ from fractions import Fraction
 from itertools import groupby
 from typing import NamedTuple
 
-from flint import fmpq, fmpz_poly
+from flint import fmpq
 
 from ptmcad.algebra.determinants import determinant
 from ptmcad.algebra.numbers import algebraic_number, as_interval, in_order
@@ -126,7 +126,7 @@ def _finite(equations: SliceSystem) -> tuple[SliceSystem, QuotientAlgebra] | Non
 def _critical(equations: SliceSystem, algebra: QuotientAlgebra, axis: Axis) -> tuple[AlgebraicNumber, ...]:
     """Where the solutions' number or the signs of conditions can change, in increasing order."""
     conditions = (*equations.inequalities, *equations.stability)
-    found: list[fmpz_poly] = [
+    found: list[UnivariatePolynomial] = [
         coefficients_in(p, 1)[0]
         for p in (
             *equations.boundary,
