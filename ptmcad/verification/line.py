@@ -109,7 +109,7 @@ class Line:
             if all(p(at) == v * q(at) for at, row in fresh for (p, q), v in zip(pairs, row, strict=True)):
                 terms = [part for e in self.parameters.values() for part in (e.numerator, e.denominator) if part]
                 product = fmpz_poly([1])
-                for part in (*(p for pair in pairs for p in pair), *map(_row, terms)):
+                for part in filter(None, (*(p for pair in pairs for p in pair), *map(_row, terms))):
                     product = squarefree(product * squarefree(part))
                 return product // int(product.content())
         raise NotKnown("the critical values have too long polynomials")

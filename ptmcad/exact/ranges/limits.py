@@ -75,7 +75,8 @@ def narrowing_length(strip: Strip, end: BaseEnd, width: fmpq) -> fmpq | None:
             near, far = (at_abscissa(branch, at[0] + r, strip.fibre, abs(run) / 2**40) for r in (run / 2**bits, run))
             rises.append((far.middle - near.middle) / (run - run / 2**bits))
         if rises[0] != rises[1]:
-            slopes.append(simplest_between(*sorted(rises)))
+            low, high = sorted(rises)
+            slopes.append(simplest_between(2 * low - high, 2 * high - low))  # one of them may be the slope itself
     for slope in slopes:
         length = abs(whole)
         for branch in (strip.low, strip.high):

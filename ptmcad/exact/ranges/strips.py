@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine
+from ptmcad.algebra.polynomials import RationalPolynomial, UnivariatePolynomial
+from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.counts import operation_number
 from ptmcad.answer.regionmap import Wall
@@ -210,13 +210,18 @@ def end_interval(end: BaseEnd, width: fmpq) -> Interval:
 
 
 def constant_width(strip: Strip) -> bool:
-    """Whether the range is of one width over the whole strip because its ends are edges or parallel lines."""
-    slopes = []
-    for branch in (strip.low, strip.high):
-        if branch.curve is None:
-            slopes.append(fmpq(0))
-        elif len(branch.curve.in_v) == 2 and len(branch.curve.in_u) <= 2 and branch.curve.in_v[1].degree() == 0:
-            slopes.append(-fmpq(branch.curve.in_v[0][1], branch.curve.in_v[1][0]))
-        else:
-            return False
-    return bool(slopes[0] == slopes[1])
+    """Whether the range is of one width over the whole strip: its ends are level, or one curve and its translate."""
+    curves = [b.curve for b in (strip.low, strip.high) if b.curve is not None and len(b.curve.in_u) > 1]
+    if len(curves) != 2:
+        return not curves
+    low, high = (at_abscissa(b, strip.sample, strip.fibre, _NARROW) for b in (strip.low, strip.high))
+    shift = RationalPolynomial([simplest_between(high.low - low.high - _NARROW, high.high - low.low + _NARROW), 1])
+    isolated = at_abscissa(strip.high, strip.sample, strip.fibre, strip.fibre[1] - strip.fibre[0])
+    if not isolated.low <= low.low + shift[0] <= low.high + shift[0] <= isolated.high:
+        return False  # the translate of the lower branch is another branch of the upper one's curve
+    lower, upper = (list(map(RationalPolynomial, curve.in_u)) for curve in curves)
+    scale = lower[-1].coeffs()[-1] / upper[-1].coeffs()[-1]
+    return len(lower) == len(upper) and all(p == q(shift) * scale for p, q in zip(lower, upper, strict=True))
+
+
+_NARROW = fmpq(1, 2**100)
