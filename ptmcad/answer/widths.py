@@ -72,7 +72,7 @@ class Maximum:
     def words(self, over: str, digits: int = DIGITS) -> str:
         """Where on the other axis the width is attained, or approached."""
         if self.place is Place.PLATEAU:
-            low, high = (_text(end, digits) for end in (self.at.low, self.at.high))
+            low, high = (AlgebraicNumber.of(end).text(digits) for end in (self.at.low, self.at.high))
             parts = [f"attained on the interval {over} from {low} to {high}"]
             if self.exceptions:
                 parts.append(f"except at {_listed(over, self.exceptions, digits)}")
@@ -84,7 +84,8 @@ class Maximum:
         elif self.at.settles(digits):
             at = self.at.text(digits)
         else:
-            at = f"a value between {' and '.join(_text(end, 3) for end in (self.at.low, self.at.high))}"
+            low, high = (AlgebraicNumber.of(end).text(3) for end in (self.at.low, self.at.high))
+            at = f"a value between {low} and {high}"
         what = self.place.value.replace("the other axis", over)
         if self.critical is not None and self.critical.exact is None:
             held = ", which holds one critical value" if self.place is Place.ENCLOSED else ""
@@ -94,12 +95,8 @@ class Maximum:
 
 def _listed(over: str, values: tuple[End, ...], digits: int) -> str:
     """Values of an axis, such as b = 0 and b = 1."""
-    texts = [f"{over} = {_text(v, digits)}" for v in values]
+    texts = [f"{over} = {AlgebraicNumber.of(v).text(digits)}" for v in values]
     return " and ".join(part for part in (", ".join(texts[:-1]), texts[-1]) if part)
-
-
-def _text(value: End, digits: int) -> str:
-    return Enclosure(value, value).text(digits) if isinstance(value, Fraction) else value.text(digits)
 
 
 @dataclass(frozen=True, slots=True)

@@ -85,9 +85,7 @@ def ranges_on(slice: Slice, along: str, value: End, working: int) -> LineRanges:
                 return NO_RANGES
         except (ConfigError, HypothesisError):
             return NO_RANGES
-        minimal = AlgebraicNumber((-value.numerator, value.denominator), value, value)
-    else:
-        minimal = value
+    minimal = AlgebraicNumber.of(value)
     axis = slice.axes[number]
     parameters = {name: from_expression(e) for name, e in slice.parameters.items()}
     known = system_from(slice.model)

@@ -15,7 +15,7 @@ from flint import fmpq
 from ptmcad.algebra.chords import side_of_chord
 from ptmcad.algebra.numbers import as_interval, fibre_roots, refined, root_of
 from ptmcad.algebra.polynomials import PLANE, UnivariatePolynomial
-from ptmcad.algebra.real_roots import isolate, sign, sign_at, simplest_between
+from ptmcad.algebra.real_roots import isolate, sign, simplest_between
 from ptmcad.algebra.resultants import resultant
 from ptmcad.algebra.slopes import tangent_resultant
 from ptmcad.algebra.window import Interval
@@ -66,62 +66,50 @@ def narrowing_length(strip: Strip, end: BaseEnd, width: fmpq) -> fmpq | None:
     and one of them moves: no point of either has a tangent of this slope, but over the end itself.
     """
     at = end_interval(end, width)
-    whole = strip.sample - at[0]
     slopes = [fmpq(0)]
     for bits in (6, 20):
-        run = whole / 2**bits
-        rises = []
-        for branch in (strip.low, strip.high):
-            near, far = (at_abscissa(branch, at[0] + r, strip.fibre, abs(run) / 2**40) for r in (run / 2**bits, run))
-            rises.append((far.middle - near.middle) / (run - run / 2**bits))
-        if rises[0] != rises[1]:
-            low, high = sorted(rises)
-            slopes.append(simplest_between(2 * low - high, 2 * high - low))  # one of them may be the slope itself
+        run = (strip.sample - at[0]) / 2**bits
+        low, high = sorted(_growth(b, strip, (at[0] + run / 2**bits, at[0] + run), fmpq(0))[0] for b in strip.branches)
+        if low != high:
+            steps = run - run / 2**bits
+            slopes.append(simplest_between(*sorted(((2 * low - high) / steps, (2 * high - low) / steps))))
     for slope in slopes:
-        length = abs(whole)
-        for branch in (strip.low, strip.high):
-            length = min((length, *(abs(u - at[0]) / 2 for u in _tangents(branch, strip, end, slope))))
-        run = length if whole > 0 else -length
-        if (at[1] - at[0]) * 4 < length:
-            over = (at[0] + run / 2, at[0] + run)
-            lower, upper = (_moves(branch, strip, over, slope) for branch in (strip.low, strip.high))
-            if lower is not None and upper is not None and lower >= 0 >= upper and lower > upper:
-                return length
+        (short, lower), (long, upper) = (_course(branch, strip, end, slope) for branch in strip.branches)
+        length = min(short, long)
+        if lower is None or upper is None or (at[1] - at[0]) * 4 >= length:
+            continue
+        if lower >= 0 >= upper and lower != upper:
+            return length
     return None
 
 
-def _tangents(branch: Branch, strip: Strip, end: BaseEnd, slope: fmpq) -> list[fmpq]:
-    """Bounds, from the end, of the other abscissae of the strip at which the curve may have a tangent of a slope."""
-    if branch.curve is None:
-        return []
-    p = PLANE.from_dict(
-        {(v, u): int(c) for v, row in enumerate(branch.curve.in_v) for u, c in enumerate(row.coeffs()) if c}
-    )
-    try:
-        found = tangent_resultant(p, (int(slope.p), int(slope.q)))
-    except ArithmeticError:  # the curve is a line of this slope
-        return []
-    if end.root is not None and not divmod(found, end.root.polynomial)[1]:
-        found = found // end.root.polynomial
-    elif end.root is None and sign_at(found, end.value) == 0:
-        found = found // UnivariatePolynomial([-int(end.value.p), int(end.value.q)])
+def _course(branch: Branch, strip: Strip, end: BaseEnd, slope: fmpq) -> tuple[fmpq, int | None]:
+    """A length from an end within which v - s u of a branch is monotone, and the sign of its growth; None: not seen."""
     at = end_interval(end, fmpq(1, 2**80))
-    low, high = (at[0], strip.sample) if strip.sample > at[0] else (strip.sample, at[1])
-    return [root.low if strip.sample > at[0] else root.high for root in isolate(found, low, high)]
+    run = strip.sample - at[0]
+    if branch.curve is not None:
+        rows = enumerate(branch.curve.in_v)
+        p = PLANE.from_dict({(v, u): int(c) for v, row in rows for u, c in enumerate(row.coeffs()) if c})
+        try:
+            turns = tangent_resultant(p, (int(slope.p), int(slope.q)))
+        except ArithmeticError:  # the curve is a line of this slope
+            return abs(run), 0
+        own = UnivariatePolynomial([-int(end.value.p), int(end.value.q)]) if end.root is None else end.root.polynomial
+        if not divmod(turns, own)[1]:
+            turns = turns // own
+        around = (at[0], strip.sample) if run > 0 else (strip.sample, at[1])
+        bounds = (root.low if run > 0 else root.high for root in isolate(turns, *around))
+        length = min((abs(run), *(abs(u - at[0]) / 2 for u in bounds)))
+        run = length if run > 0 else -length
+    low, high = _growth(branch, strip, (at[0] + run / 2, at[0] + run), slope)
+    return abs(run), None if low < 0 < high else sign(low + high)
 
 
-def _moves(branch: Branch, strip: Strip, over: Interval, slope: fmpq) -> int | None:
-    """The sign of what v - s u grows by from one abscissa to another; None when it is too small to be seen."""
-    first, second = over
-    difference = -slope * (second - first)
-    if branch.curve is None:
-        return sign(difference)
-    if len(branch.curve.in_v) == 2 and branch.curve.in_v[1].degree() == 0 and branch.curve.in_v[0].degree() <= 1:
-        row = branch.curve.in_v
-        return sign(difference - fmpq(row[0][1], row[1][0]) * (second - first))
-    near, far = (at_abscissa(branch, u, strip.fibre, abs(second - first) / 2**200) for u in (first, second))
-    low, high = difference + far.low - near.high, difference + far.high - near.low
-    return sign(low) if low > 0 or high < 0 else None
+def _growth(branch: Branch, strip: Strip, over: Interval, slope: fmpq) -> Interval:
+    """Bounds of what v - s u of a branch grows by from one abscissa to another."""
+    near, far = (at_abscissa(branch, u, strip.fibre, abs(over[1] - over[0]) / 2**200) for u in over)
+    difference = -slope * (over[1] - over[0])
+    return difference + far.low - near.high, difference + far.high - near.low
 
 
 def chord_length(strip: Strip, end: fmpq, direction: int, limits: tuple[End, End]) -> fmpq | None:

@@ -53,6 +53,10 @@ class Strip:
     high: Branch
     fibre: Interval
 
+    @property
+    def branches(self) -> tuple[Branch, Branch]:
+        return self.low, self.high
+
 
 def refuse_free_lengths(slice: Slice) -> None:
     """Refuse what strips cannot answer.

@@ -32,7 +32,7 @@ from typing import Any, NamedTuple
 from flint import arb, fmpq
 
 from ptmcad.algebra.chords import slope_over
-from ptmcad.algebra.numbers import algebraic_number, compare, refined
+from ptmcad.algebra.numbers import algebraic_number, compare
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.intervals import End, Span
 from ptmcad.answer.widths import Maximum, OperationWidths, Place, WidthRow
@@ -380,28 +380,18 @@ def _key(end: BaseEnd) -> tuple[bool, int | fmpq]:
 
 
 def _width(span: Span) -> Interval:
-    low, high = (e if isinstance(e, Fraction) else refined(e, to_fraction(_END_WIDTH)) for e in (span.low, span.high))
-    known = Span(low, high).width
+    known = Span(*(AlgebraicNumber.of(e).refined(to_fraction(_END_WIDTH)) for e in (span.low, span.high))).width
     return from_fraction(known.low), from_fraction(known.high)
 
 
 def _middle(span: Span) -> fmpq:
-    low, high = _width(span)
-    return low + high
+    return sum(_width(span), fmpq(0))
 
 
 def _within(ends: tuple[End, End], span: Span) -> bool:
     """Whether limits are within a range, ends included."""
-    (low, high), (first, last) = ends, (span.low, span.high)
-    return _compare(first, low) <= 0 <= _compare(last, high)
-
-
-def _compare(first: End, second: End) -> int:
-    if isinstance(first, Fraction):
-        if isinstance(second, Fraction):
-            return (first > second) - (first < second)
-        return -compare(second, first)
-    return compare(first, second)
+    low, high, first, last = map(AlgebraicNumber.of, (*ends, span.low, span.high))
+    return compare(first, low) <= 0 <= compare(last, high)
 
 
 def _touches(first: _Candidate, second: _Candidate) -> bool:

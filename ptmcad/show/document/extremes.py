@@ -30,13 +30,11 @@ def maximum_data(found: Maximum, over: str, digits: int) -> dict[str, Any]:
         return {"decimal": next(texts, ""), "enclosure": [text_of(value.low), text_of(value.high)]}
 
     def number(value: End) -> dict[str, Any]:
-        if isinstance(value, Fraction):
-            value = AlgebraicNumber((-value.numerator, value.denominator), value, value)
-        return {"decimal": value.text(digits), **number_data(value)}
+        return {"decimal": AlgebraicNumber.of(value).text(digits), **number_data(AlgebraicNumber.of(value))}
 
     def end(value: End) -> dict[str, Any]:
         if isinstance(value, Fraction):
-            return {"window": text_of(value), "decimal": Enclosure(value, value).text(digits)}
+            return {"window": text_of(value), "decimal": AlgebraicNumber.of(value).text(digits)}
         return number(value)
 
     return {
