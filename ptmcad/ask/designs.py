@@ -15,16 +15,7 @@ from typing import Any
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.design import BestDesign, Evaluation
 from ptmcad.ask.designing.optimiser import Enough, Point, best_of, within
-from ptmcad.ask.designing.proof import (
-    Limits,
-    Proof,
-    bounded,
-    bounder_of,
-    exact_maximum,
-    place_of,
-    special_lines,
-    with_lines,
-)
+from ptmcad.ask.designing.proof import Limits, Proof, bounded, bounder_of, exact_maximum, most_on_lines, place_of
 from ptmcad.ask.designing.values import Evaluate, Value, evaluator
 from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError
@@ -147,15 +138,10 @@ class _Search:
         self._search(seed, evaluations or (UNPROVED * usual if isinstance(bounder, str) else usual))
         if isinstance(bounder, str):
             return Proof(None, bounder)
-        lines = special_lines(asked)
-        alone = evaluator(asked)
-        for line in lines:
-            if isinstance(line.value, Fraction):
-                self.look((line.value,), alone)
         proof = bounded(asked, bounder, self._improved, Limits(tolerance, boxes, self._go_on))
         if space is not None:
             self._confirm()
-        return with_lines(proof, lines)
+        return proof if proof.bound is None else proof._replace(bound=max(proof.bound, most_on_lines(asked)))
 
     def _search(self, seed: int, most: int) -> None:
         bounds = [(axis.low, axis.high) for axis in self.asked.over]
@@ -204,12 +190,11 @@ class _Search:
     def _named(self, point: Point) -> dict[str, Fraction]:
         return dict(zip((axis.name for axis in self.asked.over), point, strict=True))
 
-    def look(self, point: Point, value_of: Evaluate | None = None) -> Value | None:
+    def look(self, point: Point) -> Value | None:
         """The value at a design, evaluated once."""
-        value_of = value_of or self.value_of
-        if self.points.get(point) is None:
-            assert value_of is not None  # made before the first look
-            found = self.points[point] = value_of(self._named(point))
+        if point not in self.points:
+            assert self.value_of is not None  # made before the first look
+            found = self.points[point] = self.value_of(self._named(point))
             if found is not None and (self.best is None or found.value.low > self.best[1].value.low):
                 self.best = (point, found)
         return self.points[point]

@@ -5,8 +5,7 @@ Guarantee: that of `exact.ranges.width` and `exact.design.search`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -22,7 +21,7 @@ from ptmcad.exact.design.areas import Areas
 from ptmcad.exact.design.problem import Axes, space_of_family, space_of_slice
 from ptmcad.exact.design.search import Bounder, Lengths, Outcome, Place, Point, Wanted, search
 from ptmcad.exact.ranges.strips import strips
-from ptmcad.exact.ranges.width import SpecialLine, lines_of, widest
+from ptmcad.exact.ranges.width import lines_of, widest
 from ptmcad.exact.stages import problem_of
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.slice import Axis
@@ -73,26 +72,14 @@ def exact_maximum(design: Design) -> tuple[Maximum, ...] | None:
     return widest(slice, design.along, strips(slice, design.along, design.working))
 
 
-def special_lines(design: Design) -> tuple[SpecialLine, ...]:
-    """Of a range over one parameter the lines that no box's bound speaks of, as they are in the variety."""
+def most_on_lines(design: Design) -> Fraction:
+    """Of a range over one parameter what there is at most on lines in the variety, of which no box's bound speaks."""
     if design.aim is not Aim.RANGE or len(design.over) != 1:
-        return ()
-    slice, (axis,) = design.slice({}), design.over
+        return Fraction(0)
+    slice, name = design.slice({}), design.over[0].name
     lines = lines_of(slice, design.along, strips(slice, design.along, design.working))
-    return tuple(line for line in lines if design.may_hold({axis.name: (lower(line.value), upper(line.value))}))
-
-
-def with_lines(proof: Proof, lines: Sequence[SpecialLine]) -> Proof:
-    """The proof with bounds that hold on special lines too."""
-    boxes = tuple(
-        replace(
-            box, bound=max([box.bound, *(x.most for x in lines if low <= upper(x.value) and lower(x.value) <= high)])
-        )
-        for box in proof.boxes
-        for low, high in box.ranges[:1]
-    )
-    bound = None if proof.bound is None else max([proof.bound, *(line.most for line in lines)])
-    return proof._replace(bound=bound, boxes=boxes)
+    held = (line.most for line in lines if design.may_hold({name: (lower(line.value), upper(line.value))}))
+    return max(held, default=Fraction(0))
 
 
 def place_of(maximum: Maximum) -> Fraction:

@@ -39,7 +39,7 @@ from ptmcad.algebra.real_roots import isolate, simplest_between
 from ptmcad.answer.intervals import End, Span
 from ptmcad.errors import ConfigError, DegenerateSliceError, HypothesisError, InfiniteSolutionsError
 from ptmcad.exact.models import ParametricSystem, system_from
-from ptmcad.exact.models.system import ALONG, SliceSystem, on_slice, saturated, with_root
+from ptmcad.exact.models.system import ALONG, RationalPolynomial, SliceSystem, on_slice, saturated, with_root
 from ptmcad.exact.point_system import DegeneratePoint, point_system
 from ptmcad.exact.ranges.line import END_WIDTH, intervals
 from ptmcad.exact.statics import is_positive
@@ -185,9 +185,7 @@ class _Counting(NamedTuple):
             found = self.at(sample)
             if found is not None:
                 least, most = found
-                if not least <= self.working <= most:
-                    return False
-                return True if least == most else None
+                return (True if least == most else None) if least <= self.working <= most else False
         return None
 
     def at(self, sample: fmpq) -> tuple[int, int] | None:
@@ -198,32 +196,24 @@ class _Counting(NamedTuple):
             return None
         if point.algebra.dimension != self.dimension:
             return None
+        required = [*point.inequalities]
+        if self.value.exact is None:
+            unit, one = (*(0,) * (self.system.ring.width - 1), 1), (0,) * self.system.ring.width
+            low, high = as_interval(self.value)
+            required += [{unit: fmpq(1), one: -low}, {unit: fmpq(-1), one: high}]
         total = stable = open_ones = 0
         for solution in points(point.algebra, None).real:
-            if not self._is_here(solution) or not all(_positive(solution, p) for p in point.inequalities):
-                continue
-            total += 1
-            signs = [_sign(solution, p) for p in point.stability]
-            stable += all(s > 0 for s in signs)
-            open_ones += self.may_be_stable and min(signs) == 0
+            if all(_sign(solution, p) > 0 for p in required):
+                signs = [_sign(solution, p) for p in point.stability]
+                total += 1
+                stable += all(s > 0 for s in signs)
+                open_ones += self.may_be_stable and min(signs) == 0
         return (stable, stable + open_ones) if self.system.tells_stability else (total, total)
 
-    def _is_here(self, solution: RealPoint) -> bool:
-        low, high = as_interval(self.value)
-        at = solution.unknowns[self.system.ring.width - 1]
-        return low == high or all(
-            is_positive(difference)
-            for difference in (at - solution.field.constant(low), solution.field.constant(high) - at)
-        )
 
-
-def _sign(solution: RealPoint, p: dict[tuple[int, ...], fmpq]) -> int:
+def _sign(solution: RealPoint, p: RationalPolynomial) -> int:
     value = value_at(solution, {(*m, *(0,) * (len(solution.unknowns) - len(m))): c for m, c in p.items()})
     return 0 if value.is_zero else 1 if is_positive(value) else -1
-
-
-def _positive(solution: RealPoint, p: dict[tuple[int, ...], fmpq]) -> bool:
-    return _sign(solution, p) > 0
 
 
 def _spans(ends: Sequence[End], here: Sequence[bool]) -> Iterator[Span]:

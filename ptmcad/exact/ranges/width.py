@@ -24,10 +24,10 @@ A piece that becomes too small remains, with the bounds that it has: then the pl
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from heapq import heappop, heappush
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from flint import arb, fmpq
 
@@ -65,7 +65,7 @@ _MAX_PIECES = 20_000
 
 @dataclass(frozen=True, slots=True)
 class _Candidate:
-    """What may be the largest; ``sides`` are the ends of a strip that a plateau goes over, or the one that it is at."""
+    """What may be the largest; of a plateau ``sides`` say whether it is attained at its strips' ends."""
 
     place: Place
     at: Interval
@@ -73,7 +73,7 @@ class _Candidate:
     critical: AlgebraicNumber | None = None
     ends: tuple[End, End] | None = None
     attained: bool | None = True
-    sides: tuple[BaseEnd, ...] = ()
+    sides: dict[End, bool | None] = field(default_factory=dict)
 
 
 def operation_widths(slice: Slice, along: str, rows: int = ROWS) -> OperationWidths:
@@ -119,8 +119,11 @@ class SpecialLine(NamedTuple):
     """A value of the other axis, an end of strips, and what is counted on the line there."""
 
     end: BaseEnd
-    value: End
     ranges: LineRanges
+
+    @property
+    def value(self) -> End:
+        return _value(self.end)
 
     @property
     def most(self) -> Fraction:
@@ -130,11 +133,7 @@ class SpecialLine(NamedTuple):
 
 def lines_of(slice: Slice, along: str, found: Strips) -> list[SpecialLine]:
     """The lines at the special values of the other axis."""
-    lines = []
-    for end in found.special:
-        value = _value(end)
-        lines.append(SpecialLine(end, value, ranges_on(slice, along, value, found.working)))
-    return lines
+    return [SpecialLine(end, ranges_on(slice, along, _value(end), found.working)) for end in found.special]
 
 
 def largest(found: Sequence[Strip], lines: Sequence[SpecialLine] = ()) -> tuple[Maximum, ...]:
@@ -169,7 +168,7 @@ class _Search:
     """Branch and bound over the strips."""
 
     def __init__(self, lines: Sequence[SpecialLine]) -> None:
-        self.lines = {_key(line.end): line.ranges for line in lines}
+        self.lines = {line.value: line.ranges for line in lines}
         self.known = fmpq(0)  # a width that occurs, or is approached
         self.candidates: list[_Candidate] = []
         self.heap: list[tuple[fmpq, int, _Piece]] = []
@@ -179,7 +178,7 @@ class _Search:
 
     def line(self, line: SpecialLine) -> None:
         """Adopt what is counted on a line."""
-        certain, possible = (max(spans, key=_middle, default=None) for spans in line.ranges)
+        certain, possible = (max(spans, key=_width, default=None) for spans in line.ranges)
         if certain is not None:
             self.add_at(line.end, _width(certain), (certain.low, certain.high), True)
             self.known = max(self.known, _width(certain)[0])
@@ -191,11 +190,11 @@ class _Search:
         place = Place.EDGE if end.root is None else Place.CRITICAL
         critical = None if end.root is None else algebraic_number(end.root)
         at = end_interval(end, _END_WIDTH)
-        self.candidates.append(_Candidate(place, at, width, critical, ends, attained, (end,)))
+        self.candidates.append(_Candidate(place, at, width, critical, ends, attained))
 
     def attains(self, end: BaseEnd, width: Interval, ends: tuple[End, End] | None) -> bool | None:
         """Whether on the line at an end of a strip there is a range of a width that is its limit there."""
-        ranges = self.lines.get(_key(end))
+        ranges = self.lines.get(_value(end))
         if ranges is None:
             return True
         if any((ends is not None and _within(ends, span)) or _width(span)[0] >= width[1] for span in ranges.certain):
@@ -220,9 +219,8 @@ class _Search:
     def plateau(self, strip: Strip) -> None:
         (left, _), (_, right) = base_interval(strip, _END_WIDTH)
         width = self.width_at(strip, strip.sample)
-        self.candidates.append(
-            _Candidate(Place.PLATEAU, (left, right), width, None, None, True, (strip.left, strip.right))
-        )
+        sides = {_value(end): self.attains(end, width, _limits(strip, end)) for end in (strip.left, strip.right)}
+        self.candidates.append(_Candidate(Place.PLATEAU, (left, right), width, sides=sides))
 
     def ends(self, strip: Strip) -> None:
         """Settle neighbourhoods of ends with the largest limits, and list the rest as one piece.
@@ -232,23 +230,23 @@ class _Search:
         left, right = base_interval(strip, _END_WIDTH)
         low, high = left[0], right[1]
         for at, end in ((left, strip.left), (right, strip.right)):
-            if at[0] != at[1] and _key(end) not in self.lines:
+            if at[0] != at[1] and _value(end) not in self.lines:
                 continue
-            lowest, highest = (limit(b, strip, end, _END_WIDTH) for b in (strip.low, strip.high))
-            if lowest is None or highest is None:
+            limits = _limits(strip, end)
+            if limits is None:
                 continue
-            width = _width(Span(lowest, highest))
+            width = _width(Span(*limits))
             self.known = max(self.known, width[0])
             if width[1] < self.known:
                 continue
             length = None
             if at[0] == at[1]:
-                length = chord_length(strip, at[0], 1 if end is strip.left else -1, (lowest, highest))
-            if length is None and _key(end) in self.lines:
+                length = chord_length(strip, at[0], 1 if end is strip.left else -1, limits)
+            if length is None and _value(end) in self.lines:
                 length = narrowing_length(strip, end, _END_WIDTH)
             if length is None:
                 continue
-            self.add_at(end, width, (lowest, highest), self.attains(end, width, (lowest, highest)))
+            self.add_at(end, width, limits, self.attains(end, width, limits))
             if end is strip.left:
                 low = at[0] + length
             else:
@@ -282,13 +280,13 @@ class _Search:
                 return  # and so are all others
             count += 1
             if count > _MAX_PIECES or piece.high - piece.low < piece.smallest:
-                end = piece.strip.left if piece.open_left else piece.strip.right if piece.open_right else None
-                critical = None if end is None or end.root is None else algebraic_number(end.root)
-                width = (self.known, -negative)
-                # a continuous function on a closed interval, but for an end at which the line has another width
-                attained = end is None or self.attains(end, width, None)
+                width, strip = (self.known, -negative), piece.strip
+                ends = [strip.left] * piece.open_left + [strip.right] * piece.open_right
+                critical = next((algebraic_number(end.root) for end in ends if end.root is not None), None)
+                # a continuous function on a closed interval, but for ends at which the line has another width
+                attained = all(self.attains(end, width, None) for end in ends) or None
                 self.candidates.append(
-                    _Candidate(Place.ENCLOSED, (piece.low, piece.high), width, critical, None, attained or None)
+                    _Candidate(Place.ENCLOSED, (piece.low, piece.high), width, critical, None, attained)
                 )
                 continue
             middle = _cut(piece.low, piece.high)
@@ -347,7 +345,7 @@ class _Search:
                         last.critical or c.critical,
                         last.ends if last.attained else c.ends,
                         None if None in (last.attained, c.attained) else last.attained or c.attained,
-                        (*last.sides, *c.sides),
+                        last.sides | {v: last.sides.get(v) or known for v, known in c.sides.items()},
                     )
                 )
             else:
@@ -359,12 +357,8 @@ class _Search:
         at, width = (Enclosure(to_fraction(low), to_fraction(high)) for low, high in (c.at, c.width))
         if c.place is not Place.PLATEAU:
             return Maximum(c.place, at, width, c.critical, c.ends, c.attained)
-        found: dict[bool | None, dict[Any, End]] = {True: {}, False: {}, None: {}}
-        for end in c.sides:
-            found[self.attains(end, c.width, c.ends)][_key(end)] = _value(end)
-        return Maximum(
-            c.place, at, width, None, c.ends, True, tuple(found[False].values()), tuple(found[None].values())
-        )
+        exceptions, doubtful = (tuple(v for v, known in c.sides.items() if known is kind) for kind in (False, None))
+        return Maximum(c.place, at, width, None, None, True, exceptions, doubtful)
 
 
 def _value(end: BaseEnd) -> End:
@@ -374,18 +368,14 @@ def _value(end: BaseEnd) -> End:
     return number if number.exact is None else number.exact
 
 
-def _key(end: BaseEnd) -> tuple[bool, int | fmpq]:
-    """What tells an end of strips from others."""
-    return (True, end.value) if end.critical is None else (False, end.critical)
+def _limits(strip: Strip, end: BaseEnd) -> tuple[End, End] | None:
+    low, high = (limit(branch, strip, end, _END_WIDTH) for branch in strip.branches)
+    return None if low is None or high is None else (low, high)
 
 
 def _width(span: Span) -> Interval:
     known = Span(*(AlgebraicNumber.of(e).refined(to_fraction(_END_WIDTH)) for e in (span.low, span.high))).width
     return from_fraction(known.low), from_fraction(known.high)
-
-
-def _middle(span: Span) -> fmpq:
-    return sum(_width(span), fmpq(0))
 
 
 def _within(ends: tuple[End, End], span: Span) -> bool:
