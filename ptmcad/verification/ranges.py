@@ -22,10 +22,12 @@ from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import fraction_of, integer_of, shortest_text
 from ptmcad.text.parsing import parse
 from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.certified.points import counting_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import parameters_of
 from ptmcad.verification.line import Line, NotKnown
+from ptmcad.verification.parameters import check_text
 from ptmcad.verification.poses import map_of
 from ptmcad.verification.report import Check, Headway, Unchecked, VerifyReport, Violation, checked
 from ptmcad.verification.sturm import roots_within
@@ -49,8 +51,13 @@ def verify_range(data: Mapping[str, Any], slice: Slice, progress: Progress | Non
     ----------
     slice : of which the document is.
     """
+    claims = Claims(map_of(slice, ()))
     steps = [
-        (part, f"intervals of the {name}", method, check)
+        ("parameters as written", "expressions compared", lambda _: check_text(claims)),
+        ("signs of parameters", "Sturm counts, elimination", lambda _: check_domain(claims)),
+    ]
+    steps += [
+        (f"intervals of the {name}", method, check)
         for part, name, method, check in (
             ("line", "line", "norms read off one fibre, signatures", _check_line),
             ("over", "rows", "norms read off one fibre, signatures", _check_rows),
@@ -58,7 +65,7 @@ def verify_range(data: Mapping[str, Any], slice: Slice, progress: Progress | Non
         )
         if part in data
     ]
-    checks = checked((data, slice), [step[1:] for step in steps], (), Headway(progress))
+    checks = checked((data, slice), steps, (), Headway(progress))
     checks += [Check(name, "", None, words) for part, (name, words) in UNCHECKED.items() if part in data]
     return VerifyReport(tuple(checks))
 
