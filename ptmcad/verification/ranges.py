@@ -140,7 +140,7 @@ def _end(line: Line, data: Mapping[str, Any]) -> End:
     number = AlgebraicNumber(tuple(map(int, polynomial)), fraction_of(data["low"]), fraction_of(data["high"]))
     if roots_within(polynomial, from_fraction(number.low), from_fraction(number.high)) != 1:
         raise Violation(f"an end near {float(number):.10g} is not the only root of its polynomial there")
-    if polynomial.degree() < 1 or line.critical % polynomial != 0:
+    if polynomial.degree() < 1 or bool(line.critical % polynomial):
         raise Violation(f"counts cannot change at the end near {float(number):.10g}")
     return number
 
