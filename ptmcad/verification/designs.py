@@ -129,8 +129,8 @@ def _check_form(lines: _Lines) -> str:
     of_range = found.maximise == "range"
     if of_range != (found.along is not None) or (found.maximise == "area") != (len(found.fixed) == 2):
         raise Violation(f"the aim {found.maximise[:40]!r} does not go with the window")
-    if (found.span is not None) != (of_range and found.best is not None):
-        raise Violation("a span is of a range, and of no other aim")
+    if (found.span is not None) != (of_range and found.value is not None and found.value.high > 0):
+        raise Violation("a span is of a range that there is, and of no other aim")
     names = [axis.name for axis in (*found.over, *found.fixed, *filter(None, [found.along]))]
     if len({*names}) < len(names) and found.along is not None:
         raise Violation("two axes have one name")

@@ -99,6 +99,14 @@ def test_a_true_document_holds_and_its_last_line_says_so(kind: str, capsys: pyte
     assert "hold" in lines[-1] and "false" not in lines[-1]
 
 
+def test_a_design_without_any_range_holds() -> None:
+    """A cubic has one root or three, never two."""
+    asked = "design: {maximise: range, along: a, over: {b: [-1, 1]}, where: {stable: 2}}\n"
+    Path("none.yaml").write_text(RECORDS["line"].replace("name: line", "name: none") + asked, encoding="utf-8")
+    assert run(["design", "none.yaml", "--format", "json"]) in (0, 3)  # a bound of what there is not is not proved
+    assert run(["verify", "none-design.json"]) == 0
+
+
 def test_the_verdict_counts_what_holds_and_what_was_not_checked(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["verify", "line.json"]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == "21 claims hold, 2 not checked"
