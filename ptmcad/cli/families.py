@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from ptmcad.answer.changes import Changes
+from ptmcad.answer.changes import TOLERANCE, Changes
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Drawing, names_of
@@ -131,7 +131,7 @@ def _changes(common: Common, options: Options, wanted: Wanted) -> Changes | None
     """Where the arrangement changes, if that is asked for."""
     if not (wanted.changes or wanted.between or wanted.needs_surface):
         return None
-    from ptmcad.ask.changes import TOLERANCE, changes_of
+    from ptmcad.ask.changes import changes_of
 
     return changes_of(common, options.tolerance or TOLERANCE, options)
 

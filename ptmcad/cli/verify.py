@@ -19,6 +19,7 @@ from ptmcad.answer.design import BestDesign
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.answer.sweep import Member
 from ptmcad.cli.families import read_family_file
 from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
@@ -28,7 +29,7 @@ from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import Options, Progress
 from ptmcad.question.config import member_like
-from ptmcad.text.numerals import text_of
+from ptmcad.text.numerals import fraction_of, text_of
 
 if TYPE_CHECKING:
     from ptmcad.verification.report import VerifyReport
@@ -112,6 +113,9 @@ def _reports(path: Path, seed: int | None, boxes: int | None, effort: int | None
         report_idle([Idle(name, exact, "an exact map is checked whole") for name in ("boxes", "effort")])
         return lambda progress: verify(stored, seed=seed, boxes=boxes, progress=progress, effort=effort)
 
+    if path.is_dir():
+        yield "", partial(_verified_sweep, path, seed, boxes, effort)
+        return
     kind = kind_of(path)
     if kind in ("design", "poses", "range"):
         report_idle([Idle("boxes", boxes is not None, "all that is stored is checked"),
@@ -132,6 +136,54 @@ def _reports(path: Path, seed: int | None, boxes: int | None, effort: int | None
         yield f"what the members have in common over {family.free.name}", partial(_verified_family, family, seed)
     else:
         yield "", of_map(read_result(path, whole=False))
+
+
+def _verified_sweep(
+    folder: Path, seed: int | None, boxes: int | None, effort: int | None, progress: Progress
+) -> VerifyReport:
+    """Each member's map, and what the index holds of it."""
+    from ptmcad.sweeping.index import member_map, members, read_sweep
+    from ptmcad.sweeping.member import Wanted, summary_of
+    from ptmcad.verification import VerifyReport, verify
+    from ptmcad.verification.report import Headway, Unchecked, Violation, checked
+
+    sweep = read_sweep(folder)
+    found = list(members(sweep))
+
+    def check(member: Member) -> str:
+        summary = member.summary
+        if summary is None:
+            return Unchecked(f"it is {member.state.value}: {member.error}")
+        stored = member_map(sweep, member)
+        for name, text in member.parameters.items():
+            known = stored.slice.parameters.get(name)
+            if known is not None and not (known.is_constant and known.constant() == fraction_of(text)):
+                raise Violation(f"the map is not that of {name} = {text}")
+        unknown = ", ".join(member.parameters.keys() - stored.slice.parameters.keys())
+        if member.same_as is not None:
+            first = found[member.same_as]
+            if (first.file, first.summary) != (member.file, summary):
+                raise Violation(f"it has not what member {member.same_as} has, as is said")
+            return f"as member {member.same_as}"
+        areas = any(area.area != ("", "") for area in summary.areas)
+        wanted = Wanted(areas=areas, along=summary.widest.along if summary.widest else "")
+        if (true := summary_of(stored, wanted)) != summary:
+            raise Violation(f"the index has {summary}, the map {true}")
+        report = verify(stored, seed=seed, boxes=boxes, effort=effort)
+        if report.violation is not None:
+            raise Violation(report.violation)
+        return Unchecked(f"{report.verdict}; which value {unknown} has") if unknown else report.verdict
+
+    def numbers(_claims: object) -> str:
+        if [member.number for member in found] != list(range(len(found))):
+            raise Violation("the members are not numbered in their order")
+        if len(found) < len(sweep):
+            return Unchecked(f"{len(sweep) - len(found)} members have not been entered yet")
+        return f"{len(found)} members"
+
+    steps = [("index", "comparison", numbers)]
+    steps += [(f"member {m.number}", "its map, and the index", partial(lambda m, _: check(m), m)) for m in found]
+    return VerifyReport(tuple(checked(None, steps, (), Headway(progress))))
 
 
 def _verified_poses(stored: Poses, progress: Progress) -> VerifyReport:
@@ -194,10 +246,13 @@ def _verified_family(family: FamilyMap, seed: int | None, progress: Progress) ->
         return map_at(value), map_at(value, True)
 
     checks = [verify_surfaces(family, map_at, seed)]
-    found = family.changes
+    found, options = family.changes, Options(progress=progress)
     if found is not None and all(c.passed is not False for c in checks):
         checks += verify_changes(found, maps_at, seed, progress)
-        options = Options(progress=progress)
-        anew = changes_of(in_common(Restored(family), options), found.tolerance, options)
-        checks.append(check_anew(written_changes(found), written_changes(anew)))
+    common = in_common(Restored(family), options)
+    stored, anew = {"surfaces": family.surfaces}, {"surfaces": common.surfaces}
+    if found is not None and all(c.passed is not False for c in checks):
+        stored |= written_changes(found)
+        anew |= written_changes(changes_of(common, found.tolerance, options))
+    checks.append(check_anew(stored, anew))
     return VerifyReport(tuple(checks))

@@ -115,7 +115,7 @@ def compute(work: Work, number: int) -> Outcome:
         try:
             slice = work.question.slice(number)
             result = region_map(slice, work.wanted.options)
-            summary = _summary(result, work.wanted)
+            summary = summary_of(result, work.wanted)
         except LimitReached:
             return Failed(out_of_time(work.timeout))
         except PtmcadError as error:
@@ -135,7 +135,8 @@ def out_of_time(timeout: float | None) -> str:
     return f"the member's time limit of {timeout:g} s was reached"
 
 
-def _summary(result: RegionMap, wanted: Wanted) -> Summary:
+def summary_of(result: RegionMap, wanted: Wanted) -> Summary:
+    """What an index holds of a map."""
     return Summary(
         status=result.status.value,
         cells=len(result.cells),

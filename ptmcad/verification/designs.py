@@ -136,8 +136,8 @@ def _check_form(lines: _Lines) -> str:
     of_range = found.maximise == "range"
     if of_range != (found.along is not None) or (found.maximise == "area") != (len(found.fixed) == 2):
         raise Violation(f"the aim {found.maximise[:40]!r} does not go with the window")
-    if (found.span is not None) != (of_range and found.best is not None):
-        raise Violation("a span is of a range, and of no other aim")
+    if (found.span is not None) != (of_range and found.value is not None and found.value.high > 0):
+        raise Violation("a span is of a range that there is, and of no other aim")
     names = [axis.name for axis in (*found.over, *found.fixed, *filter(None, [found.along]))]
     if len({*names}) < len(names) and found.along is not None:
         raise Violation("two axes have one name")
@@ -147,7 +147,7 @@ def _check_form(lines: _Lines) -> str:
         number = f"{len(found.boxes)} boxes of designs" if len(found.boxes) != 1 else "one box of designs"
         if found.reason not in (f"by branch and bound, {how} {number}" for how in ("over", "which was stopped at")):
             raise Violation(f"the reason names another number of boxes than {len(found.boxes)}")
-    best = found.value and found.value.high
+    best = None if found.value is None else found.value.high
     for point in found.points:
         if len(point.at) != len(found.over):
             raise Violation("a design has not as many numbers as there are parameters")
@@ -182,8 +182,8 @@ def _check_boxes(lines: _Lines) -> str:
     waiting = [(tuple((axis.low, axis.high) for axis in found.over), found.boxes, 0)]
     while waiting:
         part, boxes, halvings = waiting.pop()
-        met = [box for box in boxes if all(low < b and a < high for (a, b), (low, high)
-                                           in zip(part, box.ranges, strict=True))]  # fmt: skip
+        met = tuple(box for box in boxes if all(low < b and a < high for (a, b), (low, high)
+                                           in zip(part, box.ranges, strict=True)))  # fmt: skip
         cuts = [(k, cut) for box in met for k, ends in enumerate(box.ranges) for cut in ends
                 if part[k][0] < cut < part[k][1]]  # fmt: skip
         if met and not cuts:
@@ -196,7 +196,7 @@ def _check_boxes(lines: _Lines) -> str:
                 continue
             shares = [(high - low) / (axis.high - axis.low) for axis, (low, high) in zip(found.over, part, strict=True)]
             k = shares.index(max(shares))
-            cuts, halvings = [(k, sum(part[k]) / 2)], halvings + 1
+            cuts, halvings = [(k, sum(part[k], Fraction(0)) / 2)], halvings + 1
         k, cut = cuts[0]
         for ends in ((part[k][0], cut), (cut, part[k][1])):
             waiting.append(((*part[:k], ends, *part[k + 1 :]), met, halvings))
@@ -213,7 +213,7 @@ def _fails_all_over(lines: _Lines, part: Sequence[tuple[Fraction, Fraction]]) ->
     Violation
         When its middle satisfies all conditions.
     """
-    middle = lines.named([sum(ends) / 2 for ends in part])
+    middle = lines.named([sum(ends, Fraction(0)) / 2 for ends in part])
     if lines.holds(middle):
         raise Violation(f"no box holds the design {_named(middle)}, which satisfies the conditions")
     if len(part) > 2:

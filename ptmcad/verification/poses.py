@@ -17,7 +17,8 @@ from ptmcad.cover.rectangles import Cover
 from ptmcad.options import Progress
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.text.expressions import constant
-from ptmcad.verification.certified.points import check_points
+from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.points import check_cell, counting_of
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.derivation import has_index, tells_stability
 from ptmcad.verification.report import Headway, Unchecked, VerifyReport, Violation, checked
@@ -38,7 +39,10 @@ def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
     result, model = claims.result, found.model
     (cell,) = result.cells
     if result.slice.has_free_lengths and found.status is Status.CERTIFIED:
-        return check_points(claims)
+        try:
+            return f"{check_cell(claims, counting_of(claims), cell)} poses"
+        except Unproved as reason:
+            return Unchecked(str(reason))
     try:
         number = claims.fibre_at(*cell.sample).number_of_real_solutions()
     except Violation:  # infinitely many

@@ -25,10 +25,12 @@ from ptmcad.text.numerals import fraction_of, integer_of, shortest_text
 from ptmcad.text.parsing import parse
 from ptmcad.verification.attainment import Lines, check_maxima
 from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.certified.points import counting_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import parameters_of
 from ptmcad.verification.line import Line, NotKnown
+from ptmcad.verification.parameters import check_text
 from ptmcad.verification.poses import map_of
 from ptmcad.verification.report import Check, Headway, Unchecked, VerifyReport, Violation, checked
 from ptmcad.verification.sturm import roots_within
@@ -54,8 +56,13 @@ def verify_range(
     slice : of which the document is.
     maxima : where it says that ranges over the other axis are longest.
     """
+    claims = Claims(map_of(slice, ()))
     steps = [
-        (part, name, method, check)
+        ("parameters as written", "expressions compared", lambda _: check_text(claims)),
+        ("signs of parameters", "Sturm counts, elimination", lambda _: check_domain(claims)),
+    ]
+    steps += [
+        (name, method, check)
         for part, name, method, check in (
             ("line", "intervals of the line", "norms read off one fibre, signatures", _check_line),
             ("over", "intervals of the rows", "norms read off one fibre, signatures", _check_rows),
@@ -64,7 +71,7 @@ def verify_range(
         )
         if part in data
     ]
-    checks = checked((data, slice), [step[1:] for step in steps], (), Headway(progress))
+    checks = checked((data, slice), steps, (), Headway(progress))
     checks += [Check(name, "", None, words) for part, (name, words) in UNCHECKED.items() if part in data]
     return VerifyReport(tuple(checks))
 
@@ -154,7 +161,7 @@ def _end(line: Line, data: Mapping[str, Any]) -> End:
     number = AlgebraicNumber(tuple(map(int, polynomial)), fraction_of(data["low"]), fraction_of(data["high"]))
     if roots_within(polynomial, from_fraction(number.low), from_fraction(number.high)) != 1:
         raise Violation(f"an end near {float(number):.10g} is not the only root of its polynomial there")
-    if polynomial.degree() < 1 or line.critical % polynomial != 0:
+    if polynomial.degree() < 1 or bool(line.critical % polynomial):
         raise Violation(f"counts cannot change at the end near {float(number):.10g}")
     return number
 

@@ -112,7 +112,9 @@ def check_anew(stored: Any, found: Any) -> Check:
 
 
 def _differences(stored: Any, found: Any, place: str = "") -> Iterator[str]:
-    if isinstance(stored, dict) and isinstance(found, dict) and stored.keys() <= found.keys():
+    # what an earlier version did not write of a part is no difference
+    fits = isinstance(stored, dict) and isinstance(found, dict) and stored.keys() <= found.keys()
+    if fits and (place or stored.keys() == found.keys()):
         for key in sorted(stored.keys() - {"versions"}):
             yield from _differences(stored[key], found[key], f"{place}.{key}".lstrip("."))
     elif isinstance(stored, list) and isinstance(found, list) and len(stored) == len(found):

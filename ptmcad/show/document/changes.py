@@ -118,6 +118,8 @@ def _arrangement(data: Any) -> Arrangement:
     named = {n for group in (*pairs, *sides) for n in group}
     if any(not 0 <= n < len(keys) for n in named) or any(a >= b for a, b in pairs):
         raise ValueError("an arrangement names a region that there is not")
+    if len(pairs) < len(data["neighbours"]):
+        raise ValueError("an arrangement names two neighbours twice")
     return Arrangement(keys, pairs, sides)
 
 

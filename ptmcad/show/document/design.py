@@ -106,7 +106,7 @@ def _design(data: Mapping[str, Any]) -> BestDesign:
         conditions=tuple(map(_line, data["conditions"])),
         best=None if best is None else {_line(name): fraction_of(x) for name, x in best.items()},
         value=None if value is None else _enclosure(value),
-        span=None if span is None else (_enclosure(span[0]), _enclosure(span[1])),
+        span=None if span is None else _pair(*map(_enclosure, span)),
         bound=None if bound is None else fraction_of(bound),
         tolerance=fraction_of(data["tolerance"]),
         proved=_truth(data["proved"]),
@@ -178,6 +178,10 @@ def _enclosure(data: Any) -> Enclosure:
     if low > high:
         raise ValueError("the ends of an interval are exchanged")
     return Enclosure(low, high)
+
+
+def _pair(low: Enclosure, high: Enclosure) -> tuple[Enclosure, Enclosure]:
+    return low, high
 
 
 def _line(value: Any) -> str:

@@ -66,7 +66,7 @@ def check_points(
         report(n, len(claims.result.cells))
         where = _where(claims, *cell.sample)
         try:
-            found = _check_cell(claims, counting, cell, places)
+            found = check_cell(claims, counting, cell, places)
         except Unproved as reason:
             if counting.is_complete and not _is_all_flat(claims, cell):
                 raise Violation(f"cell {n}: the counts {where} could not be confirmed: {reason}") from None
@@ -98,7 +98,13 @@ def _where(claims: Claims, x: Fraction, y: Fraction) -> str:
     return f"at {one}={text_of(x)}, {two}={text_of(y)}"
 
 
-def _check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell, places: Places | None) -> int:
+def check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell, places: Places | None = None) -> int:
+    """Counts and stored solutions of one cell; how many these are.
+
+    Raises
+    ------
+    Violation, Unproved
+    """
     try:
         u, v = claims.on_lattice(*cell.sample)
         there = counting.at(claims, *cell.sample, places and places((u, u), (v, v)))
