@@ -44,6 +44,7 @@ from ptmcad.exact.point_system import DegeneratePoint, point_system
 from ptmcad.exact.ranges.line import END_WIDTH, intervals
 from ptmcad.exact.statics import is_positive
 from ptmcad.exact.variety import algebra_of, lifted
+from ptmcad.mechanism import mechanism_in
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
@@ -101,7 +102,8 @@ def ranges_on(slice: Slice, along: str, value: End, working: int) -> LineRanges:
     if algebra.dimension > MAX_DIMENSION:
         return LineRanges((), whole)
     numbers = _critical(equations, algebra, axis)
-    counting = _Counting(system, algebra.dimension, equations is not given, minimal, working, known.has_index)
+    flat = known.has_index or mechanism_in(slice.model) is not None
+    counting = _Counting(system, algebra.dimension, equations is not given, minimal, working, flat)
     ends: list[End] = [axis.low, *numbers, axis.high]
     lows, highs = [axis.low, *(n.high for n in numbers)], [*(n.low for n in numbers), axis.high]
     here = [counting.between(*map(from_fraction, gap)) for gap in zip(lows, highs, strict=True)]
@@ -167,7 +169,8 @@ class _Counting(NamedTuple):
     dimension : the number of solutions in general, with multiplicity.
     saturated : whether those at which an inequality's polynomial vanishes are left out.
     value : of the other axis; solutions at its conjugates do not count.
-    may_be_stable : whether a solution of which a condition is zero may be stable, as a flat minimum is.
+    may_be_stable : whether a solution of which a condition is zero may be stable, as a flat minimum is, or a flat loop;
+        of a system the conditions are what is called stable.
     """
 
     system: ParametricSystem

@@ -341,7 +341,7 @@ class _Search:
                     _Candidate(
                         c.place,
                         (last.at[0], max(last.at[1], c.at[1])),
-                        (min(last.width[0], c.width[0]), max(last.width[1], c.width[1])),
+                        (max(last.width[0], c.width[0]), max(last.width[1], c.width[1])),
                         last.critical or c.critical,
                         last.ends if last.attained else c.ends,
                         None if None in (last.attained, c.attained) else last.attained or c.attained,

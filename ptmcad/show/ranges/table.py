@@ -19,7 +19,7 @@ from ptmcad.mechanism.moments import acting
 from ptmcad.show.ranges.numbers import end_text, narrowly_known, settled, width_text
 from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.numerals import shortest_text
+from ptmcad.text.numerals import decimal, shortest_text
 from ptmcad.text.plane import PlanePolynomial
 
 MAX_POLYNOMIAL = 60
@@ -125,7 +125,8 @@ def width_table(found: OperationWidths, digits: int = 10) -> str:
 
 def maximum_text(found: Maximum, over: str, digits: int) -> str:
     """A maximum in words."""
-    return f"width {settled(found.width, digits) or 'enclosed'}, {found.words(over, digits)}"
+    low, high = (decimal(end, up, 4) for end, up in ((found.width.low, False), (found.width.high, True)))
+    return f"width {settled(found.width, digits) or f'from {low} to {high}'}, {found.words(over, digits)}"
 
 
 def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:
