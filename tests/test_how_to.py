@@ -20,7 +20,7 @@ from ptmcad.cli import run
 DOCS = Path(__file__).parent.parent / "docs"
 HOW_TO, DATA = ((DOCS / f"{name}.md").read_text(encoding="utf-8") for name in ("how-to", "data"))
 CHANGING = re.compile(
-    r"^time .*|^searched .*|\d+ random pixels agree .*|\d+ points of \d+ bits, seed \w+", re.MULTILINE
+    r"^time .*|^searched .*|\d+ random pixels agree .*|\d+ points of \d+ bits, seed\s+\w+", re.MULTILINE
 )
 """What is another time in each run, or rounding of another machine."""
 

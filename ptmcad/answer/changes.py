@@ -16,6 +16,9 @@ from ptmcad.answer.arrangement import Arrangement
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 
+TOLERANCE = Fraction(1, 10**6)
+"""Where no other one is asked for."""
+
 
 @dataclass(frozen=True, slots=True)
 class Change:
@@ -52,6 +55,7 @@ class Changes:
     at_ends : what is otherwise at the lower and at the upper end of the range than beside it, a sentence each.
     complete : whether it is proved that the arrangement is the same from each change to the next.
     reason : how the changes were found, and why that is a proof or why it is none.
+    tolerance : of the range, how near to a change members are compared in words, and how wide enclosures are.
     """
 
     free: Axis
@@ -62,6 +66,7 @@ class Changes:
     at_ends: tuple[tuple[str, ...], tuple[str, ...]]
     complete: bool
     reason: str
+    tolerance: Fraction = TOLERANCE
 
     def __iter__(self) -> Iterator[Change]:
         return iter(self.changes)

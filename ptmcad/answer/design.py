@@ -13,6 +13,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ptmcad.answer import with_methods
+from ptmcad.answer.widths import Maximum
 from ptmcad.mechanism import Model
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import Enclosure
@@ -60,6 +61,8 @@ class BestDesign:
     boxes : those on which the bound rests, without those on which a condition fails; none where there is no bound or it
         does not rest on boxes.
     parameters : of every design, as they are written.
+    maxima : where one parameter's widest ranges are, and whether they are attained there; empty where the bound does
+        not rest on exact critical values.
     """
 
     name: str
@@ -81,6 +84,7 @@ class BestDesign:
     points: tuple[Evaluation, ...]
     boxes: tuple[BoundedBox, ...]
     parameters: Mapping[str, str]
+    maxima: tuple[Maximum, ...] = ()
 
     @property
     def evaluations(self) -> int:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ptmcad.answer import with_methods
+from ptmcad.answer.widths import Attainment
 from ptmcad.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -58,7 +59,8 @@ class Widest:
     ----------
     width : of the range; None where there is none in the window, or the ``remark`` says why there is no answer.
     places : the values of the other axis at which it is attained or approached.
-    proof : what is proved of the first of them (`ptmcad.answer.widths.Place`).
+    proof : in words where it is attained or approached (`ptmcad.answer.widths.Maximum.words`).
+    attainment : of the first of the places (`ptmcad.answer.widths.Attainment`); of an older index not decided.
     """
 
     along: str
@@ -66,6 +68,7 @@ class Widest:
     places: tuple[Bounds, ...] = ()
     proof: str = ""
     remark: str = ""
+    attainment: str = Attainment.UNDECIDED.value
 
 
 @dataclass(frozen=True, slots=True)

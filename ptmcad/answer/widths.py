@@ -1,6 +1,7 @@
 """The width of the operation range against the other axis of a slice, as data.
 
-Guarantee: what is proved of the place of the largest width is what `Maximum.place` says.
+Guarantee: what is proved of the largest width is what `Maximum.place` and `Maximum.attainment` say; `Maximum.words` is
+the one text of it.
 """
 
 from __future__ import annotations
@@ -13,17 +14,26 @@ from ptmcad.answer import with_methods
 from ptmcad.answer.intervals import End, OperationSpan
 from ptmcad.mechanism import Model
 from ptmcad.question.slice import Axis
-from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+from ptmcad.text.enclosure import DIGITS, AlgebraicNumber, Enclosure
 
 
 class Place(Enum):
-    """What is proved about the place of the largest width."""
+    """Where the largest width is."""
 
-    CRITICAL = "attained only at a critical value of the other axis"
+    CRITICAL = "a critical value of the other axis"
     SMOOTH = "where the derivative vanishes, once in the enclosure"
-    EDGE = "approached at the edge of the window, not attained in it"
-    PLATEAU = "on a whole interval, where the width is constant"
+    EDGE = "the edge of the window"
+    PLATEAU = "a whole interval, where the width is constant"
     ENCLOSED = "somewhere in the enclosure"
+
+
+class Attainment(Enum):
+    """Whether a supremum is a value: what is counted on the line itself decides, not a limit from beside it."""
+
+    ATTAINED = "attained"
+    APPROACHED = "approached but not attained"
+    EXCEPT = "attained except at"
+    UNDECIDED = "attainment not decided"
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +45,11 @@ class Maximum:
     at : encloses its place on the other axis; exact where the place is a rational number.
     width : encloses the width.
     critical : the critical value of the other axis at which the place is, or which alone the enclosure of it holds.
-    ends : the range's ends there (its limits), where they are known exactly.
+    ends : the range's ends there, or their limits, where they are known exactly.
+    attained : whether the width is that of a range, of an interval at all values but ``exceptions`` and ``doubtful``
+        ones; None where that is not decided.
+    exceptions : values in an interval, or at its ends, at which it is not attained.
+    doubtful : those at which that is not decided.
     """
 
     place: Place
@@ -43,6 +57,46 @@ class Maximum:
     width: Enclosure
     critical: AlgebraicNumber | None = None
     ends: tuple[End, End] | None = None
+    attained: bool | None = None
+    exceptions: tuple[End, ...] = ()
+    doubtful: tuple[End, ...] = ()
+
+    @property
+    def attainment(self) -> Attainment:
+        if self.attained is None:
+            return Attainment.UNDECIDED
+        if not self.attained:
+            return Attainment.APPROACHED
+        return Attainment.EXCEPT if self.exceptions else Attainment.ATTAINED
+
+    def words(self, over: str, digits: int = DIGITS) -> str:
+        """Where on the other axis the width is attained, or approached."""
+        if self.place is Place.PLATEAU:
+            low, high = (AlgebraicNumber.of(end).text(digits) for end in (self.at.low, self.at.high))
+            parts = [f"attained on the interval {over} from {low} to {high}"]
+            if self.exceptions:
+                parts.append(f"except at {_listed(over, self.exceptions, digits)}")
+            if self.doubtful:
+                parts.append(f"(attainment not decided at {_listed(over, self.doubtful, digits)})")
+            return " ".join(parts)
+        if self.place is Place.CRITICAL and self.critical is not None:
+            at = self.critical.text(digits)
+        elif self.at.settles(digits):
+            at = self.at.text(digits)
+        else:
+            low, high = (AlgebraicNumber.of(end).text(3) for end in (self.at.low, self.at.high))
+            at = f"a value between {low} and {high}"
+        what = self.place.value.replace("the other axis", over)
+        if self.critical is not None and self.critical.exact is None:
+            held = ", which holds one critical value" if self.place is Place.ENCLOSED else ""
+            what += f"{held}, a root of a polynomial of degree {self.critical.degree}"
+        return f"{self.attainment.value} at {over} = {at}, {what}"
+
+
+def _listed(over: str, values: tuple[End, ...], digits: int) -> str:
+    """Values of an axis, such as b = 0 and b = 1."""
+    texts = [f"{over} = {AlgebraicNumber.of(v).text(digits)}" for v in values]
+    return " and ".join(part for part in (", ".join(texts[:-1]), texts[-1]) if part)
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,7 @@ from flint import fmpq
 from ptmcad.algebra.numbers import algebraic_number
 from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
 from ptmcad.answer.arrangement import correspondence
-from ptmcad.answer.changes import Change, Changes
+from ptmcad.answer.changes import TOLERANCE, Change, Changes
 from ptmcad.ask.changewords import described
 from ptmcad.ask.classification import check_count
 from ptmcad.ask.engines import is_certified
@@ -35,8 +35,6 @@ from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import share_for
 
-TOLERANCE = Fraction(1, 10**6)
-"""Of the free parameter's range: how wide enclosures are, and how near to a change members are compared in words."""
 SAMPLES = 64
 """Members beside those of the record that are compared where there is no elimination."""
 
@@ -205,6 +203,7 @@ def _compared(members: Members, critical: Sequence[RealRoot], tolerance: Fractio
         _at_ends(members, tolerance),
         True,
         f"proved by elimination: within the range nothing can change{where}",
+        tolerance,
     )
 
 
@@ -294,7 +293,8 @@ def _bisected(members: Members, tolerance: Fraction, reason: str) -> Changes:
     between.append(_simple_alike(members, place, values[-1]))
     arrangements = tuple(members.at(value).arrangement for value in between)
     words = f"found by sampling {len(values)} members, not proved complete: {reason}"
-    return Changes(free, tuple(found), tuple(between), arrangements, (), _at_ends(members, tolerance), False, words)
+    return Changes(free, tuple(found), tuple(between), arrangements, (), _at_ends(members, tolerance), False, words,
+                   tolerance)  # fmt: skip
 
 
 def _simple_alike(members: Members, low: Fraction, high: Fraction) -> Fraction:

@@ -15,7 +15,7 @@ from typing import Any
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.design import BestDesign, Evaluation
 from ptmcad.ask.designing.optimiser import Enough, Point, best_of, within
-from ptmcad.ask.designing.proof import Limits, Proof, bounded, bounder_of, exact_maximum, place_of
+from ptmcad.ask.designing.proof import Limits, Proof, bounded, bounder_of, exact_maximum, most_on_lines, place_of
 from ptmcad.ask.designing.values import Evaluate, Value, evaluator
 from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError
@@ -138,7 +138,7 @@ class _Search:
         proof = bounded(asked, bounder, self._improved, Limits(tolerance, boxes, self._go_on))
         if space is not None:
             self._confirm()
-        return proof
+        return proof if proof.bound is None else proof._replace(bound=max(proof.bound, most_on_lines(asked)))
 
     def _search(self, seed: int, most: int) -> None:
         bounds = [(axis.low, axis.high) for axis in self.asked.over]
@@ -208,8 +208,6 @@ class _Search:
     def _exactly(self, maxima: Sequence[Any], evaluations: int) -> Proof:
         """The proof by exact critical values of the one parameter, and a curve of values for the picture."""
         (axis,) = self.asked.over
-        if not maxima:
-            return Proof(Fraction(0), "by exact critical values: there is no such range within the bounds")
         places = [place_of(m) for m in maxima]
         inside = [min(max(p, axis.low), axis.high) for p in places]
         steps = evaluations
@@ -222,8 +220,9 @@ class _Search:
                 break
             self.report("designs", number, len(wanted))
             self.look((value,))
-        where = " and ".join(sorted({m.place.value.replace("the other axis", axis.name) for m in maxima}))
-        return Proof(max(m.width.high for m in maxima), f"by exact critical values: {where}")
+        where = "; ".join(m.words(axis.name) for m in maxima) or "there is no such range within the bounds"
+        bound = max((m.width.high for m in maxima), default=Fraction(0))
+        return Proof(bound, f"by exact critical values: {where}", maxima=tuple(maxima))
 
     def answer(self, proof: Proof, tolerance: Fraction, seed: int) -> BestDesign:
         """What was found and proved, as data."""
@@ -253,4 +252,5 @@ class _Search:
             points=tuple(Evaluation(p, None if v is None else v.value) for p, v in self.points.items()),
             boxes=proof.boxes,
             parameters=asked.text,
+            maxima=proof.maxima,
         )

@@ -6,15 +6,12 @@ Guarantee: a member's file is written as soon as its map is complete, so that an
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-import click
-
-from ptmcad.answer.changes import Changes
+from ptmcad.answer.changes import TOLERANCE, Changes
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Drawing, names_of
@@ -134,7 +131,7 @@ def _changes(common: Common, options: Options, wanted: Wanted) -> Changes | None
     """Where the arrangement changes, if that is asked for."""
     if not (wanted.changes or wanted.between or wanted.needs_surface):
         return None
-    from ptmcad.ask.changes import TOLERANCE, changes_of
+    from ptmcad.ask.changes import changes_of
 
     return changes_of(common, options.tolerance or TOLERANCE, options)
 
@@ -248,12 +245,3 @@ def read_family_file(path: Path, *, whole: bool = True) -> FamilyMap:
     return FamilyMap(
         stored.name, stored.free, stored.values, members, stored.surfaces, stored.title, stored.changes, stored.text
     )
-
-
-def each_member(family: FamilyMap, ask: Callable[[RegionMap], Any]) -> list[Any]:
-    """What is asked of every member of a family, each announced by its value."""
-    answers = []
-    for value, member in family:
-        click.echo(f"{family.free.name} = {text_of(value)}")
-        answers.append(ask(member))
-    return answers

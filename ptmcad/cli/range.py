@@ -18,7 +18,7 @@ from ptmcad.cli.locate import point_of
 from ptmcad.cli.paths import out_option, record_argument
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.range_answers import Answer, Request, answer, is_enclosed
+from ptmcad.cli.range_answers import Answer, Request, answer, is_enclosed, request_codec
 from ptmcad.cli.slices import range_option, set_option
 from ptmcad.cli.values import names, pair_of_names, point, quantity_names
 from ptmcad.errors import ConfigError, ExpressionError
@@ -236,11 +236,11 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
             found = answer(slice, request)
         click.echo(found.text)
         if names:
-            _save(slice, found, stem, output)
+            _save(slice, request, found, stem, output)
             report_written(output.out, names)
 
 
-def _save(slice: Slice, found: Answer, stem: str, output: Output) -> None:
+def _save(slice: Slice, request: Request, found: Answer, stem: str, output: Output) -> None:
     """Write the pictures and, last, the JSON."""
     writers: dict[str, Writer] = {
         name: picture(name, draw)
@@ -248,9 +248,11 @@ def _save(slice: Slice, found: Answer, stem: str, output: Output) -> None:
         for name in (f"{stem}{part}.{suffix}" for suffix in output.pictures)
     }
     if "json" in output.formats:
+        from ptmcad.show.document.parts import SLICE
         from ptmcad.show.ranges.document import document
 
-        text = document(slice.name, slice.mechanism, dict(found.parts))
+        asked = {"slice": SLICE.write(slice), "request": request_codec().write(request)}
+        text = document(slice.name, slice.mechanism, {**found.parts, **asked})
         writers[f"{stem}.json"] = text_writer(text)
         write_result(output.out, writers, f"{stem}.json", text)
     else:

@@ -19,6 +19,9 @@ from ptmcad.question.slice import Slice
 
 if TYPE_CHECKING:
     from ptmcad.ask.branches import SolutionsOnLine
+    from ptmcad.show.document.codec import Codec
+
+MAX_TEXT = 10_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +46,18 @@ class Request:
     digits: int
     critical: bool
     quantities: tuple[str, ...]
+
+
+def request_codec() -> Codec[Request]:
+    """A request as JSON's data, with which `answer` gives the same once more."""
+    from ptmcad.show.document import codec
+
+    text = codec.line(MAX_TEXT)
+    return codec.record(
+        Request, along=text, at=codec.named(text), over=codec.TRUTH, rows=codec.NATURAL,
+        start=codec.optional(codec.RATIONAL), pose=codec.COUNT, digits=codec.NATURAL, critical=codec.TRUTH,
+        quantities=codec.listed(text),
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,17 +7,15 @@ may.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from ptmcad.answer.consistency import check_numbers
-from ptmcad.answer.design import BestDesign
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown
 from ptmcad.process.commit import recover
-from ptmcad.show.document.design import FORMAT as DESIGN
 from ptmcad.show.document.node import NEWER, is_newer
 from ptmcad.show.document.writing import FORMAT
 from ptmcad.show.style import Style
@@ -25,6 +23,7 @@ from ptmcad.text.textfile import format_named, json_data, read_text
 
 MAX_BYTES = 60_000_000
 """Twice what a certified map with a million rectangles takes."""
+Answer = TypeVar("Answer")
 _OF_A_RECORD = frozenset(("mechanism", "system", "axes"))
 """Keys of which a problem record has one at least, and no result has any at its top."""
 
@@ -57,27 +56,32 @@ def read_result(path: Path, *, whole: bool = True) -> RegionMap:
     return result
 
 
-def is_design(path: Path) -> bool:
-    """Whether a file is the document of a design."""
+def kind_of(path: Path) -> str:
+    """What a JSON file is the document of, such as ``design``: its format without program and version; or nothing."""
     if path.suffix.lower() != ".json":
-        return False
-    return f'"format": "{DESIGN.partition("/")[0]}/' in read_text(path, MAX_BYTES, "a result's JSON file")[:200]
+        return ""
+    kind, _, _ = format_named(read_text(path, MAX_BYTES, "a result's JSON file")).partition("/")
+    return kind.removeprefix("ptmcad-")
 
 
-def read_design_file(path: Path) -> BestDesign:
-    """The best design in a JSON file.
+def read_other(path: Path, read: Callable[[str], Answer], kind: str) -> Answer:
+    """The answer in a JSON file that is no map.
+
+    Parameters
+    ----------
+    read : what raises ValueError where a text is no such document.
 
     Raises
     ------
     ConfigError
         When it is not a whole document of one.
     """
-    text = read_text(path, MAX_BYTES, f"a {DESIGN} file")
+    text = read_text(path, MAX_BYTES, f"a {kind} file")
     try:
-        return BestDesign.from_json(text)
+        return read(text)
     except (ValueError, PtmcadError, ZeroDivisionError, RecursionError) as error:
         reason = shown(" ".join(str(error).split()), 300)
-        raise ConfigError(f"is damaged or not a {DESIGN} file: {reason}", file=str(path)) from error
+        raise ConfigError(f"is damaged or not a {kind} file: {reason}", file=str(path)) from error
 
 
 @contextmanager

@@ -2,25 +2,39 @@
 
 from __future__ import annotations
 
+import json
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import FrameType
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from ptmcad.answer.design import BestDesign
 from ptmcad.answer.family import FamilyMap
+from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.cli.families import each_member, is_family, read_family_file
+from ptmcad.answer.sweep import Member
+from ptmcad.cli.families import read_family_file
 from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.stored import is_design, read_design_file, read_result
+from ptmcad.cli.stored import kind_of, read_other, read_result
 from ptmcad.cli.values import files
-from ptmcad.options import Options
+from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.options import Options, Progress
 from ptmcad.question.config import member_like
+from ptmcad.text.numerals import fraction_of, text_of
 
 if TYPE_CHECKING:
     from ptmcad.verification.report import VerifyReport
+
+Verify = Callable[[Progress], "VerifyReport"]
 
 
 @click.command("verify")
@@ -46,26 +60,181 @@ def command(*, result: Path, seed: int | None, boxes: int | None, effort: int | 
         ptmcad classify --slice L2,rho --format json
         ptmcad verify slice-L2-rho.json
     """
-    with held(limits):
-        if is_design(result):
-            report_idle([Idle("boxes", boxes is not None, "the boxes of a design are all checked"),
-                         Idle("effort", effort is not None, "the boxes of a design are all checked")])  # fmt: skip
-            from ptmcad.verification import verify_design
+    with held(limits), _clock(limits.timeout) as is_over:
+        from ptmcad.verification import Check, VerifyReport
 
-            with ProgressBar() as progress:
-                report = verify_design(read_design_file(result), seed, progress)
-            return _report(report)
-        if is_family(result):
-            family = read_family_file(result, whole=False)
-            status = int(max(each_member(family, lambda member: _verified(member, seed, boxes, effort))))
-            return max(status, _verified_family(family, seed))
-        return _verified(read_result(result, whole=False), seed, boxes, effort)
+        checks: list[Check] = []
+        for heading, check in _reports(result, seed, boxes, effort):
+            if heading:
+                click.echo(heading)
+            try:
+                with ProgressBar() as progress:
+                    report = check(progress)
+            except LimitReached as limit:
+                report = VerifyReport((Check("all", "", None, f"not reached: {limit}"),))
+            checks += report.checks
+            click.echo(report.table())
+            if report.violation is not None:
+                click.echo(f"violated: {report.violation}", err=True)
+            if is_over():
+                break
+        whole = VerifyReport(tuple(checks))
+        if heading:
+            click.echo(f"in all: {whole.verdict}")
+        if is_over():
+            click.echo(f"stopped: the time limit of {limits.timeout:g} s was reached", err=True)
+        return 1 if not whole.ok else 3 if is_over() else 0
 
 
-def _verified_family(family: FamilyMap, seed: int | None) -> int:
-    """The exit status for what a family's members have in common, and where their arrangement changes."""
+@contextmanager
+def _clock(seconds: float | None) -> Iterator[Callable[[], bool]]:
+    """Raise `LimitReached` in what runs inside when the time is over, once; gives whether it has been."""
+    over: list[int] = []
+
+    def ring(number: int, _frame: FrameType | None) -> None:
+        over.append(number)
+        raise LimitReached("the time is over")
+
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, seconds or 0)
+    try:
+        yield lambda: bool(over)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def _reports(path: Path, seed: int | None, boxes: int | None, effort: int | None) -> Iterator[tuple[str, Verify]]:
+    """What there is to check in a file, each with a heading where there are several."""
+    from ptmcad.verification import verify, verify_design
+
+    def of_map(stored: RegionMap) -> Verify:
+        exact = stored.cover is None
+        report_idle([Idle(name, exact, "an exact map is checked whole") for name in ("boxes", "effort")])
+        return lambda progress: verify(stored, seed=seed, boxes=boxes, progress=progress, effort=effort)
+
+    if path.is_dir():
+        yield "", partial(_verified_sweep, path, seed, boxes, effort)
+        return
+    kind = kind_of(path)
+    if kind in ("design", "poses", "range"):
+        report_idle([Idle("boxes", boxes is not None, "all that is stored is checked"),
+                     Idle("effort", effort is not None, "all that is stored is checked")])  # fmt: skip
+    if kind == "design":
+        design = read_other(path, BestDesign.from_json, "ptmcad-design/1")
+        yield "", lambda progress: verify_design(design, seed, progress)
+    elif kind == "poses":
+        poses = read_other(path, Poses.from_json, "ptmcad-poses/1")
+        yield "", partial(_verified_poses, poses)
+    elif kind == "range":
+        found = read_other(path, json.loads, "ptmcad-range/1")
+        yield "", partial(_verified_range, path, found)
+    elif kind == "family":
+        family = read_family_file(path, whole=False)
+        for value, member in family:
+            yield f"{family.free.name} = {text_of(value)}", of_map(member)
+        yield f"what the members have in common over {family.free.name}", partial(_verified_family, family, seed)
+    else:
+        yield "", of_map(read_result(path, whole=False))
+
+
+def _verified_sweep(
+    folder: Path, seed: int | None, boxes: int | None, effort: int | None, progress: Progress
+) -> VerifyReport:
+    """Each member's map, and what the index holds of it."""
+    from ptmcad.sweeping.index import member_map, members, read_sweep
+    from ptmcad.sweeping.member import Wanted, summary_of
+    from ptmcad.verification import VerifyReport, verify
+    from ptmcad.verification.report import Headway, Unchecked, Violation, checked
+
+    sweep = read_sweep(folder)
+    found = list(members(sweep))
+
+    def check(member: Member) -> str:
+        summary = member.summary
+        if summary is None:
+            return Unchecked(f"it is {member.state.value}: {member.error}")
+        stored = member_map(sweep, member)
+        for name, text in member.parameters.items():
+            known = stored.slice.parameters.get(name)
+            if known is not None and not (known.is_constant and known.constant() == fraction_of(text)):
+                raise Violation(f"the map is not that of {name} = {text}")
+        unknown = ", ".join(member.parameters.keys() - stored.slice.parameters.keys())
+        if member.same_as is not None:
+            first = found[member.same_as]
+            if (first.file, first.summary) != (member.file, summary):
+                raise Violation(f"it has not what member {member.same_as} has, as is said")
+            return f"as member {member.same_as}"
+        areas = any(area.area != ("", "") for area in summary.areas)
+        wanted = Wanted(areas=areas, along=summary.widest.along if summary.widest else "")
+        if (true := summary_of(stored, wanted)) != summary:
+            raise Violation(f"the index has {summary}, the map {true}")
+        report = verify(stored, seed=seed, boxes=boxes, effort=effort)
+        if report.violation is not None:
+            raise Violation(report.violation)
+        return Unchecked(f"{report.verdict}; which value {unknown} has") if unknown else report.verdict
+
+    def numbers(_claims: object) -> str:
+        if [member.number for member in found] != list(range(len(found))):
+            raise Violation("the members are not numbered in their order")
+        if len(found) < len(sweep):
+            return Unchecked(f"{len(sweep) - len(found)} members have not been entered yet")
+        return f"{len(found)} members"
+
+    steps = [("index", "comparison", numbers)]
+    steps += [(f"member {m.number}", "its map, and the index", partial(lambda m, _: check(m), m)) for m in found]
+    return VerifyReport(tuple(checked(None, steps, (), Headway(progress))))
+
+
+def _verified_poses(stored: Poses, progress: Progress) -> VerifyReport:
+    """The poses at a point, and all that is said of each."""
+    from ptmcad.ask.solving import poses_at
+    from ptmcad.verification import VerifyReport, check_anew, verify_poses
+
+    report = verify_poses(stored, progress)
+    if not report.ok:
+        return report
+    anew = replace(poses_at(stored.model, stored.parameters, stored.digits), units=stored.units)
+    return VerifyReport((*report.checks, check_anew(json.loads(stored.to_json()), json.loads(anew.to_json()))))
+
+
+def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> VerifyReport:
+    """The counts along a line, and all that is said of it."""
+    from ptmcad.ask.classification import load_certified
+    from ptmcad.cli.range_answers import answer, is_enclosed, request_codec
+    from ptmcad.options import DEFAULTS
+    from ptmcad.show.document.extremes import maximum_from
+    from ptmcad.show.document.node import Node
+    from ptmcad.show.document.parts import SLICE
+    from ptmcad.show.ranges.document import document
+    from ptmcad.verification import Check, VerifyReport, check_anew, verify_range
+
+    if "slice" not in data or "request" not in data:
+        return VerifyReport((Check("range", "", None, "an earlier version made it: of what is not said"),))
+    try:
+        slice = SLICE.read(Node(data["slice"], "slice"))
+        request = request_codec().read(Node(data["request"], "request"))
+        over = data.get("over", {"maxima": ()})
+        maxima = [maximum_from(entry, over["over"]["name"], request.digits) for entry in over["maxima"]]
+        report = verify_range(data, slice, progress, maxima)
+    except (ValueError, KeyError, TypeError, AttributeError, IndexError) as error:
+        raise ConfigError(f"is damaged or not a ptmcad-range/1 file: {error}", file=str(path)) from error
+    if not report.ok:
+        return report
+    if is_enclosed(slice, request):
+        load_certified(progress, DEFAULTS)
+    parts = {**answer(slice, request).parts, "slice": data["slice"], "request": data["request"]}
+    anew = json.loads(document(slice.name, slice.mechanism, parts))
+    return VerifyReport((*report.checks, check_anew(data, anew)))
+
+
+def _verified_family(family: FamilyMap, seed: int | None, progress: Progress) -> VerifyReport:
+    """What a family's members have in common, and where their arrangement changes."""
+    from ptmcad.ask.changes import changes_of
     from ptmcad.ask.classification import region_map
-    from ptmcad.verification import VerifyReport, verify_changes, verify_surfaces
+    from ptmcad.ask.members import Restored, in_common
+    from ptmcad.show.document.changes import written_changes
+    from ptmcad.verification import VerifyReport, check_anew, verify_changes, verify_surfaces
 
     over_the_first = Options(engine="exact", areas=False, without=frozenset(("axis-order",)))
 
@@ -77,27 +246,13 @@ def _verified_family(family: FamilyMap, seed: int | None) -> int:
         return map_at(value), map_at(value, True)
 
     checks = [verify_surfaces(family, map_at, seed)]
-    if family.changes is not None and all(c.passed is not False for c in checks):
-        with ProgressBar() as progress:
-            checks += verify_changes(family.changes, maps_at, seed, progress)
-    click.echo(f"what the members have in common over {family.free.name}")
-    return _report(VerifyReport(tuple(checks)))
-
-
-def _verified(stored: RegionMap, seed: int | None, boxes: int | None, effort: int | None) -> int:
-    """The exit status for a map, after what was checked has been printed."""
-    report_idle([Idle(name, stored.cover is None, "an exact map is checked whole") for name in ("boxes", "effort")])
-    from ptmcad.verification import verify
-
-    with ProgressBar() as progress:
-        report = verify(stored, seed=seed, boxes=boxes, progress=progress, effort=effort)
-    return _report(report)
-
-
-def _report(report: VerifyReport) -> int:
-    """The exit status, after the table of a report has been printed."""
-    click.echo(report.table())
-    if report.ok:
-        return 0
-    click.echo(f"violated: {report.violation}", err=True)
-    return 1
+    found, options = family.changes, Options(progress=progress)
+    if found is not None and all(c.passed is not False for c in checks):
+        checks += verify_changes(found, maps_at, seed, progress)
+    common = in_common(Restored(family), options)
+    stored, anew = {"surfaces": family.surfaces}, {"surfaces": common.surfaces}
+    if found is not None and all(c.passed is not False for c in checks):
+        stored |= written_changes(found)
+        anew |= written_changes(changes_of(common, found.tolerance, options))
+    checks.append(check_anew(stored, anew))
+    return VerifyReport(tuple(checks))

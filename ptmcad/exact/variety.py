@@ -122,7 +122,7 @@ def discriminant_variety(
         seen.adopt(proved_poles(equations, algebra, doubtful), Kind.INFINITY)
     if "sign-curve" in without:
         for minor in leading_minors(system, parameters) if system.has_index else ():
-            seen.adopt(irreducible_factors(norm(algebra, _lifted(minor, equations))[0]), Kind.AUXILIARY)
+            seen.adopt(irreducible_factors(norm(algebra, lifted(minor, equations))[0]), Kind.AUXILIARY)
     if "hermite-matrix" in without:
         for part in determinant(trace_form(algebra)):
             seen.adopt(irreducible_factors(part), Kind.AUXILIARY)
@@ -209,8 +209,8 @@ def nondegenerate(equations: SliceSystem) -> Nondegenerate:
         if not equations.inequalities:
             raise
     for condition in equations.inequalities:
-        equations = saturated(equations, _lifted(condition, equations))
-        if not _algebra(equations).dimension:
+        equations = saturated(equations, lifted(condition, equations))
+        if not algebra_of(equations).dimension:
             raise NothingToCountError(
                 "at every point of the slice each solution, real or complex, makes the left side of an inequality "
                 "zero: there is nothing to count"
@@ -219,7 +219,7 @@ def nondegenerate(equations: SliceSystem) -> Nondegenerate:
 
 
 def _with_jacobian(equations: SliceSystem) -> Nondegenerate:
-    algebra = _algebra(equations)
+    algebra = algebra_of(equations)
     if not algebra.dimension:
         raise NothingToCountError(
             "off a curve of the slice the equations have no solution, real or complex: there is nothing to count"
@@ -235,7 +235,7 @@ def _with_jacobian(equations: SliceSystem) -> Nondegenerate:
     return Nondegenerate(equations, algebra, rows, jacobian_norm)
 
 
-def _lifted(p: UnknownPolynomial, equations: SliceSystem) -> UnknownPolynomial:
+def lifted(p: UnknownPolynomial, equations: SliceSystem) -> UnknownPolynomial:
     """A polynomial in all coordinates of the equations."""
     return {(*m, *(0,) * (equations.unknowns - len(m))): c for m, c in p.items()}
 
@@ -253,7 +253,7 @@ def sign_changes(equations: SliceSystem, algebra: QuotientAlgebra) -> Iterator[C
     for n, p in enumerate(equations.stability, 1):
         product = norm(algebra, p)[0]
         if product.is_zero():  # there solutions with p = 0 are not stable, whatever the others are
-            others = _algebra(saturated(equations, p))
+            others = algebra_of(saturated(equations, p))
             if not others.dimension:
                 raise NothingToCountError(
                     "at every point of the slice this condition's left side is zero at each solution, real or complex: "
@@ -330,7 +330,14 @@ _OTHER_ORDERS = ((2, 0, 3, 1),)
 Where the first order's basis degenerates, these have not, so far."""
 
 
-def _algebra(equations: SliceSystem) -> QuotientAlgebra:
+def algebra_of(equations: SliceSystem) -> QuotientAlgebra:
+    """The quotient over Q(x, y).
+
+    Raises
+    ------
+    InfiniteSolutionsError
+        When there are infinitely many solutions everywhere.
+    """
     why = "nothing holds some motion; " if equations.has_index else ""
     infinitely_many = InfiniteSolutionsError(
         "at every point of the slice the equations have infinitely many solutions (complex ones included): "
@@ -355,4 +362,4 @@ def hermite_determinant(system: ParametricSystem, parameters: Mapping[str, Ratio
     Its numerator has every CRITICAL component as a factor; further factors are places where the monomial basis, not
     the set of solutions, degenerates.
     """
-    return determinant(trace_form(_algebra(on_slice(system, parameters))))
+    return determinant(trace_form(algebra_of(on_slice(system, parameters))))

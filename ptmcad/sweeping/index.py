@@ -24,6 +24,7 @@ from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import CountedArea, Member, State, Summary, Sweep, Widest
+from ptmcad.answer.widths import Attainment
 from ptmcad.errors import ConfigError, OutputError
 from ptmcad.process.commit import locked, reason, write_through
 from ptmcad.process.journal import hidden
@@ -359,9 +360,16 @@ def _member(folder: Path, names: Sequence[str], row: tuple[Any, ...]) -> Member:
 def _widest(text: str | None) -> Widest | None:
     if text is None:
         return None
-    along, width, places, proof, remark = json.loads(text)
+    along, width, places, proof, remark, *attainment = json.loads(text)
+    # an index of before says of limits that they are attained
+    known = attainment[0] if attainment else Attainment.UNDECIDED.value
     return Widest(
-        along, None if width is None else (width[0], width[1]), tuple((p[0], p[1]) for p in places), proof, remark
+        along,
+        None if width is None else (width[0], width[1]),
+        tuple((p[0], p[1]) for p in places),
+        proof if attainment or not proof else known,
+        remark,
+        known,
     )
 
 

@@ -115,7 +115,7 @@ def compute(work: Work, number: int) -> Outcome:
         try:
             slice = work.question.slice(number)
             result = region_map(slice, work.wanted.options)
-            summary = _summary(result, work.wanted)
+            summary = summary_of(result, work.wanted)
         except LimitReached:
             return Failed(out_of_time(work.timeout))
         except PtmcadError as error:
@@ -135,7 +135,8 @@ def out_of_time(timeout: float | None) -> str:
     return f"the member's time limit of {timeout:g} s was reached"
 
 
-def _summary(result: RegionMap, wanted: Wanted) -> Summary:
+def summary_of(result: RegionMap, wanted: Wanted) -> Summary:
+    """What an index holds of a map."""
     return Summary(
         status=result.status.value,
         cells=len(result.cells),
@@ -169,15 +170,22 @@ def bounds(low: Fraction, high: Fraction) -> Bounds:
 def _widest(slice: Slice, along: str) -> Widest:
     """The widest operation range, or why that is not known."""
     from ptmcad.exact.ranges.strips import strips
-    from ptmcad.exact.ranges.width import largest
+    from ptmcad.exact.ranges.width import widest
 
     try:
-        maxima = largest(strips(slice, along).found)
+        maxima = widest(slice, along, strips(slice, along))
     except (ConfigError, HypothesisError) as error:
         return Widest(along, remark=str(error))
     if not maxima:
         return Widest(along)
-    return Widest(along, _width(maxima), tuple(bounds(m.at.low, m.at.high) for m in maxima), maxima[0].place.value)
+    over = next(name for name in slice.axis_names if name != along)
+    return Widest(
+        along,
+        _width(maxima),
+        tuple(bounds(m.at.low, m.at.high) for m in maxima),
+        "; ".join(m.words(over) for m in maxima),
+        attainment=maxima[0].attainment.value,
+    )
 
 
 def _width(maxima: tuple[Maximum, ...]) -> Bounds:

@@ -180,6 +180,11 @@ class AlgebraicNumber:
     low: Fraction
     high: Fraction
 
+    @classmethod
+    def of(cls, value: Fraction | AlgebraicNumber) -> AlgebraicNumber:
+        """A rational number as a root of its polynomial; another number as it is."""
+        return cls((-value.numerator, value.denominator), value, value) if isinstance(value, Fraction) else value
+
     def __repr__(self) -> str:
         # by so many bisections and no more: of a number that is read from a damaged file nothing has been proved yet
         number = self.refined(max(abs(self.low), abs(self.high)) / 2**_SHOWN_BITS)

@@ -9,7 +9,12 @@ from __future__ import annotations
 from ptmcad.verification.changes import verify_changes
 from ptmcad.verification.checks import verify
 from ptmcad.verification.designs import verify_design
-from ptmcad.verification.report import Check, VerifyReport
+from ptmcad.verification.poses import verify_poses
+from ptmcad.verification.ranges import verify_range
+from ptmcad.verification.report import Check, VerifyReport, check_anew
 from ptmcad.verification.surfaces import verify_surfaces
 
-__all__ = ["Check", "VerifyReport", "verify", "verify_changes", "verify_design", "verify_surfaces"]
+__all__ = [
+    "Check", "VerifyReport", "check_anew", "verify", "verify_changes", "verify_design", "verify_poses", "verify_range",
+    "verify_surfaces",
+]  # fmt: skip

@@ -28,6 +28,7 @@ from ptmcad.options import Progress
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import text_of
+from ptmcad.verification.line import simple_between
 from ptmcad.verification.report import Check, Unchecked, Violation
 from ptmcad.verification.sturm import roots_within
 
@@ -45,8 +46,9 @@ has none."""
 
 
 def verify_changes(
-    found: Changes, maps_at: MapsAt, seed: int | None = None, progress: Progress | None = None
-) -> tuple[Check, ...]:
+    found: Changes, maps_at: MapsAt, seed: int | None = None,
+    progress: Progress | None = None,
+) -> tuple[Check, ...]:  # fmt: skip
     """Check where a family changes.
 
     Parameters
@@ -109,7 +111,7 @@ def _checked(found: Changes, members: _Members, source: random.Random) -> str:
     skipped = 0
     for part, ends in enumerate(_parts(found)):
         for _ in range(RANDOM):
-            drawn = _short(*(ends[0] + (ends[1] - ends[0]) * n for n in _place(source)))
+            drawn = simple_between(*(ends[0] + (ends[1] - ends[0]) * n for n in _place(source)))
             try:
                 members.expect(drawn, part, "between changes")
             except HypothesisError:  # none of the kinds of members of which anything is said
@@ -149,7 +151,8 @@ def _beside(value: AlgebraicNumber | Enclosure, gap: Fraction) -> tuple[Fraction
     """Values below and above a change; the ends of an enclosure, which are members."""
     if isinstance(value, AlgebraicNumber):
         near = value.refined(gap / 4)
-        return _short(near.low - gap * 3 / 4, near.low - gap / 2), _short(near.high + gap / 2, near.high + gap * 3 / 4)
+        places = ((near.low - gap * 3 / 4, near.low - gap / 2), (near.high + gap / 2, near.high + gap * 3 / 4))
+        return simple_between(*places[0]), simple_between(*places[1])
     return value.low, value.high
 
 
@@ -157,14 +160,6 @@ def _place(source: random.Random) -> tuple[Fraction, Fraction]:
     """Two shares of an interval, near together and at random."""
     first = source.randrange(1, _DIGITS)
     return Fraction(first, _DIGITS), Fraction(first, _DIGITS) + Fraction(1, 2 * _DIGITS)
-
-
-def _short(low: Fraction, high: Fraction) -> Fraction:
-    """A number of few digits between two others, or one of them: a member's curves get long with its digits."""
-    middle, most = (low + high) / 2, 1
-    while not low <= (found := middle.limit_denominator(most)) <= high:
-        most *= 2
-    return found
 
 
 def _check_instant(members: _Members, value: AlgebraicNumber | Enclosure, part: int, name: str) -> None:

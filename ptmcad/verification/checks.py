@@ -6,6 +6,8 @@ from collections.abc import Callable
 from functools import partial
 from hashlib import sha256
 
+from ptmcad.answer.design import BestDesign
+from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import A_MAP, expect
 from ptmcad.options import Progress
@@ -16,11 +18,13 @@ from ptmcad.verification.certified.checks import verify_certified
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
+from ptmcad.verification.designs import verify_design
 from ptmcad.verification.exclusion.check import EFFORT, check_free_area, places_of
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.model import check_system
 from ptmcad.verification.parameters import check_boundary, check_text
 from ptmcad.verification.plan import check_plan
+from ptmcad.verification.poses import verify_poses
 from ptmcad.verification.report import Check, Headway, VerifyReport, checked
 from ptmcad.verification.solutions import check_solutions
 from ptmcad.verification.structure import check_critical_values, check_stacks
@@ -50,10 +54,10 @@ _SINCE_VARIETY: tuple[CheckOf, ...] = (
 
 
 def verify(
-    result: RegionMap, seed: int | None = None, boxes: int | None = None, progress: Progress | None = None,
-    effort: int | None = None,
+    result: RegionMap | BestDesign | Poses, seed: int | None = None, boxes: int | None = None,
+    progress: Progress | None = None, effort: int | None = None,
 ) -> VerifyReport:  # fmt: skip
-    """Check a result without the code that made it.
+    """Check a result without the code that made it: a map, a design, or the poses at a point.
 
     Parameters
     ----------
@@ -73,6 +77,10 @@ def verify(
     --------------
     What the table lists as not checked.
     """
+    if isinstance(result, BestDesign):
+        return verify_design(result, seed, progress)
+    if isinstance(result, Poses):
+        return verify_poses(result, progress)
     expect(result, RegionMap, "result", A_MAP)
     if result.cover is not None or result.status is Status.CERTIFIED:
         free_area = partial(check_free_area, EFFORT if effort is None else effort)

@@ -22,7 +22,7 @@ def check_counts(claims: Claims) -> str:
     solution = "an equilibrium" if claims.describes_equilibria else "a solution"
     for n, cell in enumerate(claims.result.cells):
         where = ", ".join(f"{name}={text_of(cell.sample[name])}" for name in cell.sample.names)
-        if (name := _not_positive(model, claims.parameters_at(*cell.sample))) is not None:
+        if (name := not_positive(model, claims.parameters_at(*cell.sample))) is not None:
             raise Violation(f"{name} is not positive at {where} in cell {n}")
         fibre = claims.fibre_at(*cell.sample)
         counts = fibre.counts()
@@ -52,7 +52,7 @@ def _text(counts: Counts) -> str:
     return ", ".join(parts)
 
 
-def _not_positive(model: Model, values: Mapping[str, Fraction]) -> str | None:
+def not_positive(model: Model, values: Mapping[str, Fraction]) -> str | None:
     """A length or stiffness that is not positive, or None."""
     for name in model.positive:
         if values[name] <= 0:

@@ -1,65 +1,70 @@
-"""Checks of the best design: that boxes cover the bounds, and counts at points of lines, by signatures of trace forms.
+"""Checks of the best design: that boxes cover the bounds, and ranges of the designs that were evaluated.
 
-Guarantee: what passes as "boxes" holds. Of the value and of the bound samples are checked: counts where the best
-design's range begins and ends, and, at random designs, points with another count so near together that no range is
-longer than the bound of the design's box.
+Guarantee: what passes as "boxes" and "values" holds. Of the bound samples are checked: no range is longer than the
+bound of the design's box at a random design of each box.
 
-Not guaranteed: anything of designs that were not drawn, and of aims but a range.
+Not guaranteed: the bound of designs that were not drawn, and values of aims but a range.
 """
 
 from __future__ import annotations
 
 import random
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from hashlib import sha256
-from itertools import combinations, pairwise
-from math import prod
+from itertools import combinations
 
 from ptmcad.answer.design import BestDesign, BoundedBox
+from ptmcad.answer.intervals import End, Span, lower, upper
 from ptmcad.errors import ExpressionError
 from ptmcad.options import Progress
-from ptmcad.text.expressions import Expression, constant
+from ptmcad.question.slice import Axis
+from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.expressions import Expression, axis, constant
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import shortest_text
 from ptmcad.text.parsing import names_in, parse
-from ptmcad.verification.algebra import NotFinite
+from ptmcad.verification.attainment import Lines, check_maxima
 from ptmcad.verification.derivation import parameters_of
-from ptmcad.verification.fibre import fibre
+from ptmcad.verification.line import Line, NotKnown
 from ptmcad.verification.report import Check, Headway, Unchecked, VerifyReport, Violation, checked
+from ptmcad.verification.signs import Sign, is_in_domain
 
 DESIGNS = 12
-"""Random designs of which a line is looked at."""
-DRAWN = 400
-"""Random designs of which it is only looked whether a box holds them."""
-INSIDE = 9
-_NEAR = Fraction(1, 10**6)
-"""How far from an end of a range counts are taken, as a share of its length."""
-_ROUNDS = 60
+"""Random designs of which a line is looked at at least; one of each box."""
+_HALVINGS = 16
+"""Of a part of the bounds that no box holds, until a condition is seen to fail all over it."""
 _SHARES = 2**20
+_NOTHING = Enclosure(Fraction(0), Fraction(0))
 
 
 @dataclass(frozen=True, slots=True)
 class _Lines:
-    """A stored design, with counts at points."""
+    """A stored design, with the ranges of any one."""
 
     found: BestDesign
 
-    def working(self, value: Fraction, design: Mapping[str, Fraction]) -> bool | None:
-        """Whether there is the wanted count at a point of a design's line; None where a solution is degenerate."""
-        found = self.found
-        assert found.along is not None
-        known = {name: constant(at) for name, at in {**design, found.along.name: value}.items()}
-        try:
-            counts = fibre(found.model, self._parameters(known)).counts()
-        except NotFinite:
-            return None
-        if counts is None:
-            return None
-        return (counts.total if counts.stable is None else counts.stable) == found.working
+    def ranges(self, design: Mapping[str, Fraction]) -> list[Span]:
+        """All ranges with the wanted count, by their own ends; none where the conditions are not satisfied.
 
-    def _parameters(self, known: dict[str, Expression]) -> dict[str, Fraction]:
+        Raises
+        ------
+        NotKnown
+        """
+        along = self.found.along
+        assert along is not None
+        if not self.holds(design):
+            return []
+        known = {name: constant(at) for name, at in design.items()} | {along.name: axis(0)}
+        return self.line(known, along).ranges(self.found.working)
+
+    def line(self, known: dict[str, Expression], along: Axis) -> Line:
+        """The line along an axis, by what the other parameters are on it."""
+        return Line(self.found.model, self._parameters(known), along.low, along.high)
+
+    def _parameters(self, known: dict[str, Expression]) -> dict[str, Expression]:
         """The model's parameters, by what the document and the model say of them."""
         model, texts = self.found.model, self.found.parameters
 
@@ -74,19 +79,33 @@ class _Lines:
                     raise Violation(f"the text kept for {name[:40]!r} is no expression: {error}") from error
             return known[name]
 
-        return {name: value_of(name).constant() for name in parameters_of(model)}
+        return {name: value_of(name) for name in parameters_of(model)}
 
-    def holds(self, design: Mapping[str, Fraction]) -> bool:
-        """Whether a design satisfies the conditions, as they are written."""
-        known = {name: constant(at) for name, at in design.items()}
+    def excesses(self, design: Mapping[str, Expression]) -> list[Expression]:
+        """What is not positive where the conditions are satisfied, as they are written.
+
+        Raises
+        ------
+        Violation
+        """
         fixed = {n: parse(t, {}) for n, t in self.found.parameters.items() if not names_in(t)}
+        found = []
         for text in self.found.conditions:
             sign = "<=" if "<=" in text else ">="
-            left, _, right = text.partition(sign)
-            low, high = (parse(side.strip(), {**fixed, **known}).constant() for side in (left, right))
-            if low != high and (low < high) != (sign == "<="):
-                return False
-        return True
+            try:
+                low, high = (parse(side.strip(), {**fixed, **design}) for side in text.split(sign))
+            except (ExpressionError, ValueError) as error:
+                raise Violation(f"{text!r} is no condition: {error}") from error
+            found.append(low - high if sign == "<=" else high - low)
+        return found
+
+    def holds(self, design: Mapping[str, Fraction]) -> bool:
+        """Whether a design satisfies the conditions."""
+        return all(e.constant() <= 0 for e in self.excesses({name: constant(at) for name, at in design.items()}))
+
+    def named(self, at: Sequence[Fraction]) -> dict[str, Fraction]:
+        """A design by its numbers."""
+        return dict(zip((axis.name for axis in self.found.over), at, strict=True))
 
 
 def verify_design(found: BestDesign, seed: int | None = None, progress: Progress | None = None) -> VerifyReport:
@@ -98,17 +117,57 @@ def verify_design(found: BestDesign, seed: int | None = None, progress: Progress
     """
     claims = f"{found.name} {found.best} {found.bound} {[box.bound for box in found.boxes]}"
     drawn = sha256(claims.encode()).hexdigest()[:16] if seed is None else str(seed)
-    steps = (
-        ("boxes", "disjoint, volumes; random designs", partial(_check_boxes, seed=drawn)),
-        ("value", "signatures beside the range's ends", _check_value),
-        ("bound", "signatures on random lines", partial(_check_bound, seed=drawn)),
+    headway = Headway(progress)
+    steps: tuple[tuple[str, str, Callable[[_Lines], str]], ...] = (
+        ("form", "comparison", _check_form),
+        ("boxes", "disjoint; what is left, halved", _check_boxes),
+        ("values", "ranges of each design by itself", partial(_check_values, within=headway.within)),
+        ("bound", "ranges of random designs", partial(_check_bound, seed=drawn)),
+        ("extremes", "ranges on the lines themselves", _check_extremes),
     )
-    checks = checked(_Lines(found), steps, (), Headway(progress))
+    checks = checked(_Lines(found), steps, (), headway)
     checks.append(Check("bound of every design", "", None, "that no design exceeds its box's bound, beyond samples"))
     return VerifyReport(tuple(checks))
 
 
-def _check_boxes(lines: _Lines, seed: str) -> str:
+def _check_form(lines: _Lines) -> str:
+    """What entries say of one another."""
+    found = lines.found
+    of_range = found.maximise == "range"
+    if of_range != (found.along is not None) or (found.maximise == "area") != (len(found.fixed) == 2):
+        raise Violation(f"the aim {found.maximise[:40]!r} does not go with the window")
+    if (found.span is not None) != (of_range and found.value is not None and found.value.high > 0):
+        raise Violation("a span is of a range that there is, and of no other aim")
+    names = [axis.name for axis in (*found.over, *found.fixed, *filter(None, [found.along]))]
+    if len({*names}) < len(names) and found.along is not None:
+        raise Violation("two axes have one name")
+    if len({point.at for point in found.points}) < len(found.points):
+        raise Violation("a design is listed twice among those that were evaluated")
+    if found.boxes:
+        number = f"{len(found.boxes)} boxes of designs" if len(found.boxes) != 1 else "one box of designs"
+        if found.reason not in (f"by branch and bound, {how} {number}" for how in ("over", "which was stopped at")):
+            raise Violation(f"the reason names another number of boxes than {len(found.boxes)}")
+    best = None if found.value is None else found.value.high
+    for point in found.points:
+        if len(point.at) != len(found.over):
+            raise Violation("a design has not as many numbers as there are parameters")
+        design = lines.named(point.at)
+        where = f"the design {_named(design)}"
+        if not all(axis.low <= at <= axis.high for axis, at in zip(found.over, point.at, strict=True)):
+            raise Violation(f"{where} is not within the bounds")
+        if design == found.best and point.value != found.value:
+            raise Violation("the best design is listed with another value")
+        if point.value is None:
+            continue
+        bounds = [found.bound, *(box.bound for box in found.boxes if _is_in(box, point.at))]
+        if best is None or point.value.low > best:
+            raise Violation(f"{where} is listed with more than the best one has")
+        if any(bound is not None and point.value.low > bound for bound in bounds):
+            raise Violation(f"{where} is listed with more than the bound")
+    return f"{len(found.points)} designs, {len(found.boxes)} boxes"
+
+
+def _check_boxes(lines: _Lines) -> str:
     found = lines.found
     if not found.boxes:
         return Unchecked("there are no boxes")
@@ -119,47 +178,81 @@ def _check_boxes(lines: _Lines, seed: str) -> str:
     for a, b in combinations(found.boxes, 2):
         if all(max(p[0], q[0]) < min(p[1], q[1]) for p, q in zip(a.ranges, b.ranges, strict=True)):
             raise Violation(f"{_text(a)} and {_text(b)} overlap")
-    whole = prod(axis.high - axis.low for axis in found.over)
-    volume = sum(prod(high - low for low, high in box.ranges) for box in found.boxes)
-    if not found.conditions:
-        if volume != whole:
-            raise Violation(f"the boxes have {float(volume / whole):.6g} of the bounds' volume, not all of it")
-        return f"{len(found.boxes)} boxes cover the bounds"
-    source, seen = random.Random(f"{seed} boxes"), 0
-    for _ in range(DRAWN):
-        design = {axis.name: axis.low + (axis.high - axis.low) * _share(source) for axis in found.over}
-        if lines.holds(design):
-            seen += 1
-            if not any(_is_in(box, tuple(design.values())) for box in found.boxes):
-                raise Violation(f"no box holds the design {_named(design)}, which satisfies the conditions")
-    return f"{len(found.boxes)} boxes are disjoint; they hold {seen} random designs that satisfy the conditions"
+    open_ = 0
+    waiting = [(tuple((axis.low, axis.high) for axis in found.over), found.boxes, 0)]
+    while waiting:
+        part, boxes, halvings = waiting.pop()
+        met = tuple(box for box in boxes if all(low < b and a < high for (a, b), (low, high)
+                                           in zip(part, box.ranges, strict=True)))  # fmt: skip
+        cuts = [(k, cut) for box in met for k, ends in enumerate(box.ranges) for cut in ends
+                if part[k][0] < cut < part[k][1]]  # fmt: skip
+        if met and not cuts:
+            continue
+        if not met:
+            if _fails_all_over(lines, part):
+                continue
+            if halvings == _HALVINGS:
+                open_ += 1
+                continue
+            shares = [(high - low) / (axis.high - axis.low) for axis, (low, high) in zip(found.over, part, strict=True)]
+            k = shares.index(max(shares))
+            cuts, halvings = [(k, sum(part[k], Fraction(0)) / 2)], halvings + 1
+        k, cut = cuts[0]
+        for ends in ((part[k][0], cut), (cut, part[k][1])):
+            waiting.append(((*part[:k], ends, *part[k + 1 :]), met, halvings))
+    if open_:
+        return Unchecked(f"it was not decided whether a condition fails all over {open_} parts that no box holds")
+    return f"{len(found.boxes)} boxes cover the bounds" + (", where the conditions hold" if found.conditions else "")
 
 
-def _check_value(lines: _Lines) -> str:
+def _fails_all_over(lines: _Lines, part: Sequence[tuple[Fraction, Fraction]]) -> bool:
+    """Whether one condition is seen to fail in all of a part of the bounds that no box holds.
+
+    Raises
+    ------
+    Violation
+        When its middle satisfies all conditions.
+    """
+    middle = lines.named([sum(ends, Fraction(0)) / 2 for ends in part])
+    if lines.holds(middle):
+        raise Violation(f"no box holds the design {_named(middle)}, which satisfies the conditions")
+    if len(part) > 2:
+        return False
+    ends = [(from_fraction(low), from_fraction(high)) for low, high in part]
+    window = (ends[0], ends[-1])
+    axes = {axis_.name: axis(k) for k, axis_ in enumerate(lines.found.over)}
+    return any(is_in_domain(e, window, strict=True) is Sign.PROVED for e in lines.excesses(axes))
+
+
+def _check_values(lines: _Lines, within: Callable[[int, int], None]) -> str:
     found = lines.found
-    if found.best is None or found.value is None or found.span is None or found.along is None:
-        return Unchecked("the best design has no range")
-    if not lines.holds(found.best):
-        raise Violation("the best design does not satisfy the conditions")
-    low, high = found.span
-    if high.low - low.high > found.value.high or high.high - low.low < found.value.low:
-        raise Violation("the value is not the distance of the range's two ends")
-    length = high.low - low.high
-    if length <= 0:
-        return Unchecked("the range has no length")
-    near = length * _NEAR
-    inner = [
-        low.high + near,
-        *(low.high + length * Fraction(k, INSIDE + 1) for k in range(1, INSIDE + 1)),
-        high.low - near,
-    ]
-    outer = [at for at in (low.low - near, high.high + near) if found.along.low < at < found.along.high]
-    for points, wanted in ((inner, True), (outer, False)):
-        for at in points:
-            if lines.working(at, found.best) is (not wanted):
-                other = "another count" if wanted else "the wanted count"
-                raise Violation(f"at {found.along.name} = {shortest_text(at)} the best design has {other}")
-    return f"{len(inner)} points of the range, {len(outer)} beside it"
+    if found.along is None:
+        return Unchecked("they are of another aim than a range")
+    unknown = 0
+    for done, point in enumerate(found.points):
+        within(done, len(found.points))
+        design = lines.named(point.at)
+        try:
+            ranges = lines.ranges(design)
+        except NotKnown:
+            unknown += 1
+            continue
+        longest = max((span.width for span in ranges), key=lambda width: width.low, default=_NOTHING)
+        if (point.value is None) == lines.holds(design):
+            raise Violation(f"the design {_named(design)} has {'no' if point.value is None else 'a'} value, but "
+                            "conditions are satisfied at those that have one")  # fmt: skip
+        if point.value is not None and not _meet(longest, point.value):
+            raise Violation(f"the longest range of the design {_named(design)} is {float(longest):.10g}, not "
+                            f"{float(point.value):.10g}")  # fmt: skip
+        if design == found.best and found.span is not None:
+            low, high = found.span
+            if not any(_meet(_enclosed(r.low), low) and _meet(_enclosed(r.high), high) for r in ranges):
+                raise Violation("the best design has no range with the ends of its span")
+            if found.value is None or not _meet(found.value, Enclosure(high.low - low.high, high.high - low.low)):
+                raise Violation("the value is not the distance of the range's two ends")
+    if unknown:
+        return Unchecked(f"{len(found.points) - unknown} designs; of {unknown} more nothing was found out")
+    return f"{len(found.points)} designs"
 
 
 def _check_bound(lines: _Lines, seed: str) -> str:
@@ -170,63 +263,56 @@ def _check_bound(lines: _Lines, seed: str) -> str:
         raise Violation("the best design has more than the bound")
     source = random.Random(f"{seed} lines")
     everywhere = BoundedBox(tuple((axis.low, axis.high) for axis in found.over), found.bound)
-    settled = seen = 0
-    while seen < DESIGNS:
-        seen += 1
-        box = source.choice(found.boxes) if found.boxes else everywhere
+    boxes = [*found.boxes, *source.choices(found.boxes or [everywhere], k=max(0, DESIGNS - len(found.boxes)))]
+    settled = 0
+    for box in boxes:
         if box.bound > found.bound:
             raise Violation(f"{_text(box)} has a larger bound than all of them")
-        at = tuple(low + (high - low) * _share(source) for low, high in box.ranges)
-        design = dict(zip((axis.name for axis in found.over), at, strict=True))
-        settled += lines.holds(design) and _is_short(lines, design, box.bound)
+        design = lines.named([low + (high - low) * _share(source) for low, high in box.ranges])
+        try:
+            ranges = lines.ranges(design)
+        except NotKnown:
+            continue
+        settled += 1
+        for span in ranges:
+            if span.width.low > box.bound:
+                raise Violation(f"the design {_named(design)} has a range longer than the bound of its box")
     if not settled:
-        return Unchecked(f"at none of {seen} random designs was it seen that no range is longer")
-    return f"at {settled} of {seen} random designs no range is longer than the bound of their box"
+        return Unchecked(f"of {len(boxes)} random designs nothing was found out")
+    return f"at {settled} random designs no range is longer than the bound of their box"
 
 
-def _is_short(lines: _Lines, design: Mapping[str, Fraction], bound: Fraction) -> bool:
-    """Whether points with another count are found that leave no room for a longer range.
-
-    Raises
-    ------
-    Violation
-        When all points that were looked at between two that are further apart than the bound have the wanted count.
-    """
-    along = lines.found.along
-    assert along is not None
-    others = [along.low, along.high]  # ends of the window, and points with another count
-    with_count: list[Fraction] = []
-    for _ in range(_ROUNDS):
-        wide = max(pairwise(others), key=lambda pair: pair[1] - pair[0])
-        if wide[1] - wide[0] <= bound:
-            return True
-        inside = [wide[0], *(at for at in sorted(with_count) if wide[0] < at < wide[1]), wide[1]]
-        # between the end of the gap and the first point with the count, or where nothing is known
-        gaps = [
-            pair for pair in pairwise(inside) if pair[0] == wide[0] or pair[1] == wide[1] or len(inside) < 2 + INSIDE
-        ]
-        low, high = max(gaps, key=lambda pair: pair[1] - pair[0])
-        at = low + (high - low) * Fraction(7, 15)
-        there = lines.working(at, design)
-        if there is False:
-            others = sorted([*others, at])
-        elif there is True:
-            with_count.append(at)
-        else:
-            return False
-    low, high = max(pairwise(others), key=lambda pair: pair[1] - pair[0])
-    known = sorted(at for at in with_count if low < at < high)
-    if known and known[-1] - known[0] > bound:
-        raise Violation(
-            f"the design {_named(design)} has the wanted count at {len(known)} points from {along.name} = "
-            f"{shortest_text(known[0])} to {shortest_text(known[-1])}, further apart than the bound, and no point "
-            "between is known to have another one"
-        )
-    return False
+def _check_extremes(lines: _Lines) -> str:
+    found = lines.found
+    if not found.maxima or found.along is None:
+        return Unchecked("none is claimed")
+    along, over = found.along, found.over[0]
+    words = "; ".join(m.words(over.name) for m in found.maxima)
+    if found.reason != f"by exact critical values: {words}" or len(found.over) > 1 or found.conditions:
+        raise Violation("the reason does not say what the extremes do")
+    if found.bound != max(m.width.high for m in found.maxima):
+        raise Violation("the bound is not the largest of the extremes")
+    both = Lines(
+        lambda value: lines.line({over.name: constant(value), along.name: axis(0)}, along),
+        lambda value: lines.line({along.name: constant(value), over.name: axis(0)}, over),
+        along, over, found.working,
+    )  # fmt: skip
+    try:
+        return check_maxima(both, found.maxima)
+    except NotKnown as reason:
+        return Unchecked(str(reason))
 
 
 def _share(source: random.Random) -> Fraction:
     return Fraction(2 * source.randrange(_SHARES) + 1, 2 * _SHARES)
+
+
+def _enclosed(end: End) -> Enclosure:
+    return Enclosure(lower(end), upper(end))
+
+
+def _meet(one: Enclosure, other: Enclosure) -> bool:
+    return one.low <= other.high and other.low <= one.high
 
 
 def _is_in(box: BoundedBox, at: tuple[Fraction, ...]) -> bool:

@@ -191,10 +191,14 @@ class Fibre:
             return "+" * (len(index) - 1 - negative) + "-" * negative
         return "".join("0+-"[self._sum_of_signs(positive, self.matrix(p))] for p in self.point.stability)
 
+    def number_of_real_solutions(self) -> int:
+        """Of different ones that count, degenerate ones among them."""
+        return self._number([self.matrix(q) for q in self.point.inequalities])
+
     def number_of_zeros(self, p: fmpq_mpoly) -> int:
         """Of the real solutions that count, the number of those at which a polynomial is zero."""
         required, square = [self.matrix(q) for q in self.point.inequalities], self.matrix(p) * self.matrix(p)
-        return self._number(required) - self._sum_of_signs(required, square)
+        return self.number_of_real_solutions() - self._sum_of_signs(required, square)
 
     def balance(self) -> int:
         """The sum of the signs of the Jacobian's determinant over all real solutions."""

@@ -5,15 +5,18 @@ Guarantee: `VerifyReport.ok` is True only when no check failed; a claim that was
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
-from typing import TypeVar
+from textwrap import fill
+from typing import Any, TypeVar
 
-from ptmcad.errors import shown
+from ptmcad.errors import LimitReached, shown
 from ptmcad.options import Progress
 
 C = TypeVar("C")
+
+COLUMNS = 80
 
 
 class Violation(Exception):
@@ -44,7 +47,7 @@ class Unchecked(str):
 
 @dataclass(frozen=True, slots=True)
 class VerifyReport:
-    """The checks in their order; those after a failed one are not reached."""
+    """The checks in their order; those after a failed one, or one that a limit stopped, are not reached."""
 
     checks: tuple[Check, ...]
 
@@ -67,13 +70,58 @@ class VerifyReport:
     def _repr_html_(self) -> str:
         return f"<pre>{escape(self.table())}</pre>"
 
+    @property
+    def verdict(self) -> str:
+        """How many claims hold, are false, or were not checked.
+
+        >>> VerifyReport((Check("a", "", True, ""), Check("b", "", None, ""))).verdict
+        '1 claim holds, 1 not checked'
+        """
+        held, false, open_ = (sum(c.passed is answer for c in self.checks) for answer in (True, False, None))
+        parts = [f"{held} claim{'s hold' if held != 1 else ' holds'}"] if not false else [
+            f"{false} claim{'s are' if false != 1 else ' is'} false", f"{held} hold{'s' * (held == 1)}"]  # fmt: skip
+        return ", ".join(parts + [f"{open_} not checked"] * (open_ > 0))
+
     def table(self) -> str:
-        """One line for each check: the answer, the claim, the method and the detail."""
+        """A row of at most 80 columns for each check: the answer, the claim, the detail and the method; the verdict."""
         words = {True: "ok", False: "FALSE", None: "not checked"}
-        rows = [("", "claim", "method", "detail")]
-        rows += [(words[c.passed], c.name, c.method, c.detail) for c in self.checks]
-        widths = [max(len(row[k]) for row in rows) for k in range(3)]
-        return "\n".join("  ".join([*(row[k].ljust(widths[k]) for k in range(3)), row[3]]).rstrip() for row in rows)
+        rows = [("", "claim", "what was checked, and how")]
+        rows += [(words[c.passed], c.name, f"{c.detail} ({c.method})" if c.method else c.detail) for c in self.checks]
+        width = max(len(name) for _, name, _ in rows)
+        lines = [_wrapped(f"{answer:<13}{name:<{width}}  ", text) for answer, name, text in rows]
+        return "\n".join([*lines, self.verdict])
+
+
+def _wrapped(head: str, text: str) -> str:
+    return fill(text, COLUMNS, initial_indent=head, subsequent_indent=" " * len(head), break_on_hyphens=False)
+
+
+def check_anew(stored: Any, found: Any) -> Check:
+    """Compare a document, as JSON's data, with the one that the same question gives now.
+
+    Of a document of another version it is said in what it differs, and not that this is false.
+    """
+    name, method = "all entries", "answered anew, and compared"
+    versions = [part.get("versions") if isinstance(part, dict) else None for part in (stored, found)]
+    place = next(_differences(stored, found), "")
+    if not place:
+        return Check(name, method, True, "the answer is the same now")
+    if versions[0] != versions[1]:
+        return Check(name, method, None, f"another version made it; now {place}")
+    return Check(name, method, False, shown(place))
+
+
+def _differences(stored: Any, found: Any, place: str = "") -> Iterator[str]:
+    # what an earlier version did not write of a part is no difference
+    fits = isinstance(stored, dict) and isinstance(found, dict) and stored.keys() <= found.keys()
+    if fits and (place or stored.keys() == found.keys()):
+        for key in sorted(stored.keys() - {"versions"}):
+            yield from _differences(stored[key], found[key], f"{place}.{key}".lstrip("."))
+    elif isinstance(stored, list) and isinstance(found, list) and len(stored) == len(found):
+        for k, (one, other) in enumerate(zip(stored, found, strict=True)):
+            yield from _differences(one, other, f"{place}[{k}]")
+    elif (type(stored), stored) != (type(found), found):
+        yield f"{place} is {found!r:.80}, not {stored!r:.80}"
 
 
 PARTS = 100
@@ -111,18 +159,21 @@ def checked(
 ) -> list[Check]:
     """Run checks, given as name, method and function, in their order; none after a failed one, none of the missing."""
     checks: list[Check] = []
-    failed = False
+    ended = ""
     headway = headway or Headway(None)
     headway.number = len(steps)
     for name, method, check in steps:
-        headway.begins(name)
-        if failed or name in missing:
-            checks.append(Check(name, method, None, "not reached" if failed else "not complete in this partial result"))
+        if ended or name in missing:
+            checks.append(Check(name, method, None, ended or "not complete in this partial result"))
             continue
         try:
+            headway.begins(name)
             detail = check(claims)
             checks.append(Check(name, method, None if isinstance(detail, Unchecked) else True, detail))
         except Violation as violation:
-            failed = True
+            ended = "not reached"
             checks.append(Check(name, method, False, shown(str(violation))))
+        except LimitReached as limit:
+            ended = f"not reached: {limit}"
+            checks.append(Check(name, method, None, f"not finished: {limit}"))
     return checks

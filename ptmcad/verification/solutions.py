@@ -45,7 +45,7 @@ def check_solutions(claims: Claims) -> str:
     for n, cell in enumerate(claims.result.cells):
         if len(cell.solutions) != cell.total:
             raise Violation(f"cell {n} has {len(cell.solutions)} boxes of solutions, but {cell.total} equilibria")
-        _check_disjoint(n, cell, claims.model)
+        check_disjoint(n, cell, claims.model)
         values = claims.parameters_at(*cell.sample)
         for k, solution in enumerate(cell.solutions):
             try:
@@ -67,25 +67,36 @@ def check_solutions(claims: Claims) -> str:
 
 
 def _check_signs(claims: Claims, cell: Cell, values: Mapping[str, Fraction], solution: Solution) -> None:
-    """The box holds a solution that counts with these signs: by Newton's method, else by trace forms.
+    """The box holds a solution that counts with these signs.
 
     Raises
     ------
     Violation
     """
-    tried = product(range(1 + 2 * len(claims.model.unknowns)), _precisions(solution)[:_ATTEMPTS])
-    found = (_signs(claims.model, values, solution, bits, start) for start, bits in tried)
-    true = next((signs for signs in found if signs is not None), None)
-    if true is None:
-        fibre = claims.fibre_at(*cell.sample)
-        number, place = fibre.within(solution.center, solution.radius, counted=True)
-        if number != 1:
-            raise Violation(f"{number or 'no'} solution{'s' * (number > 1)} found in it")
-        true = fibre.signs(place)
+    true = signs_of(claims, cell, values, solution)
     if true != solution.signs:
         what = "Hessian" if claims.describes_equilibria else "list of conditions for stability"
         are = "eigenvalues of signs" if claims.describes_equilibria else "the signs"
         raise Violation(f"the {what} at the solution in it has {are} {true!r}, not {solution.signs[:10]!r}")
+
+
+def signs_of(claims: Claims, cell: Cell, values: Mapping[str, Fraction], solution: Solution) -> str:
+    """The signs at the one solution that counts in a box: by Newton's method, else by trace forms.
+
+    Raises
+    ------
+    Violation
+        When there is none, or several.
+    """
+    tried = product(range(1 + 2 * len(claims.model.unknowns)), _precisions(solution)[:_ATTEMPTS])
+    found = (_signs(claims.model, values, solution, bits, start) for start, bits in tried)
+    if (signs := next((signs for signs in found if signs is not None), None)) is not None:
+        return signs
+    fibre = claims.fibre_at(*cell.sample)
+    number, place = fibre.within(solution.center, solution.radius, counted=True)
+    if number != 1:
+        raise Violation(f"{number or 'no'} solution{'s' * (number > 1)} found in it")
+    return fibre.signs(place)
 
 
 def _is_alone(claims: Claims, cell: Cell, values: Mapping[str, Fraction], solution: Solution) -> bool:
@@ -134,7 +145,7 @@ def _check_zeros(claims: Claims, n: int, cell: Cell) -> None:
                             f"is at {true}")  # fmt: skip
 
 
-def _check_disjoint(n: int, cell: Cell, model: Model) -> None:
+def check_disjoint(n: int, cell: Cell, model: Model) -> None:
     turning = 2 * len(model.angles)
     for k, s in enumerate(cell.solutions):
         far = any(abs(x) > 2 for x in s.center[:turning])

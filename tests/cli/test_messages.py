@@ -129,7 +129,7 @@ def test_the_bar_of_a_verification_only_grows(shipped: Shipped) -> None:
 def test_ranges_in_words(capsys: pytest.CaptureFixture[str]) -> None:
     fig4 = str(CONFIGS / "fig4.yaml")
     assert run(["range", fig4, "--along", "rho", "--over", "L2", "--rows", "1"]) == 0
-    assert ", attained only at L2 = 1, a critical value of L2" in capsys.readouterr().out
+    assert ", attained at L2 = 1, a critical value of L2" in capsys.readouterr().out
     assert run(["range", fig4, "--along", "rho", "--at", "L2=3/2"]) == 0
     shown = capsys.readouterr().out
     assert "as rho increases" in shown and "loses one stable equilibrium and one saddle" in shown

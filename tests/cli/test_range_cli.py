@@ -58,7 +58,7 @@ def test_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert data["over"]["maxima"][0]["at"]["decimal"] == "1"
     assert "Intervals of rho: 0 to 0.4981307: 1 stable of 4" in (tmp_path / "x.svg").read_text(encoding="utf-8")
     out = capsys.readouterr().out
-    assert "widest operation range: width 0.5885498309, attained only at L2 = 1, a critical value of L2" in out
+    assert "widest operation range: width 0.5885498309, attained at L2 = 1, a critical value of L2" in out
     assert out.endswith(f", {tmp_path / 'x-path.svg'}, {tmp_path / 'x.json'}\n")
     assert "pose 1 at rho = 0.7" in out and "pose 2" not in out
 

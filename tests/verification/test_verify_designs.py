@@ -32,14 +32,14 @@ def found() -> BestDesign:
 def test_a_true_design_passes(found: BestDesign) -> None:
     report = verify_design(found, seed=3)
     assert report.ok
-    assert [check.passed for check in report.checks] == [True, True, True, None]
-    assert "boxes cover the bounds" in report.checks[0].detail
+    assert [check.passed for check in report.checks] == [True, True, True, True, None, None]
+    assert "boxes cover the bounds" in report.checks[1].detail
 
 
 def test_a_true_design_with_conditions_passes() -> None:
     where = {"conditions": ["a + b <= 1"]}
     report = verify_design(ptmcad.design(BALL, "range", OVER, where=where, tolerance="1/5", evaluations=60), seed=3)
-    assert report.ok and "random designs that satisfy the conditions" in report.checks[0].detail
+    assert report.ok and "where the conditions hold" in report.checks[1].detail
 
 
 def test_forgeries_are_found(found: BestDesign) -> None:
@@ -48,15 +48,17 @@ def test_forgeries_are_found(found: BestDesign) -> None:
     step = Fraction(1, 10)
     later = (Enclosure(low.low + step, low.high + step), Enclosure(high.low + step, high.high + step))
     smaller = tuple(replace(box, bound=box.bound / 4) for box in found.boxes)
+    fewer = f"by branch and bound, over {len(found.boxes) - 1} boxes of designs"
+    more = f"by branch and bound, over {len(found.boxes) + 1} boxes of designs"
     outside = replace(found.boxes[0], ranges=((Fraction(-1), Fraction(1)), (Fraction(0), Fraction(1))))
     forged = {
-        "a box is missing": (replace(found, boxes=found.boxes[1:]), "boxes: the boxes have"),
-        "a box twice": (replace(found, boxes=(*found.boxes, found.boxes[0])), "overlap"),
+        "a box is missing": (replace(found, boxes=found.boxes[1:], reason=fewer), "boxes: no box holds"),
+        "a box twice": (replace(found, boxes=(*found.boxes, found.boxes[0]), reason=more), "overlap"),
         "a box outside": (replace(found, boxes=(outside, *found.boxes[1:])), "is not within the bounds"),
-        "moved ends": (replace(found, span=later), "value: at x ="),
-        "another count": (replace(found, working=0), "value: at x ="),
-        "bounds too small": (replace(found, boxes=smaller), "bound: the design"),
-        "a bound below the value": (replace(found, bound=Fraction(1)), "bound: the best design has more"),
+        "moved ends": (replace(found, span=later), "values: the best design has no range"),
+        "another count": (replace(found, working=0), "values: the longest range"),
+        "bounds too small": (replace(found, boxes=smaller), "is listed with more than the bound"),
+        "a bound below the value": (replace(found, bound=Fraction(1)), "is listed with more than the bound"),
     }
     for name, (wrong, words) in forged.items():
         violation = verify_design(wrong, seed=3).violation
@@ -72,7 +74,7 @@ def test_the_command_takes_designs(
     assert "boxes cover the bounds" in capsys.readouterr().out
     Path("forged.json").write_text(replace(found, boxes=found.boxes[1:]).to_json(), encoding="utf-8")
     assert run(["verify", "forged.json"]) == 1
-    assert "violated: boxes: the boxes have" in capsys.readouterr().err
+    assert "violated: form: the reason names another number of boxes" in capsys.readouterr().err
     Path("damaged.json").write_text(found.to_json().replace('"seed"', '"sead"'), encoding="utf-8")
     assert run(["verify", "damaged.json"]) == 2
     assert "is damaged or not a ptmcad-design/1 file" in capsys.readouterr().err

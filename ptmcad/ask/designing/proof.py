@@ -13,6 +13,7 @@ from flint import fmpq
 
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.design import BoundedBox
+from ptmcad.answer.intervals import lower, upper
 from ptmcad.answer.widths import Maximum
 from ptmcad.ask.members import in_space
 from ptmcad.errors import DegenerateSliceError, ExpressionError, HypothesisError, InfiniteSolutionsError
@@ -20,7 +21,7 @@ from ptmcad.exact.design.areas import Areas
 from ptmcad.exact.design.problem import Axes, space_of_family, space_of_slice
 from ptmcad.exact.design.search import Bounder, Lengths, Outcome, Place, Point, Wanted, search
 from ptmcad.exact.ranges.strips import strips
-from ptmcad.exact.ranges.width import largest
+from ptmcad.exact.ranges.width import lines_of, widest
 from ptmcad.exact.stages import problem_of
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.slice import Axis
@@ -54,10 +55,11 @@ class Proof(NamedTuple):
     bound: Fraction | None
     reason: str
     boxes: tuple[BoundedBox, ...] = ()
+    maxima: tuple[Maximum, ...] = ()
 
 
 def exact_maximum(design: Design) -> tuple[Maximum, ...] | None:
-    """The widest ranges over one parameter; None for another question, or where others than these are asked for.
+    """The widest ranges over one parameter; None for another question.
 
     Raises
     ------
@@ -66,15 +68,28 @@ def exact_maximum(design: Design) -> tuple[Maximum, ...] | None:
     """
     if design.aim is not Aim.RANGE or len(design.over) != 1 or design.conditions:
         return None
-    found, working = strips(design.slice({}), design.along)
-    return largest(found) if working == design.working else None
+    slice = design.slice({})
+    return widest(slice, design.along, strips(slice, design.along, design.working))
+
+
+def most_on_lines(design: Design) -> Fraction:
+    """Of a range over one parameter what there is at most on lines in the variety, of which no box's bound speaks."""
+    if design.aim is not Aim.RANGE or len(design.over) != 1:
+        return Fraction(0)
+    slice, name = design.slice({}), design.over[0].name
+    lines = lines_of(slice, design.along, strips(slice, design.along, design.working))
+    held = (line.most for line in lines if design.may_hold({name: (lower(line.value), upper(line.value))}))
+    return max(held, default=Fraction(0))
 
 
 def place_of(maximum: Maximum) -> Fraction:
     """A simple rational number where the widest range is, or next to it."""
-    if maximum.at.exact is not None:
-        return maximum.at.exact
-    return to_fraction(simplest_between(from_fraction(maximum.at.low), from_fraction(maximum.at.high)))
+    low, high = maximum.at.low, maximum.at.high
+    if low == high:
+        return low
+    # of an interval the part before the first value at which the width is not attained
+    inside = [upper(v) for v in (*maximum.exceptions, *maximum.doubtful) if low < lower(v)]
+    return to_fraction(simplest_between(from_fraction(low), from_fraction(min([high, *inside]))))
 
 
 def bounder_of(design: Design, tolerance: Fraction) -> Bounder | str:

@@ -6,19 +6,20 @@ nothing can be counted. Which saddle is the lowest pass of a barrier is found in
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
 from typing import NamedTuple
 
 from flint import arb, ctx
 
+from ptmcad.answer.intervals import Span
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.classification import region_map
 from ptmcad.ask.members import Common, member_map
 from ptmcad.ask.quantities import Quantity, named, of_pose, unknown
-from ptmcad.errors import ConfigError, ExpressionError, HypothesisError
+from ptmcad.errors import ConfigError, DegenerateSliceError, ExpressionError, HypothesisError, InfiniteSolutionsError
 from ptmcad.exact.design.cover import Space
 from ptmcad.options import Options
 from ptmcad.question.config.designed import Aim, Design
@@ -84,13 +85,20 @@ def evaluator(design: Design, common: Common | None = None, space: Space | None 
 
 
 def _range_of(design: Design) -> Evaluate:
+    from ptmcad.exact.ranges.anyline import ranges_on
     from ptmcad.exact.ranges.line import intervals
 
     first = design.over[0].name
 
     def evaluate(values: Mapping[str, Fraction]) -> Value | None:
         slice = design.slice(values)
-        found = intervals(slice, design.along, {first: values[first]}, design.working).operation
+        found: Sequence[Span]
+        try:
+            found = intervals(slice, design.along, {first: values[first]}, design.working).operation
+        except (DegenerateSliceError, InfiniteSolutionsError):
+            found, possible = ranges_on(slice, design.along, values[first], design.working)
+            if found != possible:
+                return None
         if not found:
             return Value(Enclosure(Fraction(0), Fraction(0)))
         widest = max(found, key=lambda span: span.width.low)

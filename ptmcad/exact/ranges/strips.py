@@ -9,18 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain, groupby
 from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine
+from ptmcad.algebra.polynomials import RationalPolynomial, UnivariatePolynomial
+from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.counts import operation_number
 from ptmcad.answer.regionmap import Wall
+from ptmcad.exact.cad.adjacency import Crossing, cross
 from ptmcad.exact.cad.curves import Curve, by_component
 from ptmcad.exact.cad.stacks import BaseEnd, StackData
-from ptmcad.exact.stages import counts_of, problem_of, projection_of, stacks_of, variety_of
+from ptmcad.exact.stages import counts_of, lines_across, problem_of, projection_of, stacks_of, variety_of
 from ptmcad.question.slice import Slice, without_free_lengths
 
 
@@ -51,6 +53,10 @@ class Strip:
     high: Branch
     fibre: Interval
 
+    @property
+    def branches(self) -> tuple[Branch, Branch]:
+        return self.low, self.high
+
 
 def refuse_free_lengths(slice: Slice) -> None:
     """Refuse what strips cannot answer.
@@ -69,14 +75,27 @@ def refuse_free_lengths(slice: Slice) -> None:
 
 
 class Strips(NamedTuple):
-    """The strips from the left, and the number of stable solutions in them (`operation_number`)."""
+    """The strips of a slice over one of its axes.
+
+    Attributes
+    ----------
+    found : from the left.
+    working : the number of stable solutions in them.
+    special : the values of the axis at which a range may be another one than the limit of a strip: those at which the
+        whole line is in the variety, those at which two ranges meet at a point, and the window's edges.
+    """
 
     found: tuple[Strip, ...]
     working: int
+    special: tuple[BaseEnd, ...]
 
 
-def strips(slice: Slice, along: str) -> Strips:
+def strips(slice: Slice, along: str, working: int | None = None) -> Strips:
     """The strips of a slice over the axis that is not ``along``.
+
+    Parameters
+    ----------
+    working : the number of stable solutions in a range; by `operation_number` when None.
 
     Raises
     ------
@@ -89,17 +108,36 @@ def strips(slice: Slice, along: str) -> Strips:
     refuse_free_lengths(slice)
     problem = problem_of(slice)
     variety = variety_of(problem, base=base)
-    stacks = stacks_of(problem, variety, projection_of(problem, variety))
+    projection = projection_of(problem, variety)
+    stacks = stacks_of(problem, variety, projection)
     counts = [found.counts for found in counts_of(problem, stacks).found]
-    working = operation_number(slice.model, counts)
-    inside = iter([found.working == working for found in counts])
-    curves = by_component(variety.curves)
-    strips = (
-        strip
-        for stack in stacks.stacks
-        for strip in _over(stack, [next(inside) for _ in stack.heights], curves, problem.window[1 - base])
-    )
-    return Strips(tuple(strips), working)
+    if working is None:
+        working = operation_number(slice.model, counts)
+    counted = iter([found.working == working for found in counts])
+    inside = [[next(counted) for _ in stack.heights] for stack in stacks.stacks]
+    curves, fibre = by_component(variety.curves), problem.window[1 - base]
+    found = [_over(stack, here, curves, fibre) for stack, here in zip(stacks.stacks, inside, strict=True)]
+    special = [stacks.stacks[0].left]
+    for k, line in enumerate(lines_across(variety, projection)):
+        left, right = stacks.stacks[k : k + 2]
+        if line is not None or (
+            min(len(found[k]), len(found[k + 1])) > 1
+            and _ranges_meet(cross(variety.curves, left, right, fibre), inside[k], inside[k + 1])
+        ):
+            special.append(left.right)
+    special.append(stacks.stacks[-1].right)
+    return Strips(tuple(chain.from_iterable(found)), working, tuple(special))
+
+
+def _ranges_meet(crossing: Crossing, left: Sequence[bool], right: Sequence[bool]) -> bool:
+    """Whether over a critical abscissa two ranges of either side are parted by points of the curves alone."""
+    for here, group in groupby(crossing.separators, lambda s: left[s.left] and right[s.right]):
+        joined = list(group)
+        if here and not (
+            all(left[joined[0].left : joined[-1].left + 1]) or all(right[joined[0].right : joined[-1].right + 1])
+        ):
+            return True
+    return False
 
 
 def _over(stack: StackData, inside: Sequence[bool], curves: dict[int, Curve], fibre: Interval) -> list[Strip]:
@@ -161,10 +199,11 @@ def bound_over(branch: Branch, start: fmpq, side: int, over: Interval, fibre: In
 
 def base_interval(strip: Strip, width: fmpq) -> tuple[Interval, Interval]:
     """Intervals that hold the two ends of the strip's base: of length zero at rational ends, else within ``width``."""
-    return _end(strip.left, width), _end(strip.right, width)
+    return end_interval(strip.left, width), end_interval(strip.right, width)
 
 
-def _end(end: BaseEnd, width: fmpq) -> Interval:
+def end_interval(end: BaseEnd, width: fmpq) -> Interval:
+    """An interval that holds an end of a base interval: of length zero at a rational one, else within ``width``."""
     if end.root is None:
         return end.value, end.value
     if end.root.polynomial.degree() == 1:
@@ -175,13 +214,18 @@ def _end(end: BaseEnd, width: fmpq) -> Interval:
 
 
 def constant_width(strip: Strip) -> bool:
-    """Whether the range is of one width over the whole strip because its ends are edges or parallel lines."""
-    slopes = []
-    for branch in (strip.low, strip.high):
-        if branch.curve is None:
-            slopes.append(fmpq(0))
-        elif len(branch.curve.in_v) == 2 and len(branch.curve.in_u) <= 2 and branch.curve.in_v[1].degree() == 0:
-            slopes.append(-fmpq(branch.curve.in_v[0][1], branch.curve.in_v[1][0]))
-        else:
-            return False
-    return bool(slopes[0] == slopes[1])
+    """Whether the range is of one width over the whole strip: its ends are level, or one curve and its translate."""
+    curves = [b.curve for b in (strip.low, strip.high) if b.curve is not None and len(b.curve.in_u) > 1]
+    if len(curves) != 2:
+        return not curves
+    low, high = (at_abscissa(b, strip.sample, strip.fibre, _NARROW) for b in (strip.low, strip.high))
+    shift = RationalPolynomial([simplest_between(high.low - low.high - _NARROW, high.high - low.low + _NARROW), 1])
+    isolated = at_abscissa(strip.high, strip.sample, strip.fibre, strip.fibre[1] - strip.fibre[0])
+    if not isolated.low <= low.low + shift[0] <= low.high + shift[0] <= isolated.high:
+        return False  # the translate of the lower branch is another branch of the upper one's curve
+    lower, upper = (list(map(RationalPolynomial, curve.in_u)) for curve in curves)
+    scale = lower[-1].coeffs()[-1] / upper[-1].coeffs()[-1]
+    return len(lower) == len(upper) and all(p == q(shift) * scale for p, q in zip(lower, upper, strict=True))
+
+
+_NARROW = fmpq(1, 2**100)

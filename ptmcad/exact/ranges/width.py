@@ -1,8 +1,12 @@
 """The operation range's width against the other axis of a slice, and the proof of where it is largest.
 
-Guarantee: `Maximum.width` encloses the supremum of the width over all values of the other axis in the window that are
-not critical, and `Maximum.at` where it is approached: at all values outside of it the width is smaller. What is proved
-beyond that `Maximum.place` says.
+Guarantee: `Maximum.width` encloses the supremum of the width over all values of the other axis in the window, its ends
+included, and `Maximum.at` where it is attained or approached: at all values outside of it the width is smaller. What is
+proved beyond that `Maximum.place` and `Maximum.attainment` say.
+
+A limit at a critical value is the width there, unless the whole line is in the variety, or two ranges meet on it at a
+point: then, and at the window's edges, what is counted on the line itself is its width (`anyline`). For an open arc of
+the line that is off the variety has the count of the cells on both sides of it, and the others are points.
 
 Each strip (see `strips`) is cut into closed pieces, and each piece is settled in one of these ways.
 
@@ -12,6 +16,7 @@ Each strip (see `strips`) is cut into closed pieces, and each piece is settled i
 * Chord: at a rational end y0 of the strip the limits a, b of the range are algebraic numbers. If for some s the lower
   end stays above a + s (y - y0), and the upper one below b + s (y - y0), the width stays under b - a. This also
   settles cusps, where derivatives are infinite.
+* Narrowing: at an end of the strip at which the line itself is counted, its ends draw nearer to one another from there.
 
 A piece that becomes too small remains, with the bounds that it has: then the place is only enclosed.
 """
@@ -19,31 +24,36 @@ A piece that becomes too small remains, with the bounds that it has: then the pl
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from heapq import heappop, heappush
+from typing import NamedTuple
 
 from flint import arb, fmpq
 
 from ptmcad.algebra.chords import slope_over
-from ptmcad.algebra.numbers import algebraic_number
+from ptmcad.algebra.numbers import algebraic_number, compare
 from ptmcad.algebra.window import Interval
-from ptmcad.answer.intervals import End
+from ptmcad.answer.intervals import End, Span
 from ptmcad.answer.widths import Maximum, OperationWidths, Place, WidthRow
 from ptmcad.errors import A_SLICE, ConfigError, HypothesisError, expect, quoted
-from ptmcad.exact.ranges.limits import chord_length, ends_of, limit
+from ptmcad.exact.cad.stacks import BaseEnd
+from ptmcad.exact.ranges.anyline import LineRanges, ranges_on
+from ptmcad.exact.ranges.limits import chord_length, limit, narrowing_length
 from ptmcad.exact.ranges.line import intervals
 from ptmcad.exact.ranges.strips import (
     Strip,
+    Strips,
     at_abscissa,
     base_interval,
     bound_over,
     constant_width,
+    end_interval,
     strips,
 )
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.flint_numbers import to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 ROWS = 41
 """Rows of the table."""
@@ -55,11 +65,15 @@ _MAX_PIECES = 20_000
 
 @dataclass(frozen=True, slots=True)
 class _Candidate:
+    """What may be the largest; of a plateau ``sides`` say whether it is attained at its strips' ends."""
+
     place: Place
     at: Interval
     width: Interval
     critical: AlgebraicNumber | None = None
     ends: tuple[End, End] | None = None
+    attained: bool | None = True
+    sides: dict[End, bool | None] = field(default_factory=dict)
 
 
 def operation_widths(slice: Slice, along: str, rows: int = ROWS) -> OperationWidths:
@@ -77,13 +91,14 @@ def operation_widths(slice: Slice, along: str, rows: int = ROWS) -> OperationWid
     if isinstance(rows, bool) or not isinstance(rows, int) or rows < 1:
         raise ConfigError(f"{rows!r:.60} is not a number of rows", key="rows")
     over = slice.axes[1 - names.index(along)]
-    found, working = strips(slice, along)
+    found = strips(slice, along)
     table = []
     for k in range(1, rows + 1):
         value = over.low + (over.high - over.low) * Fraction(k, rows + 1)
-        table.append(_row(slice, along, {over.name: value}, working))
+        table.append(_row(slice, along, {over.name: value}, found.working))
+    maxima = widest(slice, along, found)
     return OperationWidths(
-        slice.name, slice.axes[names.index(along)], over, tuple(table), largest(found), slice.model, working
+        slice.name, slice.axes[names.index(along)], over, tuple(table), maxima, slice.model, found.working
     )
 
 
@@ -95,9 +110,37 @@ def _row(slice: Slice, along: str, at: Mapping[str, Fraction], working: int) -> 
         return WidthRow(value, (), str(error))
 
 
-def largest(found: Sequence[Strip]) -> tuple[Maximum, ...]:
-    """The largest width over all strips; see the module."""
-    search = _Search()
+def widest(slice: Slice, along: str, found: Strips) -> tuple[Maximum, ...]:
+    """The largest width over a slice's strips and on the lines that have a width of their own."""
+    return largest(found.found, lines_of(slice, along, found))
+
+
+class SpecialLine(NamedTuple):
+    """A value of the other axis, an end of strips, and what is counted on the line there."""
+
+    end: BaseEnd
+    ranges: LineRanges
+
+    @property
+    def value(self) -> End:
+        return _value(self.end)
+
+    @property
+    def most(self) -> Fraction:
+        """An upper bound of the widths on it."""
+        return max((span.width.high for span in self.ranges.possible), default=Fraction(0))
+
+
+def lines_of(slice: Slice, along: str, found: Strips) -> list[SpecialLine]:
+    """The lines at the special values of the other axis."""
+    return [SpecialLine(end, ranges_on(slice, along, _value(end), found.working)) for end in found.special]
+
+
+def largest(found: Sequence[Strip], lines: Sequence[SpecialLine] = ()) -> tuple[Maximum, ...]:
+    """The largest width over all strips and on lines; see the module."""
+    search = _Search(lines)
+    for line in lines:
+        search.line(line)
     for strip in found:
         search.sample(strip)
     for strip in found:
@@ -124,11 +167,39 @@ class _Piece:
 class _Search:
     """Branch and bound over the strips."""
 
-    def __init__(self) -> None:
+    def __init__(self, lines: Sequence[SpecialLine]) -> None:
+        self.lines = {line.value: line.ranges for line in lines}
         self.known = fmpq(0)  # a width that occurs, or is approached
         self.candidates: list[_Candidate] = []
         self.heap: list[tuple[fmpq, int, _Piece]] = []
         self.number = 0
+
+    # ---------------------------------------------------------------------------------------------------- the lines
+
+    def line(self, line: SpecialLine) -> None:
+        """Adopt what is counted on a line."""
+        certain, possible = (max(spans, key=_width, default=None) for spans in line.ranges)
+        if certain is not None:
+            self.add_at(line.end, _width(certain), (certain.low, certain.high), True)
+            self.known = max(self.known, _width(certain)[0])
+        if possible is not None and possible != certain:
+            self.add_at(line.end, (fmpq(0), _width(possible)[1]), None, None)
+
+    def add_at(self, end: BaseEnd, width: Interval, ends: tuple[End, End] | None, attained: bool | None) -> None:
+        """A candidate at an end of a strip."""
+        place = Place.EDGE if end.root is None else Place.CRITICAL
+        critical = None if end.root is None else algebraic_number(end.root)
+        at = end_interval(end, _END_WIDTH)
+        self.candidates.append(_Candidate(place, at, width, critical, ends, attained))
+
+    def attains(self, end: BaseEnd, width: Interval, ends: tuple[End, End] | None) -> bool | None:
+        """Whether on the line at an end of a strip there is a range of a width that is its limit there."""
+        ranges = self.lines.get(_value(end))
+        if ranges is None:
+            return True
+        if any((ends is not None and _within(ends, span)) or _width(span)[0] >= width[1] for span in ranges.certain):
+            return True
+        return False if all(_width(span)[1] < width[0] for span in ranges.possible) else None
 
     # ------------------------------------------------------------------------------------------------ lower bounds
 
@@ -147,31 +218,36 @@ class _Search:
 
     def plateau(self, strip: Strip) -> None:
         (left, _), (_, right) = base_interval(strip, _END_WIDTH)
-        self.candidates.append(_Candidate(Place.PLATEAU, (left, right), self.width_at(strip, strip.sample)))
+        width = self.width_at(strip, strip.sample)
+        sides = {_value(end): self.attains(end, width, _limits(strip, end)) for end in (strip.left, strip.right)}
+        self.candidates.append(_Candidate(Place.PLATEAU, (left, right), width, sides=sides))
 
     def ends(self, strip: Strip) -> None:
-        """Settle neighbourhoods of rational ends with the largest limits, and list the rest as one piece."""
+        """Settle neighbourhoods of ends with the largest limits, and list the rest as one piece.
+
+        Of irrational ends those alone at which the line is counted by itself: at others the limit is a width.
+        """
         left, right = base_interval(strip, _END_WIDTH)
         low, high = left[0], right[1]
-        for side, (at, end) in enumerate(((left, strip.left), (right, strip.right))):
-            if at[0] != at[1]:
+        for at, end in ((left, strip.left), (right, strip.right)):
+            if at[0] != at[1] and _value(end) not in self.lines:
                 continue
-            lowest, highest = (limit(b, strip, at[0], _END_WIDTH) for b in (strip.low, strip.high))
-            if lowest is None or highest is None:
+            limits = _limits(strip, end)
+            if limits is None:
                 continue
-            (a_low, a_high), (b_low, b_high) = ends_of(lowest), ends_of(highest)
-            self.known = max(self.known, b_low - a_high)
-            if b_high - a_low < self.known:
+            width = _width(Span(*limits))
+            self.known = max(self.known, width[0])
+            if width[1] < self.known:
                 continue
-            direction = 1 if side == 0 else -1
-            length = chord_length(strip, at[0], direction, (lowest, highest))
+            length = None
+            if at[0] == at[1]:
+                length = chord_length(strip, at[0], 1 if end is strip.left else -1, limits)
+            if length is None and _value(end) in self.lines:
+                length = narrowing_length(strip, end, _END_WIDTH)
             if length is None:
                 continue
-            place = Place.EDGE if end.root is None else Place.CRITICAL
-            width = (b_low - a_high, b_high - a_low)
-            critical = None if end.root is None else algebraic_number(end.root)
-            self.candidates.append(_Candidate(place, at, width, critical, (lowest, highest)))
-            if side == 0:
+            self.add_at(end, width, limits, self.attains(end, width, limits))
+            if end is strip.left:
                 low = at[0] + length
             else:
                 high = at[0] - length
@@ -204,10 +280,13 @@ class _Search:
                 return  # and so are all others
             count += 1
             if count > _MAX_PIECES or piece.high - piece.low < piece.smallest:
-                end = piece.strip.left if piece.open_left else piece.strip.right if piece.open_right else None
-                critical = None if end is None or end.root is None else algebraic_number(end.root)
+                width, strip = (self.known, -negative), piece.strip
+                ends = [strip.left] * piece.open_left + [strip.right] * piece.open_right
+                critical = next((algebraic_number(end.root) for end in ends if end.root is not None), None)
+                # a continuous function on a closed interval, but for ends at which the line has another width
+                attained = all(self.attains(end, width, None) for end in ends) or None
                 self.candidates.append(
-                    _Candidate(Place.ENCLOSED, (piece.low, piece.high), (self.known, -negative), critical)
+                    _Candidate(Place.ENCLOSED, (piece.low, piece.high), width, critical, None, attained)
                 )
                 continue
             middle = _cut(piece.low, piece.high)
@@ -258,21 +337,51 @@ class _Search:
         for c in sorted([*plateaus, *rest], key=lambda c: c.at):
             if merged and merged[-1].place is c.place and _touches(merged[-1], c):
                 last = merged.pop()
-                hull = (last.at[0], max(last.at[1], c.at[1]))
-                width = (min(last.width[0], c.width[0]), max(last.width[1], c.width[1]))
-                merged.append(_Candidate(c.place, hull, width, last.critical or c.critical, c.ends))
+                merged.append(
+                    _Candidate(
+                        c.place,
+                        (last.at[0], max(last.at[1], c.at[1])),
+                        (max(last.width[0], c.width[0]), max(last.width[1], c.width[1])),
+                        last.critical or c.critical,
+                        last.ends if last.attained else c.ends,
+                        None if None in (last.attained, c.attained) else last.attained or c.attained,
+                        last.sides | {v: last.sides.get(v) or known for v, known in c.sides.items()},
+                    )
+                )
             else:
                 merged.append(c)
-        return tuple(
-            Maximum(
-                c.place,
-                Enclosure(to_fraction(c.at[0]), to_fraction(c.at[1])),
-                Enclosure(to_fraction(c.width[0]), to_fraction(c.width[1])),
-                c.critical,
-                c.ends,
-            )
-            for c in merged
-        )
+        return tuple(map(self.maximum, merged))
+
+    def maximum(self, c: _Candidate) -> Maximum:
+        """A candidate as data."""
+        at, width = (Enclosure(to_fraction(low), to_fraction(high)) for low, high in (c.at, c.width))
+        if c.place is not Place.PLATEAU:
+            return Maximum(c.place, at, width, c.critical, c.ends, c.attained)
+        exceptions, doubtful = (tuple(v for v, known in c.sides.items() if known is kind) for kind in (False, None))
+        return Maximum(c.place, at, width, None, None, True, exceptions, doubtful)
+
+
+def _value(end: BaseEnd) -> End:
+    if end.root is None:
+        return to_fraction(end.value)
+    number = algebraic_number(end.root)
+    return number if number.exact is None else number.exact
+
+
+def _limits(strip: Strip, end: BaseEnd) -> tuple[End, End] | None:
+    low, high = (limit(branch, strip, end, _END_WIDTH) for branch in strip.branches)
+    return None if low is None or high is None else (low, high)
+
+
+def _width(span: Span) -> Interval:
+    known = Span(*(AlgebraicNumber.of(e).refined(to_fraction(_END_WIDTH)) for e in (span.low, span.high))).width
+    return from_fraction(known.low), from_fraction(known.high)
+
+
+def _within(ends: tuple[End, End], span: Span) -> bool:
+    """Whether limits are within a range, ends included."""
+    low, high, first, last = map(AlgebraicNumber.of, (*ends, span.low, span.high))
+    return compare(first, low) <= 0 <= compare(last, high)
 
 
 def _touches(first: _Candidate, second: _Candidate) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from ptmcad.answer.arrangement import SIDES, Arrangement
-from ptmcad.answer.changes import Change, Changes
+from ptmcad.answer.changes import TOLERANCE, Change, Changes
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.numerals import fraction_of, integer_of, integer_text, text_of
@@ -19,12 +19,13 @@ def written_changes(found: Changes) -> dict[str, Any]:
     return {
         "complete": found.complete,
         "reason": found.reason,
-        "found": [{"value": _written(change.value), "words": list(change.words)} for change in found.changes],
+        "tolerance": text_of(found.tolerance),
+        "found": [{"value": number_data(change.value), "words": list(change.words)} for change in found.changes],
         "between": [
             {"value": text_of(value), "arrangement": _written_arrangement(arrangement)}
             for value, arrangement in zip(found.between, found.arrangements, strict=True)
         ],
-        "others": [_written(number) for number in found.others],
+        "others": [number_data(number) for number in found.others],
         "at_ends": [list(words) for words in found.at_ends],
     }
 
@@ -41,8 +42,8 @@ def changes_from(data: Any, free: Axis) -> Changes:
     ValueError, KeyError, TypeError, AttributeError
         When the data are not of this kind.
     """
-    found = tuple(Change(_value(change["value"]), _words(change["words"])) for change in data["found"])
-    others = tuple(_value(number) for number in data["others"])
+    found = tuple(Change(number_from(change["value"]), _words(change["words"])) for change in data["found"])
+    others = tuple(number_from(number) for number in data["others"])
     low, high = data["at_ends"]
     if not isinstance(data["complete"], bool):
         raise ValueError("complete is neither true nor false")
@@ -64,17 +65,26 @@ def changes_from(data: Any, free: Axis) -> Changes:
         (_words(low), _words(high)),
         data["complete"],
         str(data["reason"]),
+        fraction_of(data["tolerance"]) if "tolerance" in data else TOLERANCE,
     )
 
 
-def _written(value: AlgebraicNumber | Enclosure) -> dict[str, Any]:
+def number_data(value: AlgebraicNumber | Enclosure) -> dict[str, Any]:
+    """A number for JSON: what `number_from` reads."""
     ends = {"low": text_of(value.low), "high": text_of(value.high)}
     if isinstance(value, AlgebraicNumber):
         return {"polynomial": [integer_text(c) for c in value.polynomial], **ends}
     return ends
 
 
-def _value(data: Any) -> AlgebraicNumber | Enclosure:
+def number_from(data: Any) -> AlgebraicNumber | Enclosure:
+    """An algebraic number, or an enclosure where there is no polynomial.
+
+    Raises
+    ------
+    ValueError, KeyError, TypeError, AttributeError
+        When the data are not of this kind.
+    """
     low, high = fraction_of(data["low"]), fraction_of(data["high"])
     if low > high:
         raise ValueError("the ends of an interval are exchanged")
@@ -108,6 +118,8 @@ def _arrangement(data: Any) -> Arrangement:
     named = {n for group in (*pairs, *sides) for n in group}
     if any(not 0 <= n < len(keys) for n in named) or any(a >= b for a, b in pairs):
         raise ValueError("an arrangement names a region that there is not")
+    if len(pairs) < len(data["neighbours"]):
+        raise ValueError("an arrangement names two neighbours twice")
     return Arrangement(keys, pairs, sides)
 
 

@@ -13,6 +13,7 @@ from typing import Any
 from ptmcad.answer.design import BestDesign, BoundedBox, Evaluation
 from ptmcad.mechanism import Model, built_in, described, described_system, known_of, recognised, without_loops
 from ptmcad.question.slice import Axis
+from ptmcad.show.document.extremes import maximum_data, maximum_from
 from ptmcad.show.document.node import opened, placed
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import fraction_of, text_of
@@ -25,6 +26,9 @@ _KEYS = (
     "format", "name", "model", "maximise", "along", "window", "over", "stable", "conditions", "parameters", "best",
     "value", "span", "bound", "tolerance", "proved", "reason", "seed", "points", "boxes", "versions",
 )  # fmt: skip
+_EXTREMES = "extremes"
+"""A key that older documents do not have."""
+_DIGITS = 10
 
 
 def write_design(found: BestDesign) -> str:
@@ -47,6 +51,7 @@ def write_design(found: BestDesign) -> str:
         "tolerance": text_of(found.tolerance),
         "proved": found.proved,
         "reason": found.reason,
+        _EXTREMES: [maximum_data(m, found.over[0].name, _DIGITS) for m in found.maxima],
         "seed": found.seed,
         "points": [
             {"at": [text_of(x) for x in point.at], "value": None if point.value is None else _ends(point.value)}
@@ -77,7 +82,7 @@ def read_design(text: str) -> BestDesign:
         When the text is not such a document, or contradicts itself.
     """
     document = opened(text, FORMAT, MAX_DOCUMENT, "ptmcad design")
-    document.record(*_KEYS)
+    document.record(*_KEYS, f"{_EXTREMES}?")
     with placed(document) as data:
         found = _design(data)
     _check(found)
@@ -96,11 +101,15 @@ def _design(data: Mapping[str, Any]) -> BestDesign:
         conditions=tuple(map(_line, data["conditions"])),
         best=None if data["best"] is None else {_line(name): fraction_of(x) for name, x in data["best"].items()},
         value=None if data["value"] is None else _enclosure(data["value"]),
-        span=None if data["span"] is None else (_enclosure(data["span"][0]), _enclosure(data["span"][1])),
+        span=None if data["span"] is None else _pair(*map(_enclosure, data["span"])),
         bound=None if data["bound"] is None else fraction_of(data["bound"]),
         tolerance=fraction_of(data["tolerance"]),
         proved=_truth(data["proved"]),
         reason=_line(data["reason"]),
+        maxima=tuple(
+            maximum_from(entry, data["over"][0]["name"], _DIGITS)
+            for entry in (data[_EXTREMES] if _EXTREMES in data else ())
+        ),
         seed=_whole(data["seed"]),
         points=tuple(
             Evaluation(
@@ -169,6 +178,10 @@ def _enclosure(data: Any) -> Enclosure:
     if low > high:
         raise ValueError("the ends of an interval are exchanged")
     return Enclosure(low, high)
+
+
+def _pair(low: Enclosure, high: Enclosure) -> tuple[Enclosure, Enclosure]:
+    return low, high
 
 
 def _line(value: Any) -> str:

@@ -87,6 +87,8 @@ def read_family(text: str) -> StoredFamily:
         parameters = {_text(name): _text(written, MAX_TEXT) for name, written in data["parameters"].items()}
     if not 1 <= len(values) <= MAX_MEMBERS or any(a >= b for a, b in pairwise(values)):
         raise ValueError("the members' values do not increase")
+    if values[0] < axis.low or values[-1] > axis.high or len({*surfaces}) < len(surfaces):
+        raise ValueError("a member is outside of the range, or a surface is listed twice")
     return StoredFamily(name, title, axis, values, files, surfaces, parameters, changes)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from ptmcad.answer.intervals import CertifiedChange, CertifiedIntervals
-from ptmcad.answer.widths import CertifiedWidths
+from ptmcad.answer.widths import Attainment, CertifiedWidths
 from ptmcad.show.ranges.numbers import known
 from ptmcad.show.ranges.table import aligned, nowhere, working_text
 from ptmcad.text.bounds import rounded
@@ -79,7 +79,10 @@ def widest_text(found: CertifiedWidths) -> str:
         return f"widest operation range: none, {nowhere(found.model, found.working)} in these rows"
     row, one = found.widest
     at = f"{found.over.name} = {shortest_text(row.value)}"
-    return f"widest of these rows: width {known(one.width, 6)} at {at}; nothing is proved of the values between them"
+    return (
+        f"widest of these rows: width {known(one.width, 6)} at {at}; nothing is proved of the values between them: "
+        f"{Attainment.UNDECIDED.value}"
+    )
 
 
 def _text(end: Enclosure, digits: int, up: bool = False) -> str:

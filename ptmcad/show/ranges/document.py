@@ -13,13 +13,12 @@ from typing import Any
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.intervals import CertifiedIntervals, CountInterval, CountIntervals, CriticalFreeLength
 from ptmcad.answer.paths import PathEnd, PathPoint, PosePaths, Target
-from ptmcad.answer.widths import CertifiedWidths, OperationWidths
+from ptmcad.answer.widths import Attainment, CertifiedWidths, OperationWidths
 from ptmcad.question.slice import Axis
+from ptmcad.show.document.extremes import maximum_data
 from ptmcad.show.ranges.numbers import (
-    enclosure_data,
     end_data,
     narrowly_known,
-    number_data,
     place_data,
     settled,
     width_text,
@@ -107,6 +106,7 @@ def over_data(found: OperationWidths, digits: int) -> dict[str, Any]:
     return {
         "along": _axis(found.along),
         "over": _axis(found.over),
+        "stable": found.working,
         "rows": [
             {
                 "value": text_of(row.value),
@@ -115,17 +115,7 @@ def over_data(found: OperationWidths, digits: int) -> dict[str, Any]:
             }
             for row in found.rows
         ],
-        "maxima": [
-            {
-                "place": m.place.name.lower(),
-                "text": m.place.value,
-                "at": {"decimal": settled(m.at, digits) or "", "enclosure": enclosure_data(m.at)},
-                "width": {"decimal": settled(m.width, digits) or "", "enclosure": enclosure_data(m.width)},
-                "critical": None if m.critical is None else number_data(m.critical),
-                "ends": None if m.ends is None else [end_data(e, digits) for e in m.ends],
-            }
-            for m in found.maxima
-        ],
+        "maxima": [maximum_data(m, found.over.name, digits) for m in found.maxima],
     }
 
 
@@ -135,6 +125,7 @@ def bands_data(found: CertifiedWidths, digits: int) -> dict[str, Any]:
         "along": _axis(found.along),
         "over": _axis(found.over),
         "stable": found.working,
+        "attainment": Attainment.UNDECIDED.value,
         "rows": [
             {
                 "value": text_of(row.value),

@@ -10,8 +10,9 @@ from typing import Any
 
 from ptmcad.algebra.numbers import refined
 from ptmcad.answer.intervals import End, Span
-from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.numerals import integer_text, magnitude, text_of
+from ptmcad.show.document.changes import number_data
+from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.numerals import magnitude, text_of
 
 MAX_DIGITS = 1000
 """That may be asked for."""
@@ -80,15 +81,6 @@ def end_data(end: End | Enclosure, digits: int) -> dict[str, Any]:
     if isinstance(end, Fraction):
         return {"window": text_of(end), "decimal": end_text(end, digits)}
     return {"decimal": end_text(end, digits), **number_data(end)}
-
-
-def number_data(number: AlgebraicNumber) -> dict[str, Any]:
-    """An algebraic number for JSON."""
-    return {
-        "polynomial": [integer_text(c) for c in number.polynomial],
-        "low": text_of(number.low),
-        "high": text_of(number.high),
-    }
 
 
 def place_data(enclosure: Enclosure, digits: int) -> dict[str, str | None]:

@@ -12,14 +12,14 @@ from flint import arb, ctx
 
 from ptmcad.answer.intervals import CountIntervals, CriticalFreeLength, End, Span
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
-from ptmcad.answer.widths import Maximum, OperationWidths, Place
+from ptmcad.answer.widths import Maximum, OperationWidths
 from ptmcad.answer.words import kind_name, noun
 from ptmcad.mechanism import Mechanism, Model, built_in
 from ptmcad.mechanism.moments import acting
 from ptmcad.show.ranges.numbers import end_text, narrowly_known, settled, width_text
 from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.numerals import shortest_text
+from ptmcad.text.numerals import decimal, shortest_text
 from ptmcad.text.plane import PlanePolynomial
 
 MAX_POLYNOMIAL = 60
@@ -125,19 +125,8 @@ def width_table(found: OperationWidths, digits: int = 10) -> str:
 
 def maximum_text(found: Maximum, over: str, digits: int) -> str:
     """A maximum in words."""
-    if found.at.exact is not None or found.place.name in ("SMOOTH", "ENCLOSED"):
-        low, high = (Enclosure(v, v).text(3) for v in (found.at.low, found.at.high))
-        at = f"{over} = {settled(found.at, digits) or f'a value between {low} and {high}'}"
-    else:
-        low, high = (Enclosure(v, v).text(digits) for v in (found.at.low, found.at.high))
-        at = f"{over} from {low} to {high}"
-    near = ""
-    if found.critical is not None and found.critical.exact is None:
-        near = f", which holds one critical value, a root of a polynomial of degree {found.critical.degree}"
-    width = f"width {settled(found.width, digits) or 'enclosed'}"
-    if found.place is Place.CRITICAL:
-        return f"{width}, attained only at {at}{near or f', a critical value of {over}'}"
-    return f"{width} at {at}: {found.place.value}{near}"
+    low, high = (decimal(end, up, 4) for end, up in ((found.width.low, False), (found.width.high, True)))
+    return f"width {settled(found.width, digits) or f'from {low} to {high}'}, {found.words(over, digits)}"
 
 
 def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:

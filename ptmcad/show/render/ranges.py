@@ -149,6 +149,9 @@ def spread(places: Sequence[float], half: float) -> list[float]:
     return centers
 
 
+_WIDEST = "#b45f06"
+
+
 def draw_widths(slice: Slice, found: OperationWidths | CertifiedWidths) -> Figure:
     """The operation ranges at the tabulated values, and their width with its largest value."""
     title = textwrap.wrap(heading_of(slice), _COLUMNS)[:3]
@@ -160,7 +163,7 @@ def draw_widths(slice: Slice, found: OperationWidths | CertifiedWidths) -> Figur
         lines = [f"widest: {line}" for line in said]
     else:
         lines = [widest_text(found)]
-    mark = "; diamond: the widest" if maxima else ""
+    mark = "; diamond: the widest, filled where it is attained" if maxima else ""
     texts = [
         f"bars: {_where(found)}, at the tabulated values of {symbol(found.over.name)}",
         "(between the bars nothing is drawn, as it is not tabulated there)",
@@ -182,8 +185,13 @@ def draw_widths(slice: Slice, found: OperationWidths | CertifiedWidths) -> Figur
         lower.plot([p[0] for p in points], [p[1] for p in points], "o", color=INK, markersize=2.5)
         for m in maxima:
             ends = [scaled(v, over) for v in (m.at.low, m.at.high)]
-            # a maximum at the window's edge would be cut in half
-            lower.plot(ends, [float(m.width)] * 2, "-D", color="#b45f06", markersize=6, fillstyle="none", clip_on=False)
+            lower.plot(ends, [float(m.width)] * 2, "-", color=_WIDEST, clip_on=False)
+            hollow = {float(v) for v in (*m.exceptions, *m.doubtful)}
+            for at in sorted({float(m.at.low), float(m.at.high), *hollow}):
+                face = _WIDEST if m.attained and at not in hollow else "white"
+                # a maximum at the window's edge would be cut in half
+                lower.plot([scaled(Fraction(at), over)], [float(m.width)], "D", color=_WIDEST, markerfacecolor=face,
+                           markersize=6, clip_on=False, zorder=3)  # fmt: skip
         upper.set_ylim(fibre.low, fibre.high)
         upper.set_ylabel(axis_name(slice, along), fontsize=SIZE + 2)
         range_name = "operation range" if isinstance(found.model, Mechanism) else "range"

@@ -27,7 +27,7 @@ function showFacts(member) {
   const areas = DATA.counts.map((count, k) => [count, member.a[k]]).filter(([, area]) => area);
   if (areas.length) fact(`Area: ${areas.map(([count, area]) => `${digits(area)} with ${count}`).join(", ")}`);
   if (member.w !== undefined)
-    fact(`Widest operation range along ${DATA.along}: ${digits(member.w)}, at ${DATA.over} = ${member.at.map(digits).join(" or ")}`);
+    fact(`Widest operation range along ${DATA.along}: ${digits(member.w)}, ${member.s}`);
   else if (DATA.along) fact(`No operation range along ${DATA.along} is known`);
   const line = html("p"), link = html("a", "", member.f);
   link.href = member.f;
@@ -102,7 +102,7 @@ function ticks(low, high) {
 }
 
 function curve(title, series, members) {
-  const points = series.flatMap(({ of }) => members.flatMap(([x, member]) => of(member).map((y) => [x, y])));
+  const points = series.flatMap(({ of }) => members.flatMap(([x, member]) => of(member).flat().map((y) => [x, y])));
   if (!points.length) return;
   const span = (values) => {
     const low = Math.min(...values), high = Math.max(...values), room = (high - low) * 0.05 || Math.abs(high) * 0.1 || 1;
@@ -132,7 +132,9 @@ function curve(title, series, members) {
       const values = of(member);
       if (joined && values.length) data += `${open ? "L" : "M"}${across(x).toFixed(1)} ${up(values[0]).toFixed(1)}`;
       open = joined && values.length > 0;
-      for (const y of values)
+      for (const place of values.filter(Array.isArray))
+        picture.append(svg("path", { class: `series s${s % 8}`, d: `M${across(x).toFixed(1)} ${up(place[0]).toFixed(1)}V${up(place.at(-1)).toFixed(1)}` }));
+      for (const y of values.flat())
         picture.append(svg("circle", { class: `dot d${s % 8}`, cx: across(x).toFixed(1), cy: up(y).toFixed(1), r: 2.6 }));
     }
     picture.append(svg("path", { class: `series s${s % 8}`, d: data }));
@@ -166,7 +168,7 @@ function drawCurves() {
   })), members);
   if (!DATA.along) return;
   curve(`Widest operation range along ${DATA.along}`, [{ name: "", joined: true, of: (member) => member.w === undefined ? [] : [member.w] }], members);
-  curve(`Optimum: ${DATA.over} of the widest range`, [{ name: "", joined: false, of: (member) => member.at || [] }], members);
+  curve(`Where the range is widest: ${DATA.over}`, [{ name: "", joined: false, of: (member) => member.at || [] }], members);
 }
 
 for (const [number, button] of buttons)

@@ -200,7 +200,8 @@ def _member_data(
     data["f"] = member.file
     if found.widest is not None and found.widest.width is not None:
         data["w"] = _rounded(middle(found.widest.width))
-        data["at"] = [_rounded(middle(place)) for place in found.widest.places[:4]]
+        data["s"] = found.widest.proof
+        data["at"] = [sorted({_rounded(fraction_of(end)) for end in place}) for place in found.widest.places[:4]]
     return data
 
 

@@ -14,14 +14,16 @@ from fractions import Fraction
 from io import StringIO
 from typing import Any
 
-from ptmcad.answer.sweep import CountedArea, Member, State, Sweep
+from ptmcad.answer.sweep import CountedArea, Member, State, Sweep, Widest
 from ptmcad.text.numerals import fraction_of, shortest_text
 
 Members = Callable[[], Iterable[Member]]
 """What gives the members once more from the first."""
 Row = dict[str, Any]
 _FIRST = ("member", "state", "status", "same_as", "cells", "regions", "undetermined")
-_LAST = ("along", "width_low", "width_high", "at_low", "at_high", "proof", "remark", "error", "file", "digest")
+_LAST = (
+    "along", "width_low", "width_high", "at_low", "at_high", "attainment", "proof", "remark", "error", "file", "digest",
+)  # fmt: skip
 _SHOWN = 12
 """Members on a screen; half of them are the first ones, and half the last."""
 _WORDS = {
@@ -61,8 +63,12 @@ def _cells(sweep: Sweep, member: Member) -> list[str]:
     if found is None:
         return [*values, member.state.value, member.error[:60], ""]
     areas = "; ".join(f"{area.count}: {_rounded(area.area)}" for area in found.areas if area.area[0])
-    width = found.widest.width if found.widest is not None else None
-    return [*values, str(found.regions), areas, "" if width is None else _rounded(width)]
+    return [*values, str(found.regions), areas, _widest(found.widest)]
+
+
+def _widest(found: Widest | None) -> str:
+    """The width, and whether it is attained."""
+    return "" if found is None or found.width is None else f"{_rounded(found.width)}, {found.attainment}"
 
 
 def _rounded(bounds: tuple[str, str]) -> str:
@@ -131,6 +137,7 @@ def row(sweep: Sweep, member: Member, counts: Iterable[str]) -> Row:
         at = widest.places[0] if widest.places else ("", "")
         cells |= {"along": widest.along, "width_low": low, "width_high": high, "at_low": at[0], "at_high": at[1]}
         cells |= {"proof": widest.proof, "remark": _harmless(widest.remark)}
+        cells["attainment"] = "" if widest.width is None else widest.attainment
     return cells
 
 

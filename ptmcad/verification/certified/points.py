@@ -64,7 +64,7 @@ def check_points(
         report(n, len(claims.result.cells))
         where = _where(claims, *cell.sample)
         try:
-            found = _check_cell(claims, counting, cell, places)
+            found = check_cell(claims, counting, cell, places)
         except Unproved as reason:
             undecided.append(f"cell {n} {where}: {reason}")
             uncounted += not isinstance(reason, _InBoxes)
@@ -94,7 +94,13 @@ def _where(claims: Claims, x: Fraction, y: Fraction) -> str:
     return f"at {one}={text_of(x)}, {two}={text_of(y)}"
 
 
-def _check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell, places: Places | None) -> int:
+def check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell, places: Places | None = None) -> int:
+    """Counts and stored solutions of one cell; how many these are.
+
+    Raises
+    ------
+    Violation, Unproved
+    """
     try:
         u, v = claims.on_lattice(*cell.sample)
         there = counting.at(claims, *cell.sample, places and places((u, u), (v, v)))

@@ -1,0 +1,95 @@
+"""Checks of the poses at a point: none is missing or stored twice, in each box is one, with its index and stability.
+
+They are those of a map's cell (`ptmcad.verification.solutions`, and with free lengths `certified.points`): a window of
+two axes on which nothing depends has the point as its sample.
+
+Guarantee: that of these checks. Where a pose is degenerate, the number of different ones alone is checked.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import partial
+
+from ptmcad.answer.poses import Pose, Poses
+from ptmcad.answer.regionmap import Cell, RegionMap, Solution, Status, System
+from ptmcad.cover.rectangles import Cover
+from ptmcad.options import Progress
+from ptmcad.question.slice import Axis, Count, Point, Slice
+from ptmcad.text.expressions import constant
+from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.points import check_cell, counting_of
+from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.derivation import has_index, tells_stability
+from ptmcad.verification.report import Headway, Unchecked, VerifyReport, Violation, checked
+from ptmcad.verification.solutions import check_disjoint, signs_of
+
+_EXACT = Fraction(1, 2**100)
+"""Half the width of the box of a pose whose coordinates are all known exactly."""
+
+
+def verify_poses(found: Poses, progress: Progress | None = None) -> VerifyReport:
+    """Check stored poses without the code that made them."""
+    claims = CertifiedClaims(_map_of(found))
+    steps = (("poses", "signatures and interval Newton, or a search in balls", partial(_check_poses, found=found)),)
+    return VerifyReport(tuple(checked(claims, steps, (), Headway(progress))))
+
+
+def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
+    result, model = claims.result, found.model
+    (cell,) = result.cells
+    if result.slice.has_free_lengths and found.status is Status.CERTIFIED:
+        try:
+            return f"{check_cell(claims, counting_of(claims), cell)} poses"
+        except Unproved as reason:
+            return Unchecked(str(reason))
+    try:
+        number = claims.fibre_at(*cell.sample).number_of_real_solutions()
+    except Violation:  # infinitely many
+        number = -1
+    if found.status is Status.UNDECIDED and not found.equilibria:
+        return Unchecked("nothing is said of them")
+    if number != len(found.equilibria):
+        raise Violation(f"{len(found.equilibria)} poses are listed; there are {max(number, 0) or 'infinitely many'}")
+    check_disjoint(0, cell, model)
+    regular = [(k, pose, box) for k, (pose, box) in enumerate(zip(found.equilibria, cell.solutions, strict=True))
+               if pose.multiplicity == 1]  # fmt: skip
+    for k, pose, box in regular:
+        try:
+            signs = signs_of(claims, cell, found.parameters, box)
+        except Violation as violation:
+            raise Violation(f"the box of pose {k + 1}: {violation}") from None
+        index = signs.count("-") if has_index(model) else None
+        stable = not {*signs} & {"-", "0"} if tells_stability(model) else None
+        if (index, stable) != (pose.index, pose.stable):
+            raise Violation(f"pose {k + 1} has index {index}, and that it is stable is {stable}")
+    if len(regular) < number:
+        return Unchecked(f"{number} different poses; {number - len(regular)} of them are degenerate")
+    return f"{number} poses"
+
+
+def map_of(slice: Slice, cells: tuple[Cell, ...], status: Status = Status.EXACT) -> RegionMap:
+    """A map of a slice that has cells only, for what is checked of points."""
+    return RegionMap(slice=slice, status=status, system=System((), (), "", (), ()), cells=cells,
+                     undetermined=Fraction(0), versions={}, cover=Cover(2, ()))  # fmt: skip
+
+
+def _map_of(found: Poses) -> RegionMap:
+    """The map of one cell that has the point as its sample."""
+    expressions = {name: constant(value) for name, value in found.parameters.items()}
+    axes = (Axis("x", Fraction(0), Fraction(1)), Axis("y", Fraction(0), Fraction(1)))
+    slice = Slice("", found.model, axes, expressions, Count.TOTAL)
+    boxes = tuple(_box(pose, slice.has_free_lengths) for pose in found.equilibria)
+    index = None
+    if has_index(found.model):
+        numbers = [pose.index for pose in found.equilibria]
+        index = tuple(numbers.count(k) for k in range(len(found.model.unknowns) + 1))
+    stable = found.stable if tells_stability(found.model) else None
+    sample = Point(slice.axis_names, Fraction(1, 2), Fraction(1, 2))
+    return map_of(slice, (Cell(None, 0, sample, 0, len(boxes), stable, index, boxes),), found.status)
+
+
+def _box(pose: Pose, in_angles: bool) -> Solution:
+    numbers = (pose.angles if in_angles else pose.cosines_sines) + pose.reals
+    signs = "" if pose.index is None else "+" * (len(pose.eigenvalues) - pose.index) + "-" * pose.index
+    return Solution(tuple(x.center for x in numbers), max((x.radius for x in numbers), default=_EXACT) or _EXACT, signs)

@@ -1,0 +1,198 @@
+"""Checks of the counts along lines: the ends of intervals are values at which counts can change, and none is missing.
+
+Guarantee: of exact intervals that of `ptmcad.verification.line`. Of enclosed ones, with free lengths, counts are those
+that are stored at the samples and next to both ends; that nothing changes between these points is not checked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import partial
+from typing import Any
+
+from flint import fmpz_poly
+
+from ptmcad.answer.intervals import End
+from ptmcad.answer.widths import Maximum
+from ptmcad.options import Progress
+from ptmcad.question.slice import Count, Point, Slice
+from ptmcad.text.enclosure import AlgebraicNumber
+from ptmcad.text.expressions import axis, constant
+from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.text.numerals import fraction_of, integer_of, shortest_text
+from ptmcad.text.parsing import parse
+from ptmcad.verification.attainment import Lines, check_maxima
+from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.parameters import check_domain
+from ptmcad.verification.certified.points import counting_of
+from ptmcad.verification.claims import Claims
+from ptmcad.verification.derivation import parameters_of
+from ptmcad.verification.line import Line, NotKnown
+from ptmcad.verification.parameters import check_text
+from ptmcad.verification.poses import map_of
+from ptmcad.verification.report import Check, Headway, Unchecked, VerifyReport, Violation, checked
+from ptmcad.verification.sturm import roots_within
+
+_NEAR = 2**7
+"""Counts of enclosed intervals are looked at so small shares of them beside both ends."""
+UNCHECKED = {
+    "path": ("paths", "that poses are joined as it is said, and where a mechanism snaps to"),
+    "critical": ("critical free lengths", "that they are all"),
+    "branches": ("branches", "the points of the curves"),
+    "enclosed": ("changes", "that nothing changes between the points that were looked at, and which curves are met"),
+    "bands": ("bands", "the ranges at each value of the other axis"),
+}
+
+
+def verify_range(
+    data: Mapping[str, Any], slice: Slice, progress: Progress | None = None, maxima: Sequence[Maximum] = ()
+) -> VerifyReport:
+    """Check the document of ``ptmcad range`` without the code that made it.
+
+    Parameters
+    ----------
+    slice : of which the document is.
+    maxima : where it says that ranges over the other axis are longest.
+    """
+    claims = Claims(map_of(slice, ()))
+    steps = [
+        ("parameters as written", "expressions compared", lambda _: check_text(claims)),
+        ("signs of parameters", "Sturm counts, elimination", lambda _: check_domain(claims)),
+    ]
+    steps += [
+        (name, method, check)
+        for part, name, method, check in (
+            ("line", "intervals of the line", "norms read off one fibre, signatures", _check_line),
+            ("over", "intervals of the rows", "norms read off one fibre, signatures", _check_rows),
+            ("over", "extremes", "ranges on the lines themselves", partial(_check_extremes, maxima=maxima)),
+            ("enclosed", "intervals of the enclosed line", "Krawczyk's test and exclusion in balls", _check_enclosed),
+        )
+        if part in data
+    ]
+    checks = checked((data, slice), steps, (), Headway(progress))
+    checks += [Check(name, "", None, words) for part, (name, words) in UNCHECKED.items() if part in data]
+    return VerifyReport(tuple(checks))
+
+
+_Asked = tuple[Mapping[str, Any], Slice]
+
+
+def _line(slice: Slice, along: Mapping[str, Any], value: Fraction) -> Line:
+    """The line along one axis at a value of the other one."""
+    low, high = map(fraction_of, along["window"])
+    known = {name: axis(0) if name == along["name"] else constant(value) for name in slice.axis_names}
+    texts = {name: slice.parameters[name].to_text(slice.axis_names) for name in parameters_of(slice.model)}
+    return Line(slice.model, {name: parse(text, known) for name, text in texts.items()}, low, high)
+
+
+def _check_line(asked: _Asked) -> str:
+    data, slice = asked
+    found = data["line"]
+    (value,) = map(fraction_of, found["at"].values())
+    try:
+        _check_intervals(_line(slice, found["along"], value), found["intervals"], None)
+    except NotKnown as reason:
+        return Unchecked(str(reason))
+    return f"{len(found['intervals'])} intervals"
+
+
+def _check_rows(asked: _Asked) -> str:
+    data, slice = asked
+    found, unknown = data["over"], 0
+    parts = [part for row in found["rows"] for part in row["operation"]]
+    working = {part["total"] if part["stable"] is None else part["stable"] for part in parts}
+    if len(working) > 1:
+        raise Violation(f"operation ranges have {working} solutions")
+    for row in found["rows"]:
+        try:
+            line = _line(slice, found["along"], fraction_of(row["value"]))
+            _check_intervals(line, row["operation"], next(iter(working), -1))
+        except NotKnown:
+            unknown += 1
+    if unknown:
+        return Unchecked(f"{len(found['rows']) - unknown} rows; of {unknown} more nothing was found out")
+    return f"{len(found['rows'])} rows"
+
+
+def _check_extremes(asked: _Asked, maxima: Sequence[Maximum]) -> str:
+    data, slice = asked
+    found = data["over"]
+    if "stable" not in found:
+        return Unchecked("an earlier version made it: attainment is not told")
+    along, over = (next(a for a in slice.axes if a.name == found[key]["name"]) for key in ("along", "over"))
+    lines = Lines(
+        partial(_line, slice, found["along"]), partial(_line, slice, found["over"]), along, over, found["stable"]
+    )
+    try:
+        return check_maxima(lines, maxima)
+    except NotKnown as reason:
+        return Unchecked(str(reason))
+
+
+def _check_intervals(line: Line, entries: Sequence[Mapping[str, Any]], working: int | None) -> None:
+    """The intervals are those between changes: all of them, or those with so many stable solutions.
+
+    Raises
+    ------
+    Violation, NotKnown
+    """
+    ends = [(_end(line, entry["low"]), _end(line, entry["high"])) for entry in entries]
+    for gap in line.gaps():
+        inside = [entry for entry, (low, high) in zip(entries, ends, strict=True)
+                  if _is_below(low, gap.sample) and not _is_below(high, gap.sample)]  # fmt: skip
+        where, there = f"at {shortest_text(gap.sample)}", gap.counts
+        if len(inside) != (working is None or gap.working == working):
+            raise Violation(f"{len(inside)} of the intervals are {where}, where there are {there.total} solutions")
+        for entry in inside:
+            index = None if there.index is None else [*there.index]
+            if (entry["total"], entry["stable"], entry["index"]) != (there.total, there.stable, index):
+                raise Violation(f"{entry['total']} solutions are said to be {where}, where there are {there}")
+
+
+def _end(line: Line, data: Mapping[str, Any]) -> End:
+    """An end of an interval, if counts can change there."""
+    if "window" in data:
+        if (edge := fraction_of(data["window"])) not in (line.low, line.high):
+            raise Violation(f"{shortest_text(edge)} is no end of the window")
+        return edge
+    polynomial = fmpz_poly([integer_of(c.removeprefix("-")) * (-1 if c[:1] == "-" else 1) for c in data["polynomial"]])
+    number = AlgebraicNumber(tuple(map(int, polynomial)), fraction_of(data["low"]), fraction_of(data["high"]))
+    if roots_within(polynomial, from_fraction(number.low), from_fraction(number.high)) != 1:
+        raise Violation(f"an end near {float(number):.10g} is not the only root of its polynomial there")
+    if polynomial.degree() < 1 or bool(line.critical % polynomial):
+        raise Violation(f"counts cannot change at the end near {float(number):.10g}")
+    return number
+
+
+def _is_below(end: End, value: Fraction) -> bool:
+    return end < value if isinstance(end, Fraction) else end.compare(value) < 0
+
+
+def _check_enclosed(asked: _Asked) -> str:
+    """Counts at the sample and next to both ends of each interval."""
+    data, slice = asked
+    found, number, unknown = data["enclosed"], 0, 0
+    ((other, value),) = found["at"].items()
+    claims = Claims(map_of(replace(slice, count=Count.TOTAL), ()))
+    counting = counting_of(claims)
+    for entry in found["intervals"]:
+        low, high = fraction_of(entry["low"]["high"]), fraction_of(entry["high"]["low"])
+        near = (high - low) / _NEAR
+        if not low < fraction_of(entry["sample"]) < high:
+            raise Violation(f"the sample {entry['sample']} is not in its interval")
+        for at in (fraction_of(entry["sample"]), low + near, high - near):
+            point = (at, fraction_of(value)) if other == slice.axis_names[1] else (fraction_of(value), at)
+            try:
+                there = counting.at(claims, *Point(slice.axis_names, *point)).counts
+            except Unproved:
+                unknown += 1
+                continue
+            index = entry["index"] if entry["index"] is None else tuple(entry["index"])
+            number += 1
+            if entry["total"] is not None and (entry["total"], entry["stable"], index) != (
+                there.total, there.stable, there.index
+            ):  # fmt: skip
+                raise Violation(f"{entry['total']} solutions are said to be at {shortest_text(at)}; there are {there}")
+    return Unchecked(f"{number} points; {unknown} were not decided") if unknown else f"{number} points"
