@@ -207,14 +207,6 @@ def _draw_solid(surface: BoundarySurface | None, result: FamilyMap, drawing: Dra
     draw_solid(result, path, drawing.dpi, drawing.style, surface)
 
 
-def is_family(path: Path) -> bool:
-    """Whether a file is the document of a family."""
-    if path.suffix.lower() != ".json":
-        return False
-    head = read_text(path, MAX_BYTES, "a result's JSON file")[:200]
-    return f'"format": "{FORMAT.partition("/")[0]}/' in head
-
-
 def read_family_file(path: Path, *, whole: bool = True) -> FamilyMap:
     """The family in a JSON file, with its members' maps, which are in files beside it.
 

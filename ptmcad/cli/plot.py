@@ -14,7 +14,7 @@ from ptmcad.answer.comparison import Comparison
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Drawing, drawing_options, names_of
-from ptmcad.cli.families import is_family, mesh_writers, picture_writers, read_family_file
+from ptmcad.cli.families import mesh_writers, picture_writers, read_family_file
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
@@ -22,7 +22,7 @@ from ptmcad.cli.paths import file_option
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.points import disagreements, measured, places, poses_at
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.stored import read_result, stored_in
+from ptmcad.cli.stored import kind_of, read_result, stored_in
 from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.process.output import Writer, check_writable, write_files
@@ -54,12 +54,12 @@ def _with_points(stored: RegionMap, drawing: Drawing, added: Added) -> Drawing:
 
 def _idle(result: Path, drawing: Drawing, added: Added) -> tuple[Idle, ...]:
     """Options that a picture of more than a map does not heed."""
-    several = added.compare is not None or is_family(result)
+    several = added.compare is not None or kind_of(result) == "family"
     below = several and drawing.style.legend is Place.RIGHT
     return (
         Idle("samples", several or bool(added.at), "sample points are drawn on a map alone"),
         Idle("legend", below, "a legend of several maps is below them"),
-        Idle("surface", not is_family(result), "this is one map: a surface is of a family"),
+        Idle("surface", kind_of(result) != "family", "this is one map: a surface is of a family"),
     )
 
 
@@ -189,7 +189,7 @@ def command(
     """
     report_idle((*idle_drawing(formats), *_idle(result, drawing, added)))
     with held(limits):
-        if is_family(result):
+        if kind_of(result) == "family":
             _plot_family(result, result.parent if out is None else out, formats, drawing, added)
             return
         if meshes := [kind for kind in formats if kind in MESHES]:

@@ -48,12 +48,13 @@ Verify = Callable[[Progress], "VerifyReport"]
                    "number more four times the work, 10 all of it.  [default: 2]")  # fmt: skip
 @limit_options
 def command(*, result: Path, seed: int | None, boxes: int | None, effort: int | None, limits: Limits) -> int:
-    """Check RESULT, a JSON file of `ptmcad classify` or `design`, without the code that made it.
+    """Check RESULT, a JSON file of `ptmcad classify`, `solve`, `range` or `design`, or the folder of a sweep.
 
-    Of a family each member is checked, and the changes between them by further members, each classified alone and over
-    either axis; of a design (`ptmcad design`) the cover by boxes, and samples of its value and bound. Prints what was
-    checked, and how. The exit status is 0 when every check passed, 1 when one failed (the first violated claim is
-    printed with a witness), 2 when the file cannot be read, 3 when a limit was reached before that.
+    What is checked is proved by code that shares no mathematics with what made it, as far as a row says how; other
+    entries are answered anew and compared. Of a family and of a sweep each member is checked. The last line is the
+    verdict. The exit status is 0 when every check passed, 1 when one failed (the first violated claim is
+    printed with a witness), 2 when the file cannot be read, 3 when a limit was reached before that; the table then
+    names what was checked so far.
 
     \b
     Example:
@@ -61,25 +62,40 @@ def command(*, result: Path, seed: int | None, boxes: int | None, effort: int | 
         ptmcad verify slice-L2-rho.json
     """
     with held(limits), _clock(limits.timeout) as is_over:
-        from ptmcad.verification import Check, VerifyReport
+        from ptmcad.verification.report import FINISHED, Check, VerifyReport, heading
 
         checks: list[Check] = []
-        for heading, check in _reports(result, seed, boxes, effort):
-            if heading:
-                click.echo(heading)
+        shown: list[Check] = []
+
+        def show(check: Check) -> None:
+            """A row as soon as it is known: the process may be ended in the next check."""
+            if not shown:
+                click.echo(heading())
+            shown.append(check)
+            click.echo(check.row())
+
+        for title, check in _reports(result, seed, boxes, effort):
+            if title:
+                click.echo(title)
+            shown.clear()
+            token = FINISHED.set(show)
             try:
                 with ProgressBar() as progress:
                     report = check(progress)
             except LimitReached as limit:
-                report = VerifyReport((Check("all", "", None, f"not reached: {limit}"),))
+                report = VerifyReport((*shown, Check("all others", "", None, f"not reached: {limit}")))
+            finally:
+                FINISHED.reset(token)
             checks += report.checks
-            click.echo(report.table())
+            for known in report.checks[len(shown) :]:
+                show(known)
+            click.echo(report.verdict)
             if report.violation is not None:
                 click.echo(f"violated: {report.violation}", err=True)
             if is_over():
                 break
         whole = VerifyReport(tuple(checks))
-        if heading:
+        if title:
             click.echo(f"in all: {whole.verdict}")
         if is_over():
             click.echo(f"stopped: the time limit of {limits.timeout:g} s was reached", err=True)
@@ -90,13 +106,16 @@ def command(*, result: Path, seed: int | None, boxes: int | None, effort: int | 
 def _clock(seconds: float | None) -> Iterator[Callable[[], bool]]:
     """Raise `LimitReached` in what runs inside when the time is over, once; gives whether it has been."""
     over: list[int] = []
+    if seconds is None:
+        yield lambda: False
+        return
 
     def ring(number: int, _frame: FrameType | None) -> None:
         over.append(number)
-        raise LimitReached("the time is over")
+        raise LimitReached(f"the time limit of {seconds:g} s was reached")
 
     before = signal.signal(signal.SIGALRM, ring)
-    signal.setitimer(signal.ITIMER_REAL, seconds or 0)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
     try:
         yield lambda: bool(over)
     finally:

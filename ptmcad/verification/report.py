@@ -6,6 +6,7 @@ Guarantee: `VerifyReport.ok` is True only when no check failed; a claim that was
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
+from contextvars import ContextVar
 from dataclasses import dataclass
 from html import escape
 from textwrap import fill
@@ -17,6 +18,8 @@ from ptmcad.options import Progress
 C = TypeVar("C")
 
 COLUMNS = 80
+WIDTH = 22
+"""Of the column of names, where these are not known yet."""
 
 
 class Violation(Exception):
@@ -37,6 +40,13 @@ class Check:
     method: str
     passed: bool | None
     detail: str
+
+    def row(self, width: int = WIDTH) -> str:
+        """Of a table, with a column for the names."""
+        answer = {True: "ok", False: "FALSE", None: "not checked"}[self.passed]
+        head = f"{answer:<13}{self.name:<{width}}  "
+        text = f"{self.detail} ({self.method})" if self.method else self.detail
+        return fill(text, COLUMNS, initial_indent=head, subsequent_indent=" " * len(head), break_on_hyphens=False)
 
 
 class Unchecked(str):
@@ -84,16 +94,17 @@ class VerifyReport:
 
     def table(self) -> str:
         """A row of at most 80 columns for each check: the answer, the claim, the detail and the method; the verdict."""
-        words = {True: "ok", False: "FALSE", None: "not checked"}
-        rows = [("", "claim", "what was checked, and how")]
-        rows += [(words[c.passed], c.name, f"{c.detail} ({c.method})" if c.method else c.detail) for c in self.checks]
-        width = max(len(name) for _, name, _ in rows)
-        lines = [_wrapped(f"{answer:<13}{name:<{width}}  ", text) for answer, name, text in rows]
-        return "\n".join([*lines, self.verdict])
+        width = max([len(c.name) for c in self.checks], default=0)
+        return "\n".join([heading(width), *(c.row(width) for c in self.checks), self.verdict])
 
 
-def _wrapped(head: str, text: str) -> str:
-    return fill(text, COLUMNS, initial_indent=head, subsequent_indent=" " * len(head), break_on_hyphens=False)
+def heading(width: int = WIDTH) -> str:
+    """Over the rows of checks."""
+    return f"{'':<13}{'claim':<{width}}  what was checked, and how"
+
+
+FINISHED: ContextVar[Callable[[Check], None]] = ContextVar("FINISHED", default=lambda _check: None)
+"""Is told each check as soon as it is finished: a process that is ended has printed those."""
 
 
 def check_anew(stored: Any, found: Any) -> Check:
@@ -159,21 +170,23 @@ def checked(
 ) -> list[Check]:
     """Run checks, given as name, method and function, in their order; none after a failed one, none of the missing."""
     checks: list[Check] = []
-    ended = ""
+    ended, finished = "", FINISHED.get()
+    within = FINISHED.set(lambda _check: None)  # of the checks inside of these
     headway = headway or Headway(None)
     headway.number = len(steps)
     for name, method, check in steps:
-        if ended or name in missing:
-            checks.append(Check(name, method, None, ended or "not complete in this partial result"))
-            continue
-        try:
-            headway.begins(name)
-            detail = check(claims)
-            checks.append(Check(name, method, None if isinstance(detail, Unchecked) else True, detail))
-        except Violation as violation:
-            ended = "not reached"
-            checks.append(Check(name, method, False, shown(str(violation))))
-        except LimitReached as limit:
-            ended = f"not reached: {limit}"
-            checks.append(Check(name, method, None, f"not finished: {limit}"))
+        passed: bool | None = None
+        detail = ended or "not complete in this partial result"
+        if not ended and name not in missing:
+            try:
+                headway.begins(name)
+                detail = check(claims)
+                passed = None if isinstance(detail, Unchecked) else True
+            except Violation as violation:
+                ended, passed, detail = "not reached", False, shown(str(violation))
+            except LimitReached as limit:
+                ended, detail = f"not reached: {limit}", f"not finished: {limit}"
+        checks.append(Check(name, method, passed, detail))
+        finished(checks[-1])
+    FINISHED.reset(within)
     return checks
