@@ -214,6 +214,9 @@ class _Object(dict[str, Any]):
         self.trail[0] = place
         return _traced(super().__getitem__(key), place, self.trail)
 
+    def get(self, key: str, default: Any = None) -> Any:
+        return self[key] if key in self else default
+
     def items(self) -> Any:
         return [(key, self[key]) for key in self]
 
