@@ -106,10 +106,7 @@ def _design(data: Mapping[str, Any]) -> BestDesign:
         tolerance=fraction_of(data["tolerance"]),
         proved=_truth(data["proved"]),
         reason=_line(data["reason"]),
-        maxima=tuple(
-            maximum_from(entry, data["over"][0]["name"], _DIGITS)
-            for entry in (data[_EXTREMES] if _EXTREMES in data else ())
-        ),
+        maxima=tuple(maximum_from(entry, data["over"][0]["name"], _DIGITS) for entry in data.get(_EXTREMES, ())),
         seed=_whole(data["seed"]),
         points=tuple(
             Evaluation(

@@ -215,7 +215,9 @@ class _Object(dict[str, Any]):
         return _traced(super().__getitem__(key), place, self.trail)
 
     def get(self, key: str, default: Any = None) -> Any:
-        return self[key] if key in self else default
+        if key not in self:
+            return default
+        return self[key]
 
     def items(self) -> Any:
         return [(key, self[key]) for key in self]
