@@ -54,7 +54,7 @@ def outline(path: ET.Element) -> Curve:
         numbers = [float(number) for number in re.findall(_NUMBER, part)]
         corners = [*zip(numbers[::2], numbers[1::2], strict=True)]
         points += [*corners, corners[0]]
-        codes += [Curve.MOVETO, *[Curve.LINETO] * (len(corners) - 1), Curve.CLOSEPOLY]
+        codes += [int(Curve.MOVETO), *[int(Curve.LINETO)] * (len(corners) - 1), int(Curve.CLOSEPOLY)]
     return Curve(points, codes)
 
 
