@@ -9,6 +9,7 @@ import re
 import xml.etree.ElementTree as ET
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -49,7 +50,7 @@ def fill(path: ET.Element) -> str:
 def outline(path: ET.Element) -> Curve:
     """The outline of a path of straight lines, each part of it closed."""
     points: list[tuple[float, float]] = []
-    codes: list[int] = []
+    codes: list[Any] = []
     for part in path.get("d", "").split("M")[1:]:
         numbers = [float(number) for number in re.findall(_NUMBER, part)]
         corners = [*zip(numbers[::2], numbers[1::2], strict=True)]
