@@ -15,7 +15,6 @@ from typing import Any, TypeVar
 from ptmcad.answer.consistency import check_numbers
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown
-from ptmcad.process.commit import recover
 from ptmcad.show.document.node import NEWER, is_newer
 from ptmcad.show.document.writing import FORMAT
 from ptmcad.show.style import Style
@@ -40,7 +39,6 @@ def read_result(path: Path, *, whole: bool = True) -> RegionMap:
     ConfigError
         When there is no such file, or it is not a whole region map.
     """
-    recover(path.parent)
     text = read_text(path, MAX_BYTES, f"a {FORMAT} file")
     try:
         result = RegionMap.from_json(text)
@@ -119,7 +117,6 @@ def is_result(path: Path) -> bool:
     """
     if path.suffix.lower() != ".json":
         return False
-    recover(path.parent)
     text = read_text(path, MAX_BYTES, f"a {FORMAT} file")
     return _format_of(text) is not None or not _is_record(text)
 

@@ -20,8 +20,8 @@ _HEAD = 9  # a topic's letter and the length of the body in 8 bytes
 class Topic(Enum):
     """What a message is about, and the texts it consists of."""
 
-    TEMPORARY = b"T"  # paths of temporary files that are about to be made
-    RENAMES = b"R"  # the journal of a set of files about to be put into place, its last file, and that file's identity
+    TEMPORARY = b"T"  # paths of hidden files that are about to be made, and that nothing needs once the process is gone
+    RENAMES = b"R"  # the last file of a set about to be put into place, and that file's identity
     DEADLINE = b"D"  # reading of time.monotonic() at which the time is over, the limit in words
     MEMORY = b"M"  # the memory limit in bytes, in words, and "asked" or "default"
     LOADING = b"L"  # the libraries that are about to be loaded, or nothing when they are
@@ -107,6 +107,15 @@ class Receiver:
             body = bytes(self._bytes[_HEAD:end]).decode("utf-8", "surrogateescape")
             del self._bytes[:end]
             yield topic, body.split("\0")
+
+
+def identity(path: str | os.PathLike[str]) -> str:
+    """What distinguishes a file from all others wherever it is renamed to; empty when there is none."""
+    try:
+        found = os.lstat(path)
+    except OSError:
+        return ""
+    return f"{found.st_dev}:{found.st_ino}:{found.st_size}:{found.st_mtime_ns}"
 
 
 @contextmanager

@@ -1,6 +1,6 @@
 """The files of a result: all of them written under hidden names first, then put into place together.
 
-Guarantee: every file under its own name is whole, and the files of one run replace those of another all or none, as
+Guarantee: every file under its own name is whole, and the files of one run replace those of another as
 `ptmcad.process.commit` says. Nothing is put into place before everything is written and on disk. Whatever stops the
 writing (an error, Ctrl-C, a signal that raises) leaves no temporary file; a process that is killed outright may leave
 hidden ``.NAME.*.tmp.*`` and ``.NAME.*.old.*`` files and nothing else, and the next `check_writable` for the same name
@@ -14,17 +14,17 @@ import json
 import os
 import stat
 import sys
-from collections.abc import Callable, Iterable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
 from fractions import Fraction
 from itertools import chain, count
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from ptmcad.errors import ConfigError, OutputError
-from ptmcad.process.commit import UNCHANGED, discard, identity, locked, put_into_place, reason, settle
-from ptmcad.process.handover import Topic, send, undisturbed
-from ptmcad.process.journal import HIDDEN, REDO, hidden, journals
+from ptmcad.process import commit
+from ptmcad.process.commit import HIDDEN, UNCHANGED, hidden, locked, put_into_place, reason
+from ptmcad.process.handover import Topic, identity, send
 from ptmcad.text.textfile import json_data, read_text
 
 if sys.platform != "win32":
@@ -33,7 +33,6 @@ if sys.platform != "win32":
 Writer = Callable[[Path], None]
 Placing = Callable[[Path, Mapping[Path, Path]], tuple[Path, ...]]
 
-_PROBE = "probe"
 MAX_BYTES = 60_000_000
 """Of an older result that is looked at."""
 LOCK_PATIENCE = 1.0
@@ -52,7 +51,7 @@ def text_writer(text: str) -> Writer:
 def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
     """Create the folder if it is missing and prove, by writing, that files of these names can be put there.
 
-    To be called before a long computation. What killed runs have left there is completed or removed.
+    To be called before a long computation. What killed runs have left there is removed.
 
     Raises
     ------
@@ -63,27 +62,22 @@ def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
         raise OutputError(f"the folder {folder} cannot be made: {reason(error)}; choose another with --out") from error
-    _check_kinds(folder, names)
+    _check_kinds(folder / name for name in names)
+    names = (*names, "probe")
     try:
         with suppress(BlockingIOError), locked(folder, LOCK_PATIENCE) as alone:
             if alone:  # otherwise what is left of a dead process cannot be distinguished from what a live one uses
-                settle(folder)
-                _check_free(folder, names)
-                _remove_stale(folder, (*names, _PROBE))
-        for name in (_PROBE, *(f"{Path(name).stem}{REDO}" for name in names)):  # no hidden name is longer
-            probe, lock = _create(folder / name)
-            try:
-                probe.write_text("writable", encoding="utf-8")
-            finally:
-                probe.unlink(missing_ok=True)
-                os.close(lock)
+                _remove_stale(folder, names)
+        for name in names:
+            with _temporary(folder / name) as probe:
+                probe.write_bytes(b"writable")
     except OSError as error:
         raise OutputError(
             f"the folder {folder} cannot be written to: {reason(error)}; choose another with --out"
         ) from error
 
 
-def _check_kinds(folder: Path, names: Iterable[str]) -> None:
+def _check_kinds(targets: Iterable[Path]) -> None:
     """Refuse to replace what is no file: a rename would remove a device as well.
 
     A symbolic link is replaced if it leads to a file or nowhere; what it leads to stays as it is.
@@ -93,22 +87,27 @@ def _check_kinds(folder: Path, names: Iterable[str]) -> None:
     OutputError
         With the path and what is there.
     """
-    for name in names:
+    for target in targets:
         try:
-            mode = (folder / name).stat().st_mode
+            mode = target.stat().st_mode
         except (OSError, ValueError):  # nothing there; or a name that writing will refuse, with the reason
             continue
         if not stat.S_ISREG(mode):
-            kind = next((what for test, what in _KINDS if test(mode)), "no regular file")
-            raise OutputError(f"{folder / name} is {kind}, so no file can be written there; choose another --out")
+            kind = _KINDS.get(stat.S_IFMT(mode), "no regular file")
+            raise OutputError(f"{target} is {kind}, so no file can be written there; choose another --out")
 
 
-_KINDS = ((stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"),
-          (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"))  # fmt: skip
+_KINDS = {
+    stat.S_IFDIR: "a folder",
+    stat.S_IFIFO: "a pipe",
+    stat.S_IFSOCK: "a socket",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+}
 
 
 def write_files(folder: Path, writers: Mapping[str, Writer], *, new: bool = False) -> tuple[Path, ...]:
-    """Write all files or none, and put them into place.
+    """Write all files, then put them into place.
 
     Parameters
     ----------
@@ -120,31 +119,29 @@ def write_files(folder: Path, writers: Mapping[str, Writer], *, new: bool = Fals
     Raises
     ------
     OutputError
-        If a file cannot be written or renamed.
+        If a file cannot be written or renamed; the message says what there is then.
     """
     return _write(folder, writers, _under_new_names if new else _under_own_names)
 
 
 def _under_new_names(folder: Path, temporaries: Mapping[Path, Path]) -> tuple[Path, ...]:
     """Take the names first, as one process alone can do, so that what is replaced is nobody else's."""
-    taken: list[Path] = []
+    taken: dict[Path, str] = {}
     try:
         for target in temporaries:
             target.open("x").close()
-            taken.append(target)
+            taken[target] = identity(target)
         return _under_own_names(folder, temporaries)
     except BaseException:
-        for target in taken:
-            target.unlink(missing_ok=True)
+        for target, mark in taken.items():
+            if identity(target) == mark:  # not what has been saved there since
+                target.unlink()
         raise
 
 
 def _under_own_names(folder: Path, temporaries: Mapping[Path, Path]) -> tuple[Path, ...]:
-    with locked(folder) as alone:
-        if alone:
-            settle(folder)
-            _check_free(folder, [target.name for target in temporaries])
-        _check_kinds(folder, [target.name for target in temporaries])
+    with locked(folder):
+        _check_kinds(temporaries)
         put_into_place(temporaries)
     return tuple(temporaries)
 
@@ -152,43 +149,18 @@ def _under_own_names(folder: Path, temporaries: Mapping[Path, Path]) -> tuple[Pa
 def _write(folder: Path, writers: Mapping[str, Writer], place: Placing) -> tuple[Path, ...]:
     """Write the files under hidden names, have them put into place, and return where they are."""
     temporaries: dict[Path, Path] = {}
-    locks = []
     current = folder
-    try:
-        for name, write in writers.items():
-            current = folder / name
-            temporary, lock = _create(current)
-            temporaries[current] = temporary
-            locks.append(lock)
-            write(temporary)
-            _flush_to_disk(temporary)
-        return place(folder, temporaries)
-    except OSError as error:
-        raise OutputError(f"{current} cannot be written: {reason(error)}; {UNCHANGED}") from error
-    finally:
+    with ExitStack() as needed:
         try:
-            with suppress(OSError):  # hidden, and removed by a later run; there is a result or another error to report
-                discard(temporaries.values())
-        finally:
-            for lock in locks:
-                os.close(lock)
-
-
-def _check_free(folder: Path, names: Iterable[str]) -> None:
-    """Refuse to write what an unfinished journal would write over later.
-
-    Raises
-    ------
-    OutputError
-        With the journal's path.
-    """
-    wanted = set(names)
-    for journal in journals(folder):
-        if journal.names & wanted:
-            raise OutputError(
-                f"{journal.path} holds files that a killed run could not put into place, and this one cannot either: "
-                "see to it that this user may rename files there, or choose another --out"
-            )
+            for name, write in writers.items():
+                current = folder / name
+                temporaries[current] = needed.enter_context(_temporary(current))
+                write(temporaries[current])
+                with temporaries[current].open("rb+") as file:
+                    os.fsync(file)
+            return place(folder, temporaries)
+        except OSError as error:
+            raise OutputError(f"{current} cannot be written: {reason(error)}; {UNCHANGED}") from error
 
 
 def save_stopped(target: Path, text: str, *, whole: bool = False, beside: Iterable[str] = ()) -> Path:
@@ -210,19 +182,15 @@ def save_stopped(target: Path, text: str, *, whole: bool = False, beside: Iterab
         If the file cannot be written.
     """
     label = "complete" if whole else "partial"
-    further = chain([label], (f"{label}-{number}" for number in count(2)))
-    names = (target.with_name(f"{target.stem}.{end}{target.suffix}") for end in further)
+    further = chain([""], (f"-{number}" for number in count(2)))
+    names = (target.with_name(f"{target.stem}.{label}{end}{target.suffix}") for end in further)
 
     def place(folder: Path, temporaries: Mapping[Path, Path]) -> tuple[Path, ...]:
         (temporary,) = temporaries.values()
         try:
-            with locked(folder, LOCK_PATIENCE) as alone:
-                if alone:
-                    settle(folder)
+            with locked(folder, LOCK_PATIENCE):
                 free = not any(os.path.lexists(folder / name) for name in beside) and _replaceable(target, text)
                 chosen = target if free else next(name for name in names if _replaceable(name, text))
-                if alone:
-                    _check_free(folder, [chosen.name])
                 put_into_place({chosen: temporary})
                 return (chosen,)
         except BlockingIOError:  # a process that does not move on has it: a name that nothing has needs no lock
@@ -233,13 +201,10 @@ def save_stopped(target: Path, text: str, *, whole: bool = False, beside: Iterab
 
 def _put_at_new_name(temporary: Path, names: Iterable[Path]) -> Path:
     for name in names:
-        send(Topic.RENAMES, "", str(name), identity(temporary))
-        try:
-            with undisturbed():
-                os.link(temporary, name)
-        except FileExistsError:
-            continue
-        return name
+        send(Topic.RENAMES, str(name), identity(temporary))
+        with suppress(FileExistsError):
+            os.link(temporary, name)
+            return name
     raise AssertionError("there are infinitely many names")
 
 
@@ -280,7 +245,7 @@ def _replaceable(target: Path, text: str | None = None) -> bool:
     stored = _stored(target)
     if stored is None or stored.get("status") != "partial":  # what is no result is not ours to replace unasked
         return False
-    return text is None or stored.get("cover") is None or not _leaves_less_open(stored, json.loads(text))
+    return text is None or not _leaves_less_open(stored, json.loads(text))
 
 
 def _leaves_less_open(stored: dict[str, Any], new: Any) -> bool:
@@ -298,54 +263,41 @@ def _remove_stale(folder: Path, names: Iterable[str]) -> None:
 
     The caller holds the folder's lock: hidden old files are used under it only.
     """
-    if sys.platform == "win32":
-        return
     kinds = {(Path(name).stem, Path(name).suffix) for name in names}
-    kinds |= {(stem, REDO) for stem, _ in kinds}
-    needed = {name for journal in journals(folder) for name in journal.names}
-    try:
-        found = [entry for entry in os.scandir(folder) if (match := HIDDEN.fullmatch(entry.name))
-                 and (match["stem"], match["suffix"] or "") in kinds and entry.name not in needed]  # fmt: skip
-    except OSError:  # a folder one may write to but not list
-        return
-    for entry in found:
-        try:
-            descriptor = os.open(entry.path, os.O_RDWR | os.O_NOFOLLOW | os.O_NONBLOCK)
-        except OSError:  # gone meanwhile, or another user's
-            continue
-        try:
-            if stat.S_ISREG(os.fstat(descriptor).st_mode):
-                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    with suppress(OSError):  # a folder one may write to but not list
+        for entry in list(os.scandir(folder)):
+            match = HIDDEN.fullmatch(entry.name)
+            if match is None or match.groups() not in kinds or not entry.is_file(follow_symlinks=False):
+                continue
+            # it may be gone meanwhile, another user's, or of a process that lives; or there are no locks
+            with suppress(OSError), open(entry.path, "rb+", buffering=0) as file:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 os.unlink(entry.path)
-        except OSError:  # its process lives, the file system has no locks, or the file may not be removed
-            continue
-        finally:
-            os.close(descriptor)
 
 
-def _create(target: Path) -> tuple[Path, int]:
-    """Create a hidden file in the target's folder with the target's suffix and the permissions that the umask gives.
+@contextmanager
+def _temporary(target: Path) -> Iterator[Path]:
+    """A hidden file in the target's folder with the target's suffix and the permissions that the umask gives.
 
-    Returns its path and an open descriptor that holds a lock on it.
+    It is locked, and removed in the end if it still has its hidden name.
     """
     while True:
         path = hidden(target)
         send(Topic.TEMPORARY, str(path))
-        descriptor = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
-        if sys.platform == "win32" or _locked(descriptor):
-            return path, descriptor
-        os.close(descriptor)
+        with path.open("xb") as file:
+            if sys.platform == "win32" or _locked(file):
+                try:
+                    yield path
+                finally:
+                    with suppress(OSError):  # it is hidden, and removed by a later run
+                        commit.disk.unlink(path)
+                return
 
 
-def _locked(descriptor: int) -> bool:
+def _locked(file: BinaryIO) -> bool:
     """Lock a new file; False when another process has taken it for a stale one and removed it before."""
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        fcntl.flock(file, fcntl.LOCK_EX)
     except OSError:  # a file system without locks: there nothing is taken for stale either
         return True
-    return os.fstat(descriptor).st_nlink > 0
-
-
-def _flush_to_disk(path: Path) -> None:
-    with path.open("rb+") as stream:
-        os.fsync(stream.fileno())
+    return os.fstat(file.fileno()).st_nlink > 0

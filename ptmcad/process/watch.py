@@ -34,19 +34,19 @@ POLL_SECONDS = 0.25
 LONG_SECONDS = 1.0
 """Seconds after which it is said why the child has not left yet."""
 
-_CRASHES = frozenset(
-    getattr(signal, name)
-    for name in ("SIGSEGV", "SIGBUS", "SIGFPE", "SIGILL", "SIGABRT", "SIGSYS", "SIGTRAP")
-    if hasattr(signal, name)
-)
-_HOW_ENDED = {
-    getattr(signal, name): words
-    for name, words in (
-        ("SIGINT", "interrupted"),
-        ("SIGTERM", "terminated (SIGTERM)"),
-        ("SIGHUP", "the terminal was closed (SIGHUP)"),
-    )
-    if hasattr(signal, name)
+_CRASHES = {
+    signal.SIGSEGV,
+    signal.SIGBUS,
+    signal.SIGFPE,
+    signal.SIGILL,
+    signal.SIGABRT,
+    signal.SIGSYS,
+    signal.SIGTRAP,
+}
+_HOW_ENDED: dict[int, str] = {
+    signal.SIGINT: "interrupted",
+    signal.SIGTERM: "terminated (SIGTERM)",
+    signal.SIGHUP: "the terminal was closed (SIGHUP)",
 }
 _CHUNK = 1 << 16
 
@@ -69,7 +69,7 @@ class Watch:
         self.text = bytearray()
         self.reports: dict[Topic, list[str]] = {}
         self.temporaries: list[str] = []
-        self.placed: list[tuple[str, str]] = []
+        self.placed: list[list[str]] = []
         self.out_of_time = False
         self.waiting: Waiting | None = None
         self.waits_for_memory = False
@@ -188,7 +188,7 @@ class Watch:
                     if topic is Topic.TEMPORARY:
                         self.temporaries += texts
                     if topic is Topic.RENAMES:
-                        self.placed.append((texts[1], texts[2]))
+                        self.placed.append(texts)
                     if topic is Topic.WAITING:
                         report(f"waiting   another process is writing in {texts[0]}\n")
             elif end == self.printed:
@@ -201,7 +201,7 @@ class Watch:
         # a library may call exit() when memory runs out: then the child has not said that it was done
         deserted = ended >= 0 and Topic.DONE not in self.reports and ended <= 128
         if ended < 0 or deserted or self.caught or self.out_of_time or Topic.EXHAUSTED in self.reports:
-            clean_up(self.reports, self.temporaries, GRACE_SECONDS)
+            clean_up(self.reports, self.temporaries)
         if self.caught:
             how = _HOW_ENDED.get(self.caught[0], f"stopped by {_name(self.caught[0])}")
             if self.reports.get(Topic.RESUMABLE) == [""]:

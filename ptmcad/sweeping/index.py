@@ -17,7 +17,7 @@ import json
 import os
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager, suppress
 from dataclasses import astuple
 from pathlib import Path
 from typing import Any
@@ -26,8 +26,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import CountedArea, Member, State, Summary, Sweep, Widest
 from ptmcad.answer.widths import Attainment
 from ptmcad.errors import ConfigError, OutputError
-from ptmcad.process.commit import locked, reason, write_through
-from ptmcad.process.journal import hidden
+from ptmcad.process.commit import hidden, locked, reason
 from ptmcad.sweeping.member import Failed, Found, Outcome, Refused
 from ptmcad.text.numerals import fraction_of
 from ptmcad.text.textfile import read_bytes
@@ -192,10 +191,17 @@ class Index:
         """Put a result's file into place, whole and on disk; its name below the folder."""
         name = _name(number)
         path = self.folder / name
+        temporary = hidden(path)
         try:
             _inside(self.folder, path.parent).mkdir(exist_ok=True)
-            write_through(hidden(path), path, data)
+            with temporary.open("xb") as file:
+                file.write(data)
+                file.flush()
+                os.fsync(file)
+            os.replace(temporary, path)
         except OSError as error:
+            with suppress(OSError):  # hidden, and removed by a later run
+                temporary.unlink()
             raise OutputError(f"{path} cannot be written: {reason(error)}") from error
         return name
 

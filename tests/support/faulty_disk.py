@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import errno
+import os
 from collections.abc import Callable, Collection
 from pathlib import Path
-
-from ptmcad.process.commit import Disk
 
 
 class Killed(BaseException):
     """The process is gone: from here on no step is done, whatever the code under test tries."""
 
 
-class FaultyDisk(Disk):
+class FaultyDisk:
     """Steps are counted from 1 on, also those that fail.
 
     Parameters
     ----------
     killed : the step before which the process is killed.
     failing : the steps that raise an OSError instead of being done.
-    links : whether the file system has hard links.
     look : called after each step that was done.
     """
 
@@ -28,12 +26,10 @@ class FaultyDisk(Disk):
         self,
         killed: int | None = None,
         failing: Collection[int] = (),
-        links: bool = True,
         look: Callable[[], None] = lambda: None,
     ) -> None:
         self.killed = killed
         self.failing = failing
-        self.links = links
         self.look = look
         self.steps = 0
         self.dead = False
@@ -49,17 +45,10 @@ class FaultyDisk(Disk):
 
     def replace(self, source: Path, target: Path) -> None:
         self._step(target)
-        super().replace(source, target)
-        self.look()
-
-    def link(self, source: Path, target: Path) -> None:
-        self._step(target)
-        if not self.links:
-            raise OSError(errno.EPERM, "Operation not permitted", str(source))
-        super().link(source, target)
+        os.replace(source, target)
         self.look()
 
     def unlink(self, path: Path) -> None:
         self._step(path)
-        super().unlink(path)
+        os.unlink(path)
         self.look()
