@@ -221,8 +221,8 @@ def _numbers_of(
     size = isqrt(len(tape.outputs[1]))
     hessian = arb_mat(size, size, [values[int(place)] for place in tape.outputs[1]])
     turned = [(f"cos {angle}", f"sin {angle}", angle, f"degrees {angle}") for angle in mechanism.angles]
-    for n in range(len(mechanism.torsion)):
-        turned.append(tuple(f"torsion {what} {n}" for what in ("cos", "sin", "deflection", "degrees")))
+    torsion = [f"torsion {{}} {n}".format for n in range(len(mechanism.torsion))]
+    turned += [(name("cos"), name("sin"), name("deflection"), name("degrees")) for name in torsion]
     for cosine, sine, radians, degrees in turned:
         numbers[radians], numbers[degrees] = _angle(numbers[cosine], numbers[sine], found.get(cosine), found.get(sine))
     numbers = {name: number for name, number in numbers.items() if not name.startswith(("torsion cos", "torsion sin"))}
@@ -235,10 +235,8 @@ def _angle(cosine: arb, sine: arb, known_cosine: Enclosure | None, known_sine: E
         if known is not None and known.exact == 0 and not other.contains(0):
             quarters = turns[0 if other > 0 else 1]
             return arb.pi() * quarters / 2, arb(90 * quarters)
-    if cosine < 0 and sine.contains(0):
-        radians = arb.pi() + (sine / cosine).atan()
-    else:
-        radians = arb.atan2(sine, cosine)
+    around_half = cosine < 0 and sine.contains(0)
+    radians = arb.pi() + (sine / cosine).atan() if around_half else arb.atan2(sine, cosine)
     return radians, radians * 180 / arb.pi()
 
 

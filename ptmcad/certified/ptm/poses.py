@@ -25,7 +25,7 @@ from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Count
 
 MECHANISM = ptm()
-MAX_DOUBLINGS = 6
+MAX_DOUBLINGS = 5
 """Of the bits, for a number that is not distinguished from zero."""
 _PEAKED = MECHANISM.springs[2]
 _PEAKS = {
