@@ -32,8 +32,8 @@ from ptmcad.certified.formula import Formula, Graph
 from ptmcad.certified.parameters import parameter_formulas, values_at
 from ptmcad.certified.plain.chart import determinant
 from ptmcad.certified.plain.problem import FIRST, problem_of
+from ptmcad.certified.plain.rational import HALF_TURN, is_symmetry
 from ptmcad.certified.plain.straight import branches
-from ptmcad.certified.plain.symmetric import HALF_TURN, is_symmetry
 from ptmcad.certified.potential import potential
 from ptmcad.certified.search import Boxes
 from ptmcad.certified.system import system

@@ -284,10 +284,6 @@ class MirrorImage(_Image):
         c, s = map(self.constant, self.turned[angle])
         return s * super().cos(angle) + c * super().sin(angle)
 
-    def value(self, tree: Tree) -> Polynomial:
-        """The value of a tree."""
-        return evaluate(tree, self)
-
 
 def energy_is_kept(
     mechanism: Mechanism,
@@ -303,11 +299,6 @@ def energy_is_kept(
         When that is too much to be multiplied out.
     """
     return _are_the_same(mechanism, MirrorImage(parameters), MirrorImage(parameters, reflected, turned))
-
-
-def squared_length(mechanism: Mechanism, image: MirrorImage, start: str, end: str) -> Polynomial:
-    """The square of the distance of two points."""
-    return Points(mechanism, image).squared(start, end)
 
 
 def _are_the_same(mechanism: Mechanism, one: _Image, other: _Image) -> bool:

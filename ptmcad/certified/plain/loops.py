@@ -11,32 +11,15 @@ from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 
-from flint import ctx
-
 from ptmcad.answer.poses import Pose, Poses
-from ptmcad.answer.regionmap import Solution, Status
-from ptmcad.certified.arb_evaluation import run_arb
-from ptmcad.certified.plain.points import PlainCounter, plain_counter
-from ptmcad.certified.plain.poses import (
-    MAX_DOUBLINGS,
-    all_bounded,
-    answered,
-    assembled,
-    boxes_of,
-    is_tense,
-    numbers_of,
-    point_slice,
-    settle,
-    solutions_at,
-    tape_of,
-)
+from ptmcad.answer.regionmap import Status
+from ptmcad.certified.plain.points import plain_counter
+from ptmcad.certified.plain.poses import answered, is_tense, point_slice, pose_at, solutions_at, tape_of
 from ptmcad.certified.plain.problem import MAX_UNKNOWNS_AT_POINTS
-from ptmcad.certified.tape import Tape
-from ptmcad.mechanism import ClosedMechanism, Mechanism
+from ptmcad.mechanism import ClosedMechanism
 from ptmcad.mechanism.fourbars import flat_everywhere
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Count
-from ptmcad.text.enclosure import Enclosure
 
 NOT_TOLD = (
     "not all equilibria could be distinguished: there are infinitely many, one is nearly degenerate, a loop is nearly "
@@ -64,7 +47,11 @@ def loop_poses(model: ClosedMechanism, parameters: Mapping[str, Fraction], digit
         return Poses(model, parameters, (), Status.UNDECIDED, digits, 0, loop.in_short(fold))
     found, unclear = solutions_at(plain_counter(slice, MAX_UNKNOWNS_AT_POINTS), Count.TOTAL)
     written = tape_of(model.mechanism, parameters)
-    poses = [_pose(model.mechanism, parameters, written, at, s, digits) for at, s in found]
+    poses = []
+    for at, solution in found:
+        pose, bits = pose_at(model.mechanism, parameters, written, at, solution, digits)
+        stable = solution.signs == "+" if solution.signs else None
+        poses.append((replace(pose, stable=stable, admissible=is_tense(stable, pose.springs)), bits))
     has_energy = model.mechanism.has_potential
 
     def order(found: tuple[Pose, int]) -> tuple[bool, Fraction]:
@@ -72,26 +59,3 @@ def loop_poses(model: ClosedMechanism, parameters: Mapping[str, Fraction], digit
         return not pose.stable, pose.known_energy.center if has_energy else pose.angles[0].center
 
     return answered(model, parameters, digits, sorted(poses, key=order), unclear, NOT_TOLD)
-
-
-def _pose(
-    mechanism: Mechanism,
-    parameters: Mapping[str, Fraction],
-    written: tuple[Tape, tuple[str, ...]],
-    counter: PlainCounter,
-    solution: Solution,
-    digits: int,
-) -> tuple[Pose, int]:
-    """The pose with all numbers settled or, where they may be zero, enclosed; and the bits that this took."""
-    bits, found = 32 + 2 * digits, dict[str, Enclosure]()
-    for attempt in range(MAX_DOUBLINGS):
-        bits *= 2
-        _, box = boxes_of(counter, solution, bits)
-        with ctx.workprec(bits):
-            numbers = numbers_of(mechanism, written, run_arb(written[0], box, bits), {}, found)
-            settle(found, numbers, written, digits, attempt)
-        if found.keys() >= numbers.keys():
-            break
-    pose = assembled(mechanism, parameters, all_bounded(found, numbers), None)
-    stable = solution.signs == "+" if solution.signs else None
-    return replace(pose, stable=stable, admissible=is_tense(stable, pose.springs)), bits

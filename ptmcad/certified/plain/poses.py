@@ -6,8 +6,9 @@ boxes there may be more. Every number settles the digits asked for or, where it 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
+from math import isqrt
 
 from flint import arb, arb_mat, ctx
 
@@ -19,10 +20,8 @@ from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.covering import located
 from ptmcad.certified.plain.points import BranchCounter, PlainCounter, plain_counter
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS_AT_POINTS
-from ptmcad.certified.plain.resting import rational_point
-from ptmcad.certified.plain.slanted import with_slanted
+from ptmcad.certified.plain.rational import Point, exact_eigenvalues, exact_values, rational_point
 from ptmcad.certified.plain.spectrum import ordered_eigenvalues
-from ptmcad.certified.plain.symmetric import Point, quarter_turns, rational_numbers
 from ptmcad.certified.potential import potential
 from ptmcad.certified.tape import Tape, record
 from ptmcad.mechanism import Mechanism, Model
@@ -33,6 +32,8 @@ from ptmcad.text.balls import bounded, enclosed
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.expressions import axis
 
+Written = tuple[Tape, tuple[str, ...]]
+"""A tape and the names of its first outputs."""
 MAX_DOUBLINGS = 4
 """Of the bits, for a number that is not distinguished from zero."""
 NOT_TOLD = (
@@ -58,7 +59,7 @@ def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits
     prove_slice(slice)
     zeros, unclear = solutions_at(plain_counter(slice, MAX_UNKNOWNS_AT_POINTS), Count.INDEX)
     written = tape_of(mechanism, parameters)
-    poses = [_pose(mechanism, parameters, written, at, solution, digits) for at, solution in zeros]
+    poses = [pose_at(mechanism, parameters, written, at, solution, digits) for at, solution in zeros]
     return answered(mechanism, parameters, digits, sorted(poses, key=lambda p: _order(p[0])), unclear, NOT_TOLD)
 
 
@@ -115,13 +116,14 @@ def point_slice(model: Model, parameters: Mapping[str, Fraction]) -> Slice:
     return Slice("point", model, (Axis("x", *unit), Axis("y", *unit)), constants, Count.INDEX)
 
 
-def tape_of(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> tuple[Tape, tuple[str, ...]]:
-    """Everything asked of a pose as a tape, and the names of its outputs; the Hessian's entries come row by row.
+def tape_of(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> Written:
+    """Everything asked of a pose as a tape, and the names of its outputs; the Hessian's entries come row by row, and
+    then the energy's slopes.
 
-    Without a potential there is neither an energy nor a Hessian.
+    Without a potential there is none of these; with closed loops an energy alone, whose slopes are not zero.
     """
     graph = Graph()
-    unknowns = {name: graph.variable(number) for number, name in enumerate(mechanism.unknowns, 2)}
+    unknowns = {name: graph.variable(number) for number, name in enumerate(mechanism.unknowns, FIRST)}
     at = potential(mechanism, {name: graph.constant(value) for name, value in parameters.items()}, unknowns)
     found = {f"cos {angle}": unknowns[angle].cos() for angle in mechanism.angles}
     found |= {f"sin {angle}": unknowns[angle].sin() for angle in mechanism.angles}
@@ -133,103 +135,112 @@ def tape_of(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> tuple[T
         moment = value_at(spring.stiffness, parameters) * sine
         found |= {f"torsion cos {n}": cosine, f"torsion sin {n}": sine, f"torsion moment {n}": moment}
     if not mechanism.has_potential:
-        return record([list(found.values()), []]), tuple(found)
+        return record([list(found.values()), [], []]), tuple(found)
     found["energy"] = at.energy
+    if mechanism.closing:
+        return record([list(found.values()), [], []]), tuple(found)
     slopes = [graph.derivative(at.energy, v.variable) for v in unknowns.values()]
     hessian = [graph.derivative(slope, v.variable) for slope in slopes for v in unknowns.values()]
-    return record([list(found.values()), hessian]), tuple(found)
+    return record([list(found.values()), hessian, slopes]), tuple(found)
 
 
-def _pose(
+def pose_at(
     mechanism: Mechanism,
     parameters: Mapping[str, Fraction],
-    written: tuple[Tape, tuple[str, ...]],
+    written: Written,
     counter: PlainCounter,
     solution: Solution,
     digits: int,
 ) -> tuple[Pose, int]:
     """The pose with all numbers settled or, where they may be zero, enclosed; and the bits that this took."""
-    tape, _ = written
-    bits, found = 32 + 2 * digits, dict[str, Enclosure]()
-    turns: dict[str, int] = {}
-    at: Point = {}
-    for attempt in range(MAX_DOUBLINGS):
-        bits *= 2
-        whole, box = boxes_of(counter, solution, bits)
-        if attempt > 0:  # some number is not settled: it may be a short one, or a longer one with more bits
-            with ctx.workprec(bits):
-                held, boxes = (dict(zip(mechanism.unknowns, some[2:], strict=True)) for some in (box, whole))
-                at = at or rational_point(mechanism, parameters, held, boxes)
-                rational, surds = with_slanted(mechanism, parameters, at, held, boxes)
-            turns |= quarter_turns(mechanism, rational)
-            if rational or surds.multiples:
-                found |= rational_numbers(mechanism, parameters, rational, surds)
-        with ctx.workprec(bits):
-            values = run_arb(tape, box, bits)
-            numbers = numbers_of(mechanism, written, values, turns, found)
-            size = len(mechanism.unknowns) if mechanism.has_potential else 0
-            entries = arb_mat(size, size, [values[int(place)] for place in tape.outputs[1]])
-            numbers |= {f"eigenvalue {n}": value for n, value in enumerate(ordered_eigenvalues(entries))}
-            settle(found, numbers, written, digits, attempt)
-        if found.keys() >= numbers.keys():
-            break
-    index = solution.signs.count("-") if mechanism.has_potential and solution.signs else None
-    return assembled(mechanism, parameters, all_bounded(found, numbers), index), bits
+    numbers, bits = measured(mechanism, parameters, written, lambda bits: boxes_of(counter, solution, bits), digits)
+    has_index = mechanism.has_potential and solution.signs and not mechanism.closing
+    index = solution.signs.count("-") if has_index else None
+    return assembled(mechanism, parameters, numbers, index), bits
 
 
-def numbers_of(
+def measured(
     mechanism: Mechanism,
-    written: tuple[Tape, tuple[str, ...]],
-    values: Sequence[arb],
-    turns: Mapping[str, int],
-    found: Mapping[str, Enclosure],
-) -> dict[str, arb]:
-    """The numbers of a pose by name, with its angles and deflections in radians and degrees.
+    parameters: Mapping[str, Fraction],
+    written: Written,
+    boxes: Callable[[int], tuple[Box, Box]],
+    digits: int,
+    doublings: int = MAX_DOUBLINGS,
+) -> tuple[dict[str, Enclosure], int]:
+    """The numbers of a pose by name, settled or, where they may be zero, enclosed; and the bits that this took.
 
     Parameters
     ----------
-    written : as `tape_of` has it.
-    values : on that tape.
-    turns : angles that are known to be so many quarter turns.
-    found : has a deflection's cosine or sine, where it is known to be zero.
+    boxes : with so many bits, one that holds the solution and no other one, and a narrow one.
+    """
+    tape, _ = written
+    bits, at = 32 + 2 * digits, Point()
+    found = _exact_numbers(mechanism, written, at)
+    for attempt in range(doublings):
+        bits *= 2
+        whole, box = boxes(bits)
+        with ctx.workprec(bits):
+            if attempt > 0 and not mechanism.closing and len(at) < len(mechanism.unknowns):
+                # some number is not settled: it may be a short one, or a longer one with more bits
+                held, around = (dict(zip(mechanism.unknowns, some[FIRST:], strict=True)) for some in (box, whole))
+                at = rational_point(mechanism, parameters, tape, held, around) or at
+                found |= _exact_numbers(mechanism, written, at)
+            numbers = _numbers_of(mechanism, written, run_arb(tape, box, bits), found)
+            waiting = [name for name, number in numbers.items() if name not in found or number.is_exact()]
+            settled = {name: _proved_digits(numbers[name], digits, attempt) for name in waiting}
+        found |= {name: number for name, number in settled.items() if number is not None}
+        if found.keys() >= numbers.keys():
+            break
+    return _all_bounded(found, numbers), bits
+
+
+def _exact_numbers(mechanism: Mechanism, written: Written, at: Point) -> dict[str, Enclosure]:
+    """The numbers that are rational by these unknowns."""
+    tape, names = written
+    values = exact_values(tape, at)
+    known, entries = ([values[int(place)] for place in outputs] for outputs in tape.outputs[:2])
+    found = {name: value for name, value in zip(names, known, strict=True) if value is not None}
+    size = isqrt(len(entries))
+    rows = [entries[k : k + size] for k in range(0, len(entries), size or 1)]
+    found |= {f"eigenvalue {n}": value for n, value in enumerate(exact_eigenvalues(rows))}
+    return {name: Enclosure(value, value) for name, value in found.items()}
+
+
+def _numbers_of(
+    mechanism: Mechanism, written: Written, values: Sequence[arb], found: Mapping[str, Enclosure]
+) -> dict[str, arb]:
+    """The numbers of a pose by name, with its angles and deflections in radians and degrees, and eigenvalues.
+
+    Parameters
+    ----------
+    values : on the tape.
+    found : has an angle's cosine or sine, where it is known to be zero.
     """
     tape, names = written
     numbers = {name: values[int(place)] for name, place in zip(names, tape.outputs[0], strict=True)}
-    for angle in mechanism.angles:
-        radians = angle_of(numbers[f"cos {angle}"], numbers[f"sin {angle}"])
-        if angle in turns:
-            radians = arb.pi() * turns[angle] / 2
-        numbers |= {angle: radians, f"degrees {angle}": radians * 180 / arb.pi()}
-    for n in range(len(mechanism.torsion)):
-        numbers |= _deflection(found, n, numbers.pop(f"torsion cos {n}"), numbers.pop(f"torsion sin {n}"))
-    return numbers
+    size = isqrt(len(tape.outputs[1]))
+    hessian = arb_mat(size, size, [values[int(place)] for place in tape.outputs[1]])
+    turned = [(f"cos {angle}", f"sin {angle}", angle, f"degrees {angle}") for angle in mechanism.angles]
+    torsion = [f"torsion {{}} {n}".format for n in range(len(mechanism.torsion))]
+    turned += [(name("cos"), name("sin"), name("deflection"), name("degrees")) for name in torsion]
+    for cosine, sine, radians, degrees in turned:
+        numbers[radians], numbers[degrees] = _angle(numbers[cosine], numbers[sine], found.get(cosine), found.get(sine))
+    numbers = {name: number for name, number in numbers.items() if not name.startswith(("torsion cos", "torsion sin"))}
+    return numbers | {f"eigenvalue {n}": value for n, value in enumerate(ordered_eigenvalues(hessian))}
 
 
-def angle_of(cosine: arb, sine: arb) -> arb:
-    """The angle in (-pi, pi]; next to half a turn, where the sine may be zero, a ball around pi."""
-    if cosine < 0 and sine.contains(0):
-        return arb.pi() + (sine / cosine).atan()
-    return arb.atan2(sine, cosine)
+def _angle(cosine: arb, sine: arb, known_cosine: Enclosure | None, known_sine: Enclosure | None) -> tuple[arb, arb]:
+    """An angle in (-pi, pi], in radians and degrees; next to half a turn, where the sine may be zero, around pi."""
+    for known, other, turns in ((known_sine, cosine, (0, 2)), (known_cosine, sine, (1, -1))):
+        if known is not None and known.exact == 0 and not other.contains(0):
+            quarters = turns[0 if other > 0 else 1]
+            return arb.pi() * quarters / 2, arb(90 * quarters)
+    around_half = cosine < 0 and sine.contains(0)
+    radians = arb.pi() + (sine / cosine).atan() if around_half else arb.atan2(sine, cosine)
+    return radians, radians * 180 / arb.pi()
 
 
-def settle(
-    found: dict[str, Enclosure],
-    numbers: Mapping[str, arb],
-    written: tuple[Tape, tuple[str, ...]],
-    digits: int,
-    attempt: int,
-) -> None:
-    """Add to what is found the numbers that are exact on the tape, and those whose balls settle the digits."""
-    tape, names = written
-    constants = {n: tape.constants.get(int(k)) for n, k in zip(names, tape.outputs[0], strict=True)}
-    for name in numbers.keys() - found.keys():
-        exact = constants.get(name)
-        settled = proved_digits(numbers[name], digits, attempt) if exact is None else Enclosure(exact, exact)
-        if settled is not None:
-            found[name] = settled
-
-
-def all_bounded(found: Mapping[str, Enclosure], numbers: Mapping[str, arb]) -> dict[str, Enclosure]:
+def _all_bounded(found: Mapping[str, Enclosure], numbers: Mapping[str, arb]) -> dict[str, Enclosure]:
     """The numbers that are found, and of those that no digits settle all of their balls.
 
     Raises
@@ -246,24 +257,7 @@ def all_bounded(found: Mapping[str, Enclosure], numbers: Mapping[str, arb]) -> d
     return held
 
 
-def _deflection(found: Mapping[str, Enclosure], number: int, cosine: arb, sine: arb) -> dict[str, arb]:
-    """A torsion spring's deflection in radians and degrees; exact balls where it is known to be none.
-
-    Parameters
-    ----------
-    found : has the cosine or the sine, where it is known to be zero.
-    """
-    quarters = None
-    for part, other, turns in (("sin", cosine, (0, 2)), ("cos", sine, (1, -1))):
-        known = found.get(f"torsion {part} {number}")
-        if known is not None and known.exact == 0 and not other.contains(0):
-            quarters = turns[0 if other > 0 else 1]
-    radians = angle_of(cosine, sine) if quarters is None else arb.pi() * quarters / 2
-    degrees = radians * 180 / arb.pi() if quarters is None else arb(90 * quarters)
-    return {f"torsion deflection {number}": radians, f"torsion degrees {number}": degrees}
-
-
-def proved_digits(number: arb, digits: int, attempt: int) -> Enclosure | None:
+def _proved_digits(number: arb, digits: int, attempt: int) -> Enclosure | None:
     """An enclosure that settles the digits asked for, or, of a number that is still not told from one halfway between
     two texts of so many after all that may explain it was tried, of one digit more; None of a wider one.
     """

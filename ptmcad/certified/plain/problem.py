@@ -137,11 +137,6 @@ class Problem:
         """Whether some parts of the equations are no polynomials."""
         return bool(self.cones or self.pushes)
 
-    @property
-    def moves_along_a_curve(self) -> bool:
-        """Whether configurations, or those in which loops are closed, are a curve."""
-        return self.closing > 0 or len(self.unknowns) == 1
-
     def conditions(self, count: Count) -> tuple[Condition, ...]:
         """What is positive at all solutions that are counted, and at no others, but for a determinant.
 

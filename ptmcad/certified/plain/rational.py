@@ -1,0 +1,147 @@
+"""Numbers of an equilibrium that are exact because it is a rational point, or its own mirror image.
+
+Guarantee: exact. The point is a guess, by balls. It is taken where it lies in a box that holds no other equilibrium and
+the energy's slopes, run in fractions, are zero there. Unknowns at multiples of a quarter turn, or zero, are taken also
+where a reflection is proved to leave the energy as it is, and the equilibrium's image lies in that box.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from math import isqrt
+
+from flint import arb, ctx
+
+from ptmcad.certified.formula import Operation
+from ptmcad.certified.plain.problem import FIRST
+from ptmcad.certified.tape import Tape
+from ptmcad.errors import ExpressionError
+from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism.proofs import energy_is_kept
+from ptmcad.text.balls import ball_of, exact
+
+Point = dict[int, tuple[Fraction, ...]]
+"""Values of unknowns by their numbers: of a real its own, of an angle its cosine and sine."""
+HALF_TURN = (Fraction(-1), Fraction(0))
+
+
+def rational_point(
+    mechanism: Mechanism,
+    parameters: Mapping[str, Fraction],
+    tape: Tape,
+    held: Mapping[str, arb],
+    boxes: Mapping[str, arb],
+) -> Point:
+    """The values of those unknowns of an equilibrium that are proved to be rational.
+
+    Parameters
+    ----------
+    tape : has the energy's slopes as its last outputs.
+    held : balls around the equilibrium, at the context's precision.
+    boxes : wider ones, which together hold no other solution.
+    """
+    at: Point = {}
+    for number, (name, ball) in enumerate(held.items(), FIRST):
+        value, place = _direction(ball) if name in mechanism.angles else _real(ball)
+        if ball.overlaps(place) and boxes[name].contains(2 * place - ball):
+            at[number] = value
+    if len(at) == len(held) and not mechanism.moments and mechanism.has_potential:
+        values = exact_values(tape, at)
+        if all(values[int(place)] == 0 for place in tape.outputs[-1]):
+            return at
+    names = dict(enumerate(held, FIRST))
+    fixed = {k: value for k, value in at.items() if value[-1] == 0 or value[0] == 0}
+    odd = {names[k]: HALF_TURN for k, value in fixed.items() if value[-1]}
+    return fixed if fixed and is_symmetry(mechanism, parameters, [names[k] for k in fixed], odd) else {}
+
+
+def is_symmetry(
+    mechanism: Mechanism,
+    parameters: Mapping[str, Fraction],
+    reflected: Iterable[str],
+    turned: Mapping[str, tuple[Fraction, Fraction]],
+) -> bool:
+    """Whether a reflection is proved to take equilibria to equilibria; see `ptmcad.mechanism.proofs.MirrorImage`."""
+    try:
+        return energy_is_kept(mechanism, parameters, reflected, turned)
+    except ExpressionError:  # too large to be multiplied out
+        return False
+
+
+def exact_values(tape: Tape, at: Point) -> list[Fraction | None]:
+    """The tape run in fractions; None of what depends on other unknowns, or is not proved to be rational."""
+    values: list[Fraction | None] = []
+    for place in range(len(tape)):
+        operation, first, second = Operation(int(tape.operations[place])), int(tape.first[place]), tape.second[place]
+        if operation is Operation.CONSTANT:
+            values.append(tape.constants[place])
+        elif operation is Operation.VARIABLE:
+            values.append(at[first][0] if len(at.get(first, ())) == 1 else None)
+        elif operation in (Operation.COSINE, Operation.SINE):
+            direction = at.get(int(tape.first[first]), ()) if tape.operations[first] == Operation.VARIABLE else ()
+            values.append(direction[operation is Operation.SINE] if len(direction) == 2 else None)
+        else:
+            values.append(_result(operation, values[first], values[int(second)] if second >= 0 else Fraction(0)))
+    return values
+
+
+def _result(operation: Operation, a: Fraction | None, b: Fraction | None) -> Fraction | None:
+    """Of two operands, the second of which is not used where there is only one."""
+    if a is None or b is None:
+        return Fraction(0) if operation is Operation.MULTIPLY and 0 in (a, b) else None
+    match operation:
+        case Operation.ADD:
+            return a + b
+        case Operation.SUBTRACT:
+            return a - b
+        case Operation.MULTIPLY:
+            return a * b
+        case Operation.SQUARE:
+            return a * a
+        case Operation.NEGATE:
+            return -a
+        case Operation.DIVIDE:
+            return a / b if b else None
+    length = _root(a * a + b * b)
+    if operation is Operation.LENGTH:
+        return length
+    if operation is Operation.DIRECTION and a == 0 != b:
+        return a  # whatever the length is
+    return (a if operation is Operation.DIRECTION else 1) / length if length else None
+
+
+def exact_eigenvalues(hessian: list[list[Fraction | None]]) -> list[Fraction]:
+    """The eigenvalues, the smallest first, of a diagonal matrix or one of two rows where they are rational; or none."""
+    known = [[entry for entry in row if entry is not None] for row in hessian]
+    if any(len(row) != len(hessian) for row in known):
+        return []
+    if len(known) == 2:
+        (a, b), (_, d) = known
+        root = _root((a - d) ** 2 + 4 * b * b)
+        return [] if root is None else [(a + d - root) / 2, (a + d + root) / 2]
+    diagonal = [row[i] for i, row in enumerate(known)]
+    return sorted(diagonal) if sum(map(bool, diagonal)) == sum(bool(c) for row in known for c in row) else []
+
+
+def _real(ball: arb) -> tuple[tuple[Fraction, ...], arb]:
+    """The fraction near a ball's middle that it seems to be: nearly no other number has one so near."""
+    value = exact(ball.mid()).limit_denominator(2 ** (ctx.prec // 4))
+    return (value,), ball_of(value)
+
+
+def _direction(ball: arb) -> tuple[tuple[Fraction, ...], arb]:
+    """Cosine and sine, by a rational tangent or cotangent of half the angle, and the angle near the ball."""
+    half = ball.mid() / 2
+    steep = bool(abs(half.sin()) > abs(half.cos()))
+    (t,), _ = _real(half.cot() if steep else half.tan())
+    c, s = (1 - t * t) / (1 + t * t) * (-1 if steep else 1), 2 * t / (1 + t * t)
+    angle = arb.atan2(ball_of(s), ball_of(c)) if s or c > 0 else arb.pi()
+    turns = round(float((ball - angle).mid() / (2 * arb.pi()).mid()))
+    return (c, s), angle + 2 * arb.pi() * turns
+
+
+def _root(value: Fraction) -> Fraction | None:
+    """The square root of a number that is not negative, where it is rational."""
+    root = Fraction(isqrt(value.numerator), isqrt(value.denominator))
+    return root if root * root == value else None
