@@ -258,7 +258,7 @@ def without(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
 def test_without_boundaries_at_free_lengths_counts_are_wrong(
     name: str, tolerance: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    without(monkeypatch, "at its free length")
+    without(monkeypatch, "has its free length")
     wrong = ptmcad.classify(slice_of(RECORDS[name]), tolerance=tolerance)
     right = map_of(name, "1/100")
     one, two = right.slice.axis_names

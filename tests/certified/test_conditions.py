@@ -175,7 +175,7 @@ def test_false_signs_of_conditions_are_rejected() -> None:
     assert ptmcad.verify(altered(""), boxes=0).ok  # as older files are
     for false in ("+", "0", "--"):
         found = ptmcad.verify(altered(false), boxes=0)
-        assert not found.ok and "the conditions for stability at the solution" in str(found)
+        assert not found.ok and "the conditions for stability at the solution" in repr(found)
 
 
 def bounds(result: ptmcad.RegionMap, count: str, value: Any) -> tuple[Fraction, Fraction]:

@@ -197,7 +197,8 @@ def test_creases_of_sums_of_one_another_have_two_branches() -> None:
     assert [len(b.inequalities) for b in found] == [3, 3]
     assert abs(np.linalg.det(np.array(found[0].covering))) == pytest.approx(4)
     assert found[0].where == (
-        ", PQ along (0, 1) turned by (a + b)/2, AP along (0, 1) turned by a/2, AQ along (0, 1) turned by b/2"
+        " with spring PQ forwards along its line and spring AP forwards along its line"
+        " and spring AQ forwards along its line"
     )
 
 

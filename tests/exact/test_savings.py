@@ -324,7 +324,8 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
 
     assert run([*common, "--explain", "--without", "axis-order", "--without", "sign-curve"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0] == "plan of fig2, exact engine, before it starts:"
+    assert lines[0].startswith("question  fig2: L2 in [0, 4], rho in [0, 4]")
+    assert lines[1] == "plan of fig2, exact engine, before it starts:"
     at = lines.index("decided on the way:")
     assert "computed: projection of H11 = 0 (kept, as asked for)" in lines[:at]
     assert "left out: terms of F3, F4, F3x, F4x (they are zero on this slice)" in lines[:at]

@@ -87,7 +87,7 @@ def _branch(problem: Problem, lines: list[_Line], sides: tuple[int, ...], axes: 
             ahead = f"{'forwards' if side > 0 else 'backwards'} along its line"
         longer = Condition(f"the length of spring {line.cone.name}", line.way.scaled(Fraction(side)))
         inequalities = (*problem.inequalities, longer)
-        where = f"{problem.where} with spring {line.cone.name} {ahead}"
+        where = f"{problem.where} {'and' if problem.where else 'with'} spring {line.cone.name} {ahead}"
         problem = replace(problem, inequalities=inequalities, where=where)
         if norm is None:
             problem = replace(problem, pushes=(*problem.pushes, Push(pull, line.direction, line.weights)))
