@@ -32,13 +32,13 @@ from ptmcad.certified.formula import Formula, Graph
 from ptmcad.certified.parameters import parameter_formulas, values_at
 from ptmcad.certified.plain.chart import determinant
 from ptmcad.certified.plain.problem import FIRST, problem_of
-from ptmcad.certified.plain.rational import HALF_TURN, is_symmetry
 from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.potential import potential
 from ptmcad.certified.search import Boxes
 from ptmcad.certified.system import system
 from ptmcad.certified.tape import record
 from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism.proofs import energy_is_kept
 from ptmcad.question.slice import Slice
 
 NEAR = 0.3
@@ -125,8 +125,8 @@ def _reflections(line: _Line, hull: Sequence[Interval]) -> Iterator[dict[int, in
     parameters = {name: value for name, value in first.items() if _is_constant(line, name) and value == second[name]}
     for size in range(len(here), 0, -1):
         for chosen in combinations(here, size):
-            odd = {names[k]: HALF_TURN for k in chosen if here[k] % 2}
-            if is_symmetry(mechanism, parameters, [names[k] for k in chosen], odd):
+            odd = [names[k] for k in chosen if here[k] % 2]
+            if energy_is_kept(mechanism, parameters, [names[k] for k in chosen], odd):
                 yield {k: here[k] for k in chosen}
 
 

@@ -10,9 +10,8 @@ The ring is a small one of its own: readers and checkers load no algebra.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from fractions import Fraction
-from types import MappingProxyType
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism.description import Mechanism, UnknownKind
@@ -233,10 +232,10 @@ def check_symmetries(mechanism: Mechanism, faults: Faults) -> None:
 
 
 class _Image:
-    """A ring in which names have the values of their images, in another ring."""
+    """A ring in which names have the values of their images, in another ring; of some angles half a turn more."""
 
-    def __init__(self, ring: Ring, images: Mapping[str, Tree]):
-        self.ring, self.images = ring, images
+    def __init__(self, ring: Ring, images: Mapping[str, Tree], turned: Collection[str] = ()):
+        self.ring, self.images, self.turned = ring, images, turned
 
     def constant(self, value: Fraction) -> Polynomial:
         return self.ring.constant(value)
@@ -245,60 +244,32 @@ class _Image:
         return evaluate(self.images[name], self.ring) if name in self.images else self.ring.variable(name)
 
     def cos(self, angle: str) -> Polynomial:
-        return evaluate(Call("cos", self.images.get(angle, Name(angle))), self.ring)
+        return self._wave("cos", angle)
 
     def sin(self, angle: str) -> Polynomial:
-        return evaluate(Call("sin", self.images.get(angle, Name(angle))), self.ring)
+        return self._wave("sin", angle)
+
+    def _wave(self, function: str, angle: str) -> Polynomial:
+        value = evaluate(Call(function, self.images.get(angle, Name(angle))), self.ring)
+        return self.constant(Fraction(-1)) * value if angle in self.turned else value
 
 
-class MirrorImage(_Image):
-    """The ring at values of the parameters, and with some unknowns reflected.
+def energy_is_kept(
+    mechanism: Mechanism, parameters: Mapping[str, Fraction], reflected: Iterable[str], turned: Collection[str]
+) -> bool:
+    """Whether a reflection is proved to take equilibria at values of the parameters to equilibria.
 
     Parameters
     ----------
     reflected : unknowns u that become -u.
-    turned : those angles of them that become d - u instead, with cosine and sine of d, a direction on the unit circle.
+    turned : those angles of them that become pi - u instead.
     """
-
-    def __init__(
-        self,
-        parameters: Mapping[str, Fraction],
-        reflected: Iterable[str] = (),
-        turned: Mapping[str, tuple[Fraction, Fraction]] = MappingProxyType({}),
-    ):
-        super().__init__(Ring(MAX_WORK), {name: Negative(Name(name)) for name in reflected})
-        self.parameters, self.turned = parameters, turned
-
-    def parameter(self, name: str) -> Polynomial:
-        return self.constant(self.parameters[name]) if name in self.parameters else super().parameter(name)
-
-    def cos(self, angle: str) -> Polynomial:
-        if angle not in self.turned:
-            return super().cos(angle)
-        c, s = map(self.constant, self.turned[angle])
-        return c * super().cos(angle) - s * super().sin(angle)
-
-    def sin(self, angle: str) -> Polynomial:
-        if angle not in self.turned:
-            return super().sin(angle)
-        c, s = map(self.constant, self.turned[angle])
-        return s * super().cos(angle) + c * super().sin(angle)
-
-
-def energy_is_kept(
-    mechanism: Mechanism,
-    parameters: Mapping[str, Fraction],
-    reflected: Iterable[str],
-    turned: Mapping[str, tuple[Fraction, Fraction]],
-) -> bool:
-    """Whether a reflection takes equilibria at values of the parameters to equilibria; see `MirrorImage`.
-
-    Raises
-    ------
-    ExpressionError
-        When that is too much to be multiplied out.
-    """
-    return _are_the_same(mechanism, MirrorImage(parameters), MirrorImage(parameters, reflected, turned))
+    numbers: dict[str, Tree] = {name: Number(value) for name, value in parameters.items()}
+    images: dict[str, Tree] = {**numbers, **{name: Negative(Name(name)) for name in reflected}}
+    try:
+        return _are_the_same(mechanism, _Image(Ring(), numbers), _Image(Ring(), images, turned))
+    except ExpressionError:  # too large to be multiplied out
+        return False
 
 
 def _are_the_same(mechanism: Mechanism, one: _Image, other: _Image) -> bool:

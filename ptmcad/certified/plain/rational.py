@@ -7,7 +7,7 @@ where a reflection is proved to leave the energy as it is, and the equilibrium's
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from fractions import Fraction
 from math import isqrt
 
@@ -16,14 +16,12 @@ from flint import arb, ctx
 from ptmcad.certified.formula import Operation
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.tape import Tape
-from ptmcad.errors import ExpressionError
 from ptmcad.mechanism import Mechanism
 from ptmcad.mechanism.proofs import energy_is_kept
 from ptmcad.text.balls import ball_of, exact
 
 Point = dict[int, tuple[Fraction, ...]]
 """Values of unknowns by their numbers: of a real its own, of an angle its cosine and sine."""
-HALF_TURN = (Fraction(-1), Fraction(0))
 
 
 def rational_point(
@@ -52,21 +50,8 @@ def rational_point(
             return at
     names = dict(enumerate(held, FIRST))
     fixed = {k: value for k, value in at.items() if value[-1] == 0 or value[0] == 0}
-    odd = {names[k]: HALF_TURN for k, value in fixed.items() if value[-1]}
-    return fixed if fixed and is_symmetry(mechanism, parameters, [names[k] for k in fixed], odd) else {}
-
-
-def is_symmetry(
-    mechanism: Mechanism,
-    parameters: Mapping[str, Fraction],
-    reflected: Iterable[str],
-    turned: Mapping[str, tuple[Fraction, Fraction]],
-) -> bool:
-    """Whether a reflection is proved to take equilibria to equilibria; see `ptmcad.mechanism.proofs.MirrorImage`."""
-    try:
-        return energy_is_kept(mechanism, parameters, reflected, turned)
-    except ExpressionError:  # too large to be multiplied out
-        return False
+    odd = [names[k] for k, value in fixed.items() if value[-1]]
+    return fixed if fixed and energy_is_kept(mechanism, parameters, [names[k] for k in fixed], odd) else {}
 
 
 def exact_values(tape: Tape, at: Point) -> list[Fraction | None]:
