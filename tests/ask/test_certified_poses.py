@@ -122,7 +122,7 @@ def test_critical_free_lengths_enclosed() -> None:
     """Known: folds at rho = 7/10, L2 = 3/2, f = -1/10 are among the 52 of REFERENCE; counts are proved between."""
     slice = slice_from_options(None, "l0,rho", ("L2=3/2", "F3=-10", "F4=-10"), ("l0=0:1", "rho=0:2"))
     found = certified_intervals(slice, "l0", {"rho": "7/10"}, 20)
-    assert [change.names[0] for change in found.changes] == ["point where spring 3 has no length"] * 2 + ["fold"] * 2
+    assert [change.names[0] for change in found.changes] == ["point where spring A3A4 has no length"] * 2 + ["fold"] * 2
     assert all(change.proved and change.at.settles(20) for change in found.changes)
     assert [interval.index for interval in found.intervals] == [
         (2, 3, 1), (2, 4, 1), (2, 5, 1), (3, 6, 1), (3, 7, 2)

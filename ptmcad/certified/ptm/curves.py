@@ -32,11 +32,14 @@ from ptmcad.certified.scales import axis_weights
 from ptmcad.certified.solved import quotients
 from ptmcad.certified.system import system
 from ptmcad.errors import DegenerateSliceError
+from ptmcad.mechanism import ptm
 from ptmcad.question.slice import Count, Slice
 
 PHI = (TURN[0] / PHI_UNIT, TURN[1] / PHI_UNIT)
 QUARTER = (0.0, 1.5708)
 """A little more than a quarter turn."""
+SPRINGS = tuple(f"{spring.start}{spring.end}" for spring in ptm().springs)
+"""The names of springs 1, 2 and 3 in words."""
 SHORT_LENGTH = Fraction(1, 8)
 """Below this length of spring 3, as a part of L1, its direction is a variable of its own."""
 
@@ -118,7 +121,7 @@ def _folds(slice: Slice, without: frozenset[str], *, stable: bool) -> Iterator[C
     there = m.at_equilibrium
     short = SHORT_LENGTH * parameter_formulas(graph, slice)["L1"]
     yield Curve(
-        f"{name} with spring 3 short",
+        f"{name} with spring {SPRINGS[2]} short",
         f"{reason}; l3 is at most {SHORT_LENGTH} L1",
         system(
             [*present(m.aligned), *m.equilibrium, m.hessian.determinant_times_l3],
@@ -261,7 +264,7 @@ def _cone(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
     m = slice_statics(Graph(), slice, phi=True)
     if m.unit is not None:
         yield Curve(
-            "point where spring 3 has no length",
+            f"point where spring {SPRINGS[2]} has no length",
             "an equilibrium is swallowed where l3 = 0",
             system(
                 [*m.vectors[2], *m.equilibrium],
@@ -276,17 +279,17 @@ def _cone(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
 def _creases(slice: Slice) -> Iterator[Curve]:
     graph = Graph()
     values = parameter_formulas(graph, slice)
-    for spring, bar in ((1, "L2"), (2, "L1")):
+    for spring, name, bar in ((1, SPRINGS[0], "L2"), (2, SPRINGS[1], "L1")):
         if values[f"l0_{spring}"].value != 0 and values[f"k{spring}"].value != 0:
             line = values["rho"].squared() - values[bar].squared()
             if line.value == 0:
                 raise DegenerateSliceError(
-                    f"rho = {bar} everywhere on this slice: spring {spring} has no length in a configuration at each "
-                    "point, so that total counts need not be constant in regions; --count stable has an answer"
+                    f"rho = {bar} everywhere on this slice: spring {name} has no length in a configuration at "
+                    "each point, so that total counts need not be constant in regions; --count stable has an answer"
                 )
             yield Curve(
-                f"crease where spring {spring} has no length",
-                f"spring {spring} has no length on a circle",
+                f"crease where spring {name} has no length",
+                f"spring {name} has no length on a circle",
                 system([line], (0, 1)),
                 (),
             )
@@ -295,7 +298,7 @@ def _creases(slice: Slice) -> Iterator[Curve]:
 def _admissible(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
     yield from _stable(slice, without)
     m = slice_statics(Graph(), slice)
-    for spring, (extent, free, vector) in enumerate(zip(m.lengths, m.free, m.vectors, strict=True), start=1):
+    for spring, extent, free, vector in zip(SPRINGS, m.lengths, m.free, m.vectors, strict=True):
         third, dependent = (vector[0], [vector[1]]) if free.value == 0 else (extent - free, [])
         yield Curve(
             f"point where spring {spring} has its free length",
