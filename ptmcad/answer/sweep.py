@@ -60,7 +60,7 @@ class Widest:
     width : of the range; None where there is none in the window, or the ``remark`` says why there is no answer.
     places : the values of the other axis at which it is attained or approached.
     proof : in words where it is attained or approached (`ptmcad.answer.widths.Maximum.words`).
-    attainment : of the first of the places (`ptmcad.answer.widths.Attainment`); of an older index not decided.
+    attainment : of the width (`ptmcad.answer.widths.overall`); of an older index not decided.
     """
 
     along: str

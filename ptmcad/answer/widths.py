@@ -6,6 +6,7 @@ the one text of it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
@@ -91,6 +92,15 @@ class Maximum:
             held = ", which holds one critical value" if self.place is Place.ENCLOSED else ""
             what += f"{held}, a root of a polynomial of degree {self.critical.degree}"
         return f"{self.attainment.value} at {over} = {at}, {what}"
+
+
+def overall(maxima: Sequence[Maximum]) -> Attainment:
+    """Whether the largest width is attained anywhere: where places differ, one that certainly has it decides."""
+    most = max(m.width.high for m in maxima)
+    certain = [m.attainment for m in maxima if m.attained and m.width.low == most]
+    if len({m.attainment for m in maxima}) == 1:
+        return maxima[0].attainment
+    return certain[0] if certain else Attainment.UNDECIDED
 
 
 def _listed(over: str, values: tuple[End, ...], digits: int) -> str:

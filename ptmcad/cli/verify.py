@@ -161,13 +161,14 @@ def _verified_sweep(
     folder: Path, seed: int | None, boxes: int | None, effort: int | None, progress: Progress
 ) -> VerifyReport:
     """Each member's map, and what the index holds of it."""
-    from ptmcad.sweeping.index import member_map, members, read_sweep
+    from ptmcad.sweeping.index import UNTOLD, member_map, members, read_sweep
     from ptmcad.sweeping.member import Wanted, summary_of
     from ptmcad.verification import VerifyReport, verify
     from ptmcad.verification.report import Headway, Unchecked, Violation, checked
 
     sweep = read_sweep(folder)
     found = list(members(sweep))
+    along = next((m.summary.widest.along for m in found if m.summary is not None and m.summary.widest is not None), "")
 
     def check(member: Member) -> str:
         summary = member.summary
@@ -185,19 +186,23 @@ def _verified_sweep(
                 raise Violation(f"it has not what member {member.same_as} has, as is said")
             return f"as member {member.same_as}"
         areas = any(area.area != ("", "") for area in summary.areas)
-        wanted = Wanted(areas=areas, along=summary.widest.along if summary.widest else "")
-        if (true := summary_of(stored, wanted)) != summary:
+        true = summary_of(stored, Wanted(areas=areas, along=along))
+        untold = "" if summary.widest is None or summary.widest.proof != UNTOLD else "; whether a width is attained"
+        if untold and true.widest is not None:
+            true = replace(true, widest=replace(true.widest, proof=UNTOLD, attainment=UNTOLD))
+        if true != summary:
             raise Violation(f"the index has {summary}, the map {true}")
         report = verify(stored, seed=seed, boxes=boxes, effort=effort)
         if report.violation is not None:
             raise Violation(report.violation)
-        return Unchecked(f"{report.verdict}; which value {unknown} has") if unknown else report.verdict
+        untold += f"; which value {unknown} has" * bool(unknown)
+        return Unchecked(f"{report.verdict}{untold}") if untold else report.verdict
 
     def numbers(_claims: object) -> str:
-        if [member.number for member in found] != list(range(len(found))):
-            raise Violation("the members are not numbered in their order")
+        if [member.number for member in found] != list(range(min(len(found), len(sweep)))):
+            raise Violation("the members are not those of the sweep, numbered in their order")
         if len(found) < len(sweep):
-            return Unchecked(f"{len(sweep) - len(found)} members have not been entered yet")
+            return Unchecked(f"{len(found)} of {len(sweep)} members have been entered")
         return f"{len(found)} members"
 
     steps = [("index", "comparison", numbers)]

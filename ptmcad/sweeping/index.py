@@ -35,6 +35,8 @@ FORMAT = "ptmcad-sweep/1"
 INDEX, RESULTS = "index.sqlite", "results"
 MAX_BYTES = 60_000_000
 """Of a member's result."""
+UNTOLD = Attainment.UNDECIDED.value
+"""Of a width in an index that was written before attainment was told."""
 _IN_A_FOLDER = 1000
 """Results of a folder below `RESULTS`: a million files in one are slow to list."""
 _TABLES = """
@@ -359,6 +361,8 @@ def _member(folder: Path, names: Sequence[str], row: tuple[Any, ...]) -> Member:
             exact += [open_share, *(bound for area in counted for bound in area.area if bound)]
             if file != _name(number if same_as is None else same_as):
                 raise ValueError("it names another result")
+            if error:
+                raise ValueError("it has a result, and says why it has none")
         _ = [fraction_of(text) for text in exact]
         return Member(number, values, State(state), summary, same_as, error, file, digest, seconds, attempts)
 
@@ -368,7 +372,7 @@ def _widest(text: str | None) -> Widest | None:
         return None
     along, width, places, proof, remark, *attainment = json.loads(text)
     # an index of before says of limits that they are attained
-    known = attainment[0] if attainment else Attainment.UNDECIDED.value
+    known = attainment[0] if attainment else UNTOLD
     return Widest(
         along,
         None if width is None else (width[0], width[1]),
@@ -389,7 +393,11 @@ def member_map(sweep: Sweep, member: Member) -> RegionMap:
     """
     if member.state is not State.DONE:
         raise ConfigError(f"member {member.number} has no result: {member.error or member.state.value}")
-    return RegionMap.from_json(_result(sweep.folder, member).decode())
+    data = _result(sweep.folder, member)
+    try:
+        return RegionMap.from_json(data.decode())
+    except ValueError as error:
+        raise ConfigError(f"is damaged or no region map: {error}", file=str(sweep.folder / member.file)) from error
 
 
 def _result(folder: Path, member: Member) -> bytes:

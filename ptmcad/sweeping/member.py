@@ -15,7 +15,7 @@ from time import perf_counter
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import Bounds, CountedArea, Summary, Widest
-from ptmcad.answer.widths import Maximum
+from ptmcad.answer.widths import Maximum, overall
 from ptmcad.ask.classification import region_map
 from ptmcad.errors import ConfigError, HypothesisError, LimitReached, PtmcadError
 from ptmcad.options import Options
@@ -184,7 +184,7 @@ def _widest(slice: Slice, along: str) -> Widest:
         _width(maxima),
         tuple(bounds(m.at.low, m.at.high) for m in maxima),
         "; ".join(m.words(over) for m in maxima),
-        attainment=maxima[0].attainment.value,
+        attainment=overall(maxima).value,
     )
 
 

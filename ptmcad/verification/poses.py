@@ -20,7 +20,7 @@ from ptmcad.text.expressions import constant
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.points import check_cell, counting_of
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.derivation import has_index, tells_stability
+from ptmcad.verification.derivation import has_index, parameters_of, tells_stability
 from ptmcad.verification.report import Headway, Unchecked, VerifyReport, Violation, checked
 from ptmcad.verification.solutions import check_disjoint, signs_of
 
@@ -38,6 +38,9 @@ def verify_poses(found: Poses, progress: Progress | None = None) -> VerifyReport
 def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
     result, model = claims.result, found.model
     (cell,) = result.cells
+    for name in parameters_of(model):
+        if name not in found.parameters:
+            raise Violation(f"nothing says what {name} is")
     if result.slice.has_free_lengths and found.status is Status.CERTIFIED:
         try:
             return f"{check_cell(claims, counting_of(claims), cell)} poses"

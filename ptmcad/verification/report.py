@@ -114,7 +114,7 @@ def check_anew(stored: Any, found: Any) -> Check:
     """
     name, method = "all entries", "answered anew, and compared"
     versions = [part.get("versions") if isinstance(part, dict) else None for part in (stored, found)]
-    place = next(_differences(stored, found), "")
+    place = next(_differences(stored, found, versions[0] != versions[1]), "")
     if not place:
         return Check(name, method, True, "the answer is the same now")
     if versions[0] != versions[1]:
@@ -122,15 +122,15 @@ def check_anew(stored: Any, found: Any) -> Check:
     return Check(name, method, False, shown(place))
 
 
-def _differences(stored: Any, found: Any, place: str = "") -> Iterator[str]:
+def _differences(stored: Any, found: Any, earlier: bool, place: str = "") -> Iterator[str]:
     # what an earlier version did not write of a part is no difference
     fits = isinstance(stored, dict) and isinstance(found, dict) and stored.keys() <= found.keys()
-    if fits and (place or stored.keys() == found.keys()):
+    if fits and (stored.keys() == found.keys() or (place and earlier)):
         for key in sorted(stored.keys() - {"versions"}):
-            yield from _differences(stored[key], found[key], f"{place}.{key}".lstrip("."))
+            yield from _differences(stored[key], found[key], earlier, f"{place}.{key}".lstrip("."))
     elif isinstance(stored, list) and isinstance(found, list) and len(stored) == len(found):
         for k, (one, other) in enumerate(zip(stored, found, strict=True)):
-            yield from _differences(one, other, f"{place}[{k}]")
+            yield from _differences(one, other, earlier, f"{place}[{k}]")
     elif (type(stored), stored) != (type(found), found):
         yield f"{place} is {found!r:.80}, not {stored!r:.80}"
 

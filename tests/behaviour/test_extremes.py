@@ -44,7 +44,6 @@ class Slice(NamedTuple):
 CRITICAL = ", a critical value of b"
 EDGE = ", the edge of the window"
 ROOT_2 = ", a root of a polynomial of degree 2"
-ENCLOSED = "somewhere in the enclosure, which holds one critical value"
 WHOLE = "attained on the interval b from -1 to 1"
 SLICES = {
     # a = x^2 + b/x on x > 0: for b > 0 two where a > 3 (b/2)^(2/3); x^2 = a has one positive solution at b = 0
@@ -79,8 +78,17 @@ SLICES = {
     ),
     "cusp at root 2": Slice(
         '{unknowns: {x: real}, equations: ["x^3 - a*x + b^2 - 2"]}',
-        "2.000000000", (f"attained at b = 1.414213562, {ENCLOSED}{ROOT_2}",),
-        ATTAINED, "a: [-1, 2], b: [0, 2]",
+        "2", (f"attained at b = 1.414213562{CRITICAL}{ROOT_2}",), ATTAINED, "a: [-1, 2], b: [0, 2]",
+    ),
+    # a > 3 (b^2/2)^(2/3), and with b^2 - 2 or (b^2 - 2)(b^2 - 3) for b: flat at 2, where nothing is special
+    "flat cusp": Slice(
+        '{unknowns: {x: real}, potential: "x^4/4 - a*x^2/2 + b^2*x"}',
+        "2", (f"attained at b = 0{CRITICAL}",), ATTAINED,
+    ),
+    "flat cusps at root 2 and root 3": Slice(
+        '{unknowns: {x: real}, equations: ["x^3 - a*x + (b^2 - 2)^2*(b^2 - 3)^2"]}',
+        "2", tuple(f"attained at b = {v}{CRITICAL}{ROOT_2}" for v in ("1.414213562", "1.732050808")), ATTAINED,
+        "a: [-2, 2], b: [1, 2]",
     ),
     # 1 + 4 a b > 0: for all a in (-2, 2) where |b| <= 1/8; x = a is one solution at b = 0
     "quadratic that becomes linear": Slice(
@@ -345,6 +353,19 @@ def test_sweep_says_whether_it_is_attained(tmp_path: Path, capsys: pytest.Captur
     assert [(row["attainment"], row["proof"]) for row in rows] == list(zip((APPROACHED, ATTAINED), words, strict=True))
     (page,) = (tmp_path / "out").glob("*.html")
     assert all(text in page.read_text(encoding="utf-8") for text in words)
+
+
+def test_sweep_says_attained_where_one_of_several_places_has_it(tmp_path: Path) -> None:
+    """Two solutions on d < a where d = b^2 (b - 2)^2: on the line b = 0 one, on the edge b = 2 two."""
+    record = (
+        'system: {unknowns: {x: real}, equations: ["x^2 - c*b^2*(a - b^2*(b - 2)^2)"]}\n'
+        "axes: {a: [0, 2], b: [-1, 2]}\nsweep: {c: [1]}\ncount: total\n"
+    )
+    asked(["sweep", "--along", "a", "--format", "csv"], tmp_path, record)
+    (path,) = (tmp_path / "out").glob("*.csv")
+    (row,) = csv.DictReader(path.read_text(encoding="utf-8").splitlines())
+    assert (row["width_low"], row["width_high"], row["attainment"]) == ("2", "2", ATTAINED)
+    assert row["proof"] == f"{APPROACHED} at b = 0{CRITICAL}; {ATTAINED} at b = 2{EDGE}"
 
 
 def test_the_picture_says_it(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ import json
 import random
 import sqlite3
 from collections.abc import Callable
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,12 @@ RECORDS = {
         'where: {stable: 2, conditions: ["b + c <= 3/2"]}}\n'
     ),
     "family": f"name: fam\nsystem: {CUBIC}\naxes: {{a: [-1, 2], b: [-1, 1]}}\nfree: {{c: [-1, 1]}}\nmembers: [-1/2]\n",
+    "arm": (
+        "name: arm\nmechanism:\n  parameters: {F: {kind: force}, P: {kind: force}}\n  unknowns: {t: angle}\n"
+        "  points: {root: [0, 0], anchor: [0, 2], tip: [cos(t), sin(t)]}\n  bars: [[root, tip]]\n"
+        "  supports: {root: pin, anchor: pin}\n  springs: [{between: [tip, anchor], k: 1}]\n"
+        "  loads: {tip: [F, P]}\naxes: {F: [-1, 1], P: [-1, 1]}\n"
+    ),
     "line": f"name: line\nsystem: {CUBIC}\nparameters: {{c: 1/3}}\naxes: {{a: [-1, 2], b: [-1, 1]}}\n",
     "sweep": f"name: sw\nsystem: {CUBIC}\naxes: {{a: [-1, 2], b: [-1, 1]}}\nsweep: {{c: [0, 1/2]}}\n",
 }
@@ -37,6 +44,7 @@ COMMANDS = {
     "poses": (["solve", "line.yaml", "--at", "a=1,b=1/50"], "poses.json"),
     "range": (["range", "line.yaml", "--along", "a", "--at", "b=1/50"], "line-range.json"),
     "map": (["classify", "line.yaml"], "line.json"),
+    "poses of a mechanism": (["solve", "arm.yaml", "--at", "F=1/2,P=1/4", "--name", "arm"], "arm.json"),
 }
 STILL_TRUE = {
     ("title",): "free text",
@@ -56,6 +64,8 @@ STILL_TRUE = {
     ("boxes",): "a larger bound of a box is true, too",
     ("name",): "free text",
     ("versions",): "of the program that made it",
+    ("extremes",): "a claim less",
+    ("parameters", "c"): "of a family the free parameter itself, of a design the present one's value",
     ("conditions",): "a condition that holds for the same designs",
     ("members",): "a member less",
     ("slice", "axes", "b"): "the line is at one value of it",
@@ -142,6 +152,10 @@ def another_critical_value(data: Any) -> None:
     data["changes"]["others"].append({"polynomial": ["-1", "2"], "low": "1/2", "high": "1/2"})
 
 
+def another_free_parameter(data: Any) -> None:
+    data["parameters"]["c"] = "c + 1"
+
+
 def value_that_is_near(data: Any) -> None:
     near = "-5221655/10000000"  # 2.7e-8 from the root of 432 c^2 + 216 c - 5
     data["changes"]["found"][0]["value"] = {"polynomial": ["5221655", "10000000"], "low": near, "high": near}
@@ -163,6 +177,18 @@ def another_number_of_solutions(data: Any) -> None:
     data["line"]["intervals"][0]["total"] += 2
 
 
+def no_decimal(data: Any) -> None:
+    del data["line"]["intervals"][0]["high"]["decimal"]
+
+
+def no_tip(data: Any) -> None:
+    del data["equilibria"][0]["nodes"]["tip"]
+
+
+def no_load(data: Any) -> None:
+    del data["parameters"]["F"]
+
+
 def a_pose_less(data: Any) -> None:
     del data["equilibria"][0]
 
@@ -176,11 +202,13 @@ def a_pose_elsewhere(data: Any) -> None:
     ("kind", "forge"),
     [
         *(("design", f) for f in (maximise_area, shorter_window, design_over_the_bound, another_value_of_a_design)),
-        ("family", value_that_is_near),
+        *(("family", f) for f in (value_that_is_near, another_free_parameter)),
         *(pytest.param("family", f, marks=pytest.mark.slow)
           for f in (other_words, words_at_the_ends, another_critical_value)),
-        *(("range", f) for f in (another_event, another_end, one_interval_less, another_number_of_solutions)),
+        *(("range", f)
+          for f in (another_event, another_end, one_interval_less, another_number_of_solutions, no_decimal)),
         *(("poses", f) for f in (a_pose_less, a_pose_elsewhere)),
+        *(("poses of a mechanism", f) for f in (no_tip, no_load)),
     ],
 )  # fmt: skip
 def test_a_false_document_is_refused(
@@ -216,6 +244,9 @@ def test_whatever_is_changed_is_refused_or_still_true(kind: str, capsys: pytest.
         "UPDATE members SET cells = 99 WHERE number = 0",
         "UPDATE members SET areas = REPLACE(areas, '1', '2') WHERE number = 1",
         "UPDATE members SET widest = REPLACE(widest, '0', '1') WHERE number = 1",
+        "UPDATE members SET widest = NULL WHERE number = 0",
+        "UPDATE members SET error = 'it has no solution' WHERE number = 0",
+        'INSERT INTO members (number, parameters) VALUES (2, \'{"c": "3"}\')',
         'UPDATE members SET parameters = \'{"c": "1/3"}\' WHERE number = 1',
         "UPDATE members SET status = 'certified' WHERE number = 1",
         "UPDATE members SET same_as = 0 WHERE number = 1",
@@ -245,6 +276,39 @@ def test_a_forged_map_of_a_sweep_is_refused(capsys: pytest.CaptureFixture[str]) 
         assert "has been changed" in capsys.readouterr().err
     finally:
         member.write_text(true, encoding="utf-8")
+
+
+@pytest.mark.parametrize("text", ["[]", "{", "\udcff"])
+def test_a_member_that_is_no_map_is_named(text: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """The index has the digest of what stands in its place."""
+    index, member = Path("swept/index.sqlite"), Path("swept/results/000/000001.json")
+    true = index.read_bytes(), member.read_bytes()
+    data = text.encode(errors="surrogateescape")
+    try:
+        member.write_bytes(data)
+        with sqlite3.connect(index) as rows:
+            rows.execute("UPDATE members SET digest = ? WHERE number = 1", (sha256(data).hexdigest(),))
+        rows.close()
+        assert run(["verify", "swept"]) == 2
+        assert "000001.json: is damaged or no region map" in capsys.readouterr().err
+    finally:
+        index.write_bytes(true[0])
+        member.write_bytes(true[1])
+
+
+def test_an_index_of_before_does_not_tell_attainment(capsys: pytest.CaptureFixture[str]) -> None:
+    index = Path("swept/index.sqlite")
+    true = index.read_bytes()
+    try:
+        with sqlite3.connect(index) as rows:
+            for number, widest in rows.execute("SELECT number, widest FROM members").fetchall():
+                before = json.dumps(json.loads(widest)[:-1])
+                rows.execute("UPDATE members SET widest = ? WHERE number = ?", (before, number))
+        rows.close()
+        assert run(["verify", "swept"]) == 0
+        assert capsys.readouterr().out.splitlines()[-1] == "1 claim holds, 2 not checked"
+    finally:
+        index.write_bytes(true)
 
 
 def test_at_a_time_limit_it_is_said_what_was_checked(capsys: pytest.CaptureFixture[str]) -> None:

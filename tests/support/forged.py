@@ -1,4 +1,4 @@
-"""False documents made from true ones: every entry changed in turn, and lists with an entry less, twice or turned."""
+"""False documents made from true ones: every entry changed or left out, and lists with an entry less, twice or turned."""
 
 from __future__ import annotations
 
@@ -50,4 +50,11 @@ def forged(data: Any) -> Iterator[tuple[Place, Any]]:
             for key in place[:-1]:
                 node = node[key]
             node[place[-1]] = other
+            yield place, false
+        if place and isinstance(place[-1], str):
+            false = copy.deepcopy(data)
+            node = false
+            for key in place[:-1]:
+                node = node[key]
+            del node[place[-1]]
             yield place, false

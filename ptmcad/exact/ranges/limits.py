@@ -15,7 +15,7 @@ from flint import fmpq
 from ptmcad.algebra.chords import side_of_chord
 from ptmcad.algebra.numbers import as_interval, fibre_roots, refined, root_of
 from ptmcad.algebra.polynomials import PLANE, UnivariatePolynomial
-from ptmcad.algebra.real_roots import isolate, sign, simplest_between
+from ptmcad.algebra.real_roots import isolate, refine, sign, simplest_between
 from ptmcad.algebra.resultants import resultant
 from ptmcad.algebra.slopes import tangent_resultant
 from ptmcad.algebra.window import Interval
@@ -98,7 +98,8 @@ def _course(branch: Branch, strip: Strip, end: BaseEnd, slope: fmpq) -> tuple[fm
         if not divmod(turns, own)[1]:
             turns = turns // own
         around = (at[0], strip.sample) if run > 0 else (strip.sample, at[1])
-        bounds = (root.low if run > 0 else root.high for root in isolate(turns, *around))
+        roots = (refine(root, abs(run) / 2**20) for root in isolate(turns, *around))
+        bounds = (root.low if run > 0 else root.high for root in roots)
         length = min((abs(run), *(abs(u - at[0]) / 2 for u in bounds)))
         run = length if run > 0 else -length
     low, high = _growth(branch, strip, (at[0] + run / 2, at[0] + run), slope)

@@ -16,7 +16,7 @@ Each strip (see `strips`) is cut into closed pieces, and each piece is settled i
 * Chord: at a rational end y0 of the strip the limits a, b of the range are algebraic numbers. If for some s the lower
   end stays above a + s (y - y0), and the upper one below b + s (y - y0), the width stays under b - a. This also
   settles cusps, where derivatives are infinite.
-* Narrowing: at an end of the strip at which the line itself is counted, its ends draw nearer to one another from there.
+* Narrowing: from an end of the strip on, the range's ends draw nearer to one another.
 
 A piece that becomes too small remains, with the bounds that it has: then the place is only enclosed.
 """
@@ -24,7 +24,7 @@ A piece that becomes too small remains, with the bounds that it has: then the pl
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from heapq import heappop, heappush
 from typing import NamedTuple
@@ -223,15 +223,10 @@ class _Search:
         self.candidates.append(_Candidate(Place.PLATEAU, (left, right), width, sides=sides))
 
     def ends(self, strip: Strip) -> None:
-        """Settle neighbourhoods of ends with the largest limits, and list the rest as one piece.
-
-        Of irrational ends those alone at which the line is counted by itself: at others the limit is a width.
-        """
+        """Settle neighbourhoods of ends with the largest limits, and list the rest as one piece."""
         left, right = base_interval(strip, _END_WIDTH)
         low, high = left[0], right[1]
         for at, end in ((left, strip.left), (right, strip.right)):
-            if at[0] != at[1] and _value(end) not in self.lines:
-                continue
             limits = _limits(strip, end)
             if limits is None:
                 continue
@@ -242,7 +237,7 @@ class _Search:
             length = None
             if at[0] == at[1]:
                 length = chord_length(strip, at[0], 1 if end is strip.left else -1, limits)
-            if length is None and _value(end) in self.lines:
+            if length is None:
                 length = narrowing_length(strip, end, _END_WIDTH)
             if length is None:
                 continue
@@ -350,6 +345,8 @@ class _Search:
                 )
             else:
                 merged.append(c)
+        if len(merged) > 1:  # an enclosed width may be less than that of another place
+            merged = [replace(c, attained=None) if c.place is Place.ENCLOSED else c for c in merged]
         return tuple(map(self.maximum, merged))
 
     def maximum(self, c: _Candidate) -> Maximum:

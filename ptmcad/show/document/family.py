@@ -85,6 +85,8 @@ def read_family(text: str) -> StoredFamily:
             raise ValueError("a surface has no terms")
         changes = changes_from(data["changes"], axis) if "changes" in data else None
         parameters = {_text(name): _text(written, MAX_TEXT) for name, written in data["parameters"].items()}
+        if parameters.get(axis.name, axis.name) != axis.name:
+            raise ValueError(f"the free parameter {axis.name} is another one")
     if not 1 <= len(values) <= MAX_MEMBERS or any(a >= b for a, b in pairwise(values)):
         raise ValueError("the members' values do not increase")
     if values[0] < axis.low or values[-1] > axis.high or len({*surfaces}) < len(surfaces):
