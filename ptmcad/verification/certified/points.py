@@ -28,7 +28,6 @@ from ptmcad.verification.certified.equilibria import (
 from ptmcad.verification.certified.flat import beside, near
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.paper import PaperCounting
-from ptmcad.verification.certified.parameters import values_at
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.waves import excesses_of, form_of
 from ptmcad.verification.claims import Claims
