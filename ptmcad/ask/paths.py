@@ -26,7 +26,7 @@ from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
 from ptmcad.answer.poses import Pose
 from ptmcad.ask.branches import Sample, SolutionsOnLine, short
 from ptmcad.ask.fields.course import Course
-from ptmcad.ask.fields.descent import descent
+from ptmcad.ask.fields.descent import descent, negatives
 from ptmcad.ask.fields.field import unknowns_of
 from ptmcad.ask.fields.jets import Floats
 from ptmcad.ask.fields.track import Track, followed
@@ -154,6 +154,8 @@ class _Walker:
             pose = self._found(sample, at)
             if pose is None:
                 return reached, self._undecided(current, change)
+            if _is_pitchfork(change) and self._is_joined(track, current, done, pose, share):
+                return reached, self._ended(track, current, (at, share), value, change)
             current, done, passed = _Reached(value, at, pose), share, None
             reached.append(current)
         return reached, PathEnd(Fate.WINDOW, edge, self._point(current))
@@ -190,6 +192,16 @@ class _Walker:
         gap[:turns] = np.remainder(gap[:turns] + np.pi, 2 * np.pi) - np.pi
         return float(np.abs(gap).max())
 
+    def _is_joined(self, track: Track, current: _Reached, done: float, beyond: Pose, share: float) -> bool:
+        """Whether another stable pose goes on as the one beyond a pitchfork, too."""
+        before = self.at(current.value)
+        for pose in () if before is None else before.poses:
+            if pose.stable and self._apart(current.at, pose) > SAME:
+                at, further = followed(track, np.array(unknowns_of(pose)), done, share, 0)
+                if further == share and self._apart(at, beyond) < SAME:
+                    return True
+        return False
+
     def _undecided(self, current: _Reached, change: CertifiedChange | None) -> PathEnd:
         at = Enclosure(current.value, current.value) if change is None else change.at
         return PathEnd(Fate.UNDECIDED, at, self._point(current))
@@ -202,25 +214,36 @@ class _Walker:
         value: Fraction,
         change: CertifiedChange | None,
     ) -> PathEnd:
-        """What becomes of a pose that could not be followed to a value: it has to be missing there."""
+        """What becomes of a pose that could not be followed to a value, where it has to be missing, or that at a
+        pitchfork becomes one with others.
+        """
         stopped = self._undecided(current, change)
         before, after = self.at(current.value), self.at(value)
         if change is None or before is None or after is None:
             return stopped
         counts = [Counter(p.index for p in s.poses if p.index is not None) for s in (before, after)]
         meeting, leaving = (tuple(sorted((a - b).elements())) for a, b in (counts, counts[::-1]))
+        at, share = lost
+        if _is_pitchfork(change):
+            # of the three poses that meet there, or that one goes on as, the counts differ by two
+            goes_on = track.solved(share, at)
+            if goes_on is None or sorted(meeting + leaving) != [0, 1]:
+                return stopped
+            own = negatives(goes_on[1])
+            meeting, leaving = (tuple(sorted((own, *meeting))), (own,)) if meeting else ((0,), (0, *leaving))
         if 0 not in meeting:
             return stopped
         met = replace(stopped, fate=Fate.VANISH, meeting=meeting, leaving=leaving)
         model = self.slice.model
         if self.moved or model.reals or not model.has_potential or not isinstance(model, Mechanism):
             return met
-        at, share = lost
+        if leaving.count(0) > 1:
+            return met
         way = descent(lambda point: track.at(share, point), at)
         target = None if way is None else self._found(after, way[-1])
         if way is None or target is None:
             return met
-        merges = 0 in leaving
+        merges = leaving == (0,)
         places = (self._point(current), self._point(_Reached(value, way[-1], target)))
         line = line_of(self.slice, model, self.varying, self.fixed)
         found = (merger if merges else landing)(line, change.at, *places)
@@ -242,6 +265,10 @@ class _Walker:
         angles = [_on_turn(angle, float(v)) for angle, v in zip(pose.angles, reached.at, strict=False)]
         sides = _sides(pose, model.rising) if isinstance(model, Mechanism) else ()
         return PathPoint(reached.value, tuple(angles), pose.reals, sides)
+
+
+def _is_pitchfork(change: CertifiedChange | None) -> bool:
+    return change is not None and change.proved and change.names == ("pitchfork",)
 
 
 def _on_turn(angle: Enclosure, near: float) -> Enclosure:

@@ -104,12 +104,15 @@ def merger(line: Line, at: Enclosure, last: PathPoint, beyond: PathPoint) -> Lan
     """The same where the pose beyond is what several become, of which ``last`` is one; None where that is not proved.
 
     The pose in which they merge is told, without proof, to lie about where those on both sides are, no farther off than
-    these are from each other; an angle that is exact beyond, as that of a flat pose, is taken for exact.
+    these are from each other; an angle beyond that is not told from half turns, as that of a flat pose, is one of them.
     """
     energy = _energy_at(line, at, last)
     if energy is None:
         return None
-    angles = tuple(b if b.exact is not None else _around(a, b) for a, b in zip(last.angles, beyond.angles, strict=True))
+    angles = tuple(
+        b if (ball_of(b.low).union(ball_of(b.high)) / arb.pi()).contains_integer() else _around(a, b)
+        for a, b in zip(last.angles, beyond.angles, strict=True)
+    )
     return Landing(Target(angles, (), beyond.sides), energy, energy)
 
 

@@ -18,7 +18,7 @@ from ptmcad.options import Progress
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.text.expressions import constant
 from ptmcad.verification.certified.equilibria import Unproved
-from ptmcad.verification.certified.points import check_cell, counting_of
+from ptmcad.verification.certified.points import check_cell, check_listed, counting_of
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.derivation import has_index, parameters_of, tells_stability
 from ptmcad.verification.report import Headway, Unchecked, VerifyReport, Violation, checked
@@ -41,8 +41,11 @@ def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
     for name in parameters_of(model):
         if name not in found.parameters:
             raise Violation(f"nothing says what {name} is")
-    if result.slice.has_free_lengths and found.status is Status.CERTIFIED:
+    if result.slice.has_free_lengths and found.equilibria:
         try:
+            if found.status is Status.UNDECIDED:
+                number = check_listed(claims, counting_of(claims), cell)
+                return Unchecked(f"whether there are more than the {number} listed, which hold")
             return f"{check_cell(claims, counting_of(claims), cell)} poses"
         except Unproved as reason:
             return Unchecked(str(reason))

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 import yaml
 from matplotlib.path import Path as Curve
+from support import browser as chromium
 from support.maps import CONFIGS
 from support.records import TRUSS
 
@@ -203,3 +204,50 @@ def test_names_have_greek_letters_in_all_of_a_picture_or_in_none(tmp_path: Path)
     (tmp_path / "greek.yaml").write_text(yaml.safe_dump({"name": "greek", "system": system, "axes": names}))
     assert run(["classify", str(tmp_path / "greek.yaml"), "--no-areas", "--format", "svg", "--out", str(tmp_path)]) == 0
     assert {"ω₁", "Σ"} <= set(texts(tmp_path / "greek.svg"))
+
+
+ARM = """
+name: arm
+mechanism:
+  parameters: {mu_s: {kind: stiffness, default: 2}, k: {kind: stiffness}, W: {kind: force}}
+  unknowns: {alpha_1: angle, beta: angle}
+  points: {O: [0, 0], P: [sin(alpha_1), cos(alpha_1)], Q: [sin(alpha_1) + sin(beta), cos(alpha_1) + cos(beta)]}
+  bars: [[O, P], [P, Q]]
+  torsion: [{angle: alpha_1, k: mu_s}, {angle: beta - alpha_1, k: k, at: P}]
+  loads: {Q: [0, -W]}
+axes: {W: [0, 3], k: [1/2, 3]}
+count: stable
+"""
+"""Upright under a small weight, with both angles 0, and hanging under a large one, with both at half a turn."""
+
+
+def test_half_a_turn_is_one_angle_and_its_symbol_stands_in_all_of_a_picture(tmp_path: Path) -> None:
+    """Half a turn is 180 degrees at every pixel, never -180; names with an underscore have their letter, too."""
+    record, out = tmp_path / "arm.yaml", ["--out", str(tmp_path)]
+    record.write_text(ARM, encoding="utf-8")
+    asked = ["map", str(record), "--pixels", "20", "--format", "svg,csv", *out]
+    assert run([*asked, "--value", "angle:alpha_1"]) == 0
+    rows = (tmp_path / "arm-angle-alpha-1-stable-1.csv").read_text(encoding="utf-8").splitlines()[1:]
+    hanging = [float(row.split(",")[2]) for row in rows if float(row.split(",")[0]) > 2]
+    assert hanging == pytest.approx([180] * (7 * 20))
+    assert "angle α_1 (degrees)" in texts(tmp_path / "arm-angle-alpha-1-stable-1.svg")
+    assert run([*asked, "--value", "cos(alpha_1)*mu_s"]) == 0
+    assert "cos(α_1)*μ_s" in texts(tmp_path / "arm-cos-alpha-1-mu-s-stable-1.svg")
+    assert run(["range", str(record), "--along", "W", "--at", "k=1", "--path", "1/2", "--quantity", "angle:alpha_1",
+                "--format", "svg", *out]) == 0  # fmt: skip
+    assert "angle α_1 (degrees)" in texts(tmp_path / "arm-range-branches.svg")
+    # beyond W = 0.59 two other poses are stable, then the one that hangs
+    assert "stable, not followed" in texts(tmp_path / "arm-range-path.svg")
+
+
+@pytest.mark.skipif(chromium.PROGRAM is None, reason=chromium.MISSING)
+def test_half_a_turn_is_180_degrees_on_a_page(one: chromium.Browser, tmp_path: Path) -> None:
+    """The page opens at a point where the arm hangs."""
+    (tmp_path / "arm.yaml").write_text(ARM, encoding="utf-8")
+    out = ["--out", str(tmp_path)]
+    assert run(["classify", str(tmp_path / "arm.yaml"), "--no-areas", "--format", "json", *out]) == 0
+    assert run(["report", str(tmp_path / "arm.json"), *out]) == 0
+    one.open(tmp_path / "arm.html")
+    one.until("document.body.textContent.includes('°')")
+    told = one.run("document.body.textContent")
+    assert "α_1 = 180.00°, β = 180.00°" in told and "−180.00°" not in told

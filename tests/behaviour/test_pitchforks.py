@@ -91,6 +91,31 @@ def test_pitchforks_of_two_angles_by_hand(tmp_path: Path) -> None:
     assert {abs(b - a) for a, b in pairwise(totals)} == {2}
 
 
+def path_ends(record: str, along: str, at: str, start: str, folder: Path) -> list[list[dict[str, Any]]]:
+    """The lower and the upper end of each path of a stable pose."""
+    (folder / "record.yaml").write_text(record, encoding="utf-8")
+    arguments = ["range", str(folder / "record.yaml"), "--along", along, "--at", at, "--path", start]
+    assert run([*arguments, "--format", "json", "--out", str(folder)]) == 0
+    (path,) = folder.glob("*.json")
+    document: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator(SCHEMA).validate(document)
+    return [[each["low"], each["high"]] for each in document["path"]["paths"]]
+
+
+@pytest.mark.slow
+def test_paths_end_at_a_pitchfork_as_what_meets_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Two stable poses and the unstable one between them become the one that hangs or stands, which goes on as them."""
+    leaning = path_ends(BALANCER, "k", "l0=1/10", "9/2", tmp_path)
+    assert [[end["fate"] for end in ends] for ends in leaning] == [["merge", "merge"]] * 2
+    for end in [end for ends in leaning for end in ends]:
+        assert (end["meeting"], end["leaving"]) == ([0, 0, 1], [0])
+    told = capsys.readouterr().out
+    assert "the pose goes on, without a snap, as th = 180.0000000°" in told and "as th = 0°" in told
+    (((_, high)), *others) = path_ends(BALANCER, "k", "l0=1/10", "7/2", tmp_path)
+    assert (high["fate"], high["meeting"], high["leaving"], others) == ("vanish", [0], [0, 0, 1], [])
+    assert "k = 4.285714286: the stable pose goes on as a minimum, a minimum and a maximum" in capsys.readouterr().out
+
+
 def test_without_the_symmetry_there_is_no_pitchfork(tmp_path: Path) -> None:
     """A load across unfolds both: a fold is left of each, beside a pose that goes on."""
     found = met(BALANCER.replace("default: 0}", "default: 1/1000}"), "k", "l0=1/10", tmp_path)

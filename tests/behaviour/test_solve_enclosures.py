@@ -88,6 +88,29 @@ def test_poses_beside_a_kink_are_shown_and_the_open_box_counted(
     assert told.err.startswith("undecided: ")
 
 
+def test_verify_takes_the_poses_that_are_listed_beside_an_open_box(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The slopes of a slider's springs are 2x - 5 beyond B, 2x - 3 between A and B: at F = 1, x = 2 and the kink B."""
+    record = """
+name: slider
+mechanism:
+  parameters: {F: {kind: force}, l0: {kind: free length, default: 1}}
+  unknowns: {x: length}
+  points: {A: [0, 0], B: [3, 0], P: [x, 0]}
+  springs: [{between: [A, P], k: 1, free: l0}, {between: [B, P], k: 1, free: 1}]
+  loads: {P: [F, 0]}
+axes: {F: [-6, 6], l0: [1/2, 2]}
+"""
+    document = solved(record, "F=1,l0=1", tmp_path, 3)
+    assert [pose["reals"][0]["text"] for pose in document["equilibria"]] == ["2"]
+    assert run(["verify", str(tmp_path / "poses.json")]) == 0
+    assert "whether there are more than the 1" in capsys.readouterr().out
+    document["equilibria"][0] |= {"index": 1, "stable": False}
+    (tmp_path / "poses.json").write_text(json.dumps(document), encoding="utf-8")
+    assert run(["verify", str(tmp_path / "poses.json")]) == 1
+
+
 def test_all_poses_are_certified_where_no_box_is_open(tmp_path: Path) -> None:
     document = solved(BALANCER, "k=4,r=1", tmp_path, 0)
     assert document["status"] == "certified" and "undecided" not in document

@@ -201,9 +201,12 @@ def _at_pixels(
     most)."""
     rows, columns = places
     here = np.nan_to_num(at)
+    turns = here[: len(model.angles)]
+    # an angle of -180 degrees is one of 180, and rounding decides nothing
+    turns[turns < EQUAL - np.pi] += 2 * np.pi
     state = follower.state(rows, columns, here)
     there = ~np.isnan(at[0])
-    order, fits = _in_order(model, state, at, there, choice)
+    order, fits = _in_order(model, state, here, there, choice)
     own = np.arange(len(rows))
     number = np.cumsum(np.take_along_axis(fits, order, axis=1), axis=1)
     hit = (number == choice.rank) & np.take_along_axis(fits, order, axis=1)
@@ -249,11 +252,8 @@ def _in_order(
     )
     rank = np.zeros(there.shape, dtype=np.int64)
     np.put_along_axis(rank, ascending[:, 1:], np.cumsum(steps, axis=1), axis=1)
-    # the larger unknown first; an angle of -180 degrees is one of 180, and rounding decides nothing
-    places = np.nan_to_num(at).copy()
-    turns = places[: len(model.angles)]
-    turns[turns < EQUAL - np.pi] += 2 * np.pi
-    order = np.lexsort((*(-np.round(p, 9) for p in places[::-1]), rank, ~stable, ~there), axis=1)
+    # the larger unknown first
+    order = np.lexsort((*(-np.round(p, 9) for p in at[::-1]), rank, ~stable, ~there), axis=1)
     kinds = {"pose": there, "stable": stable, "unstable": there & ~stable}
     if choice.kind in ("saddle", "maximum"):
         negative = (eigenvalues(state.jacobian) < 0).sum(axis=0)

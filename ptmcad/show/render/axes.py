@@ -82,16 +82,18 @@ def scale_of(low: Fraction, high: Fraction, digits: int = 4) -> Scale:
 
 
 def symbol(name: str) -> str:
-    """A parameter's name as it is printed: ``L1`` as L₁, ``F3x`` as F₃ₓ, ``rho`` as ρ; other names as they are."""
-    match = re.fullmatch(r"([A-Za-z]+?)(\d{1,2}x?)?", name)
-    if match is None or not (letter := _GREEK.get(match[1], match[1] if len(match[1]) == 1 else "")):
+    """A parameter's name as it is printed: ``L1`` as L₁, ``F3x`` as F₃ₓ, ``rho`` as ρ, ``rho_max`` as ρ_max; other
+    names as they are.
+    """
+    match = re.fullmatch(r"([A-Za-z]+?)(\d{1,2}x?)?(_\w*)?", name)
+    if match is None or not (letter := _GREEK.get(match[1], match[1] if len(match[1]) == 1 and not match[3] else "")):
         return name
-    return letter + (match[2] or "").translate(_SUBSCRIPT)
+    return letter + (match[2] or "").translate(_SUBSCRIPT) + (match[3] or "")
 
 
 def with_symbols(text: str) -> str:
     """A sum with the symbols of its names and true minus signs, such as ``φ − 2*θ``."""
-    return re.sub(r"[A-Za-z]\w*", lambda match: symbol(match[0]), text).replace("-", "−")
+    return re.sub(r"\b[A-Za-z]\w*", lambda match: symbol(match[0]), text).replace("-", "−")
 
 
 def heading_of(slice: Slice) -> str:

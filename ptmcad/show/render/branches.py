@@ -15,7 +15,7 @@ from ptmcad.answer.branches import Branch, Branches
 from ptmcad.answer.paths import PosePaths
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.branches import kind
-from ptmcad.show.render.axes import heading_of, scale_of, symbol
+from ptmcad.show.render.axes import heading_of, scale_of, symbol, with_symbols
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height, width
 from ptmcad.show.render.paths import draw_paths
 from ptmcad.show.render.printing import settings
@@ -52,7 +52,7 @@ def draw_branches(slice: Slice, found: Branches) -> Figure:
             axes.set_xlim(scale.low, scale.high)
             axes.margins(y=0.08)
             axes.tick_params(labelsize=SIZE, labelbottom=number == last)
-            axes.set_ylabel(with_unit(symbol(name) if name in found.model.unknowns else name, unit), fontsize=SIZE + 2)
+            axes.set_ylabel(with_unit(with_symbols(name.replace(":", " ")), unit), fontsize=SIZE + 2)
             if number == last:
                 axes.set_xlabel(axis_name(slice, found.along), fontsize=SIZE + 2, labelpad=2)
         draw_legend(figure, entries, LEFT + WIDE + RIGHT, tall - 0.05)
@@ -60,16 +60,25 @@ def draw_branches(slice: Slice, found: Branches) -> Figure:
 
 
 def draw_paths_and_branches(slice: Slice, paths: PosePaths, found: Branches) -> Figure:
-    """The paths of poses, and behind them the branches that are not stable; ``found`` has the unknowns, in order."""
-    unstable = [branch for branch in found.branches if branch.stable is False]
-    kinds = sorted({kind(branch, found.model) for branch in unstable}, key=_rank)
+    """The paths of poses, and behind them the branches that no path follows; ``found`` has the unknowns, in order."""
+    others = [branch for branch in found.branches if branch.stable is False or _is_left(branch, paths, found)]
+    kinds = sorted({kind(branch, found.model) for branch in others}, key=_rank)
     further = [Entry((f"{name}, not followed",), _mark(name, **_BEHIND)) for name in kinds]
     figure = draw_paths(slice, paths, further)
     for number in range(len(found.quantities)):
-        for branch in unstable:
+        for branch in others:
             for xs, ys in _strokes(branch, number, found):
                 figure.axes[number].plot(xs, ys, zorder=1.5, **(_look(kind(branch, found.model)) | _BEHIND))
     return figure
+
+
+def _is_left(branch: Branch, paths: PosePaths, found: Branches) -> bool:
+    """Whether not all stable branches beside this stable one are followed: the paths are drawn over those that are."""
+    middle = branch.points[len(branch.points) // 2].value
+    ranges = [(b.points[0].value, b.points[-1].value) for b in found.branches if b.stable]
+    followed = [(path.points[0].value, path.points[-1].value) for path in paths.paths]
+    number, known = (sum(low <= middle <= high for low, high in r) for r in (ranges, followed))
+    return branch.stable is True and number > known
 
 
 def _strokes(branch: Branch, number: int, found: Branches) -> Iterator[tuple[list[float], list[float]]]:

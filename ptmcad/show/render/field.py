@@ -24,7 +24,7 @@ from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import System
-from ptmcad.show.render.axes import Dress, dress, scale_of, symbol
+from ptmcad.show.render.axes import Dress, dress, scale_of, with_symbols
 from ptmcad.show.render.colours import Fill, undetermined_fill
 from ptmcad.show.render.fieldlines import branch_edges, contour_lines
 from ptmcad.show.render.fitting import MIN_SIDE
@@ -40,14 +40,14 @@ COLOURS, GREYS = "viridis", ("#000000", "#d4d4d4")
 """Perceptually uniform, distinguishable to the colour-blind, and monotone on grey prints; or grey, none of it white."""
 _LINES: dict[str, Any] = {"colors": "white", "linewidths": 0.6, "alpha": 0.85}
 _EMPTY = "#ffffff"
-_WORDS = ("energy", "stiffness", "barrier")
+_WORDS = ("energy", "stiffness", "barrier", "force", "length", "angle")
 
 
 def title_of(result: RegionMap, field: Field) -> str:
     """What is shown, of which slice."""
     text = _name(field)
-    # others are names and expressions, which are written as they were asked for: u is not U
-    text = text.capitalize() if text in _WORDS else text[0].upper() + text[1:] if ":" in field.quantity else text
+    # others are names, coordinates and expressions, which are written as they were asked for: u is not U
+    text = text[0].upper() + text[1:] if text.split()[0] in _WORDS else text
     return f"{text} of {pose_words(result, field)}: {result.slice.name}"
 
 
@@ -287,9 +287,8 @@ def bar_text(field: Field) -> str:
 
 
 def _name(field: Field) -> str:
-    """The quantity with the symbol of what it is of."""
-    kind, colon, name = field.quantity.partition(":")
-    return f"{kind} {symbol(name)}" if colon else field.quantity
+    """The quantity with the symbols of its names."""
+    return with_symbols(field.quantity.replace(":", " "))
 
 
 def _absent(field: Field) -> str:

@@ -127,7 +127,7 @@ function eigenvalues(symmetric) {
   return a.map((row, k) => row[k]);
 }
 
-const turned = (angle) => angle - 2 * Math.PI * Math.round(angle / (2 * Math.PI));
+const turned = (angle) => angle - 2 * Math.PI * Math.ceil(angle / (2 * Math.PI) - 1 / 2 - 1e-9); // half a turn is 180 degrees, not -180
 
 function distance(one, two) {
   return Math.max(...one.map((value, k) => Math.abs(k < FOLLOW.angles ? turned(value - two[k]) : value - two[k])));

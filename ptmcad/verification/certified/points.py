@@ -28,7 +28,6 @@ from ptmcad.verification.certified.equilibria import (
 from ptmcad.verification.certified.flat import beside, near
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.paper import PaperCounting
-from ptmcad.verification.certified.parameters import values_at
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.waves import excesses_of, form_of
 from ptmcad.verification.claims import Claims
@@ -192,12 +191,23 @@ def _check_beside(claims: CertifiedClaims, counting: Counting, cell: Cell, reaso
     if found is None:
         raise reason
     _, there = found
-    here = replace(there, values=values_at(claims, *cell.sample))
     asked = [e.signs for e in there.found if not claims.result.slice.count.is_of_stable or "-" not in e.signs]
-    inside = counting.within(here, cell.solutions)
-    signs = [e.signs for e in inside]
-    if signs != [solution.signs for solution in cell.solutions] or Counter(signs) != Counter(asked):
-        raise Violation(f"equilibria of signs {signs} are in the boxes of solutions, but there are {asked}")
+    if Counter(signs := [solution.signs for solution in cell.solutions]) != Counter(asked):
+        raise Violation(f"equilibria of signs {signs} are listed, but there are {asked}")
+    return check_listed(claims, counting, cell)
+
+
+def check_listed(claims: CertifiedClaims, counting: Counting, cell: Cell) -> int:
+    """Each stored box holds one solution of its signs at the sample, each another one; how many these are.
+
+    Raises
+    ------
+    Violation, Unproved
+    """
+    values = dict.fromkeys(claims.model.free_lengths, Fraction(0)) | claims.parameters_at(*cell.sample)
+    inside = counting.within(Counted(stored(cell), (), values), cell.solutions)
+    for k, (solution, e) in enumerate(zip(cell.solutions, inside, strict=True)):
+        _check_signs(claims, e.signs, solution.signs, k)
     if any(counting.same(one, two) for one, two in combinations(inside, 2)):
         raise Violation("two boxes have the same solution")
-    return len(signs)
+    return len(inside)
