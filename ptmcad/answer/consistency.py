@@ -24,7 +24,10 @@ def check_numbers(result: RegionMap) -> None:
     ConfigError
         With the first reference that leads nowhere.
     """
-    base = result.base
+    base, model = result.base, result.slice.model
+    for name in model.variables:
+        if name not in result.slice.parameters and name not in model.free_lengths:
+            raise _fault(f"its slice has no value of {name}")
     for s, stack in enumerate(result.stacks):
         _within(stack.cells, len(result.cells), f"stack {s}", "cell")
         _within((w.component for w in stack.walls), len(result.components), f"stack {s}", "component")

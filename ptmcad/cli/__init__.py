@@ -156,7 +156,9 @@ def _warnings_as_lines() -> Iterator[None]:
             usual(message, category, *place, **further)
         elif str(message) not in said:
             said.add(str(message))
-            click.echo(f"warning: {shown(str(message))}", err=True)
+            from ptmcad.cli.progress import ProgressBar
+
+            ProgressBar.say(f"warning: {shown(str(message))}", err=True)
 
     with warnings.catch_warnings():
         warnings.simplefilter("always", PtmcadWarning)

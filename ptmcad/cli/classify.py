@@ -358,7 +358,7 @@ def command(
     Springs with a free length (--set l0=1/5) are the certified engine's: it leaves a part of the window undetermined,
     which shrinks with time. Stopped by Ctrl-C or --timeout, it saves the best map so far, from the first level of the
     search on, and says how much of it is undetermined; --resume goes on from there. In its first run on a machine it
-    compiles its inner loops, some 10 to 30 seconds that --timeout does not count; `ptmcad warm-up` does so beforehand.
+    compiles its inner loops, up to a minute that --timeout does not count; `ptmcad warm-up` does so beforehand.
 
     \b
     Examples:

@@ -9,8 +9,11 @@ from __future__ import annotations
 import os
 import sys
 import time
+from contextlib import ExitStack
 from threading import Event, RLock, Thread
 from types import TracebackType
+
+import click
 
 from ptmcad.process.handover import Topic, send
 
@@ -32,7 +35,8 @@ class ProgressBar:
     _shown_now: list[ProgressBar] = []  # noqa: RUF012 - of this process; the outermost one, if any
 
     def __init__(self) -> None:
-        self.watched = sys.stderr is not None and sys.stderr.isatty()  # None when the caller has closed it
+        self._stream = sys.stderr  # another one is in its place while libraries are loaded
+        self.watched = self._stream is not None and self._stream.isatty()  # None when the caller has closed it
         self.start = self.last = time.monotonic()
         self.shown = False
         self._state = ("computing ...", 0, 1)
@@ -60,7 +64,7 @@ class ProgressBar:
         stage, done, total = self._state
         where = stage if stage.endswith(("%", "...")) else f"{stage} {done} of {total}"
         text = f"{where}, {now - self.start:.0f} s"
-        room = _columns() - 4  # for bar and text; the last column stays free, since some terminals wrap at it
+        room = self._columns() - 4  # for bar and text; the last column stays free, since some terminals wrap at it
         width = max(min(_WIDTH, room - len(text)), 4)
         filled = width * min(done, total) // total if total > 0 else 0
         line = f"[{'#' * filled}{'.' * (width - filled)}] {text}"[: room + 3]
@@ -69,8 +73,8 @@ class ProgressBar:
                 return
             if not self.shown:
                 send(Topic.PROGRESS)  # this process may not live to clear the line
-            sys.stderr.write(f"\r\x1b[K{line}")
-            sys.stderr.flush()
+            self._stream.write(f"\r\x1b[K{line}")
+            self._stream.flush()
             self.shown, self.last = True, now
 
     def __exit__(
@@ -81,13 +85,25 @@ class ProgressBar:
         self._shown_now.clear()
         with self._lock:
             self._ended.set()
-            if self.shown:
-                sys.stderr.write("\r\x1b[K")
-                sys.stderr.flush()
+            self._clear()
 
+    @classmethod
+    def say(cls, text: str, err: bool = False) -> None:
+        """Print a line, above the bar if there is one."""
+        with ExitStack() as shown:
+            for bar in cls._shown_now:
+                shown.enter_context(bar._lock)
+                bar._clear()
+            click.echo(text, err=err)
 
-def _columns() -> int:
-    try:
-        return os.get_terminal_size(sys.stderr.fileno()).columns or _COLUMNS
-    except OSError:
-        return _COLUMNS
+    def _clear(self) -> None:
+        if self.shown:
+            self._stream.write("\r\x1b[K")
+            self._stream.flush()
+            self.shown = False
+
+    def _columns(self) -> int:
+        try:
+            return os.get_terminal_size(self._stream.fileno()).columns or _COLUMNS
+        except OSError:
+            return _COLUMNS

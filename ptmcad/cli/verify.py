@@ -24,11 +24,12 @@ from ptmcad.cli.families import read_family_file
 from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.stored import kind_of, read_other, read_result
+from ptmcad.cli.stored import MAX_BYTES, kind_of, read_other, read_result
 from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import Options, Progress
 from ptmcad.question.config import member_like
+from ptmcad.show.document.node import opened
 from ptmcad.text.numerals import fraction_of, text_of
 
 if TYPE_CHECKING:
@@ -70,9 +71,9 @@ def command(*, result: Path, seed: int | None, boxes: int | None, effort: int | 
         def show(check: Check) -> None:
             """A row as soon as it is known: the process may be ended in the next check."""
             if not shown:
-                click.echo(heading())
+                ProgressBar.say(heading())
             shown.append(check)
-            click.echo(check.row())
+            ProgressBar.say(check.row())
 
         for title, check in _reports(result, seed, boxes, effort):
             if title:
@@ -146,7 +147,7 @@ def _reports(path: Path, seed: int | None, boxes: int | None, effort: int | None
         poses = read_other(path, Poses.from_json, "ptmcad-poses/1")
         yield "", partial(_verified_poses, poses)
     elif kind == "range":
-        found = read_other(path, json.loads, "ptmcad-range/1")
+        found = read_other(path, _range_in, "ptmcad-range/1")
         yield "", partial(_verified_range, path, found)
     elif kind == "family":
         family = read_family_file(path, whole=False)
@@ -155,6 +156,11 @@ def _reports(path: Path, seed: int | None, boxes: int | None, effort: int | None
         yield f"what the members have in common over {family.free.name}", partial(_verified_family, family, seed)
     else:
         yield "", of_map(read_result(path, whole=False))
+
+
+def _range_in(text: str) -> dict[str, Any]:
+    found: dict[str, Any] = opened(text, "ptmcad-range/1", MAX_BYTES, "ptmcad range").value
+    return found
 
 
 def _verified_sweep(

@@ -15,7 +15,8 @@ from ptmcad.mechanism.angles import PI, split_angle, without_quarter_turns
 from ptmcad.mechanism.description import Kind, Parameter, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate, value_at
 from ptmcad.mechanism.sizes import size_of
-from ptmcad.text.syntax import FINITE, NAME, NOT_NUMBERS, did_you_mean, parse
+from ptmcad.text.numerals import FINITE
+from ptmcad.text.syntax import NAME, NOT_NUMBERS, did_you_mean, parse
 from ptmcad.text.tree import FUNCTIONS, Call, Negative, Number, Tree, names_of
 from ptmcad.text.tree import to_text as text_of
 

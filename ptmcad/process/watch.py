@@ -190,7 +190,8 @@ class Watch:
                     if topic is Topic.RENAMES:
                         self.placed.append(texts)
                     if topic is Topic.WAITING:
-                        report(f"waiting   another process is writing in {texts[0]}\n")
+                        clear = "\r\x1b[K" if Topic.PROGRESS in self.reports else ""
+                        report(f"{clear}waiting   another process is writing in {texts[0]}\n")
             elif end == self.printed:
                 self.text += data
             elif self.asked is None:  # afterwards it is the child's echo of what asked it

@@ -16,6 +16,7 @@ from typing import SupportsIndex
 MAX_DIGITS = 200_000
 """Of a numerator, a denominator or a decimal: longer ones are refused when reading."""
 MAX_EXPONENT = 20_000
+FINITE = "all values are finite: write a large number, or make the reciprocal the parameter or the axis"
 _PIECE = 4000
 
 _NUMBER = re.compile(r"(-?)([0-9]+)(?:/([0-9]+)|(?:\.([0-9]+))?(?:e(-?[0-9]{1,6}))?)", re.ASCII)
@@ -78,7 +79,7 @@ def exactly(number: object) -> Fraction:
         # numerator and denominator of a Fraction made from numpy's integers are such
         return Fraction(str(number)) if isinstance(number, float) or kind == "f" else Fraction(*map(int, ratio()))
     except (ValueError, OverflowError) as error:
-        raise ValueError(f"{number!r} is not a number that can be computed with") from error
+        raise ValueError(f"{number!r} is not a number that can be computed with; {FINITE}") from error
 
 
 def _no_number(value: object) -> str:

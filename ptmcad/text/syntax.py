@@ -18,7 +18,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from ptmcad.errors import ExpressionError
-from ptmcad.text.numerals import of_digits
+from ptmcad.text.numerals import FINITE, of_digits
 from ptmcad.text.tree import (
     BINDING,
     FUNCTIONS,
@@ -46,7 +46,6 @@ _TOKEN = re.compile(
 )
 _BLANK = re.compile(r"[ \t]*")
 NOT_NUMBERS = frozenset({"nan", "inf", "infinity"})
-FINITE = "all values are finite: write a large number, or make the reciprocal the parameter or the axis"
 NOT_INTEGER = "the exponent is not an integer: write one, such as 2, and make a root itself a parameter or an unknown"
 _RATIONAL = "values are rational: write a number near it, such as {}"
 _OF_ANGLES = "give a fixed angle by its cosine and sine, as two parameters such as 3/5 and 4/5"
@@ -71,7 +70,7 @@ _WRITE_INSTEAD = {
     "²": "^2", "³": "^3", "ρ": "rho", "½": "1/2", "¼": "1/4", "¾": "3/4", ",": "a decimal point",
     "°": "the angle by its cosine and sine, as two parameters", "∞": "a large number, since all values are finite",
     "√": "a rational number near the root, or make it an unknown", "%": "a share as a fraction, such as 1/2",
-    "π": "a rational number near it, such as 355/113",
+    "π": "a rational number near it, such as 355/113", "|": "the square, or a record for each case",
 }  # fmt: skip
 
 
@@ -157,7 +156,9 @@ def _blank(text: str, position: int) -> int:
 
 
 def _bad_character(text: str, position: int) -> ExpressionError:
-    character = text[position]
+    character, after = text[position], NAME.match(text, position + 1)
+    if character == "." and after and after.group().lower() in NOT_NUMBERS:  # as YAML spells them
+        return unknown_name(after.group(), position, ())
     if character in _WRITE_INSTEAD:
         remedy = f": write {_WRITE_INSTEAD[character]}"
     elif character == "_":

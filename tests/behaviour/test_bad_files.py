@@ -43,7 +43,7 @@ MAKING: dict[str, tuple[dict[str, Any], list[str], str]] = {
     "range": (RECORD, ["range", "--along", "a", "--over", "b"], "disc-range.json"),
 }
 READING = {
-    "exact": ("report", "locate --at a=0,b=0", "plot --format csv", "verify"),
+    "exact": ("report", "locate --at a=0,b=0", "plot --format csv", "verify", "map --value u --pose 1 --pixels 4"),
     "certified": ("report", "locate --at rho=3/4,L2=3/2", "plot --format csv"),
     "family": ("verify", "plot --format png"),
     "changes": ("verify",),
@@ -116,7 +116,7 @@ def _read(path: Path, data: Any, capsys: pytest.CaptureFixture[str], *command: s
     changed = path.with_name("changed.json")
     changed.write_text(json.dumps(data))
     capsys.readouterr()
-    options = ["--out", str(path.parent / "out")] if command[0] in ("report", "plot") else []
+    options = ["--out", str(path.parent / "out")] if command[0] in ("report", "plot", "map") else []
     status = run([command[0], str(changed), *command[1:], *options])
     return status, capsys.readouterr().err
 
@@ -125,6 +125,7 @@ def _read(path: Path, data: Any, capsys: pytest.CaptureFixture[str], *command: s
     ("kind", "path", "value", "words"),
     [
         ("exact", ("slice", "text"), {"d": "1"}, "slice.text has the unknown key 'd'"),
+        ("exact", ("slice", "parameters"), {"a": "a", "b": "b"}, "its slice has no value of c"),
         ("exact", ("regions", 0), {"stable": 1}, "regions[0] lacks the key 'total'"),
         ("exact", ("cells", 0, "sample", "a"), 7, "cells[0].sample.a is not a text"),
         ("exact", ("regions", 0, "index"), [], "region 0 has index ()"),
@@ -178,7 +179,7 @@ def test_no_change_of_a_key_ends_in_a_traceback(folder: Path, capsys: pytest.Cap
     assert refused > 50
 
 
-@pytest.mark.parametrize("kind", ["exact", "family", pytest.param("design", marks=pytest.mark.slow), "poses"])
+@pytest.mark.parametrize("kind", ["exact", "family", pytest.param("design", marks=pytest.mark.slow), "poses", "range"])
 def test_a_later_version_needs_a_newer_program(folder: Path, capsys: pytest.CaptureFixture[str], kind: str) -> None:
     made = _made(folder, kind)
     data = json.loads(made.read_text())

@@ -119,7 +119,7 @@ def test_a_float_is_its_shortest_decimal_wherever_a_number_is_taken(tenth: Any) 
 def test_what_is_no_number_is_refused_by_name(value: float) -> None:
     with pytest.raises(ConfigError, match=r"axes\.b.*is not a number"):
         ptmcad.classify({**PARABOLA, "axes": {"a": [0, 1], "b": [0, value]}})
-    with pytest.raises(ConfigError, match=r"^a: .*is not a number"):
+    with pytest.raises(ConfigError, match=r"^a: .*is not a number .*; all values are finite: write a large number"):
         ptmcad.solve({**PARABOLA, "axes": UNIT}, a=value, b=0)
     with pytest.raises(ConfigError, match=r"^tolerance: .*is not a number"):
         ptmcad.classify({**PARABOLA, "axes": UNIT}, tolerance=value)
@@ -206,12 +206,21 @@ def test_the_answer_begins_with_the_question(
     assert all(len(line) <= 80 for line in lines[:2])
 
 
-def on_a_terminal(words: list[str], columns: int) -> str:
+IMPATIENT = """
+from ptmcad.cli import progress
+progress.PATIENCE, progress._TICK = 0, 0.01
+from ptmcad.__main__ import main
+main()
+"""
+"""The program, whose bar appears at once."""
+
+
+def on_a_terminal(words: list[str], columns: int, program: tuple[str, ...] = ("-m", "ptmcad")) -> str:
     """What a command shows on a terminal of so many columns."""
     child, terminal = pty.fork()
     if child == 0:
         fcntl.ioctl(2, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
-        os.execvpe(sys.executable, [sys.executable, "-m", "ptmcad", *words], os.environ | {"PYTHONPATH": str(ROOT)})
+        os.execvpe(sys.executable, [sys.executable, *program, *words], os.environ | {"PYTHONPATH": str(ROOT)})
     shown = b""
     try:
         while part := os.read(terminal, 1 << 16):
@@ -242,6 +251,16 @@ def test_a_long_command_has_one_bar_on_one_line(words: list[str], columns: int, 
     assert not re.search(r"\[[#.]+\][^\r]*\n", shown)
 
 
+def test_lines_and_the_bar_stay_apart(folder: Path) -> None:
+    """Rows that are printed while a check goes on; and nothing is left of a bar drawn as libraries were loaded."""
+    made = on_a_terminal(["classify", "duffing", "--format", "json,png"], 40, ("-c", IMPATIENT))
+    checked = on_a_terminal(["verify", "duffing.json"], 40, ("-c", IMPATIENT))
+    for shown in (made, checked):
+        bars = re.findall(r"\[[#.]{4,}\][^\r\n]*.", shown, re.DOTALL)
+        assert bars and all(len(bar) <= 40 and bar.endswith("\r") for bar in bars)
+    assert len(re.findall(r"(?:\n|\x1b\[K)ok ", checked)) > 10
+
+
 # ------------------------------------------------------------------------------------------------------------ remedies
 
 
@@ -257,6 +276,9 @@ def test_a_long_command_has_one_bar_on_one_line(words: list[str], columns: int, 
         ("pi", "such as 355/113"),
         ("π", "such as 355/113"),
         ("inf", "write a large number"),
+        ("-.inf", "write a large number"),
+        (".NaN", "all values are finite"),
+        ("|rho|", "write the square, or a record for each case"),
         ("∞", "write a large number"),
         ("10 mm", "write all lengths in one unit"),
         ("10mm", "write all lengths in one unit"),

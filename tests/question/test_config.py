@@ -136,7 +136,7 @@ BAD = [
     ("null", AXES + "parameters:\n  F3:", 3, "parameters.F3", "no value"),
     ("boolean", AXES + "parameters: {F3: yes}", 2, "parameters.F3", "yes-or-no"),
     ("list as value", AXES + "parameters: {F3: [1]}", 2, "parameters.F3", "expected a number"),
-    ("nan", AXES + "parameters: {F3: .nan}", 2, "parameters.F3", "cannot be used"),
+    ("nan", AXES + "parameters: {F3: .nan}", 2, "parameters.F3", "all values are finite"),
     ("comma", AXES + "parameters:\n  F3: 0,5", 3, "parameters.F3", "decimal point"),
     ("huge exponent", AXES + "parameters: {F3: rho**1000000000}", 2, "parameters.F3", "at most 64"),
     ("negative free length", AXES + "parameters: {l0: -0.2}", 2, "parameters.l0", "must be not negative"),
