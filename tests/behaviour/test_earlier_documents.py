@@ -13,7 +13,20 @@ EARLIER = Path(__file__).resolve().parents[1] / "data" / "written-by-0.1.0"
 MAPS = ["cubic", "family/cubics-c1_3", "truss"]
 
 
-@pytest.mark.parametrize("name", [*MAPS, "two-waves-design", "family/cubics", "changes/cubics"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        *MAPS,
+        "two-waves-design",
+        "family/cubics",
+        "changes/cubics",
+        "poses",
+        "poses-free",
+        "range",
+        "range-free",
+        "widths",
+    ],
+)
 def test_an_earlier_document_is_verified(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["verify", str(EARLIER / f"{name}.json")]) == 0
     assert "false" not in capsys.readouterr().out.lower()
@@ -31,6 +44,14 @@ def test_an_earlier_map_answers_at_a_point(name: str, capsys: pytest.CaptureFixt
 def test_an_earlier_map_is_drawn(name: str, command: str, tmp_path: Path) -> None:
     assert run([command, str(EARLIER / f"{name}.json"), "--out", str(tmp_path)]) == 0
     assert any(path.stat().st_size for path in tmp_path.iterdir())
+
+
+def test_an_earlier_sweep_is_verified(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Where a width is attained its index does not say, and bounds that another version finds may be others."""
+    folder = tmp_path / "grid"
+    shutil.copytree(EARLIER / "sweep", folder)
+    assert run(["verify", str(folder)]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == "1 claim holds, 3 not checked"
 
 
 def test_an_earlier_sweep_goes_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -330,16 +330,19 @@ class _Search:
         rest = [c for c in rest if not any(_touches(c, p) and c.width[1] <= p.width[1] for p in plateaus)]
         merged: list[_Candidate] = []
         for c in sorted([*plateaus, *rest], key=lambda c: c.at):
-            if merged and merged[-1].place is c.place and _touches(merged[-1], c):
+            kinds = {c.place} if not merged else {merged[-1].place, c.place}
+            # beside a critical value at which the width is known the largest one may be anywhere in an enclosure
+            if merged and _touches(merged[-1], c) and (len(kinds) == 1 or kinds == {Place.CRITICAL, Place.ENCLOSED}):
                 last = merged.pop()
+                known = (last.attained, c.attained)
                 merged.append(
                     _Candidate(
-                        c.place,
+                        c.place if len(kinds) == 1 else Place.ENCLOSED,
                         (last.at[0], max(last.at[1], c.at[1])),
                         (max(last.width[0], c.width[0]), max(last.width[1], c.width[1])),
                         last.critical or c.critical,
                         last.ends if last.attained else c.ends,
-                        None if None in (last.attained, c.attained) else last.attained or c.attained,
+                        None if None in known or (len(kinds) > 1 and False in known) else any(known),
                         last.sides | {v: last.sides.get(v) or known for v, known in c.sides.items()},
                     )
                 )
