@@ -468,14 +468,14 @@ def test_the_command_says_at_how_many_pixels_a_value_is_beyond_doubles(
     [
         ("stiffness", "Stiffness of stable pose 1: fig4", ""),
         ("angle:th1", "Angle θ₁ of stable pose 1: fig4", ""),
-        ("rho*th1", "rho*th1 of stable pose 1: fig4", ""),
-        ("1e-400*rho", "1e-400*rho of stable pose 1: fig4", "1e-400*rho is beyond doubles"),
-        ("1/(rho-1)", "1/(rho-1) of stable pose 1: fig4", "no pixel has a value"),
+        ("rho*th1", "ρ*θ₁ of stable pose 1: fig4", ""),
+        ("1e-400*rho", "1e−400*ρ of stable pose 1: fig4", "1e−400*ρ is beyond doubles"),
+        ("1/(rho-1)", "1/(ρ−1) of stable pose 1: fig4", "no pixel has a value"),
     ],
 )
 @pytest.mark.fast_cases(
-    "1e-400*rho-1e-400*rho of stable pose 1: fig4-1e-400*rho is beyond doubles",
-    "1/(rho-1)-1/(rho-1) of stable pose 1: fig4-no pixel has a value",
+    r"1e-400*rho-1e\u2212400*\u03c1 of stable pose 1: fig4-1e\u2212400*\u03c1 is beyond doubles",
+    r"1/(rho-1)-1/(\u03c1\u22121) of stable pose 1: fig4-no pixel has a value",
 )
 def test_a_picture_names_its_quantity_as_the_bar_beside_it(value: str, title: str, nothing: str) -> None:
     from ptmcad.show.render.field import field_figure

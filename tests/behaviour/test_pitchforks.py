@@ -116,6 +116,24 @@ def test_paths_end_at_a_pitchfork_as_what_meets_there(tmp_path: Path, capsys: py
     assert "k = 4.285714286: the stable pose goes on as a minimum, a minimum and a maximum" in capsys.readouterr().out
 
 
+@pytest.mark.slow
+def test_a_stable_pose_between_two_unstable_ones_meets_both(tmp_path: Path) -> None:
+    """About (W - 1/2) cos th - cos 2th: upright its second derivative is 0 where its fourth one is negative."""
+    record = """
+name: upright
+mechanism:
+  parameters: {W: {kind: force}, l0: {kind: free length, default: 1/10}}
+  unknowns: {th: angle}
+  points: {O: [0, 0], A: [0, 5], P: [sin(th), cos(th)], R: [sin(2*th), cos(2*th)]}
+  bars: [[O, P], [O, R]]
+  springs: [{between: [A, P], k: 1/10, free: l0}]
+  loads: {P: [0, -W], R: [0, 1]}
+axes: {W: [0, 6], l0: [1/20, 1/5]}
+"""
+    ends = path_ends(record, "W", "l0=1/10", "1", tmp_path)
+    assert [(high["meeting"], high["leaving"]) for _, high in ends] == [([], []), ([0, 1, 1], [1])]
+
+
 def test_without_the_symmetry_there_is_no_pitchfork(tmp_path: Path) -> None:
     """A load across unfolds both: a fold is left of each, beside a pose that goes on."""
     found = met(BALANCER.replace("default: 0}", "default: 1/1000}"), "k", "l0=1/10", tmp_path)

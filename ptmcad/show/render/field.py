@@ -294,7 +294,7 @@ def _name(field: Field) -> str:
 def _absent(field: Field) -> str:
     """Why nothing is shown."""
     if field.beyond:
-        return f"{field.quantity} is beyond doubles"
+        return f"{_name(field)} is beyond doubles"
     return "no pixel has a value"
 
 
