@@ -141,7 +141,8 @@ class _Evaluation(Generic[E]):
         if isinstance(base, Fraction):
             return _power(base, n, power.position)
         if not 0 <= n <= MAX_EXPONENT:
-            raise ExpressionError(f"an exponent of a name is from 0 to {MAX_EXPONENT}", power.position)
+            problem = _QUOTIENT if n < 0 else f"an exponent of a name is from 0 to {MAX_EXPONENT}"
+            raise ExpressionError(problem, power.position)
         if n == 0:
             return Fraction(1)
         value: Any = base

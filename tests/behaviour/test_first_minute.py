@@ -308,6 +308,7 @@ def test_a_message_says_what_to_write_instead(
     ("equation", "remedy"),
     [
         ("x/(1 + x) - a", "multiply an equation by its denominator"),
+        ("x^-1 - a", "multiply an equation by its denominator"),
         ("x^n - a", "the exponent is not an integer: write one"),
         ("x^(1/2) - a", "make a root itself a parameter or an unknown"),
         ("sqrt(x) - a", "let r be an unknown"),
