@@ -1,4 +1,4 @@
-"""False documents made from true ones: every entry changed or left out, and lists with an entry less, twice or turned."""
+"""False documents made from true ones: every entry changed or left out, lists with an entry less, twice or turned."""
 
 from __future__ import annotations
 
