@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -10,6 +11,7 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
+from threading import Timer
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
@@ -114,13 +116,16 @@ def _clock(seconds: float | None) -> Iterator[Callable[[], bool]]:
         over.append(number)
         raise LimitReached(f"the time limit of {seconds:g} s was reached")
 
-    before = signal.signal(signal.SIGALRM, ring)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    # an alarm would be taken for one from outside, which ends the program
+    timer = Timer(seconds, os.kill, (os.getpid(), signal.SIGVTALRM))
+    timer.daemon = True
+    before = signal.signal(signal.SIGVTALRM, ring)
+    timer.start()
     try:
         yield lambda: bool(over)
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
+        timer.cancel()
+        signal.signal(signal.SIGVTALRM, before)
 
 
 def _reports(path: Path, seed: int | None, boxes: int | None, effort: int | None) -> Iterator[tuple[str, Verify]]:
