@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -10,6 +11,7 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
+from threading import Timer
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
@@ -115,18 +117,21 @@ def _clock(seconds: float | None) -> Iterator[Callable[[], bool]]:
         over.append(number)
         raise LimitReached(f"the time limit of {seconds:g} s was reached")
 
-    before = signal.signal(signal.SIGALRM, ring)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    # an alarm would be taken for one from outside, which ends the program
+    timer = Timer(seconds, os.kill, (os.getpid(), signal.SIGVTALRM))
+    timer.daemon = True
+    before = signal.signal(signal.SIGVTALRM, ring)
+    timer.start()
     try:
         yield lambda: bool(over)
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
+        timer.cancel()
+        signal.signal(signal.SIGVTALRM, before)
 
 
 def _reports(path: Path, seed: int | None, boxes: int | None, effort: int | None) -> Iterator[tuple[str, Verify]]:
     """What there is to check in a file, each with a heading where there are several."""
-    from ptmcad.verification import verify, verify_design
+    from ptmcad.verification import verify
 
     def of_map(stored: RegionMap) -> Verify:
         exact = stored.cover is None
@@ -142,7 +147,7 @@ def _reports(path: Path, seed: int | None, boxes: int | None, effort: int | None
                      Idle("effort", effort is not None, "all that is stored is checked")])  # fmt: skip
     if kind == "design":
         design = read_other(path, BestDesign.from_json, "ptmcad-design/1")
-        yield "", lambda progress: verify_design(design, seed, progress)
+        yield "", partial(_verified_design, design, seed)
     elif kind == "poses":
         poses = read_other(path, Poses.from_json, "ptmcad-poses/1")
         yield "", partial(_verified_poses, poses)
@@ -224,6 +229,28 @@ def _verified_sweep(
     steps = [("index", "comparison", numbers)]
     steps += [(f"member {m.number}", "its map, and the index", partial(lambda m, _: check(m), m)) for m in found]
     return VerifyReport(tuple(checked(None, steps, (), Headway(progress))))
+
+
+def _verified_design(found: BestDesign, seed: int | None, progress: Progress) -> VerifyReport:
+    """The best design, and where ranges are longest by exact critical values."""
+    from ptmcad.ask.designing.proof import exact_maximum
+    from ptmcad.question.config.designs import design_from
+    from ptmcad.show.document.design import extremes_data
+    from ptmcad.verification import VerifyReport, check_anew, verify_design
+
+    report = verify_design(found, seed, progress)
+    if not report.ok or not found.maxima:
+        return report
+    data = json.loads(found.to_json())
+    axes = {axis["name"]: [axis["low"], axis["high"]] for axis in (data["along"], *data["over"])}
+    question = data["model"] if isinstance(data["model"], dict) else {"mechanism": data["model"]}
+    question |= {"parameters": data["parameters"], "axes": axes}
+    over = {axis.name: axes[axis.name] for axis in found.over}
+    asked = design_from(question, maximise="range", along=data["along"]["name"], over=over,
+                        where={"stable": found.working})  # fmt: skip
+    anew = extremes_data(exact_maximum(asked) or (), found.over[0].name)
+    compared = check_anew({"extremes": data["extremes"]}, {"extremes": anew})
+    return VerifyReport((*report.checks, replace(compared, name="all of the extremes")))
 
 
 def _verified_poses(stored: Poses, progress: Progress) -> VerifyReport:

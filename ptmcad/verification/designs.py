@@ -285,7 +285,8 @@ def _check_bound(lines: _Lines, seed: str) -> str:
 def _check_extremes(lines: _Lines) -> str:
     found = lines.found
     if not found.maxima or found.along is None:
-        return Unchecked("none is claimed")
+        in_words = found.reason.startswith("by exact critical values")
+        return Unchecked("what the reason alone says of critical values" if in_words else "none is claimed")
     along, over = found.along, found.over[0]
     words = "; ".join(m.words(over.name) for m in found.maxima)
     if found.reason != f"by exact critical values: {words}" or len(found.over) > 1 or found.conditions:

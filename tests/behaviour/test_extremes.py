@@ -410,6 +410,25 @@ def test_verify_checks_what_a_design_says_of_attainment(
     assert status == 1 and "FALSE        extremes" in out
 
 
+def test_verify_checks_it_at_irrational_values_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Two solutions where a > c^2 - 2 with c = 2 b^2 - 1, and one where c is 0."""
+    record = (
+        'system: {unknowns: {x: real}, equations: ["x^2 - (2*b^2 - 1)^2*(a + 2 - (2*b^2 - 1)^2)"]}\n'
+        "axes: {a: [-2, 2], b: [0, 1]}\ndesign: {maximise: range, along: a, over: {b: [0, 1]}, where: {stable: 2}}\n"
+    )
+    asked(["design", "--format", "json", "--evaluations", "5"], tmp_path, record)
+    data = document(tmp_path)
+    status, out = verdict(tmp_path, data, capsys)
+    assert status == 0 and "FALSE" not in out
+    (extreme,) = data["extremes"]
+    before = extreme["text"]
+    assert before == f"{APPROACHED} at b = 0.7071067812{CRITICAL}{ROOT_2}"
+    extreme |= {"attainment": ATTAINED, "text": before.replace(APPROACHED, ATTAINED)}
+    data["reason"] = data["reason"].replace(APPROACHED, ATTAINED)
+    status, out = verdict(tmp_path, data, capsys)
+    assert status == 1 and "FALSE        all of the extremes" in out
+
+
 def test_words_that_are_not_those_of_the_numbers_are_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

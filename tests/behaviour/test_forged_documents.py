@@ -9,6 +9,8 @@ import copy
 import json
 import random
 import sqlite3
+import subprocess
+import sys
 from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
@@ -316,6 +318,15 @@ def test_at_a_time_limit_it_is_said_what_was_checked(capsys: pytest.CaptureFixtu
     printed = capsys.readouterr()
     assert "not checked" in printed.out.splitlines()[-1]
     assert "the time limit of 0.05 s was reached" in printed.err
+
+
+@pytest.mark.slow
+def test_a_time_limit_ends_the_program_with_its_own_status() -> None:
+    """The watched process has a clock of its own, which the watching one does not take for a signal from outside."""
+    assert run(["classify", "fig4", "--format", "json"]) == 0
+    command = [sys.executable, "-m", "ptmcad", "verify", "fig4.json", "--timeout", "0.5"]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stderr) == (3, "stopped: the time limit of 0.5 s was reached\n")
 
 
 def test_answers_in_python_are_verified_too() -> None:

@@ -6,11 +6,12 @@ Guarantee: numbers are exact; reading what was written gives an equal `BestDesig
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from typing import Any
 
 from ptmcad.answer.design import BestDesign, BoundedBox, Evaluation
+from ptmcad.answer.widths import Maximum
 from ptmcad.mechanism import Model, built_in, described, described_system, known_of, recognised, without_loops
 from ptmcad.question.slice import Axis
 from ptmcad.show.document.extremes import maximum_data, maximum_from
@@ -51,7 +52,7 @@ def write_design(found: BestDesign) -> str:
         "tolerance": text_of(found.tolerance),
         "proved": found.proved,
         "reason": found.reason,
-        _EXTREMES: [maximum_data(m, found.over[0].name, _DIGITS) for m in found.maxima],
+        _EXTREMES: extremes_data(found.maxima, found.over[0].name),
         "seed": found.seed,
         "points": [
             {"at": [text_of(x) for x in point.at], "value": None if point.value is None else _ends(point.value)}
@@ -64,6 +65,11 @@ def write_design(found: BestDesign) -> str:
         "versions": {"ptmcad": __version__},
     }
     return "{\n" + ",\n".join(f"  {json.dumps(key)}: {_text(value)}" for key, value in data.items()) + "\n}\n"
+
+
+def extremes_data(maxima: Iterable[Maximum], over: str) -> list[dict[str, Any]]:
+    """Where ranges over a parameter are longest, as the document has it."""
+    return [maximum_data(m, over, _DIGITS) for m in maxima]
 
 
 def _text(value: Any) -> str:
