@@ -260,7 +260,7 @@ def change(*path: str | int) -> Callable[[Any], Change]:
         (change("points", "A4", 0)("L1^65"), "points.A4.1", "from 0 to 64"),
         (change("points", "A4", 0)("(L1^64)^2"), "points.A4.1", "degree"),
         (change("points", "A4", 0)("2^2^2^2^2"), "points.A4.1", "bits"),
-        (change("points", "A4", 0)("L1^-1"), "points.A4.1", "from 0 to 64"),
+        (change("points", "A4", 0)("L1^-1"), "points.A4.1", "only polynomials can be evaluated"),
         (change("points", "A4", 0)("(rho"), "points.A4.1", "never closed"),
         (change("points", "A4", 0)(0.5), "points.A4.1", "neither an exact number nor"),
         (change("points", "A4")([0]), "points.A4", "two coordinates"),
