@@ -10,7 +10,7 @@ from collections.abc import Iterable
 
 from ptmcad.answer.regionmap import Cell, Region, RegionMap
 from ptmcad.errors import ConfigError
-from ptmcad.question.slice import Count
+from ptmcad.question.slice import Count, check_names
 
 MAX_EQUILIBRIA = 1000
 """Equilibria that a fill can tell; no mechanism of two angles and three springs has so many."""
@@ -24,10 +24,11 @@ def check_numbers(result: RegionMap) -> None:
     ConfigError
         With the first reference that leads nowhere.
     """
-    base, model = result.base, result.slice.model
-    for name in model.variables:
-        if name not in result.slice.parameters and name not in model.free_lengths:
-            raise _fault(f"its slice has no value of {name}")
+    base = result.base
+    try:
+        check_names(result.slice.model, result.slice.parameters)
+    except ValueError as error:
+        raise _fault(str(error)) from error
     for s, stack in enumerate(result.stacks):
         _within(stack.cells, len(result.cells), f"stack {s}", "cell")
         _within((w.component for w in stack.walls), len(result.components), f"stack {s}", "component")

@@ -88,7 +88,7 @@ def group() -> None:
     Over a 2-D slice of parameters: how many (stable) equilibria, and where does that number change?
 
     \b
-    Examples: the slice of the paper's figure 4, a shipped record; the unloaded one of figure 2; a record of your own
+    Examples: the paper's figure 4, its figure 2, a record of your own
         ptmcad classify fig4
         ptmcad classify --slice L2,rho
         ptmcad init --out mine.yaml
@@ -180,7 +180,7 @@ def _one_line(error: click.ClickException) -> str:
     command = context.command_path if context else "ptmcad"
     text = error.format_message()
     if isinstance(error, click.NoSuchOption):
-        options = [name for p in context.command.params for name in p.opts] if context else []
+        options = [name for p in context.command.get_params(context) for name in p.opts] if context else []
         text = f"{error.option_name}: there is no such option{did_you_mean(error.option_name, options)}"
     elif isinstance(error, click.BadParameter) and error.param is not None:
         key = error.param.opts[0] if isinstance(error.param, click.Option) else error.param.human_readable_name

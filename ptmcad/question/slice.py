@@ -157,6 +157,21 @@ def merged(values: Mapping[str, _Value], model: Model) -> dict[str, _Value]:
     return shown
 
 
+def check_names(model: Model, parameters: Mapping[str, object]) -> None:
+    """Check that there is a value of each parameter that the model uses, but of free lengths, and of no others.
+
+    Raises
+    ------
+    ValueError
+    """
+    for name in model.variables:
+        if name not in parameters and name not in model.free_lengths:
+            raise ValueError(f"there is no value of {name}")
+    for name in parameters:
+        if name not in model.parameters:
+            raise ValueError(f"there is no parameter {name}")
+
+
 def have_free_lengths(model: Model, parameters: Mapping[str, Expression]) -> bool:
     """Whether some spring has a free length that is not zero everywhere; a parameter that is missing is zero."""
     mechanism = mechanism_in(model)

@@ -112,9 +112,8 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     from difflib import get_close_matches  # for messages only
 
     names = list(known)
-    close = get_close_matches(name[:100], names, n=1)
-    if not close:
-        close = [other for other in names if other.lower() == name.lower()]
+    close = [other for other in names if other.lower() == name.lower()]
+    close = close or get_close_matches(name[:100], names, n=1)
     return f"; did you mean '{close[0]}'?" if close else ""
 
 

@@ -125,7 +125,9 @@ def _read(path: Path, data: Any, capsys: pytest.CaptureFixture[str], *command: s
     ("kind", "path", "value", "words"),
     [
         ("exact", ("slice", "text"), {"d": "1"}, "slice.text has the unknown key 'd'"),
-        ("exact", ("slice", "parameters"), {"a": "a", "b": "b"}, "its slice has no value of c"),
+        ("exact", ("slice", "parameters"), {"a": "a", "b": "b"}, "there is no value of c"),
+        ("exact", ("slice", "parameters", "d"), "1", "there is no parameter d"),
+        ("poses", ("parameters",), {}, "there is no value of a"),
         ("exact", ("regions", 0), {"stable": 1}, "regions[0] lacks the key 'total'"),
         ("exact", ("cells", 0, "sample", "a"), 7, "cells[0].sample.a is not a text"),
         ("exact", ("regions", 0, "index"), [], "region 0 has index ()"),

@@ -48,6 +48,7 @@ def test_the_program_alone_prints_its_help(capfd: pytest.CaptureFixture[str]) ->
     assert run([]) == 0
     out, err = capfd.readouterr()
     assert out.startswith("Usage: ptmcad ") and "classify" in out and "\\n" not in out and err == ""
+    assert max(map(len, out.splitlines())) < 80
 
 
 @pytest.mark.parametrize(
@@ -55,6 +56,8 @@ def test_the_program_alone_prints_its_help(capfd: pytest.CaptureFixture[str]) ->
     [
         ("clasify", "'classify'"),
         ("--verison", "'--version'"),
+        ("classify --hlep", "'--help'"),
+        ("classify fig4 --set l1=3", "'L1'"),
         ("classify fig4 --slise rho,L2", "'--slice'"),
         ("classify --slice roh,L2", "'rho'"),
         ("classify fig4 --set L22=3", "'L2'"),

@@ -18,6 +18,7 @@ from typing import TypeVar
 from ptmcad.answer.poses import MAX_DIGITS, Pose, Poses, Spring, TorsionSpring
 from ptmcad.answer.regionmap import Status
 from ptmcad.mechanism import mechanism_in
+from ptmcad.question.slice import check_names
 from ptmcad.show.document import codec
 from ptmcad.show.document.codec import NATURAL, TEXT, TRUTH, Codec, line, listed, optional, record
 from ptmcad.show.document.model import MODEL, either
@@ -62,7 +63,8 @@ def read_poses(text: str) -> Poses:
 
 
 def _check_lengths(found: Poses, document: Node) -> None:
-    """Refuse poses that have not as many unknowns, or torsion springs, as their model."""
+    """Refuse poses that have not the parameters of their model, or not as many unknowns or torsion springs."""
+    check_names(found.model, found.parameters)
     angles, reals = len(found.model.angles), len(found.model.reals)
     wanted = {"angles": angles, "degrees": angles, "cosines_sines": 2 * angles, "reals": reals}
     if any(pose.torsion for pose in found.equilibria):  # documents of earlier versions have none
