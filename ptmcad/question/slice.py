@@ -160,6 +160,8 @@ def merged(values: Mapping[str, _Value], model: Model) -> dict[str, _Value]:
 def check_names(model: Model, parameters: Mapping[str, object]) -> None:
     """Check that there is a value of each parameter that the model uses, but of free lengths, and of no others.
 
+    Of a mechanism that is known by its name alone nothing is said.
+
     Raises
     ------
     ValueError
@@ -168,7 +170,7 @@ def check_names(model: Model, parameters: Mapping[str, object]) -> None:
         if name not in parameters and name not in model.free_lengths:
             raise ValueError(f"there is no value of {name}")
     for name in parameters:
-        if name not in model.parameters:
+        if model.parameters and name not in model.parameters:
             raise ValueError(f"there is no parameter {name}")
 
 
