@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from enum import Enum
 
-LAST_SECONDS = 5.0
+LAST_SECONDS = 10.0
 """What a process that is asked to leave has at most for a last result, where it makes one."""
 _HEAD = 9  # a topic's letter and the length of the body in 8 bytes
 
