@@ -314,12 +314,12 @@ axes: {a: [-1, 1], b: [-1, 1]}
 sweep: {c: [0, 1]}
 """
 LONG = (
-    "bench configs",
+    "bench fig4",
     "bench --method",
     "stress all",
     "stress --random",
     "stress stiffness",
-    "design configs/fig4.yaml --maximise area",
+    "design fig4 --maximise area",
 )
 DOCUMENTED = ("--value barrier", "--over L2", "--value stiffness", "--value length:k1", "--path", "--quantity th1",
               "--surface", "--no-ranges")  # fmt: skip
