@@ -22,6 +22,7 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Sequence
+from threading import Timer
 from types import FrameType, TracebackType
 from typing import NoReturn, TextIO
 
@@ -35,6 +36,9 @@ if sys.platform != "win32":
 
 SPARE_DESCRIPTORS = 16
 """Descriptors that there must be beside the open ones: for pipes, for imports, for the files of a result."""
+
+AGAIN_SECONDS = 0.001
+"""Seconds until a signal comes again that came where nothing may be raised."""
 
 
 def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
@@ -91,8 +95,18 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     os._exit(status)
 
 
-def _terminate(number: int, _frame: FrameType | None) -> NoReturn:
-    """Leave through every ``finally``, once, and without a word: the interrupted code may be in any state."""
+def _terminate(number: int, frame: FrameType | None) -> None:
+    """Leave through every ``finally``, once, and without a word: the interrupted code may be in any state.
+
+    Numba's compiled code calls Python to unpickle its types, does not look whether that has failed, and crashes if it
+    has. So a signal that comes meanwhile comes again a little later.
+    """
+    caller = frame
+    while caller is not None:
+        if caller.f_code.co_name == "_numba_unpickle":
+            Timer(AGAIN_SECONDS, os.kill, [os.getpid(), number]).start()
+            return
+        caller = caller.f_back
     for other in signal.valid_signals():
         if signal.getsignal(other) is _terminate:
             signal.signal(other, signal.SIG_IGN)

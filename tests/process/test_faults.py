@@ -970,3 +970,24 @@ def test_where_a_stopped_result_goes(tmp_path: Path, old: Mapping[str, str]) -> 
     place = save_stopped(tmp_path / "fig2.json", PARTIAL + " ")
     assert place.name == ("fig2.partial.json" if "old" in old.values() else "fig2.json")
     assert place.read_text() == PARTIAL + " "
+
+
+def test_a_signal_is_not_raised_where_compiled_code_unpickles() -> None:
+    """Numba's code crashes when that fails: the signal comes again once the function has returned."""
+    program = """
+import os, signal, time
+from ptmcad.process.supervisor import supervise
+def _numba_unpickle():
+    os.kill(os.getpid(), signal.SIGTERM)
+    return sum(range(1000))
+def work():
+    found = []
+    try:
+        found.append(_numba_unpickle())
+        time.sleep(60)
+    finally:
+        print(found)
+supervise(work, [signal.SIGTERM])
+"""
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout) == (128 + signal.SIGTERM, "[499500]\n")

@@ -31,28 +31,6 @@ WHERE_KEYS = ("stable", "tension", "conditions")
 MAX_PARAMETERS = 8
 
 
-def load_design(path: str | Path) -> Design:
-    """Read a record with a design.
-
-    Raises
-    ------
-    ConfigError
-        For anything wrong in it, with file, line and key; its ``faults`` are all there are.
-    """
-    return checked_design(record_tree(path))
-
-
-def asks_for_design(path: str | Path) -> bool:
-    """Whether a record has the key ``design``.
-
-    Raises
-    ------
-    ConfigError
-        When it cannot be read.
-    """
-    return "design" in record_tree(path).entries
-
-
 def design_from(question: str | Path | Mapping[str, Any] | Design, **changes: Any) -> Design:
     """The design that is meant by a record's file, by a mapping like a record, or by itself.
 

@@ -73,17 +73,6 @@ def load_sweep(path: str | Path) -> Sweeping:
     return checked_sweep(record_tree(path))
 
 
-def asks_for_sweep(path: str | Path) -> bool:
-    """Whether a record has the key ``sweep``.
-
-    Raises
-    ------
-    ConfigError
-        When it cannot be read.
-    """
-    return "sweep" in record_tree(path).entries
-
-
 def sweep_from(question: str | Path | Mapping[str, Any] | Sweeping) -> Sweeping:
     """The sweep that is meant by a record's file, by a mapping like a record, or by itself.
 
