@@ -69,7 +69,7 @@ def joined_paths(
     axis = slice.axes[varying]
     begin = number_for("--path", start)
     if not axis.low < begin < axis.high:
-        raise ConfigError(f"{begin} is outside the window of {along}, {axis.low} to {axis.high}", key="--path")
+        raise ConfigError(f"{begin} is not inside the window of {along}, {axis.low} to {axis.high}", key="--path")
     intervals = certified_intervals(slice, along, at, DIGITS)
     line = SolutionsOnLine(slice, varying, value, DIGITS)
     inside = any(i.low.high < begin < i.high.low for i in intervals.intervals)

@@ -148,7 +148,7 @@ def test_a_pose_that_is_not_found_again_is_undecided(monkeypatch: pytest.MonkeyP
 @pytest.mark.parametrize(
     ("start", "number", "message", "key"),
     [
-        ("2", None, "2 is outside the window of rho, 11/10 to 13/10", "--path"),
+        ("2", None, "2 is not inside the window of rho, 11/10 to 13/10", "--path"),
         ("1.23166242", None, "", ""),
         ("6/5", 3, "3 is none of the 2 stable poses at rho = 6/5", "--pose"),
         ("x", None, "x", "--path"),

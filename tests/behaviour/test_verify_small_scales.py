@@ -80,6 +80,15 @@ def test_a_true_map_is_accepted(name: str) -> None:
     assert {check.name: check.passed for check in report.checks}["solutions"]
 
 
+def test_a_map_without_areas_in_a_window_whose_area_is_no_decimal() -> None:
+    """The whole window's area is rounded up then."""
+    record = {"name": "cubic", "system": {"parameters": {"a": {}, "b": {}}, "unknowns": {"x": "real"},
+              "potential": "x^4/4 + a*x^2/2 + b*x"}, "axes": {"a": ["-1/3", "1/3"], "b": [-1, "1/7"]}}  # fmt: skip
+    document = json.loads(ptmcad.classify(record, areas=False).to_json())
+    report = verified(document)
+    assert report.ok, report.violation
+
+
 def test_a_box_has_no_other_real_solution() -> None:
     """x^2 = (2 + a + b) 1e-28 has two real roots; that which counts is alone in its box."""
     document = stored(SLICES["roots-1e-14-apart"])

@@ -74,7 +74,7 @@ def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, n
     axis = line.along
     value = number_for("--path", start)
     if not axis.low < value < axis.high:
-        raise ConfigError(f"{value} is outside the window of {along}, {axis.low} to {axis.high}", key="--path")
+        raise ConfigError(f"{value} is not inside the window of {along}, {axis.low} to {axis.high}", key="--path")
     numbers = tuple(n for n, _ in critical_values(line))
     if any(n.compare(value) == 0 for n in numbers) and not is_regular(line, value):
         raise ConfigError(f"{along} = {value} is a critical value: start beside it", key="--path")
