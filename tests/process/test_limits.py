@@ -41,6 +41,7 @@ def limited(which: int, soft: int, hard: int | None = None) -> Callable[[], None
 
 # Memory
 
+
 @pytest.mark.parametrize(("which", "option"), [(resource.RLIMIT_AS, "-v"), (resource.RLIMIT_DATA, "-d")])
 @pytest.mark.slow_cases("2--d")
 def test_the_limit_that_was_reached_is_named(tmp_path: Path, which: int, option: str) -> None:
