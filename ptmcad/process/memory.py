@@ -10,7 +10,6 @@ Not guaranteed: the bound on systems that do not count mapped memory as data (ma
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from fractions import Fraction
@@ -18,9 +17,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ptmcad.errors import ConfigError
-from ptmcad.process.handover import Topic, send, watched
-from ptmcad.process.shortage import LOW_LIMIT, caller_limits, in_units, speaks_of_memory, usage_of
-from ptmcad.process.streams import quiet_stream
+from ptmcad.process.handover import Topic, send
+from ptmcad.process.shortage import LOW_LIMIT, caller_limits, in_units, speaks_of_memory
 
 DEFAULT_SHARE = Fraction(9, 10)
 """The part of the machine's memory that is the bound where none is asked for."""
@@ -121,7 +119,7 @@ def loading(what: str) -> Iterator[None]:
     """
     send(Topic.LOADING, what)
     try:
-        with _without_bound(), _words_apart():
+        with _without_bound():
             yield
     except (ImportError, OSError) as error:
         missing = isinstance(error, ModuleNotFoundError)
@@ -130,25 +128,6 @@ def loading(what: str) -> Iterator[None]:
             raise MemoryError(str(error)) from error
         raise
     send(Topic.LOADING, "")
-
-
-@contextmanager
-def _words_apart() -> Iterator[None]:
-    """Let libraries that complain of what they cannot load do so to the watching process, which knows the reason.
-
-    hashlib logs fourteen tracebacks, by way of ``sys.stderr``, where it has no room for its own libraries. The handler
-    that it makes for them keeps this stream.
-    """
-    usual = sys.stderr
-    if usual is None or not watched():
-        yield
-        return
-    sys.stderr = quiet_stream(2, usual, for_messages=True)  # what is printed there is the watching process's
-    try:
-        yield
-    finally:
-        sys.stderr.flush()
-        sys.stderr = usual
 
 
 @contextmanager
@@ -166,12 +145,21 @@ def _without_bound() -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_DATA, kept)
 
 
+def private_memory() -> int | None:
+    """Bytes of private writable memory that this process has; None where the system does not say."""
+    try:
+        lines = Path("/proc/self/status").read_text(encoding="ascii", errors="replace").splitlines()
+    except OSError:
+        return None
+    return next((int(line.split()[1]) << 10 for line in lines if line.startswith("VmData:")), None)
+
+
 def missing_room(room: int = MIN_ROOM) -> int | None:
     """The least bound that would do, in bytes, if the libraries that are loaded by now leave less room; else None."""
-    bound, usage = _InForce.bound, usage_of(os.getpid())
-    if bound is None or usage is None or usage.data + room <= bound.size:
+    bound, used = _InForce.bound, private_memory()
+    if bound is None or used is None or used + room <= bound.size:
         return None
-    return usage.data + room
+    return used + room
 
 
 def check_room(what: str) -> None:

@@ -20,7 +20,7 @@ if sys.platform != "win32":
     import resource  # noqa: F401 - os.wait4 does, when the child has ended: there may be no room left for it then
 
 if TYPE_CHECKING:
-    from ptmcad.process.shortage import Limit, Usage, Waiting
+    from ptmcad.process.shortage import Limit
 
 GRACE_SECONDS = 0.3
 """Seconds from the request to leave to the kill."""
@@ -29,7 +29,7 @@ OVERRUN_SECONDS = 0.25
 """Seconds by which the child may overrun its time limit: it looks at the clock itself, and does so first."""
 
 POLL_SECONDS = 0.25
-"""Seconds between two looks at the child's memory."""
+"""Seconds between two looks at whether the child lives."""
 
 LONG_SECONDS = 1.0
 """Seconds after which it is said why the child has not left yet."""
@@ -71,9 +71,9 @@ class Watch:
         self.temporaries: list[str] = []
         self.placed: list[list[str]] = []
         self.out_of_time = False
-        self.waiting: Waiting | None = None
-        self.waits_for_memory = False
         self.processor_time = 0.0
+        self.most_memory = 0
+        """Resident bytes that the child had at most."""
 
     def run(self, wake: tuple[int, int], before: set[int | signal.Signals]) -> int:
         """Watch until the child has ended, tidy up, and return the exit status."""
@@ -99,7 +99,6 @@ class Watch:
         """The child's exit code, or minus the signal that ended it."""
         open_ends = {self.messages, self.printed, self.wake}
         kill_at: float | None = None
-        look_at = time.monotonic() + POLL_SECONDS
         while True:
             due = kill_at if kill_at is not None else self._deadline()
             timeout = POLL_SECONDS if due is None else min(POLL_SECONDS, max(0.0, due - time.monotonic()))
@@ -109,6 +108,7 @@ class Watch:
             child, status, used = os.wait4(self.child, os.WNOHANG)
             if child:
                 self.processor_time = used.ru_utime + used.ru_stime
+                self.most_memory = used.ru_maxrss << (0 if sys.platform == "darwin" else 10)
                 return os.waitstatus_to_exitcode(status)
             now = time.monotonic()
             if kill_at is not None:
@@ -118,12 +118,6 @@ class Watch:
                 continue
             due = self._deadline()
             self.out_of_time = not self.caught and due is not None and now >= due
-            if not self.caught and not self.out_of_time and now >= look_at:
-                look_at = now + POLL_SECONDS
-                if self._waits_for_memory(now):
-                    self.waits_for_memory = True
-                    os.kill(self.child, signal.SIGKILL)  # it would not listen
-                    self.asked, kill_at = now, now + 60
             if self.caught or self.out_of_time:
                 os.kill(self.child, signal.SIGTERM if signal.SIGTERM in self.heeded else signal.SIGKILL)
                 self.asked, kill_at = now, now + (LAST_SECONDS if self._makes_a_last_map() else GRACE_SECONDS)
@@ -146,28 +140,6 @@ class Watch:
             report("\r\x1b[Kmaking the map of what is known by now; a second Ctrl-C saves an earlier one")
             self.reports[Topic.PROGRESS] = []
         return len(self.caught) > self.heard
-
-    def _waits_for_memory(self, now: float) -> bool:
-        """Look at the child's memory."""
-        if self.waiting is None:
-            from ptmcad.process.shortage import Waiting  # not before it is needed: every start would pay for it
-
-            self.waiting = Waiting()
-        from ptmcad.process.shortage import usage_of
-
-        loading = self._loading()
-        return self.waiting.look(usage_of(self.child), self._limits(lifted=bool(loading)), bool(loading), now)
-
-    def _loading(self) -> str:
-        """The libraries that the child was loading when it was last heard of."""
-        return self.reports.get(Topic.LOADING, ["the program"])[0]
-
-    def _limits(self, lifted: bool = False) -> "tuple[Limit, ...]":
-        """The limits on the child's memory, without the option's while that is lifted."""
-        from ptmcad.process.shortage import Limit, caller_limits
-
-        own = self.reports.get(Topic.MEMORY)
-        return (*caller_limits(), *([] if own is None or lifted else [Limit(int(own[0]), False, own[1])]))
 
     def _deadline(self) -> float | None:
         limit = float(self.reports[Topic.DEADLINE][0]) if Topic.DEADLINE in self.reports else math.inf
@@ -231,7 +203,7 @@ class Watch:
         """What ended the child before it was done, in words; empty when nothing did."""
         if self.out_of_time and (ended < 0 or ended > 128):
             return f"the time limit of {self.reports[Topic.DEADLINE][1]} was reached"
-        if Topic.EXHAUSTED in self.reports or self.waits_for_memory:
+        if Topic.EXHAUSTED in self.reports:
             return f"the memory limit of {self._limit_reached()} was reached"
         if -ended in (signal.SIGXCPU, signal.SIGKILL) and self._processor_time_is_over():
             return "the limit on processor time that the caller has set (ulimit -t) was reached"
@@ -251,28 +223,28 @@ class Watch:
                 return f"most likely the memory limit of {self._limit_reached()} was reached ({how})"
         return ""
 
-    def _limit_reached(self) -> str:
-        """The limit that left the child the least room, in words."""
-        limits, most = self._limits(), self._peak_usage()
-        if not limits:
-            return "the system"
-        return min(limits, key=lambda limit: limit.size if most is None else limit.room(most)).text
+    def _limits(self) -> "list[Limit]":
+        """The limits on the child's memory: its caller's, and its own."""
+        from ptmcad.process.shortage import Limit, caller_limits  # not before it is needed: every start would pay
 
-    def _peak_usage(self) -> "Usage | None":
-        """The most that the child was seen to use; None when it ended too soon to be looked at."""
-        return None if self.waiting is None else self.waiting.most
+        own = self.reports.get(Topic.MEMORY)
+        return [*caller_limits(), *([] if own is None else [Limit(int(own[0]), own[1])])]
+
+    def _limit_reached(self) -> str:
+        """The lowest limit, in words."""
+        return min(self._limits(), default=(0, "the system"))[1]
 
     def _little_memory(self) -> bool:
         """Whether a crash is most likely for lack of memory, though nothing says so.
 
         That is: while libraries were loaded under a small limit, or when half of a limit had been used.
         """
-        from ptmcad.process.shortage import LOW_LIMIT
+        from ptmcad.process.shortage import LOW_LIMIT, caller_limits
 
-        most = self._peak_usage()
-        if self._loading() and any(limit.size < LOW_LIMIT for limit in self._limits(lifted=True)):
+        loading = self.reports.get(Topic.LOADING, ["the program"])[0]
+        if loading and any(limit.size < LOW_LIMIT for limit in caller_limits()):
             return True
-        return most is not None and any(2 * limit.room(most) <= limit.size for limit in self._limits())
+        return any(2 * self.most_memory >= limit.size for limit in self._limits())
 
     def _processor_time_is_over(self) -> bool:
         """Whether the child had the processor time that the caller allows."""
