@@ -17,7 +17,7 @@ from ptmcad.cover.rectangles import Cover
 from ptmcad.options import Progress
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.text.expressions import constant
-from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.points import check_cell, check_listed, counting_of
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.derivation import has_index, parameters_of, tells_stability

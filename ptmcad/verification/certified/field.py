@@ -19,10 +19,9 @@ from typing import NamedTuple
 
 from flint import arb, arb_mat
 
-from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.kinks import Sides
-from ptmcad.verification.certified.powers import power, square
-from ptmcad.verification.certified.vectors import ball
+from ptmcad.verification.certified.terms import ball, power, square
 from ptmcad.verification.certified.waves import Cone, Form, Waves
 
 Matrix = list[list[arb]]

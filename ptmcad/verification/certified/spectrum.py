@@ -10,7 +10,7 @@ from itertools import combinations
 from flint import arb
 
 from ptmcad.verification.certified.field import Matrix
-from ptmcad.verification.certified.powers import square
+from ptmcad.verification.certified.terms import square
 
 
 def inertia(h: Matrix) -> str | None:
