@@ -62,7 +62,7 @@ def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
                if pose.multiplicity == 1]  # fmt: skip
     for k, pose, box in regular:
         try:
-            signs = signs_of(claims, cell, found.parameters, box)
+            signs = signs_of(claims, cell, box)
         except Violation as violation:
             raise Violation(f"the box of pose {k + 1}: {violation}") from None
         index = signs.count("-") if has_index(model) else None
