@@ -1,6 +1,7 @@
 """Checks of the areas: another enclosure of each region's area, which has to lie within the stored bounds.
 
-Each wall between two regions is integrated over panels by `ptmcad.verification.walls`; narrow strips around critical
+Each wall between two regions is integrated over panels by `ptmcad.verification.branches`, which are halved towards
+critical values, where branches are not analytic; narrow strips around critical
 values that are not rational count as error.
 
 Guarantee: the enclosures are proved (ball arithmetic of Arb, rational panels). They are refined until each is within
@@ -20,29 +21,26 @@ from ptmcad.answer.regionmap import Region
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import approximate_text
-from ptmcad.verification.branches import Branch, Effort, Part
+from ptmcad.verification.branches import Branch, Effort, Part, integrals_over
 from ptmcad.verification.claims import Claims, bracket
 from ptmcad.verification.disks import PrecisionTooLow
-from ptmcad.verification.places import at_edge, at_value, beyond
 from ptmcad.verification.report import Unchecked, Violation
-from ptmcad.verification.walls import LONG, Known, Wall, image_of
 
 NARROWEST = 10**60
 """Of bounds that are relatively narrower than the inverse of this, it is tried whether they are off by so much."""
 CROWDED_PANELS = 100
 """Panels for each stack beyond which polynomials of higher degree are worth their cost."""
-MARGIN = 2**12
-"""Of a strip, the part that is left out besides where a series about the critical value is taken."""
 ATTEMPTS = 7
 """Times that precision is raised, and strips are narrowed, before bounds count as not checked."""
 
 
 class _Panel(NamedTuple):
-    """A part of a wall from region ``below`` to region ``above``."""
+    """A part of a wall from region ``below`` to region ``above``, and the error that it may have."""
 
-    wall: Wall
+    branch: Branch
     below: int
     above: int
+    share: arb
     part: Part
 
 
@@ -106,15 +104,15 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
     number = max(1, sum(len(s.walls) for s in result.stacks))
     shares = [ball_of(_width(r)).mid() * margin / number for r in result.regions]
     effort = Effort(min(shares), width / 2**8, width / 2 ** (bits // 3), (low, high), (2,))
-    known: Known = {}
     whole = [arb(0) for _ in result.regions]
     panels: list[_Panel] = []
     for s, stack in enumerate(result.stacks):
         left = start if s == 0 else brackets[s - 1][1]
         right = stop if s == len(brackets) else brackets[s][0]
         whole[result.cells[stack.cells[-1]].region] += arb((right - left) * (high - low))
-        for below, above, wall in _borders(claims, s, (left, right), strip * width / MARGIN, shares):
-            panels += [_Panel(wall, below, above, part) for part in wall.parts(left, right, effort, known)]
+        for below, above, branch in _borders(claims, s):
+            there = replace(effort, share=min(shares[below], shares[above]))
+            panels += [_Panel(branch, below, above, there.share, p) for p in integrals_over(branch, left, right, there)]
     while True:
         areas = list(whole)
         for p in panels:
@@ -133,7 +131,7 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
             return None
         if len(panels) > CROWDED_PANELS * len(result.stacks):
             effort = replace(effort, degrees=(2, 10))
-        halved = _halved(panels, open_regions, effort, known)
+        halved = _halved(panels, open_regions, effort)
         if halved is None:
             n = min(open_regions)
             return (f"region {n}: its area is in {areas[n].str(20)}; that it is {_between(result.regions[n])} "
@@ -141,48 +139,21 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
         panels = halved
 
 
-def _borders(
-    claims: Claims, s: int, span: tuple[fmpq, fmpq], margin: fmpq, shares: Sequence[arb]
-) -> Iterator[tuple[int, int, Wall]]:
-    """The walls of a stack between different regions, with the region below and that above.
-
-    Parameters
-    ----------
-    span : the stack without strips.
-    margin : width of what is left out besides where a series about a critical value is taken.
-    shares : errors that a panel may have beside each region.
-    """
-    result = claims.result
-    stack = result.stacks[s]
+def _borders(claims: Claims, s: int) -> Iterator[tuple[int, int, Branch]]:
+    """The walls of a stack between different regions, with the region below and that above."""
+    stack = claims.result.stacks[s]
     curves = {c.number: c for c in claims.curves}
-    values = [result.critical_values[k] if 0 <= k < len(result.critical_values) else None for k in (s - 1, s)]
-    critical = [None if value is None else at_value(value, margin) for value in values]
-    for level, (component, root) in enumerate((w.component, w.root) for w in stack.walls):
-        below, above = (result.cells[stack.cells[level + k]].region for k in (0, 1))
+    for level, wall in enumerate(stack.walls):
+        below, above = (claims.result.cells[stack.cells[level + k]].region for k in (0, 1))
         if below != above:
-            curve = curves[component]
-            branch = Branch.of(curve, root)
-            first, last = (
-                [*beyond(curve, span, side), *(at_edge(curve, span[side], margin) if place is None else [place])]
-                for side, place in enumerate(critical)
-            )
-            image = image_of(branch, (span[0] + span[1]) / 2, claims.height)
-            share = min(shares[below], shares[above])
-            yield below, above, Wall(branch, span, (first, last), margin, share, image, _scale(claims, span))
-
-
-def _scale(claims: Claims, span: tuple[fmpq, fmpq]) -> fmpq:
-    """How far from zero a stack begins or something singular is, of what is much nearer to it than the far end."""
-    places = [*span, *(from_fraction(v.low) for v in claims.result.critical_values)]
-    distance = max(abs(end) for end in span) / LONG
-    return max((abs(u) for u in places if 0 < abs(u) < distance), default=fmpq(1))
+            yield below, above, Branch.of(curves[wall.component], wall.root)
 
 
 def _between(region: Region) -> str:
     return f"between {approximate_text(region.area[0])} and {approximate_text(region.area[1])}"
 
 
-def _halved(panels: Sequence[_Panel], regions: set[int], effort: Effort, known: Known) -> list[_Panel] | None:
+def _halved(panels: Sequence[_Panel], regions: set[int], effort: Effort) -> list[_Panel] | None:
     """The panels of the given regions, the worst ones halved or tried for the first time; None when too narrow."""
     concerned = [p for p in panels if regions & {p.below, p.above}]
     worst = max((p.part.integral.rad() for p in concerned), default=arb(0))
@@ -198,5 +169,6 @@ def _halved(panels: Sequence[_Panel], regions: set[int], effort: Effort, known: 
             return None
         middle = (left + right) / 2
         for ends in ((left, middle), (middle, right)) if tried else ((left, right),):
-            refined += [p._replace(part=part) for part in p.wall.parts(*ends, effort, known)]
+            parts = integrals_over(p.branch, *ends, replace(effort, share=p.share))
+            refined += [p._replace(part=part) for part in parts]
     return refined

@@ -119,12 +119,12 @@ def integrals_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort) -> l
         if found is not None:
             integral, proved = found
             ends = (left, middle - proved, middle + proved, right)
-            sides = [known_by_edges(a, b, effort, False) for a, b in (ends[:2], ends[2:]) if a < b]
+            sides = [_known_by_edges(a, b, effort, False) for a, b in (ends[:2], ends[2:]) if a < b]
             return [Part(ends[1], ends[2], integral - low * (2 * proved), True), *sides]
         if 2 * half < effort.shut:
             bottom, top = _enclosed(branch, middle, half, height, effort)
             return [Part(left, right, arb(bottom - low).union(arb(top - low)) * (2 * half), True)]
-    return [known_by_edges(left, right, effort, True)]
+    return [_known_by_edges(left, right, effort, True)]
 
 
 def _more_precisely(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> tuple[arb, fmpq] | None:
@@ -146,7 +146,7 @@ def _more_precisely(branch: Branch, middle: fmpq, half: fmpq, height: arb, effor
     raise PrecisionTooLow
 
 
-def known_by_edges(left: fmpq, right: fmpq, effort: Effort, tried: bool) -> Part:
+def _known_by_edges(left: fmpq, right: fmpq, effort: Effort, tried: bool) -> Part:
     low, high = effort.heights
     return Part(left, right, arb(0).union(arb((right - left) * (high - low))), tried)
 

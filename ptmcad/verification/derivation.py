@@ -18,15 +18,10 @@ from typing import Any, NamedTuple
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
-from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, Model, System, ptm
+from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, Model, System
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Tree, names_of
 from ptmcad.verification import loops, xjoints
-
-MECHANISM = ptm()
-ANGLES = MECHANISM.angles
-POSITIVE = MECHANISM.positive
-NOT_NEGATIVE = MECHANISM.nonnegative
 
 
 def parameters_of(model: Model) -> tuple[str, ...]:
@@ -139,7 +134,7 @@ class Configuration:
                 cosine, sine = cosine * c - sine * turned, sine * c + cosine * turned
         return cosine, sine
 
-    def points(self, mechanism: Mechanism = MECHANISM) -> dict[str, tuple[Any, Any]]:
+    def points(self, mechanism: Mechanism) -> dict[str, tuple[Any, Any]]:
         """The coordinates of all points."""
         return {name: (self.value(x), self.value(y)) for name, (x, y) in mechanism.points.items()}
 
@@ -263,7 +258,7 @@ def _moments(configuration: Configuration, mechanism: Mechanism) -> tuple[Any, .
     return tuple(total)
 
 
-def potential(configuration: Configuration, mechanism: Mechanism = MECHANISM) -> Any:
+def potential(configuration: Configuration, mechanism: Mechanism) -> Any:
     """Half the stiffness times the squared length of each spring, without free lengths, less the work of the loads."""
     points = configuration.points(mechanism)
     energy = work(configuration, points, mechanism)
@@ -278,7 +273,7 @@ def potential(configuration: Configuration, mechanism: Mechanism = MECHANISM) ->
     return energy
 
 
-def work(configuration: Configuration, points: Mapping[str, tuple[Any, Any]], mechanism: Mechanism = MECHANISM) -> Any:
+def work(configuration: Configuration, points: Mapping[str, tuple[Any, Any]], mechanism: Mechanism) -> Any:
     """What the loads contribute to the potential."""
     energy: Any = fmpq(0)
     for load in mechanism.loads:

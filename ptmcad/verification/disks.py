@@ -45,8 +45,6 @@ class Disk(NamedTuple):
     along : z, less its constant coefficient.
     proved, factor : the branch is analytic for |s| <= proved * factor, where factor > 1.
     slack : a bound for |z| there.
-    spread : reach sup |g| / (least difference of the condition's sides), g as in `_evening`: twice that is what a
-        change of the polynomial by 1 moves the root at most.
     """
 
     rows: list[arb_poly]
@@ -57,7 +55,6 @@ class Disk(NamedTuple):
     factor: fmpq
     slack: arb
     reach: arb
-    spread: arb
 
     def coefficients(self, order: int) -> list[arb]:
         """The branch's power series, so many coefficients or more: beyond them they are those of t."""
@@ -66,9 +63,7 @@ class Disk(NamedTuple):
         return found
 
 
-def disk(
-    rows: Sequence[arb_poly], half: fmpq, root: arb, degree: int, beside: tuple[arb, arb] | None = None
-) -> Disk | None:
+def disk(rows: Sequence[arb_poly], half: fmpq, root: arb, degree: int) -> Disk | None:
     """A disk about s = 0 that is larger than the longest part of (-half, half) for which one is proved.
 
     Parameters
@@ -76,21 +71,19 @@ def disk(
     rows : coefficients in s of the powers of v in a polynomial.
     root : its root over s = 0.
     degree : of z.
-    beside : a bound for what is to be added to the polynomial where |v| is at most the second number: the condition
-        holds with it, too.
 
     Raises
     ------
     PrecisionTooLow
     """
     center, length = root.mid(), degree + 1
-    rows = recentered(rows, center)
+    rows = _recentered(rows, center)
     start = arb_series([root - center], prec=length)
     polynomial = arb_poly(
         [arb(0), *(c.mid() for c in _series([row.truncate(length) for row in rows], start, length)[1:])]
     )
     d = _shifted(rows, polynomial)
-    factor_at_most = _absolute(even := _evening(d[1]))
+    even = _evening(d[1])
     d = [row * even for row in d]
     steepness = abs(d[1][0])
     # the polynomial follows the branch to its degree, so but for rounding the first coefficients are zero
@@ -102,17 +95,13 @@ def disk(
     for proved, factor in ((half, _FAR), (half, fmpq(2)), *((half * share, _NEAR) for share in _PROVED)):
         radius = arb(proved * factor)
         slack = slope(radius)
-        sizes = [row(radius) for row in absolute]
-        if beside is not None:
-            sizes[0] += beside[0] * factor_at_most(radius)
-        found = _reach(sizes, steepness, slack)
-        if found is not None and (beside is None or abs(center) + slack + found[0] < beside[1]):
-            spread = found[0] * factor_at_most(radius) / found[1]
-            return Disk(rows, center, start, polynomial, proved, factor, slack, found[0], spread)
+        reach = _reach([row(radius) for row in absolute], steepness, slack)
+        if reach is not None:
+            return Disk(rows, center, start, polynomial, proved, factor, slack, reach)
     return None
 
 
-def recentered(rows: Sequence[arb_poly], center: arb) -> list[arb_poly]:
+def _recentered(rows: Sequence[arb_poly], center: arb) -> list[arb_poly]:
     """Coefficients in s of the powers of t in p(s, center + t), given those of the powers of v in p(s, v)."""
     columns = [
         arb_poly([row[i] for row in rows])(arb_poly([center, 1])) for i in range(max(len(row.coeffs()) for row in rows))
@@ -165,8 +154,8 @@ def _absolute(row: arb_poly) -> arb_poly:
     return arb_poly([abs(c) for c in row.coeffs()])
 
 
-def _reach(sizes: list[arb], steepness: arb, slack: arb) -> tuple[arb, arb] | None:
-    """An r for which Rouche's condition holds, and a bound below for its sides' difference; None if none is found.
+def _reach(sizes: list[arb], steepness: arb, slack: arb) -> arb | None:
+    """An r for which Rouche's condition holds; None if none is found.
 
     Parameters
     ----------
@@ -178,9 +167,8 @@ def _reach(sizes: list[arb], steepness: arb, slack: arb) -> tuple[arb, arb] | No
     first = (sizes[0] / steepness).upper()
     for multiple in (fmpq(5, 4), fmpq(2), fmpq(4)):
         reach = (first * multiple).upper() if first > 0 else arb(1) / 2**64
-        spare = steepness * reach - low(reach) - high(slack + reach) * reach**_SHIFTED
-        if spare > 0:
-            return reach, spare.lower()
+        if low(reach) + high(slack + reach) * reach**_SHIFTED < steepness * reach:
+            return reach
     return None
 
 

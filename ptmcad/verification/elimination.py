@@ -3,7 +3,7 @@
 Guarantee: exact. With a weight w >= 0 for v, a Sylvester determinant of polynomials of weighted degrees a, b and of
 degrees n, m in v has degree at most a m + b n - w n m in u: v = u^w z scales row by row and column by column. The
 smallest of these bounds over the slopes between two exponents is taken, and one value more than it is computed. Each
-value is FLINT's for polynomials in one variable. Long ones are put together from `residues` instead.
+value is FLINT's for polynomials in one variable.
 """
 
 from __future__ import annotations
@@ -16,12 +16,8 @@ from math import floor
 
 from flint import fmpz, fmpz_poly
 
-from ptmcad.verification import residues
-
 Terms = tuple[tuple[int, int, int], ...]
 """(i, j, c) for c u^i v^j."""
-LONG = 100_000
-"""Of the product of both degrees in v and of that in u, from which on values in integers take longer."""
 
 
 # every critical value asks for them, and so does every further map with the same curves
@@ -31,9 +27,6 @@ def discriminant(p: Terms) -> fmpz_poly:
     n = _degree(p)
     if n < 2:
         return fmpz_poly([1])
-    rows = [fmpz_poly(_row(p, j)) for j in range(n + 1)]
-    if residues.discriminant_degree(rows) * n * n >= LONG:
-        return residues.discriminant(rows)
     derivative = tuple((i, j - 1, j * c) for i, j, c in p if j)
     # res(p, p') is the leading coefficient times the discriminant
     return resultant(p, derivative) // fmpz_poly(_row(p, n))
@@ -59,8 +52,6 @@ def resultant(p: Terms, q: Terms) -> fmpz_poly:
     left, right = _highest(p), _highest(q)
     slopes = _slopes(left) | _slopes(right)
     bound = min(floor(_weight(left, w) * m + _weight(right, w) * n - w * n * m) for w in slopes)
-    if bound * n * m >= LONG:
-        return residues.resultant(rows_p, rows_q, bound)
     return _from_values(value, bound)
 
 

@@ -25,7 +25,7 @@ from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpq_mpoly_ctx
 from ptmcad.mechanism import Model
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.algebra import Monomial, NotFinite, algebra
-from ptmcad.verification.equations import PointEquations, equations_at
+from ptmcad.verification.equations import Polynomials, equations_at
 from ptmcad.verification.inertia import bases, determinant, leading_minors, negative_eigenvalues
 
 
@@ -58,7 +58,7 @@ class Fibre:
 
     basis: tuple[Monomial, ...]
     tables: tuple[fmpq_mat, ...]
-    point: PointEquations
+    point: Polynomials
     saturated: bool = False
 
     @property
@@ -291,7 +291,7 @@ def fibre(model: Model, values: Mapping[str, Fraction]) -> Fibre:
     return Fibre(*algebra(*_saturated(point)), point, saturated=True)
 
 
-def _saturated(point: PointEquations) -> tuple[list[fmpq_mpoly], tuple[str, ...]]:
+def _saturated(point: Polynomials) -> tuple[list[fmpq_mpoly], tuple[str, ...]]:
     """Generators of the ideal of the solutions at which no inequality's polynomial vanishes.
 
     The inverse of their product is one more variable, the first one.

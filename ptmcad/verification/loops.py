@@ -9,12 +9,12 @@ the determinant of the gradients of g and E is positive.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from itertools import permutations
 from typing import Any, NamedTuple
 
 from flint import fmpq
 
 from ptmcad.mechanism import Mechanism
+from ptmcad.verification.inertia import determinant
 
 
 class Lifting:
@@ -130,11 +130,11 @@ def conditions(
     slopes = []
     for j in count:
         bent = [energy.bends[k, j] - (moments[k].slopes[j] if moments else fmpq(0)) for k in count]
-        total = _determinant([*rows, bent])
+        total = determinant([*rows, bent])
         for n, g in enumerate(kept):
-            total = total + _determinant([*rows[:n], [g.bends[k, j] for k in count], *rows[n + 1 :], last])
+            total = total + determinant([*rows[:n], [g.bends[k, j] for k in count], *rows[n + 1 :], last])
         slopes.append(total)
-    return Conditions((*(g.value for g in kept), _determinant([*rows, last])), _determinant([*rows, slopes]))
+    return Conditions((*(g.value for g in kept), determinant([*rows, last])), determinant([*rows, slopes]))
 
 
 def distances(mechanism: Mechanism, points: Mapping[str, tuple[Any, Any]], length: Callable[[Any], Any]) -> list[Any]:
@@ -150,19 +150,7 @@ def distances(mechanism: Mechanism, points: Mapping[str, tuple[Any, Any]], lengt
 def turned(kept: Sequence[Second], values: Sequence[Second]) -> list[Any]:
     """The derivatives of some functions along the loops, of which E is the energy's: with it they are linear."""
     rows = [list(g.slopes) for g in kept]
-    return [_determinant([*rows, list(value.slopes)]) for value in values]
-
-
-def _determinant(rows: Sequence[Sequence[Any]]) -> Any:
-    """By all permutations: there are few unknowns."""
-    total: Any = fmpq(0)
-    for order in permutations(range(len(rows))):
-        inversions = sum(order[a] > order[b] for b in range(len(order)) for a in range(b))
-        term: Any = fmpq(-1 if inversions % 2 else 1)
-        for row, k in zip(rows, order, strict=True):
-            term = row[k] * term
-        total = term + total
-    return total
+    return [determinant([*rows, list(value.slopes)]) for value in values]
 
 
 def stationary(
@@ -197,7 +185,7 @@ def stationary(
     values = []
     for s in range(free + 1):
         shifted = [[x + fmpq(s) if i == j and i < inner else x for j, x in enumerate(r)] for i, r in enumerate(rows)]
-        values.append(_determinant(shifted) * fmpq(-1 if bars % 2 else 1))
+        values.append(determinant(shifted) * fmpq(-1 if bars % 2 else 1))
     coefficients = _interpolated(values)
     return equations, tuple(coefficients[free - k] for k in range(1, free + 1))
 

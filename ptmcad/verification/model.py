@@ -9,18 +9,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz, fmpz_mpoly
 
 from ptmcad.answer.regionmap import System
-from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
+from ptmcad.mechanism import ClosedMechanism, Mechanism
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import fraction_of
 from ptmcad.verification.claims import PLANE, Claims
-from ptmcad.verification.derivation import Configuration, coordinates_of, formulas, has_index, parameters_of
+from ptmcad.verification.derivation import Configuration, coordinates_of, parameters_of
+from ptmcad.verification.equations import Polynomials, Ring, equations_of
 from ptmcad.verification.report import Violation
 
 _FACTOR = r"(?:[0-9]{1,4000}(?:/[1-9][0-9]{0,3999})?|[A-Za-z][A-Za-z_0-9]{0,44}(?:\^[0-9]{1,2})?)"
@@ -30,92 +28,7 @@ _Ratio = tuple[fmpq_mpoly, fmpq_mpoly]
 """Numerator and denominator."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Ring:
-    """The polynomials over Q in the coordinates of a model's unknowns and in its parameters."""
-
-    model: Model
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        return (*coordinates_of(self.model), *parameters_of(self.model))
-
-    @property
-    def context(self) -> fmpq_mpoly_ctx:
-        return fmpq_mpoly_ctx.get(self.names, Ordering.lex)
-
-    def variable(self, name: str) -> fmpq_mpoly:
-        return self.context.gen(self.names.index(name))
-
-    def circles(self) -> dict[str, tuple[fmpq_mpoly, fmpq_mpoly]]:
-        return {a: (self.variable(f"cos_{a}"), self.variable(f"sin_{a}")) for a in self.model.angles}
-
-    def relations(self) -> tuple[fmpq_mpoly, ...]:
-        return tuple(c * c + s * s - 1 for c, s in self.circles().values())
-
-    def normal(self, p: fmpq_mpoly) -> fmpq_mpoly:
-        """The normal form modulo the circles: at most the first power of each cosine."""
-        for relation in self.relations():
-            p = divmod(p, relation)[1]
-        return p
-
-    def by(self, p: fmpq_mpoly, unknown: str) -> fmpq_mpoly:
-        """The derivative by an unknown."""
-        if unknown in self.model.reals:
-            return p.derivative(unknown)
-        c, s = self.circles()[unknown]
-        return c * p.derivative(f"sin_{unknown}") - s * p.derivative(f"cos_{unknown}")
-
-    def configuration(self) -> Configuration:
-        known = (*parameters_of(self.model), *self.model.reals)
-        return Configuration({name: self.variable(name) for name in known}, self.circles())
-
-
-@dataclass(frozen=True, slots=True)
-class _Polynomials:
-    """What solutions of a model satisfy, as polynomials in the coordinates of the unknowns and in the parameters.
-
-    Attributes
-    ----------
-    potential : the energy of springs and loads, where solutions are critical points; None elsewhere, and no text may be
-        stored.
-    moments : by the unknowns; of one that depends on its own the stored potential has the work.
-    equations : of an energy its gradient less the moments.
-    jacobian : their derivatives by the unknowns, the angles first.
-    """
-
-    ring: _Ring
-    potential: fmpq_mpoly | None
-    equations: tuple[fmpq_mpoly, ...]
-    jacobian: tuple[tuple[fmpq_mpoly, ...], ...]
-    inequalities: tuple[fmpq_mpoly, ...]
-    stability: tuple[fmpq_mpoly, ...]
-    moments: tuple[fmpq_mpoly, ...]
-
-
-@lru_cache(maxsize=8)
-def _polynomials(model: Model) -> _Polynomials:
-    ring = _Ring(model)
-    given = formulas(ring.configuration(), model)
-    unknowns = model.angles + model.reals
-
-    def elements(values: Sequence[Any]) -> tuple[fmpq_mpoly, ...]:
-        return tuple(ring.context.constant(0) + value for value in values)
-
-    energy = None if given.energy is None else elements([given.energy])[0]
-    equations = (
-        elements(given.equations)
-        if energy is None
-        else tuple(ring.by(energy, u) - given.moment(k) for k, u in enumerate(unknowns))
-    )
-    potential = energy if has_index(model) else None
-    jacobian = tuple(tuple(ring.by(e, u) for u in unknowns) for e in equations)
-    conditions = elements(given.inequalities), elements(given.stability)
-    moments = elements([given.moment(k) for k in range(len(unknowns))])
-    return _Polynomials(ring, potential, equations, jacobian, *conditions, moments)
-
-
-def _parsed(ring: _Ring, text: str, what: str) -> fmpq_mpoly:
+def _parsed(ring: Ring, text: str, what: str) -> fmpq_mpoly:
     """A sum of monomials such as ``-1/2*L1^2*k3 + rho*cos_th1``."""
     names = {name: ring.variable(name) for name in ring.names}
     total = ring.context.constant(0)
@@ -147,14 +60,14 @@ def check_system(claims: Claims) -> str:
         raise Violation(f"the unknowns are {system.unknowns}, not {unknowns}")
     if len(set(unknowns) | set(parameters_of(model))) != len(unknowns) + len(parameters_of(model)):
         raise Violation("a parameter has the name of a coordinate, so that no text can be understood")
-    true = _polynomials(model)
+    true = equations_of(model)
     _check_sizes(system, true)
     for k, (text, relation) in enumerate(zip(system.relations, true.ring.relations(), strict=True)):
         if _parsed(true.ring, text, f"relation {k}") != relation:
             raise Violation(f"relation {k} is {relation}, not {text[:60]}")
     number = 0
-    if true.potential is not None:
-        _check_potential(true, true.potential - _parsed(true.ring, system.potential, "potential"))
+    if true.energy is not None and true.has_index:
+        _check_potential(true, true.energy - _parsed(true.ring, system.potential, "potential"))
         number += 1
     for what, text, expected in _pairs(system, true):
         difference = true.ring.normal(_parsed(true.ring, text, what) - expected)
@@ -165,7 +78,7 @@ def check_system(claims: Claims) -> str:
     return f"{number} polynomials in {len(unknowns)} unknowns and {len(parameters_of(model))} parameters"
 
 
-def _check_potential(true: _Polynomials, less: fmpq_mpoly) -> None:
+def _check_potential(true: Polynomials, less: fmpq_mpoly) -> None:
     """What the stored potential lacks is work whose slopes are the moments but for constant parts.
 
     No moment has to be integrated for that. The work is zero where all unknowns are.
@@ -185,7 +98,7 @@ def _check_potential(true: _Polynomials, less: fmpq_mpoly) -> None:
         raise Violation(f"the stored potential differs from the mechanism's by {str(left)[:80]}")
 
 
-def _check_sizes(system: System, true: _Polynomials) -> None:
+def _check_sizes(system: System, true: Polynomials) -> None:
     n = len(true.equations)
     if (len(system.gradient), [len(row) for row in system.hessian]) != (n, [n] * n):
         raise Violation(f"{n} unknowns have {n} equations and a {n} x {n} matrix of derivatives")
@@ -196,14 +109,14 @@ def _check_sizes(system: System, true: _Polynomials) -> None:
     ):
         if len(stored) != len(expected):
             raise Violation(f"there are {len(expected)} {what}, not {len(stored)}")
-    if true.potential is None and system.potential:
+    if not true.has_index and system.potential:
         raise Violation("equations are given, or a moment depends on another unknown, so there is no potential")
 
 
-def _pairs(system: System, true: _Polynomials) -> Iterator[tuple[str, str, fmpq_mpoly]]:
+def _pairs(system: System, true: Polynomials) -> Iterator[tuple[str, str, fmpq_mpoly]]:
     """Each stored polynomial: what it is, its text, and what is true."""
     first, second = "equation {}", "Jacobian's entry {},{}"
-    if true.potential is not None:
+    if true.has_index:
         first, second = "gradient's entry {}", "Hessian's entry {},{}"
     for i, (text, row, equation) in enumerate(zip(system.gradient, system.hessian, true.equations, strict=True)):
         yield first.format(i), text, equation
@@ -215,12 +128,12 @@ def _pairs(system: System, true: _Polynomials) -> Iterator[tuple[str, str, fmpq_
         yield f"condition {k} for stability", text, p
 
 
-def _check_free_lengths(claims: Claims, ring: _Ring) -> None:
+def _check_free_lengths(claims: Claims, ring: Ring) -> None:
     """No spring has a free length on the slice; of one that is no parameter there it is zero."""
     model = claims.model.mechanism if isinstance(claims.model, ClosedMechanism) else claims.model
     if not isinstance(model, Mechanism):
         return
-    known = ring.configuration()
+    known = ring.configuration({})
     zero = {name: ring.context.constant(0) for name in model.free_lengths}
     within = Configuration({**known.parameters, **zero}, {})
     for spring in model.springs:
@@ -231,7 +144,7 @@ def _check_free_lengths(claims: Claims, ring: _Ring) -> None:
 
 def equation_factors(claims: Claims, weights: Sequence[Sequence[int]] = ()) -> list[fmpz_mpoly]:
     """For each equation on the slice, or sum of some by weights, the common factor of its coefficients in Z[x, y]."""
-    true = _polynomials(claims.model)
+    true = equations_of(claims.model)
     found = []
     sums = [sum((w * e for w, e in zip(row, true.equations, strict=True)), 0 * true.equations[0]) for row in weights]
     for equation in sums or true.equations:
@@ -246,7 +159,7 @@ def equation_factors(claims: Claims, weights: Sequence[Sequence[int]] = ()) -> l
 _PLANE: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("u", "v"), Ordering.lex)
 
 
-def _on_slice(claims: Claims, ring: _Ring, p: fmpq_mpoly) -> dict[tuple[int, ...], _Ratio]:
+def _on_slice(claims: Claims, ring: Ring, p: fmpq_mpoly) -> dict[tuple[int, ...], _Ratio]:
     """The coefficients, functions of the axes, of a polynomial in the coordinates."""
     expressions = claims.result.slice.parameters
 

@@ -17,7 +17,7 @@ from ptmcad.cover.rectangles import Cover
 from ptmcad.options import Progress
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.text.expressions import constant
-from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.points import check_cell, check_listed, counting_of
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.derivation import has_index, parameters_of, tells_stability
@@ -62,7 +62,7 @@ def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
                if pose.multiplicity == 1]  # fmt: skip
     for k, pose, box in regular:
         try:
-            signs = signs_of(claims, cell, found.parameters, box)
+            signs = signs_of(claims, cell, box)
         except Violation as violation:
             raise Violation(f"the box of pose {k + 1}: {violation}") from None
         index = signs.count("-") if has_index(model) else None

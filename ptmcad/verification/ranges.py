@@ -24,7 +24,7 @@ from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import fraction_of, integer_of, shortest_text
 from ptmcad.text.parsing import parse
 from ptmcad.verification.attainment import Lines, check_maxima
-from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.certified.points import counting_of
 from ptmcad.verification.claims import Claims

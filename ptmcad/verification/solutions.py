@@ -15,8 +15,7 @@ the number of solutions at which one is, and in the other boxes it is not. A box
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from fractions import Fraction
+from collections.abc import Sequence
 from itertools import combinations, islice, product
 from typing import NamedTuple
 
@@ -28,9 +27,8 @@ from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import approximate_text
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import Configuration, formulas, has_index, parameters_of
+from ptmcad.verification.equations import Polynomials, values_at
 from ptmcad.verification.inertia import bases, leading_minors, negative_eigenvalues
-from ptmcad.verification.jets import circle, jet_of, line
 from ptmcad.verification.report import Unchecked, Violation
 
 BITS = (64, 128, 256, 512, 1024, 2048, 4096)
@@ -46,11 +44,10 @@ def check_solutions(claims: Claims) -> str:
         if len(cell.solutions) != cell.total:
             raise Violation(f"cell {n} has {len(cell.solutions)} boxes of solutions, but {cell.total} equilibria")
         check_disjoint(n, cell, claims.model)
-        values = claims.parameters_at(*cell.sample)
         for k, solution in enumerate(cell.solutions):
             try:
-                _check_signs(claims, cell, values, solution)
-                undecided += not _is_alone(claims, cell, values, solution)
+                _check_signs(claims, cell, solution)
+                undecided += not _is_alone(claims, cell, solution)
             except Violation as violation:
                 center = ", ".join(map(approximate_text, solution.center))
                 radius = approximate_text(solution.radius)
@@ -66,21 +63,21 @@ def check_solutions(claims: Claims) -> str:
     return f"{number} boxes"
 
 
-def _check_signs(claims: Claims, cell: Cell, values: Mapping[str, Fraction], solution: Solution) -> None:
+def _check_signs(claims: Claims, cell: Cell, solution: Solution) -> None:
     """The box holds a solution that counts with these signs.
 
     Raises
     ------
     Violation
     """
-    true = signs_of(claims, cell, values, solution)
+    true = signs_of(claims, cell, solution)
     if true != solution.signs:
         what = "Hessian" if claims.describes_equilibria else "list of conditions for stability"
         are = "eigenvalues of signs" if claims.describes_equilibria else "the signs"
         raise Violation(f"the {what} at the solution in it has {are} {true!r}, not {solution.signs[:10]!r}")
 
 
-def signs_of(claims: Claims, cell: Cell, values: Mapping[str, Fraction], solution: Solution) -> str:
+def signs_of(claims: Claims, cell: Cell, solution: Solution) -> str:
     """The signs at the one solution that counts in a box: by Newton's method, else by trace forms.
 
     Raises
@@ -89,17 +86,17 @@ def signs_of(claims: Claims, cell: Cell, values: Mapping[str, Fraction], solutio
         When there is none, or several.
     """
     tried = product(range(1 + 2 * len(claims.model.unknowns)), _precisions(solution)[:_ATTEMPTS])
-    found = (_signs(claims.model, values, solution, bits, start) for start, bits in tried)
+    fibre = claims.fibre_at(*cell.sample)
+    found = (_signs(fibre.point, solution, bits, start) for start, bits in tried)
     if (signs := next((signs for signs in found if signs is not None), None)) is not None:
         return signs
-    fibre = claims.fibre_at(*cell.sample)
     number, place = fibre.within(solution.center, solution.radius, counted=True)
     if number != 1:
         raise Violation(f"{number or 'no'} solution{'s' * (number > 1)} found in it")
     return fibre.signs(place)
 
 
-def _is_alone(claims: Claims, cell: Cell, values: Mapping[str, Fraction], solution: Solution) -> bool:
+def _is_alone(claims: Claims, cell: Cell, solution: Solution) -> bool:
     """Whether a box that holds a solution that counts is proved to hold no other real one.
 
     Raises
@@ -112,7 +109,7 @@ def _is_alone(claims: Claims, cell: Cell, values: Mapping[str, Fraction], soluti
         return True  # all real solutions count, and have as many boxes that do not meet
     with ctx.workprec(_precisions(solution)[0]):
         around = [ball_of(x) + arb(0, ball_of(solution.radius)) for x in solution.center]
-        if all(p > 0 for p in _Functions(claims.model, values)(around).inequalities):
+        if all(p > 0 for p in _Functions(fibre.point)(around).inequalities):
             return True
     number, _ = fibre.within(solution.center, solution.radius, counted=False)
     if number > 1:
@@ -172,49 +169,29 @@ class _Values(NamedTuple):
 
 
 class _Functions:
-    """What solutions of a model satisfy, in balls, by jets of what the description lists."""
+    """What solutions of a model satisfy at a point, in balls."""
 
-    def __init__(self, model: Model, values: Mapping[str, Fraction]):
-        self.model = model
-        self.parameters = {name: ball_of(values[name]) for name in parameters_of(model)}
+    def __init__(self, point: Polynomials):
+        self.point, self.model = point, point.ring.model
 
-    def __call__(self, x: list[arb]) -> _Values:
-        angles, reals = self.model.angles, self.model.reals
-        circles = {angle: circle(k, x[2 * k], x[2 * k + 1]) for k, angle in enumerate(angles)}
-        lines = {name: line(len(angles) + k, x[2 * len(angles) + k]) for k, name in enumerate(reals)}
-        found = formulas(Configuration(self.parameters | lines, circles), self.model)
-        unknowns = range(len(angles) + len(reals))
-        zero = arb(0)
-        conditions = ([jet_of(p).value for p in some] for some in (found.inequalities, found.stability))
-        if found.energy is not None:
-            energy, moments = jet_of(found.energy), [jet_of(found.moment(i)) for i in unknowns]
-            return _Values(
-                [energy.slopes.get(i, zero) - moments[i].value for i in unknowns],
-                [
-                    [energy.bends.get((min(i, j), max(i, j)), zero) - moments[i].slopes.get(j, zero) for j in unknowns]
-                    for i in unknowns
-                ],
-                *conditions,
-            )
-        equations = [jet_of(e) for e in found.equations]
-        return _Values(
-            [e.value for e in equations],
-            [[e.slopes.get(i, zero) for i in unknowns] for e in equations],
-            *conditions,
-        )
+    def __call__(self, x: Sequence[arb]) -> _Values:
+        p, at = self.point, list(reversed(x))  # the ring has the coordinates the other way round
+        entries, size = values_at([entry for row in p.jacobian for entry in row], at), len(p.jacobian)
+        rows = [entries[size * i : size * (i + 1)] for i in range(size)]
+        return _Values(values_at(p.equations, at), rows, values_at(p.inequalities, at), values_at(p.stability, at))
 
 
-def _signs(model: Model, values: Mapping[str, Fraction], solution: Solution, bits: int, start: int) -> str | None:
+def _signs(point: Polynomials, solution: Solution, bits: int, start: int) -> str | None:
     """The signs at a solution that counts and is proved to be in the box; None when none is found from a start.
 
     Those of the Hessian's eigenvalues, or of the conditions for stability; where one of these is said to be zero it is
     left to `_check_zeros`.
     """
     with ctx.workprec(bits):
-        found = _proved(_Functions(model, values), solution, start)
+        found = _proved(_Functions(point), solution, start)
         if found is None or not all(p > 0 for p in found.inequalities):
             return None
-        if has_index(model):
+        if point.has_index:
             return _of_hessian(found.jacobian, BITS.index(bits))
         return _of_conditions(found.stability, solution.signs)
 

@@ -9,11 +9,11 @@ e = (L z - b)(L - b/z) and D = (L - b z)(L - b/z), and 1/w is the conjugate of t
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import permutations
 from typing import Any, NamedTuple
 
 from flint import fmpq
 
+from ptmcad.verification.inertia import determinant
 from ptmcad.verification.loops import Lifting, Second
 
 _Complex = tuple[Any, Any]
@@ -131,7 +131,7 @@ def conditions(
             value = far.value * value - total.value * far.slopes[i] * fmpq(power)
         equations.append(value)
         rows.append(slopes)
-    minors = tuple(_determinant([row[:k] for row in rows[:k]]) for k in range(1, count + 1))
+    minors = tuple(determinant([row[:k] for row in rows[:k]]) for k in range(1, count + 1))
     distances = tuple(far.value for _, far in ways) if len(ways) > 1 else ()
     return Conditions(tuple(equations), distances, minors)
 
@@ -141,14 +141,3 @@ def _second_bar(base: Second, bars: Second, cosine: Second, sine: Second) -> tup
     ahead = bars * cosine - base, bars * sine
     back = bars - base * cosine, base * sine
     return _product(ahead, back), back[0] * back[0] + back[1] * back[1]
-
-
-def _determinant(rows: Sequence[Sequence[Any]]) -> Any:
-    total: Any = fmpq(0)
-    for order in permutations(range(len(rows))):
-        inversions = sum(order[a] > order[b] for b in range(len(order)) for a in range(b))
-        term: Any = fmpq(-1 if inversions % 2 else 1)
-        for row, k in zip(rows, order, strict=True):
-            term = row[k] * term
-        total = term + total
-    return total

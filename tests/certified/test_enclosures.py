@@ -11,6 +11,7 @@ import pytest
 from flint import arb, ctx
 from numpy.typing import NDArray
 from support.few import few
+from support.paper_energy import PaperEnergy, energy_at
 
 from ptmcad.text.balls import ball_of
 
@@ -27,9 +28,6 @@ from ptmcad.certified.search import search_curve
 from ptmcad.certified.tape import Tape, record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
-from ptmcad.verification.certified.energy import Energy
-from ptmcad.verification.certified.parameters import energy_at
-from ptmcad.verification.certified.vectors import NAMES
 
 Floats = NDArray[np.float64]
 SLICES = {
@@ -99,8 +97,8 @@ def test_a_tape_encloses_all_its_nodes(name: str) -> None:
                         assert not value > bounds[1], (place, tape.operations[place])
 
 
-def energy(slice: Slice, x: Fraction, y: Fraction) -> Energy:
-    return energy_at({n: slice.parameters[n].evaluate(x, y) if n in slice.parameters else Fraction(0) for n in NAMES})
+def energy(slice: Slice, x: Fraction, y: Fraction) -> PaperEnergy:
+    return energy_at(lambda n: slice.parameters[n].evaluate(x, y) if n in slice.parameters else Fraction(0))
 
 
 @pytest.mark.parametrize("name", SLICES)

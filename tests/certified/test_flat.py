@@ -11,6 +11,7 @@ import pytest
 from flint import arb, ctx
 from numpy.typing import NDArray
 from support.dense_search import dense_search
+from support.paper_energy import PaperEnergy, energy_at
 
 from ptmcad.text.balls import ball_of
 
@@ -30,9 +31,6 @@ from ptmcad.certified.search import search_curve
 from ptmcad.certified.tape import record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
-from ptmcad.verification.certified.energy import Energy
-from ptmcad.verification.certified.parameters import energy_at
-from ptmcad.verification.certified.vectors import NAMES
 
 Floats = NDArray[np.float64]
 UNLOADED = {"L1": "4/5", "k1": "90", "k2": "110", "k3": "70", "l0_1": "1/4", "l0_2": "1/5", "l0_3": "3/10"}
@@ -51,8 +49,8 @@ def slice_of(**changes: str) -> Slice:
     return slice_from_mapping({"name": "s", "parameters": given, "axes": {"rho": ["1/20", "2"], "L2": ["1/10", "2"]}})
 
 
-def energy(slice: Slice, x: Fraction, y: Fraction) -> Energy:
-    return energy_at({n: slice.parameters[n].evaluate(x, y) if n in slice.parameters else Fraction(0) for n in NAMES})
+def energy(slice: Slice, x: Fraction, y: Fraction) -> PaperEnergy:
+    return energy_at(lambda n: slice.parameters[n].evaluate(x, y) if n in slice.parameters else Fraction(0))
 
 
 def test_which_slices_have_the_mirror() -> None:

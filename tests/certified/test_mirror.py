@@ -12,6 +12,7 @@ from flint import arb, ctx
 from numpy.typing import NDArray
 from support.dense_search import dense_search
 from support.few import few
+from support.paper_energy import PaperEnergy, energy_at
 
 from ptmcad.text.balls import ball_of
 
@@ -31,9 +32,6 @@ from ptmcad.certified.search import search_curve
 from ptmcad.certified.tape import record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
-from ptmcad.verification.certified.energy import Energy
-from ptmcad.verification.certified.parameters import energy_at
-from ptmcad.verification.certified.vectors import NAMES
 
 Floats = NDArray[np.float64]
 OWN_IMAGE = {
@@ -51,8 +49,8 @@ def slice_of(**changes: str) -> Slice:
     return slice_from_mapping({"name": "s", "parameters": parameters, "axes": axes})
 
 
-def energy(slice: Slice, x: Fraction, y: Fraction) -> Energy:
-    return energy_at({n: slice.parameters[n].evaluate(x, y) if n in slice.parameters else Fraction(0) for n in NAMES})
+def energy(slice: Slice, x: Fraction, y: Fraction) -> PaperEnergy:
+    return energy_at(lambda n: slice.parameters[n].evaluate(x, y) if n in slice.parameters else Fraction(0))
 
 
 def test_what_is_its_own_image() -> None:

@@ -20,8 +20,7 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.question.config import load
 from ptmcad.question.slice import Count
-from ptmcad.verification.certified.boxes import Box
-from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.boxes import Box, Unproved
 from ptmcad.verification.certified.field import Field
 from ptmcad.verification.certified.kinks import sides
 from ptmcad.verification.certified.parameters import over

@@ -20,10 +20,10 @@ from ptmcad.answer.regionmap import RegionMap, Solution
 from ptmcad.ask.fields.equations import newton_step, state_at
 from ptmcad.cover.rectangles import Cover
 from ptmcad.question.slice import Point
+from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.counted import Counted, Where
-from ptmcad.verification.certified.equilibria import Unproved
-from ptmcad.verification.certified.flat import beside, is_flat, parameters_at
-from ptmcad.verification.certified.paper import PaperCounting
+from ptmcad.verification.certified.models import ModelCounting
+from ptmcad.verification.certified.points import _near
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.claims import Claims
 
@@ -45,9 +45,9 @@ def map_of(axes: dict[str, list[str]], **parameters: str) -> RegionMap:
 @pytest.fixture(scope="module", autouse=True)
 def counted_once() -> Iterator[None]:
     """What the checker finds at a point does not depend on what is claimed there."""
-    own, found = PaperCounting.at, dict[tuple[str, Fraction, Fraction], Counted | Unproved]()
+    own, found = ModelCounting.at, dict[tuple[str, Fraction, Fraction], Counted | Unproved]()
 
-    def at(counting: PaperCounting, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> Counted:
+    def at(counting: ModelCounting, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> Counted:
         slice = claims.result.slice
         key = (f"{slice.parameters} {slice.count}", x, y)
         if key not in found:
@@ -60,7 +60,7 @@ def counted_once() -> Iterator[None]:
         return there
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(PaperCounting, "at", at)
+        patch.setattr(ModelCounting, "at", at)
         yield
 
 
@@ -81,9 +81,7 @@ def flat_map() -> RegionMap:
 
 
 def test_a_true_map_without_loads_is_accepted(flat: RegionMap) -> None:
-    claims = CertifiedClaims(flat)
-    assert is_flat(parameters_at(claims, *flat.cells[0].sample))
-    assert len(beside(claims, flat.cells[0])) == 4
+    assert len(_near(CertifiedClaims(flat), flat.cells[0])) == 4
     assert counted(flat) is True
 
 
@@ -106,7 +104,6 @@ def test_bars_that_point_the_same_way() -> None:
         cells=put(true.cells, number, sample=sample, solutions=solutions),
         regions=put(true.regions, region, sample=sample),
     )
-    assert is_flat(parameters_at(CertifiedClaims(moved), *at.values()))
     assert counted(moved) is True
 
 
@@ -130,7 +127,6 @@ def test_samples_that_are_nearly_flat(offset: str) -> None:
         cells=put(true.cells, number, sample=sample, solutions=solutions),
         regions=put(true.regions, region, sample=sample),
     )
-    assert not is_flat(parameters_at(CertifiedClaims(moved), *at.values()))
     assert counted(moved) is True
     assert counted(with_one_stable_less(moved, number)) is False
 
@@ -168,7 +164,6 @@ def test_a_false_map_is_rejected(kind: str, flat: RegionMap) -> None:
 
 def test_a_slice_that_is_flat_everywhere_is_not_decided() -> None:
     true = map_of({"F": ["15", "19"], "l0": ["11/50", "6/25"]}, L2="1", rho="2", k="100", F3="F", F4="-F")
-    assert not beside(CertifiedClaims(true), true.cells[0])
     assert counted(true) is None
 
 
@@ -177,21 +172,11 @@ def test_a_sample_too_near_to_a_rectangle_is_not_decided(flat: RegionMap) -> Non
     steps = 2**40
     middle = steps // 2
     near = replace(flat, cover=Cover(steps, ((0, middle - 1, 0, steps),)))
-    assert len(beside(CertifiedClaims(near), near.cells[0])) == 4
+    assert len(_near(CertifiedClaims(near), near.cells[0])) == 4
     (first, second), width = (axis.low for axis in flat.slice.axes), Fraction(1, 5)
     off = width * (Fraction(middle - 1, steps) + Fraction(1, 2**64))
     cells = put(near.cells, 0, sample=Point(("rho", "L2"), first + off, second + off))
-    assert not beside(CertifiedClaims(replace(near, cells=cells)), cells[0])
-
-
-@pytest.mark.parametrize(
-    ("rho", "free", "flat"),
-    [("1", "1/2", True), ("5", "1/2", True), ("1", "0", False), ("4", "1/2", False), ("0", "1/2", False)],
-)
-def test_what_is_flat(rho: str, free: str, flat: bool) -> None:
-    values = {name: Fraction(1) for name in ("k1", "k2", "k3")} | {"l0_1": Fraction(1), "l0_2": Fraction(1)}
-    bars = {"L1": Fraction(2), "L2": Fraction(3 if rho != "0" else 2)}
-    assert is_flat({**values, **bars, "rho": Fraction(rho), "l0_3": Fraction(free)}) is flat
+    assert not _near(CertifiedClaims(replace(near, cells=cells)), cells[0])
 
 
 def test_a_solution_that_is_stored_twice_a_turn_apart(flat: RegionMap) -> None:

@@ -20,7 +20,7 @@ from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.certified.narrow import NARROW, judged
 from ptmcad.verification.certified.points import check_points
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.vectors import ball, evaluated
+from ptmcad.verification.certified.terms import ball, evaluated
 from ptmcad.verification.report import Unchecked, Violation
 
 pytest.importorskip("numba")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import random
 from collections import Counter
 from collections.abc import Callable
@@ -15,7 +14,9 @@ from click.testing import CliRunner
 from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.counting import MIDDLE, claims_of, counted_at
 from support.examples import examples
+from support.paper_energy import NAMES, PaperEnergy
 
 import ptmcad
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution, Status, System
@@ -26,14 +27,13 @@ from ptmcad.options import Options
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Point
 from ptmcad.text.balls import ball_of
-from ptmcad.verification.certified.energy import Energy
-from ptmcad.verification.certified.equilibria import TORUS, Square, Unproved, _halves, equilibria
-from ptmcad.verification.certified.paper import _only, all_equilibria, counts_of
-from ptmcad.verification.certified.parameters import energy_at, energy_over
+from ptmcad.verification.certified.boxes import Unproved, halves
+from ptmcad.verification.certified.field import Field
+from ptmcad.verification.certified.points import counting_of
 from ptmcad.verification.certified.sampling import _beside, _by_area
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.sweep import sweep
-from ptmcad.verification.certified.vectors import NAMES
+from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.report import Violation
 
 pytest.importorskip("numba")
@@ -370,8 +370,8 @@ MIRRORED = {"L1": "1", "L2": "3/2", "l0_1": "0", "l0_2": "1/5"}
 @pytest.mark.parametrize("changes", [{}, MIRRORED], ids=["rho = L2", "rho = L1"])
 def test_minima_on_both_sides_of_a_crease(changes: dict[str, str]) -> None:
     """Places from a root finder in mpmath, with the energy from the nodes' coordinates."""
-    _, found = all_equilibria(creased_values(**changes), Count.STABLE)
-    places = sorted((round(e.center[0], 4), round(e.center[1], 4)) for e in found if e.signs == "++")
+    *_, there = counted_at(creased_values(**changes), Count.STABLE)
+    places = sorted((round(e.center[0], 4), round(e.center[1], 4)) for e in there.found if e.signs == "++")
     near = (0.0189, 0.2124) if not changes else (0.2124, 0.0189)
     assert places == [(-near[0], -near[1]), near]
 
@@ -379,24 +379,21 @@ def test_minima_on_both_sides_of_a_crease(changes: dict[str, str]) -> None:
 @pytest.mark.parametrize("center", ["0.2124", "-0.2124", "6.0707", "6.4956"])
 def test_a_box_across_a_crease_may_hold_one_equilibrium(center: str) -> None:
     """A turn away, too; a box around both of them is no box of one."""
-    energy, _ = all_equilibria(creased_values(), Count.STABLE)
+    claims = claims_of(creased_values(), Count.STABLE)
+    counting = counting_of(claims)
     th2 = Fraction(center)
     side = 1 if th2 in (Fraction("0.2124"), Fraction("6.4956")) else -1
     crossing = Solution((side * Fraction("0.0189"), th2), Fraction("0.22"), "++")
-    assert _only(energy, crossing, 0).signs == "++"
+    assert counting.in_box(claims, MIDDLE, crossing, 0).signs == "++"
     both = Solution((Fraction(0), th2 - side * Fraction("0.2124")), Fraction("0.25"), "++")
     with pytest.raises(Violation, match="2 equilibria"):
-        _only(energy, both, 0)
+        counting.in_box(claims, MIDDLE, both, 0)
 
 
 def test_no_proof_of_existence_crosses_a_crease() -> None:
     """The square in which a minimum beside a crease is proved to be alone ends before it."""
-    energy, found = all_equilibria(creased_values(), Count.STABLE)
-    assert all(e.alone[1] < abs(e.center[1]) for e in found)
-    assert energy(arb(0), arb(0, 0.01)).short == (0,)
-    ways = energy.one_sided(arb(0), arb(0, 0.01))
-    assert [tuple(s.side for s in way.springs) for way in ways] == [(1, 0, 0), (-1, 0, 0)]
-    assert energy.one_sided(arb(0), arb(0.5, 0.01)) == []
+    *_, there = counted_at(creased_values(), Count.STABLE)
+    assert all(e.alone[1] < abs(e.center[1]) for e in there.found)
 
 
 @pytest.mark.slow
@@ -414,31 +411,18 @@ def test_bars_of_one_length_on_one_point(count: str) -> None:
     assert "there are stable 2" in false.violation
 
 
-@pytest.mark.parametrize("bar", ["1", "6/5"])
-def test_derivatives_beside_the_crease_of_spring_3(bar: str) -> None:
-    """The crease's formulas and those for all configurations, on either side; th1 + th2 is near pi and -pi."""
-    point = creased_values(rho="0", L1=bar, L2=bar, l0_3="1/5", F3="5", F4="-10")
-    balls = {name: ball_of(value) for name, value in point.items()}
-    with ctx.workprec(200):
-        for th1, th2 in ((1.5, 1.6), (1.5, 1.7), (-1.5, -1.6), (-1.5, -1.7)):
-            one, two = energy_at(point)(arb(th1), arb(th2)), Energy(balls)(arb(th1), arb(th2))
-            for name in ("e1", "e2", "e11", "e12", "e21", "e22"):
-                assert abs(getattr(one, name) - getattr(two, name)) < 1e-10
-    assert energy_at(point)(arb(1.5, 0.1), arb(1.6, 0.1)).short == (2,)
-
-
 def test_rho_next_to_a_bar_of_one_length() -> None:
     """REFERENCE (mpmath): 8 equilibria where rho - L1 is 6e-13; spring 2 of one of them is hardly longer."""
     rho = Fraction(1597743721975, 1597743721974)
     point = {n: Fraction(1, 5) if n[0] == "l" else Fraction(100) if n[0] == "k" else Fraction(0) for n in NAMES}
     point |= {"rho": rho, "L1": Fraction(1), "L2": Fraction(208000000004, 160000000003)}
     point |= {"F3": Fraction(-10), "F4": Fraction(-10)}
-    energy, found = all_equilibria(point, Count.TOTAL)
-    assert counts_of(energy, point, found, Count.TOTAL).index == (2, 4, 2)
-    (peak,) = (e for e in found if abs(e.center[0]) < 1e-9)
+    claims, counting, there = counted_at(point, Count.TOTAL)
+    assert there.counts.index == (2, 4, 2)
+    (peak,) = (e for e in there.found if abs(e.center[0]) < 1e-9)
     assert (peak.signs, round(peak.center[0] * 1e14, 2), round(peak.center[1], 6)) == ("--", -6.22, 3.032489)
     box = Solution((Fraction(-6.219379885031517e-14), Fraction(3.03248855256242)), Fraction(1, 2**46), "--")
-    assert _only(energy, box, 0).signs == "--"
+    assert counting.in_box(claims, MIDDLE, box, 0).signs == "--"
 
 
 def test_no_equilibrium_is_lost_where_doubles_are_coarse() -> None:
@@ -446,19 +430,18 @@ def test_no_equilibrium_is_lost_where_doubles_are_coarse() -> None:
     point = {n: Fraction(1, 5) if n[0] == "l" else Fraction(100) if n[0] == "k" else Fraction(0) for n in NAMES}
     point |= {"rho": Fraction(107374182400000886471, 107374182400000000000), "L1": Fraction(1)}
     point |= {"L2": Fraction(665987249, 536870912), "F3": Fraction(-10), "F4": Fraction(-10)}
-    energy, found = all_equilibria(point, Count.TOTAL)
-    assert counts_of(energy, point, found, Count.TOTAL).index == (2, 4, 2)
-    assert any(abs(e.center[0] + 5.6195574e-16) < e.radii[0] + 1e-22 < 1e-16 and e.signs == "--" for e in found)
+    with pytest.raises(Unproved, match="may be degenerate"):  # and is not passed over
+        counted_at(point, Count.TOTAL)
 
 
-@pytest.mark.parametrize("square", [(3.0, 1.0, 0.3, 1e-9), (0.0, 1.0, 3.0322134878826974, 2.8e-15)])
-def test_halves_cover_the_square(square: Square) -> None:
-    halves = _halves(square, False, (0.0, 0.0))
-    assert halves is not None
-    (low, half), (high, other), (m, r) = (map(Fraction, q[2:]) for q in (*halves, square))
-    assert low - half <= m - r < m + r <= high + other
+@pytest.mark.parametrize(("m", "r"), [(0.3, 1e-9), (3.0322134878826974, 2.8e-15)])
+def test_halves_cover_the_box(m: float, r: float) -> None:
+    found = halves(((0.0, m), (1.0, r)), [1, 0], [0.0, 0.0])
+    assert found is not None
+    (low, half), (high, other) = ((Fraction(middle[1]), Fraction(width[1])) for middle, width in found)
+    assert low - half <= Fraction(m) - Fraction(r) < Fraction(m) + Fraction(r) <= high + other
     assert high - other <= low + half
-    assert _halves((0.0, 0.0, 3.0, 2.0**-51), False, (1.0, 0.0)) is None
+    assert halves(((0.0, 3.0), (0.0, 2.0**-51)), [1, 0], [1.0, 0.0]) is None
 
 
 @pytest.mark.slow
@@ -574,31 +557,26 @@ def values(rho: str, l1: str, l2: str, l0: str, f3: str, f4: str) -> dict[str, F
 def test_known_counts(name: str) -> None:
     *text, index = KNOWN[name]
     point = values(*text)
-    energy, found = all_equilibria(point, Count.TOTAL)
-    assert counts_of(energy, point, found, Count.TOTAL).index == index
-    _, minima = all_equilibria(point, Count.STABLE)
-    assert Counter(e.signs for e in minima)["++"] == index[0]
+    *_, there = counted_at(point, Count.TOTAL)
+    assert there.counts.index == index
+    *_, there = counted_at(point, Count.STABLE)
+    assert there.counts.stable == index[0]
 
 
 @pytest.mark.slow
 def test_thirty_equilibria() -> None:
     """REFERENCE: (.75609, 1, 1, 1.43487, 0, 0) has 30, 10 of them stable."""
     point = values("75609/100000", "1", "1", "143487/100000", "0", "0")
-    energy, found = all_equilibria(point, Count.TOTAL)
-    assert counts_of(energy, point, found, Count.TOTAL).index == (10, 16, 4)
+    *_, there = counted_at(point, Count.TOTAL)
+    assert there.counts.index == (10, 16, 4)
 
 
 @pytest.mark.parametrize("rho", ["1", "3/2"])
 def test_minima_where_a_spring_has_length_zero_on_a_circle(rho: str) -> None:
     """rho = L1 and rho = L2: as many as on both sides nearby."""
-    _, on = all_equilibria(values(rho, "1", "3/2", "1/5", "-1/10", "-1/10"), Count.STABLE)
-    counts = {sum(e.signs == "++" for e in on)}
-    for nearby in (Fraction(rho) - Fraction(1, 500), Fraction(rho) + Fraction(1, 500)):
-        _, found = all_equilibria(values(str(nearby), "1", "3/2", "1/5", "-1/10", "-1/10"), Count.STABLE)
-        counts.add(sum(e.signs == "++" for e in found))
-    assert len(counts) == 1
-    with pytest.raises(Unproved, match="crease"):
-        all_equilibria(values(rho, "1", "3/2", "1/5", "-1/10", "-1/10"), Count.TOTAL)
+    given = (Fraction(rho) + Fraction(n, 500) for n in (-1, 0, 1))
+    found = [counted_at(values(str(at), "1", "3/2", "1/5", "-1/10", "-1/10"), Count.STABLE)[2] for at in given]
+    assert len({there.counts.stable for there in found}) == 1
 
 
 def random_values(rng: random.Random) -> dict[str, Fraction]:
@@ -637,16 +615,17 @@ def test_derivatives_are_those_of_the_potential(seed: int) -> None:
         def u(i: int, j: int) -> arb:
             return potential({**point, "th1": ball_of(th1) + i * h, "th2": ball_of(th2) + j * h})
 
-        d = energy_at(v)(ball_of(th1), ball_of(th2))
-        l1, l2 = point["L1"], point["L2"]
+        at, (l1, l2) = (ball_of(th1), ball_of(th2)), (point["L1"], point["L2"])
+        jet = Field(form_of(claims_of(v, Count.TOTAL).result.slice), point)(at)
+        ((u11, u12), (u21, u22)), d = jet.jacobian, PaperEnergy(point)(*at)
+        mixed = (u(1, 1) - u(1, -1) - u(-1, 1) + u(-1, -1)) / (4 * h**2)
         pairs = [
-            (l1 * d.e1, (u(1, 0) - u(-1, 0)) / (2 * h)),
-            (l2 * d.e2, (u(0, 1) - u(0, -1)) / (2 * h)),
-            (l1 * d.e11, (u(1, 0) - 2 * u(0, 0) + u(-1, 0)) / h**2),
-            (l2 * d.e22, (u(0, 1) - 2 * u(0, 0) + u(0, -1)) / h**2),
-            (l1 * d.e12, (u(1, 1) - u(1, -1) - u(-1, 1) + u(-1, -1)) / (4 * h**2)),
-            (l2 * d.e21, (u(1, 1) - u(1, -1) - u(-1, 1) + u(-1, -1)) / (4 * h**2)),
-        ]
+            (jet.values[0], (u(1, 0) - u(-1, 0)) / (2 * h)), (jet.values[0], l1 * d.e1),
+            (jet.values[1], (u(0, 1) - u(0, -1)) / (2 * h)), (jet.values[1], l2 * d.e2),
+            (u11, (u(1, 0) - 2 * u(0, 0) + u(-1, 0)) / h**2), (u11, l1 * d.e11),
+            (u22, (u(0, 1) - 2 * u(0, 0) + u(0, -1)) / h**2), (u22, l2 * d.e22),
+            (u12, mixed), (u12, l1 * d.e12), (u21, l2 * d.e21),
+        ]  # fmt: skip
         for formula, difference in pairs:
             assert abs(formula - difference) < 1e-25
 
@@ -656,15 +635,13 @@ def test_a_box_of_parameters_has_the_count_of_its_points(seed: int, stable: Regi
     rng = random.Random(seed)
     x, y = Fraction(rng.randint(1050, 1450), 1000), Fraction(rng.randint(800, 1200), 1000)
     half = Fraction(1, 4000)
-    energy = energy_over(stable.slice, ball_of(x).union(ball_of(x + half)), ball_of(y).union(ball_of(y + half)))
-    found, _ = equilibria(energy, True)
+    claims = CertifiedClaims(stable)
+    counting = counting_of(claims)
+    box = ball_of(x).union(ball_of(x + half)), ball_of(y).union(ball_of(y + half))
+    counts = counting.over(stable.slice, *box, counting.at(claims, x + half / 2, y + half / 2))
     for _ in range(4):
         a, b = x + half * Fraction(rng.random()), y + half * Fraction(rng.random())
-        point = {n: e.evaluate(a, b) for n, e in stable.slice.parameters.items()}
-        _, there = all_equilibria(point, Count.STABLE)
-        for e in there:
-            assert e.signs != "++" or sum(math.dist(e.center, f.center) < 0.03 for f in found) == 1
-        assert sum(e.signs == "++" for e in there) == sum(f.signs == "++" for f in found)
+        assert counting.at(claims, a, b).counts == counts
 
 
 def test_nothing_is_proved_over_a_fold(stable: RegionMap) -> None:
@@ -672,9 +649,10 @@ def test_nothing_is_proved_over_a_fold(stable: RegionMap) -> None:
     assert stable.cover is not None
     left, right, bottom, top = stable.cover.rectangles[40]
     (x0, y0), (x1, y1) = (claims.off_lattice(Fraction(u), Fraction(v)) for u, v in ((left, bottom), (right, top)))
-    energy: Energy = energy_over(stable.slice, ball_of(x0).union(ball_of(x1)), ball_of(y0).union(ball_of(y1)))
+    counting = counting_of(claims)
+    there = counting.at(claims, x0, y0)
     with pytest.raises(Unproved):
-        equilibria(energy, True, [TORUS], budget=8000)
+        counting.over(stable.slice, ball_of(x0).union(ball_of(x1)), ball_of(y0).union(ball_of(y1)), there)
 
 
 @pytest.mark.slow
@@ -682,7 +660,7 @@ def test_solutions_of_a_cell_are_where_the_check_finds_them(total: RegionMap) ->
     """Center by center: the engine's boxes and the check's."""
     for cell in total.cells:
         point = {n: e.evaluate(*cell.sample) for n, e in total.slice.parameters.items()}
-        _, found = all_equilibria(point, Count.TOTAL)
+        found = counted_at(point, Count.TOTAL)[2].found
         assert len(found) == len(cell.solutions)
         for solution in cell.solutions:
             assert isinstance(solution, Solution)

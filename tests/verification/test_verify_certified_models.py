@@ -17,31 +17,31 @@ import yaml
 from flint import arb, ctx
 from forger import certified
 from forger.consistency import drop, put
+from support.counting import counted_at
 from support.few import few
+from support.free_length_equilibria import free_length_equilibria
 from support.maps import CONFIGS, once_per_run
+from support.paper_energy import NAMES
 from support.records import TRUSS
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Solution, Status
 from ptmcad.mechanism import Model
-from ptmcad.mechanism.ptm import RECORD
 from ptmcad.options import Options
 from ptmcad.question.slice import Count, Point
 from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import constant
 from ptmcad.text.tree import Chain, Name, Number, Step
 from ptmcad.verification.certified import models, points
-from ptmcad.verification.certified.boxes import Zero
+from ptmcad.verification.certified.boxes import Unproved, Zero
 from ptmcad.verification.certified.counted import Counts
-from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.field import Field
 from ptmcad.verification.certified.models import ModelCounting
-from ptmcad.verification.certified.paper import PaperCounting
-from ptmcad.verification.certified.powers import power
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import zeros
 from ptmcad.verification.certified.spectrum import inertia, is_no_minimum
 from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.certified.terms import power
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
@@ -528,18 +528,14 @@ def test_a_negative_eigenvalue_is_told_by_entries_minors_and_determinant(rows: l
 
 @pytest.mark.parametrize("seed", few(range(3), 1))
 def test_the_paper_s_mechanism_counted_in_two_ways(seed: int) -> None:
-    """By the formulas of its own, and by those that its description gives."""
-    slice = ptmcad.slice_from_mapping({
-        "name": "other", "mechanism": {k: v for k, v in RECORD.items() if k != "symmetries"} | {"name": "other"},
-        "axes": {"rho": [1, 2], "L2": [1, 2]},
-    })  # fmt: skip
-    model = slice.model
+    """By balls, and by Newton's method from a grid, with derivatives that were written down by hand."""
     rng = random.Random(seed)
-    values = {n: Fraction(rng.randint(20, 200), 100) for n in model.variables}
-    values |= {n: Fraction(rng.randint(-200, 200), 100) for n in model.forces}
-    for count in (Count.INDEX, Count.STABLE):
-        one = counts_at(PaperCounting(), model, values, count)
-        assert counts_at(ModelCounting(form_of(slice)), model, values, count) == one
+    given = {n: Fraction(rng.randint(80, 120), 100) for n in ("rho", "L1", "L2")}
+    given |= {"l0": Fraction(rng.randint(10, 30), 100)} | {n: Fraction(rng.randint(-20, 20), 100) for n in ("F3", "F4")}
+    values = given | {f"k{k}": Fraction(1) for k in (1, 2, 3)} | {f"l0_{k}": given["l0"] for k in (1, 2, 3)}
+    values = {n: values.get(n, Fraction(0)) for n in NAMES}
+    *_, there = counted_at(values, Count.INDEX)
+    assert there.counts.total == free_length_equilibria(*map(float, given.values()))
 
 
 @pytest.mark.parametrize("name", ["cubic", "well", "oscillators"])
@@ -624,11 +620,11 @@ def test_a_solution_on_the_edge_of_a_stored_box_is_not_decided() -> None:
         claims: Claims = _At(model, {"a": Fraction(a), "b": Fraction(0)}, Count.TOTAL)  # type: ignore[assignment]
         there = counting.at(claims, Fraction(0), Fraction(0))
         assert there.counts.total == 3
-        (found,) = counting.within(there, [Solution((Fraction(5, 4),), Fraction(3, 8), "")])
+        (found,) = counting.within(there.values, [Solution((Fraction(5, 4),), Fraction(3, 8), "")])
         assert abs(found.center[0] - a**0.5) < 1e-12
         edge = Fraction(1) if a == 1 else Fraction(3, 2)
         with pytest.raises((Unproved, Violation), match=outside):
-            counting.within(there, [Solution((edge + Fraction(1, 4),), Fraction(1, 4), "")])
+            counting.within(there.values, [Solution((edge + Fraction(1, 4),), Fraction(1, 4), "")])
 
 
 def test_nothing_is_proved_of_a_double_solution() -> None:

@@ -23,7 +23,7 @@ pytest.importorskip("numba")
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.verification.certified import held, ranges
-from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.waves import Form, form_of
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from flint import arb, ctx, fmpq
+from flint import arb, ctx, fmpq, fmpz_poly
 from support.few import few
 
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.verification import roots, sturm
 from ptmcad.verification.branches import Branch, Effort, Part, integrals_over
 from ptmcad.verification.claims import PlaneCurve
+from ptmcad.verification.roots import numbered_root
 
 HEIGHTS = (fmpq(-3), fmpq(3))
 
@@ -96,3 +98,111 @@ def test_heights_are_the_roots_that_were_asked_for(share: fmpq) -> None:
         above = Branch.of(curve, 0).height(share, fmpq(0), fmpq(3))
         assert above is not None
         assert above.overlaps(roots[0])
+
+
+Terms = list[tuple[int, int, int]]
+EFFORT = Effort(arb(2) ** -30, fmpq(1, 10**9), fmpq(1, 10**12), HEIGHTS, (2, 10))
+NEAR, FAR = fmpq(1, 10**9), fmpq(1, 2)
+POINTS: dict[str, tuple[Terms, int, Callable[[arb], arb]]] = {
+    "turning point: v^2 = u": ([(0, 2, 1), (1, 0, -1)], 1, lambda u: u * u.sqrt() * 2 / 3),
+    "turning point, lower branch": ([(0, 2, 1), (1, 0, -1)], 0, lambda u: -u * u.sqrt() * 2 / 3),
+    "turning point below another branch": (
+        [(0, 3, 1), (1, 1, -1), (0, 2, -2), (1, 0, 2)],
+        1,
+        lambda u: u * u.sqrt() * 2 / 3,
+    ),
+    "node: v^2 = u^2 (1 + u)": (
+        [(0, 2, 1), (2, 0, -1), (3, 0, -1)],
+        1,
+        lambda u: (1 + u) ** 2 * (1 + u).sqrt() * 2 / 5 - (1 + u) * (1 + u).sqrt() * 2 / 3,
+    ),
+    "cusp: (v - u)^2 = u^3": (
+        [(0, 2, 1), (1, 1, -2), (2, 0, 1), (3, 0, -1)],
+        1,
+        lambda u: u * u / 2 + u * u * u.sqrt() * 2 / 5,
+    ),
+    "upright cusp: v^3 = u^2": ([(0, 3, 1), (2, 0, -1)], 0, lambda u: (u**5).root(3) * 3 / 5),
+    "upright inflection: v^3 = 2 u": ([(0, 3, 1), (1, 0, -2)], 0, lambda u: (2 * u).root(3) * u * 3 / 4),
+    "blunt cusp beside a line: (v + u)^3 = u^4": (
+        [(0, 3, 1), (1, 2, 3), (2, 1, 3), (3, 0, 1), (4, 0, -1)],
+        0,
+        lambda u: -u * u / 2 + u * u * u.root(3) * 3 / 7,
+    ),
+    "cusp of branches that touch: (v - u^2)^2 = u^5": (
+        [(0, 2, 1), (2, 1, -2), (4, 0, 1), (5, 0, -1)],
+        0,
+        lambda u: u**3 / 3 - u**3 * u.sqrt() * 2 / 7,
+    ),
+}
+
+
+def branch_of(terms: Terms, root: int) -> Branch:
+    return Branch.of(PlaneCurve.of(0, PlanePolynomial.of(terms), 0), root)
+
+
+@pytest.mark.parametrize("name", POINTS)
+def test_panels_that_are_halved_come_near_to_a_critical_value(name: str) -> None:
+    """Where the branch is not analytic, or meets others: few panels are needed for 1e-7."""
+    terms, root, antiderivative = POINTS[name]
+    branch, total, number = branch_of(terms, root), arb(0), 0
+    with ctx.workprec(128):
+        waiting = [(NEAR, FAR, True)]
+        while waiting:
+            left, right, whole = waiting.pop()
+            number += 1
+            for part in integrals_over(branch, left, right, EFFORT):
+                if part.integral.rad() < arb(2) ** -26:
+                    total += part.integral + HEIGHTS[0] * (part.right - part.left)
+                elif whole and part.tried:
+                    middle = (part.left + part.right) / 2
+                    waiting += [(part.left, middle, True), (middle, part.right, True)]
+                else:
+                    waiting.append((part.left, part.right, True))
+        assert number < 200
+        assert total.overlaps(antiderivative(arb(FAR)) - antiderivative(arb(NEAR)))
+        assert total.rad() < 1e-6
+
+
+def test_a_root_is_found_in_a_window_of_any_size(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In few steps: the window is cut to what may hold roots at first."""
+    asked = []
+
+    def changes_of(p: fmpz_poly) -> Callable[[fmpq], int]:
+        changes = sturm.changes_of(p)
+
+        def counted(at: fmpq) -> int:
+            asked.append(at)
+            return changes(at)
+
+        return counted
+
+    monkeypatch.setattr(roots, "changes_of", changes_of)
+    far = fmpq(10) ** 300
+    for p, expected in (
+        (fmpz_poly([-1, 3]), [fmpq(1, 3)]),
+        (fmpz_poly([-6, 11, -6, 1]), [fmpq(1), fmpq(2), fmpq(3)]),
+        (fmpz_poly([0, -(10**40), 1]), [fmpq(0), fmpq(10**40)]),
+        (fmpz_poly([-1, 0, 10**40]), [fmpq(-1, 10**20), fmpq(1, 10**20)]),
+        (fmpz_poly([1, 0, 1]), []),
+    ):
+        for number, value in enumerate(expected):
+            asked.clear()
+            roots._changes_of.cache_clear()
+            found = numbered_root(p, -far, far, number)
+            assert found is not None
+            assert abs(found - value) < arb(2) ** -40 * abs(arb(value)) + arb(2) ** -400
+            assert len(asked) < 12
+            assert numbered_root(p, value, far, len(expected) - number - 1) is None
+        assert numbered_root(p, -far, far, len(expected)) is None
+        assert numbered_root(p, far / 2, far, 0) is None
+
+
+def test_precision_that_rounding_uses_up_is_asked_for() -> None:
+    """At 40 bits, branches 1e-6 apart; with more bits the panel is proved."""
+    apart = 10**12  # (v - u)^2 = 1 / apart
+    branch = branch_of([(0, 2, apart), (1, 1, -2 * apart), (2, 0, apart), (0, 0, -1)], 1)
+    with ctx.workprec(40):
+        found = integrals_over(branch, fmpq(1, 4), fmpq(1, 2), EFFORT)
+    expected = fmpq(3, 32) + fmpq(1, 4 * 10**6) + 3 * fmpq(1, 4)
+    assert [p.tried for p in found] == [True]
+    assert abs(found[0].integral - expected) < fmpq(1, 10**8)

@@ -16,6 +16,12 @@ Floats = tuple[float, ...]
 """A number for each unknown."""
 Box = tuple[Floats, Floats]
 """Middle and half widths."""
+MIN_HALF_WIDTH = 2.0**-34
+"""Share of the first boxes' widths below which one is not halved again, unless another one is asked for."""
+
+
+class Unproved(Exception):
+    """The number of solutions could not be proved; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,3 +97,18 @@ def same(one: Zero, two: Zero, circles: Sequence[bool]) -> bool:
         bool(abs(difference_of(x, y, circle)) + r < alone)
         for x, r, y, alone, circle in zip(one.center, one.radii, two.center, two.alone, circles, strict=True)
     )
+
+
+def is_same(one: Zero, two: Zero, circles: Sequence[bool]) -> bool:
+    """Whether a solution lies where another one is alone.
+
+    Raises
+    ------
+    Unproved
+        When it may or may not be the other one.
+    """
+    if same(one, two, circles):
+        return True
+    if disjoint(one, two, circles):
+        return False
+    raise Unproved("a stored box may have one of two solutions")

@@ -1,6 +1,6 @@
-"""What is counted at a point, and what a way of counting offers: the paper's mechanism has one of its own.
+"""What is counted at a point, and where solutions may be.
 
-Guarantee: data and a protocol only.
+Guarantee: data only.
 """
 
 from __future__ import annotations
@@ -8,15 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Protocol
-
-from flint import arb
+from typing import Any
 
 from ptmcad.answer.counts import MorseIndex
-from ptmcad.answer.regionmap import Cell, Solution
-from ptmcad.question.slice import Slice
+from ptmcad.answer.regionmap import Cell
 from ptmcad.verification.certified.boxes import Box, Floats
-from ptmcad.verification.claims import Claims
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,19 +37,6 @@ def stored(cell: Cell) -> Counts:
 def differs(cell: Cell, true: Counts) -> bool:
     """Whether the stored counts of a cell are not these."""
     return stored(cell) != true
-
-
-class Enclosed(Protocol):
-    """A solution that is proved: the middle of its box, and the signs of the Hessian's eigenvalues."""
-
-    @property
-    def center(self) -> tuple[float, ...]: ...
-
-    @property
-    def signs(self) -> str: ...
-
-    @property
-    def within(self) -> tuple[arb, ...]: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,23 +64,3 @@ class Where:
 
 Places = Callable[[tuple[Fraction, Fraction], tuple[Fraction, Fraction]], Where | None]
 """Where the solutions may be over a rectangle of the window, in lattice steps; None where nothing is told of it."""
-
-
-class Counting(Protocol):
-    """A way of counting the solutions of one model. What it cannot prove raises `Unproved`."""
-
-    def at(self, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> Counted:
-        """At a point of the window; a parameter outside of its domain is a `Violation`."""
-        ...
-
-    def within(self, there: Counted, boxes: Sequence[Solution]) -> Sequence[Enclosed]:
-        """The only solution in each of the stored boxes; a box that has none, or several, is a `Violation`."""
-        ...
-
-    def same(self, one: Any, two: Any) -> bool:
-        """Whether a solution is another one."""
-        ...
-
-    def over(self, slice: Slice, x: arb, y: arb, there: Counted, where: Where | None = None) -> Counts:
-        """At all points of a box around one at which the solutions are known."""
-        ...

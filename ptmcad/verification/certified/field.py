@@ -19,11 +19,11 @@ from typing import NamedTuple
 
 from flint import arb, arb_mat
 
-from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.kinks import Sides
-from ptmcad.verification.certified.powers import power, square
-from ptmcad.verification.certified.vectors import ball
+from ptmcad.verification.certified.terms import ball, power, square
 from ptmcad.verification.certified.waves import Cone, Form, Waves
+from ptmcad.verification.inertia import determinant
 
 Matrix = list[list[arb]]
 Vector = tuple[arb, arb]
@@ -288,17 +288,6 @@ def _spring(number: int, pull: arb, rows: list[arb], jacobian: Matrix, line: _Po
                 jacobian[j][i] = jacobian[j][i] - entry
     part = tuple(pull * (u * x + v * y) for x, y in weights)
     return Spring(number, pull, q.sqrt() if q > 0 else reach, slopes, weights, part, outer, False)
-
-
-def determinant(matrix: Matrix) -> arb:
-    """Along the first row; of the few rows that there are."""
-    if len(matrix) == 1:
-        return matrix[0][0]
-    terms = (
-        entry * (-1) ** k * determinant([[*row[:k], *row[k + 1 :]] for row in matrix[1:]])
-        for k, entry in enumerate(matrix[0])
-    )
-    return sum(terms, arb(0))
 
 
 _ZERO, _ONE = arb(0), arb(1)

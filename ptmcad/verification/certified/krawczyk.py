@@ -6,9 +6,9 @@ m - C f(m) + (I - C f'(X)) (X - m). It has all zeros that X has; if it lies insi
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
-from math import isfinite
+from math import inf, isfinite
 
 from flint import arb, arb_mat
 
@@ -23,6 +23,7 @@ _MAX_TURN = 3.0
 _NEWTON_STEPS = 12
 _CLOSE = 2.0**-20
 """Of a box's width: where Newton's method does not come closer to rest, nothing is to be proved."""
+_ROUNDING = 2.0**-50
 _NARROWING, _WORTHWHILE = 40, 0.999
 """Steps by which a box is made narrower at most, while one makes it so much narrower."""
 
@@ -84,7 +85,9 @@ def newton(field: Field, box: Box) -> Floats | None:
         x = [c - s for c, s in zip(x, steps, strict=True)]
         if not all(abs(c - m) <= 2 * r for c, m, r in zip(x, *box, strict=True)):
             return None
-        before, share = share, max(abs(s) / r for s, r in zip(steps, box[1], strict=True))
+        # what doubles of that size do not tell apart is no step
+        shares = (abs(s) / r if abs(s) > _ROUNDING * abs(c) else 0.0 for s, r, c in zip(steps, box[1], x, strict=True))
+        before, share = share, max(shares)
         if share == 0 or (share < _CLOSE and share >= before / 2):
             break
     return tuple(x) if share < _CLOSE else None
@@ -93,7 +96,7 @@ def newton(field: Field, box: Box) -> Floats | None:
 def proved(field: Field, center: Floats, shapes: Iterable[Floats]) -> Zero | None:
     """The solution around a point that is alone in a box of some shape; None when it is not proved, nor its signs."""
     values = _at(field, center)
-    for shape, power in product(shapes, _SHRINKINGS):
+    for shape, power in product(_with_steep(field, center, shapes), _SHRINKINGS):
         sizes = tuple(r * 2.0**power for r in shape)
         if any(circle and r > _MAX_TURN for circle, r in zip(field.form.is_circle, sizes, strict=True)):
             continue
@@ -110,6 +113,16 @@ def proved(field: Field, center: Floats, shapes: Iterable[Floats]) -> Zero | Non
         signs = "" if not field.form.is_gradient else None if near.short else inertia(near.jacobian)
         return None if signs is None else Zero(center, radii, sizes, signs)
     return None
+
+
+def _with_steep(field: Field, center: Floats, shapes: Iterable[Floats]) -> Iterator[Floats]:
+    """Shapes, and one that is narrower where the equations are steeper, as next to a place where a spring is short."""
+    given = list(shapes)
+    yield from given
+    jet = field([arb(x) for x in center])
+    steep = [float(abs(row[k]).mid()) for k, row in enumerate(jet.jacobian)]
+    if given and not jet.short and all(0 < s < inf for s in steep):
+        yield tuple(r * min(steep) / s for r, s in zip(given[0], steep, strict=True))
 
 
 def _narrowed(field: Field, center: Floats, values: arb_mat, radii: Floats) -> Floats:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
-from ptmcad.verification.certified.vectors import Terms
+from ptmcad.verification.certified.terms import Terms
 
 Polynomial = dict[tuple[str, ...], Fraction]
 """In the parameters: factors by the names of each product, in order."""

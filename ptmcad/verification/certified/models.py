@@ -8,20 +8,18 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
 from flint import arb, ctx
 
-from ptmcad.answer.regionmap import Cell, Solution
+from ptmcad.answer.regionmap import Solution
 from ptmcad.mechanism import Model
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.slice import Count, Point, Slice
 from ptmcad.text.balls import ball_of
-from ptmcad.verification.certified.boxes import Box, Zero
+from ptmcad.verification.certified.boxes import MIN_HALF_WIDTH, Box, Floats, Unproved, Zero, is_same
 from ptmcad.verification.certified.counted import Counted, Counts, Where
-from ptmcad.verification.certified.equilibria import Unproved, is_same
 from ptmcad.verification.certified.field import Field, Matrix, value_of
 from ptmcad.verification.certified.kinks import Sides, sides
 from ptmcad.verification.certified.narrow import Function, judged, only
@@ -29,12 +27,13 @@ from ptmcad.verification.certified.parameters import over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import Spent, zeros
 from ptmcad.verification.certified.spectrum import inertia
-from ptmcad.verification.certified.vectors import evaluated
+from ptmcad.verification.certified.terms import evaluated
 from ptmcad.verification.certified.waves import Excess, Form
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
 
-PRECISIONS = (53, 128)
+PRECISIONS = ((53, MIN_HALF_WIDTH), (128, 2.0**-80))
+"""Bits, and the share of all configurations below which boxes are not halved: a spring may be as short as that."""
 _BOX_PRECISION = 128
 BUDGETS = (20_000, 40_000, 60_000)
 """Boxes of the unknowns for one point, by their number; one more unknown makes each of them dearer, too."""
@@ -63,13 +62,10 @@ class ModelCounting:
         """At a point of the window."""
         values, count = _values_at(claims, self.form, x, y), claims.result.slice.count
         reason: Unproved | None = None
-        if where is not None:
-            with suppress(Unproved):  # then all configurations are searched
-                return self._at(values, count, where)
-        for bits in PRECISIONS:
+        for bits, smallest in PRECISIONS:
             with ctx.workprec(bits):
                 try:
-                    return self._at(values, count)
+                    return self._at(values, count, where, smallest)
                 except Spent:
                     raise  # more digits would not make them fewer
                 except Unproved as unproved:
@@ -77,11 +73,15 @@ class ModelCounting:
         assert reason is not None
         raise reason
 
-    def _at(self, values: Mapping[str, Fraction], count: Count, where: Where | None = None) -> Counted:
+    def _at(
+        self, values: Mapping[str, Fraction], count: Count, where: Where | None = None, smallest: float = MIN_HALF_WIDTH
+    ) -> Counted:
         """At the context's precision."""
-        found = [
-            zero for k, side in enumerate(sides(self.form)) for zero in self._on_side(values, count, side, where, k)
-        ]
+        found = list[Zero]()
+        for k, side in enumerate(sides(self.form)):
+            found += self._on_side(
+                values, count, side, None if where is None else (where.boxes[k], where.whole), smallest
+            )
         found = self._once(found)
         numbers = {name: ball_of(value) for name, value in values.items()}
         return Counted(self._counts(numbers, found, count), found, values)
@@ -109,22 +109,27 @@ class ModelCounting:
         return kept
 
     def _on_side(
-        self, values: Mapping[str, Fraction], count: Count, side: Sides, where: Where | None, k: int
+        self,
+        values: Mapping[str, Fraction],
+        count: Count,
+        side: Sides,
+        where: tuple[Sequence[Box], Floats] | None,
+        smallest: float,
     ) -> list[Zero]:
         """The solutions that count at a point, with springs on one line each on one side of length zero."""
         field = _field_at(self.form, values, count, side)
-        start, whole = ([_start(field)], None) if where is None else (where.boxes[k], where.whole)
-        all_found, _ = zeros(field, _only_minima(self.form, count), start, self._budget, whole=whole)
+        start, whole = where or ([_start(field)], None)
+        all_found, _ = zeros(field, _only_minima(self.form, count), start, self._budget, smallest, whole=whole)
         found = _counted(field, all_found, count)
         if count is Count.TOTAL and self.form.conditions_for_stability:
             found = _with_signs(_field_at(self.form, values, Count.STABLE, side), self.form, found)
         return found
 
-    def within(self, there: Counted, boxes: Sequence[Solution]) -> list[Zero]:
-        """The only solution in each of the stored boxes."""
+    def within(self, values: Mapping[str, Fraction], boxes: Sequence[Solution], first: int = 0) -> list[Zero]:
+        """The only solution in each of the stored boxes at parameters; the first box's number is given."""
         with ctx.workprec(_BOX_PRECISION):
-            fields = [_field_at(self.form, there.values, side=side) for side in sides(self.form)]
-            return [self._in_box(fields, there.values, solution, k) for k, solution in enumerate(boxes)]
+            fields = [_field_at(self.form, values, side=side) for side in sides(self.form)]
+            return [self._in_box(fields, values, solution, k) for k, solution in enumerate(boxes, first)]
 
     def _in_box(self, fields: Sequence[Field], values: Mapping[str, Fraction], solution: Solution, k: int) -> Zero:
         _check_box(self.form, solution, k)
@@ -134,31 +139,11 @@ class ModelCounting:
         narrow = _narrow(self.form, values, possible[0].sides, solution, k) if len(possible) == 1 else None
         return narrow or _only(fields, solution, k, self._budget)
 
-    def check_list(self, claims: Claims, cell: Cell) -> None:
-        """What can be refused where not all solutions at a sample can be found: a list of another length or with other
-        signs than the counts, a box without a solution or with several, and a solution that is listed twice.
-
-        Raises
-        ------
-        Violation
-        """
-        said, listed = cell.stable if cell.total is None else cell.total, cell.solutions
-        if len(listed) != said:
-            raise Violation(f"{len(listed)} boxes of solutions for {said} that are counted")
-        negative = Counter(solution.signs.count("-") for solution in listed)
-        if cell.index is not None and any(negative[k] != number for k, number in enumerate(cell.index)):
-            raise Violation(f"the signs of the listed solutions are not those of the index {cell.index}")
-        values, known = _values_at(claims, self.form, *cell.sample), list[Zero]()
-        with ctx.workprec(_BOX_PRECISION):
-            fields = [_field_at(self.form, values, side=side) for side in sides(self.form)]
-            for k, solution in enumerate(listed):
-                try:
-                    zero = self._in_box(fields, values, solution, k)
-                    if any(self.same(zero, other) for other in known):
-                        raise Violation(f"the solution {k} is stored twice")
-                except Unproved:
-                    continue  # nothing is said of this box: the sample is told as undecided
-                known.append(zero)
+    def in_box(self, claims: Claims, at: Point, solution: Solution, k: int) -> Zero:
+        """The only solution in a stored box at a point of the window; the box's number is told where there is none."""
+        values = _values_at(claims, self.form, *at)
+        (found,) = self.within(values, [solution], k)
+        return found
 
     def same(self, one: Zero, two: Zero) -> bool:
         """Whether a solution lies where another one is alone.

@@ -18,8 +18,7 @@ from flint import arb, arb_mat, ctx
 
 from ptmcad.answer.regionmap import Solution
 from ptmcad.text.balls import ball_of
-from ptmcad.verification.certified.boxes import Floats, Zero
-from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.boxes import Floats, Unproved, Zero
 from ptmcad.verification.certified.field import Matrix
 from ptmcad.verification.report import Violation
 

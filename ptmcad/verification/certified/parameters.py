@@ -1,11 +1,11 @@
-"""The mechanism's parameters at a point of the window, exactly, or over a box of it, in balls.
+"""The signs of a slice's parameters in the whole window, and their values over a box of it, in balls.
 
-Guarantee: bars and stiffnesses are positive, base and free lengths are not negative, for everything that is returned.
+Guarantee: what is said to be proved of signs is; a ball has the values at all points of the box.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 
 from flint import arb
@@ -18,18 +18,13 @@ from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.parsing import parse
 from ptmcad.text.tree import Name, to_text
-from ptmcad.verification.certified.energy import Energy
-from ptmcad.verification.certified.equilibria import Unproved
-from ptmcad.verification.certified.powers import power
-from ptmcad.verification.certified.vectors import NAMES, SPRINGS, evaluated
+from ptmcad.verification.certified.boxes import Unproved
+from ptmcad.verification.certified.terms import evaluated, power
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import MECHANISM, NOT_NEGATIVE, POSITIVE
 from ptmcad.verification.parameters import auxiliary, written
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.signs import Sign, Window, has_no_pole, is_in_domain
-
-Values = dict[str, Fraction]
 
 
 def check_domain(claims: Claims) -> str:
@@ -59,7 +54,7 @@ def check_domain(claims: Claims) -> str:
         if Sign.UNCHECKED in (pole, sign):
             unchecked.append(name)
     unchecked += _undecided_parts(slice, here)
-    if claims.result.cover is not None and claims.result.slice.model != MECHANISM:
+    if claims.result.cover is not None:
         unchecked += _undecided_pulls(claims, here)
     if unchecked:
         return Unchecked(
@@ -113,47 +108,6 @@ def _expressions(slice: Slice) -> dict[str, Expression]:
     """The parameters, and k or l0 (or a free length that is zero) where only an axis or a text mentions it."""
     named = {name: axis(index) for index, name in enumerate(slice.axis_names) if name in auxiliary(slice.model)}
     return {**named, **written(slice), **slice.parameters}
-
-
-def values_at(claims: Claims, x: Fraction, y: Fraction) -> Values:
-    """Every parameter at a point.
-
-    Raises
-    ------
-    Violation
-        When one has a pole there, or is outside its domain.
-    """
-    values = {name: Fraction(0) for name in MECHANISM.free_lengths} | claims.parameters_at(x, y)
-    for name in POSITIVE:
-        if values[name] <= 0:
-            raise Violation(f"{name} is not positive")
-    for name in NOT_NEGATIVE:
-        if values[name] < 0:
-            raise Violation(f"{name} is negative")
-    return values
-
-
-def energy_at(values: Mapping[str, Fraction]) -> Energy:
-    """The energy at exact parameters."""
-    return Energy({name: ball_of(values[name]) for name in NAMES}, tuple(s.has_crease(values) for s in SPRINGS))
-
-
-def energy_over(slice: Slice, x: arb, y: arb) -> Energy:
-    """The energy for all parameters over a box of the window.
-
-    Raises
-    ------
-    Unproved
-        When a parameter may have a pole there, or be outside its domain.
-    """
-    values = {name: arb(0) for name in MECHANISM.free_lengths}
-    for name, expression in slice.parameters.items():
-        values[name] = over(expression, x, y)
-        if name in POSITIVE and not values[name] > 0:
-            raise Unproved(f"{name} may be zero")
-        if name in NOT_NEGATIVE and not (values[name] >= 0):
-            raise Unproved(f"{name} may be negative")
-    return Energy({name: values[name] for name in NAMES}, tuple(s.has_crease(slice.parameters) for s in SPRINGS))
 
 
 def over(expression: Expression, x: arb, y: arb) -> arb:

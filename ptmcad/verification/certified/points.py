@@ -10,34 +10,30 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import combinations
 
 from ptmcad.answer.regionmap import Cell
 from ptmcad.question.slice import Count
 from ptmcad.text.numerals import text_of
-from ptmcad.verification.certified.counted import (
-    Counted,
-    Counting,
-    Places,
-    differs,
-    stored,
-)
-from ptmcad.verification.certified.equilibria import (
-    Unproved,
-)
-from ptmcad.verification.certified.flat import beside, near
+from ptmcad.verification.certified.boxes import Unproved, Zero
+from ptmcad.verification.certified.counted import Counted, Places, differs, stored
 from ptmcad.verification.certified.models import ModelCounting
-from ptmcad.verification.certified.paper import PaperCounting
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.waves import excesses_of, form_of
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import MECHANISM
 from ptmcad.verification.report import Unchecked, Violation
 
 HOPELESS = 16
 """Samples or random points whose counts were not decided, after which no more are tried."""
 MAX_NEAR = 2
 """Points beside a sample whose counts were not decided, at which they are tried."""
+
+
+_PLACES = ((3, 2), (-2, 3), (2, -1), (-1, -3))
+"""Where points beside a sample are, in quarters of a square around it: on no line with it through two of them."""
+_PARTS = 8
+"""Of the window's width, half the width of the largest such square: what is nearly degenerate takes many boxes ..."""
+_MIN_PARTS = 2**60
+"""... and of the smallest one."""
 
 
 class _InBoxes(Unproved):
@@ -50,8 +46,7 @@ def check_points(
 ) -> str:  # fmt: skip
     """Counts and stored solutions of every cell; and for how many cells nothing was proved.
 
-    Where a sample cannot be decided, as a flat one (`ptmcad.verification.certified.flat`), the counts beside it are
-    those of its cell.
+    Where a sample cannot be decided, the counts beside it are those of its cell.
 
     Parameters
     ----------
@@ -80,10 +75,8 @@ def check_points(
     return f"{samples} samples, {number} equilibria"
 
 
-def counting_of(claims: Claims) -> Counting:
+def counting_of(claims: Claims) -> ModelCounting:
     """How the solutions of the map's model are counted."""
-    if claims.model == MECHANISM:
-        return PaperCounting()
     asked = claims.result.slice.count is Count.ADMISSIBLE
     return ModelCounting(form_of(claims.result.slice), excesses_of(claims.model) if asked else ())
 
@@ -93,7 +86,7 @@ def _where(claims: Claims, x: Fraction, y: Fraction) -> str:
     return f"at {one}={text_of(x)}, {two}={text_of(y)}"
 
 
-def check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell, places: Places | None = None) -> int:
+def check_cell(claims: CertifiedClaims, counting: ModelCounting, cell: Cell, places: Places | None = None) -> int:
     """Counts and stored solutions of one cell; how many these are.
 
     Raises
@@ -101,15 +94,9 @@ def check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell, places: 
     Violation, Unproved
     """
     try:
-        u, v = claims.on_lattice(*cell.sample)
-        there = counting.at(claims, *cell.sample, places and places((u, u), (v, v)))
+        there = _counted_at(claims, counting, cell.sample, places)
     except Unproved as reason:
-        if not isinstance(counting, ModelCounting):
-            return _check_beside(claims, counting, cell, reason)
-        counting.check_list(claims, cell)
-        if (found := _decided(claims, counting, cell, near(claims, cell))) is None:
-            raise
-        raise _InBoxes(f"{reason}; the counts are those {_where(claims, *found[0])}") from reason
+        return _check_beside(claims, counting, cell, reason, places)
     if differs(cell, there.counts):
         raise Violation(f"said to have {stored(cell)}; there are {there.counts}")
     kept = [e for e in there.found if not claims.result.slice.count.is_of_stable or "-" not in e.signs]
@@ -122,19 +109,37 @@ def check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell, places: 
     return len(kept)
 
 
+def _near(claims: CertifiedClaims, cell: Cell) -> list[tuple[Fraction, Fraction]]:
+    """Points of a sample's cell near the sample; none where it is very near to a rectangle of the cover."""
+    u, v = claims.on_lattice(*cell.sample)
+    half, least = Fraction(claims.sweep.steps, _PARTS), Fraction(claims.sweep.steps, _MIN_PARTS)
+    while not claims.sweep.free_around(u, v, half):
+        half /= 2
+        if half < least:
+            return []
+    return [claims.off_lattice(u + half * i / 4, v + half * j / 4) for i, j in _PLACES]
+
+
+def _counted_at(
+    claims: CertifiedClaims, counting: ModelCounting, at: Sequence[Fraction], places: Places | None
+) -> Counted:
+    (x, y), (u, v) = at, claims.on_lattice(*at)
+    return counting.at(claims, x, y, places and places((u, u), (v, v)))
+
+
 def _decided(
-    claims: CertifiedClaims, counting: Counting, cell: Cell, places: Sequence[tuple[Fraction, Fraction]]
+    claims: CertifiedClaims, counting: ModelCounting, cell: Cell, places: Places | None
 ) -> tuple[tuple[Fraction, Fraction], Counted] | None:
-    """The first of some points of an undecided cell at which the counts are decided, and what is counted there.
+    """The first point beside an undecided sample at which the counts are decided, and what is counted there.
 
     Raises
     ------
     Violation
         When these are not the cell's.
     """
-    for at in places[:MAX_NEAR]:
+    for at in _near(claims, cell)[:MAX_NEAR]:
         try:
-            there = counting.at(claims, *at)
+            there = _counted_at(claims, counting, at, places)
         except Unproved:
             continue
         if differs(cell, there.counts):
@@ -144,7 +149,7 @@ def _decided(
     return None
 
 
-def _check_boxes(claims: CertifiedClaims, counting: Counting, cell: Cell, there: Counted) -> None:
+def _check_boxes(claims: CertifiedClaims, counting: ModelCounting, cell: Cell, there: Counted) -> None:
     """Each stored box holds one solution, each another one, and these are those that are kept.
 
     Raises
@@ -152,7 +157,7 @@ def _check_boxes(claims: CertifiedClaims, counting: Counting, cell: Cell, there:
     Violation, Unproved
     """
     taken, kept = set[int](), there.found
-    for k, (solution, e) in enumerate(zip(cell.solutions, counting.within(there, cell.solutions), strict=True)):
+    for k, (solution, e) in enumerate(zip(cell.solutions, counting.within(there.values, cell.solutions), strict=True)):
         match = [i for i, other in enumerate(kept) if counting.same(e, other)]
         if len(match) != 1 or match[0] in taken:
             near = ", ".join(f"{x:.6g}" for x in e.center)
@@ -179,35 +184,62 @@ def _check_signs(claims: CertifiedClaims, true: str, said: str, k: int) -> None:
         raise Violation(f"the Hessian at the solution {k} has eigenvalues of signs {true}, not {said!r}")
 
 
-def _check_beside(claims: CertifiedClaims, counting: Counting, cell: Cell, reason: Unproved) -> int:
-    """The counts are those at a point beside the sample, and there are as many different equilibria in the boxes.
+def _check_beside(
+    claims: CertifiedClaims, counting: ModelCounting, cell: Cell, reason: Unproved, places: Places | None
+) -> int:
+    """The counts are those at a point beside the sample, and each stored box holds one solution, each another one.
 
     Raises
     ------
     Unproved
         When nothing beside the sample is decided, then for the reason given, or not what is in the boxes.
+    Violation
     """
-    found = _decided(claims, counting, cell, beside(claims, cell))
-    if found is None:
+    said = cell.stable if cell.total is None else cell.total
+    if len(cell.solutions) != said:
+        raise Violation(f"{len(cell.solutions)} boxes of solutions for {said} that are counted")
+    negative = Counter(solution.signs.count("-") for solution in cell.solutions)
+    if cell.index is not None and any(negative[k] != number for k, number in enumerate(cell.index)):
+        raise Violation(f"the signs of the listed solutions are not those of the index {cell.index}")
+    in_boxes = _listed(claims, counting, cell)
+    if (found := _decided(claims, counting, cell, places)) is None:
         raise reason
-    _, there = found
-    asked = [e.signs for e in there.found if not claims.result.slice.count.is_of_stable or "-" not in e.signs]
-    if Counter(signs := [solution.signs for solution in cell.solutions]) != Counter(asked):
-        raise Violation(f"equilibria of signs {signs} are listed, but there are {asked}")
-    return check_listed(claims, counting, cell)
+    if in_boxes is not None:
+        raise _InBoxes(f"{reason}; the counts are those {_where(claims, *found[0])}") from in_boxes
+    return len(cell.solutions)
 
 
-def check_listed(claims: CertifiedClaims, counting: Counting, cell: Cell) -> int:
+def check_listed(claims: CertifiedClaims, counting: ModelCounting, cell: Cell) -> int:
     """Each stored box holds one solution of its signs at the sample, each another one; how many these are.
 
     Raises
     ------
     Violation, Unproved
     """
-    values = dict.fromkeys(claims.model.free_lengths, Fraction(0)) | claims.parameters_at(*cell.sample)
-    inside = counting.within(Counted(stored(cell), (), values), cell.solutions)
-    for k, (solution, e) in enumerate(zip(cell.solutions, inside, strict=True)):
-        _check_signs(claims, e.signs, solution.signs, k)
-    if any(counting.same(one, two) for one, two in combinations(inside, 2)):
-        raise Violation("two boxes have the same solution")
-    return len(inside)
+    if (reason := _listed(claims, counting, cell)) is not None:
+        raise reason
+    return len(cell.solutions)
+
+
+def _listed(claims: CertifiedClaims, counting: ModelCounting, cell: Cell) -> Unproved | None:
+    """Why it is not decided of a stored box that it holds one solution of its signs; None where all do.
+
+    Raises
+    ------
+    Violation
+        When one does not, or two hold the same.
+    """
+    undecided: Unproved | None = None
+    known = list[Zero]()
+    for k, solution in enumerate(cell.solutions):
+        try:
+            zero = counting.in_box(claims, cell.sample, solution, k)
+            if counting.form.is_gradient:
+                _check_signs(claims, zero.signs, solution.signs, k)
+            if any(counting.same(zero, other) for other in known):
+                raise Violation(f"the solution {k} is stored twice")
+        except Unproved as reason:
+            undecided = undecided or reason
+            continue
+        known.append(zero)
+    return undecided

@@ -21,11 +21,10 @@ from math import comb, inf, nextafter
 
 from flint import arb
 
-from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.field import size
 from ptmcad.verification.certified.held import Linear
-from ptmcad.verification.certified.powers import power
-from ptmcad.verification.certified.vectors import ball
+from ptmcad.verification.certified.terms import ball, power
 from ptmcad.verification.certified.waves import Form, Key, Waves
 
 HALF_TURN = 101 / 32

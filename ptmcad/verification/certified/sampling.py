@@ -26,8 +26,8 @@ from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import text_of
+from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.counted import Counted, Places, differs, stored
-from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.points import HOPELESS, counting_of
 from ptmcad.verification.certified.slanted import Frame
 from ptmcad.verification.certified.structure import CertifiedClaims

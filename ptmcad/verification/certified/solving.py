@@ -5,8 +5,7 @@ exists, exactly once in its box, and there is no further one in the boxes of the
 field is violated; when only minima are asked for, none that is a minimum or degenerate without a negative eigenvalue.
 What cannot be proved raises `Unproved`.
 
-`krawczyk` has the test. `ptmcad.verification.certified.equilibria` is the same for the paper's mechanism, with formulas
-of its own.
+`krawczyk` has the test.
 """
 
 from __future__ import annotations
@@ -18,8 +17,17 @@ from operator import gt
 
 from flint import arb
 
-from ptmcad.verification.certified.boxes import Box, Floats, Zero, disjoint, halves, inside, within
-from ptmcad.verification.certified.equilibria import MIN_HALF_WIDTH, Unproved
+from ptmcad.verification.certified.boxes import (
+    MIN_HALF_WIDTH,
+    Box,
+    Floats,
+    Unproved,
+    Zero,
+    disjoint,
+    halves,
+    inside,
+    within,
+)
 from ptmcad.verification.certified.field import Field, Jet
 from ptmcad.verification.certified.krawczyk import image_of, newton, proved
 from ptmcad.verification.certified.spectrum import is_no_minimum

@@ -10,7 +10,8 @@ from itertools import combinations
 from flint import arb
 
 from ptmcad.verification.certified.field import Matrix
-from ptmcad.verification.certified.powers import square
+from ptmcad.verification.certified.terms import square
+from ptmcad.verification.inertia import determinant
 
 
 def inertia(h: Matrix) -> str | None:
@@ -49,8 +50,3 @@ def is_no_minimum(h: Matrix) -> bool:
     if any(h[i][i] * h[j][j] - square(h[i][j]) < 0 for i, j in combinations(range(len(h)), 2)):
         return True
     return len(h) == 3 and bool(determinant(h) < 0)
-
-
-def determinant(h: Matrix) -> arb:
-    (a, b, c), (d, e, f), (g, i, j) = h
-    return a * (e * j - f * i) - b * (d * j - f * g) + c * (d * i - e * g)

@@ -17,7 +17,7 @@ from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.verification.certified.slanted import SlantedSweep, slanted_sweep
 from ptmcad.verification.certified.sweep import Sweep, sweep
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import MECHANISM, shorthands_of, tells_stability
+from ptmcad.verification.derivation import shorthands_of, tells_stability
 from ptmcad.verification.report import Violation
 
 MAX_STEPS = 2**40
@@ -160,8 +160,6 @@ def _check_model(slice: Slice) -> None:
     needed, known = set(model.without_free_lengths), {*shorthands_of(model), *model.variables}
     if not needed <= set(slice.parameters) <= known:
         raise Violation(f"the mechanism {slice.mechanism!r} is not known, or its parameters are others")
-    if model == MECHANISM:
-        return
     if not 1 <= len(model.unknowns) <= MAX_UNKNOWNS:
         raise Violation(f"no certified map is of {len(model.unknowns)} unknowns")
     without_index = (Count.TOTAL, Count.STABLE) if tells_stability(model) else (Count.TOTAL,)

@@ -23,16 +23,14 @@ from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.tree import names_of
 from ptmcad.verification.certified.decimals import in_quotients
-from ptmcad.verification.certified.refutation import differs_somewhere
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import MECHANISM, Configuration, formulas, work
+from ptmcad.verification.derivation import Configuration, formulas, work
 from ptmcad.verification.loops import distances
 from ptmcad.verification.report import Unchecked, Violation
 
-_MAX_TEXT = 5_000
-"""Of the paper's mechanism; that of others, which may be large, is not checked beyond `_LARGE_TEXT`."""
 _LARGE_TEXT = 100_000
+"""Letters beyond which a text is not checked."""
 _SIGNS = re.compile(r"[A-Za-z0-9_ ()^*/+-]*", re.ASCII)
 _WRONG = re.compile(r"\*\*|(?<![A-Za-z0-9_])(?:_|[0-9]+[A-Za-z_])", re.ASCII)
 """Integers, names and signs: no comments, lines, decimals, or other things that are Python. Each takes linear time;
@@ -143,11 +141,6 @@ def _compared(text: _Text, what: str, stored: str, true: fmpq_mpoly) -> str:
     except RecursionError:
         raise Violation(f"the stored {what} has too many parts within each other") from None
     except _TooLarge as large:
-        if text.model == MECHANISM:
-            raise
-        # what is true of the work of moments is known by its slopes only
-        if not text.varying and text.is_refuted(what, stored, true):
-            raise Violation(f"the stored {what} differs from the mechanism's at random configurations") from None
         return str(large)
     if not (text.is_less_work(difference) if text.varying else difference.is_zero()):
         raise Violation(f"the stored {what} differs from the mechanism's by {text.shown(difference)}")
@@ -252,24 +245,7 @@ class _Text:
         RecursionError
             When it has too many parts within each other.
         """
-        return self._value(_parsed(self.model, what, text))
-
-    def is_refuted(self, what: str, text: str, true: fmpq_mpoly) -> bool:
-        """Whether a text that is too large to compare surely is something else; not if it is too long to read."""
-        try:
-            node = _parsed(self.model, what, text)
-        except _TooLarge:
-            return False
-        shown = {f"x{name}": str(generator) for name, generator in self.names.items()}
-        shown |= {f"x{function}": function for function in ("sqrt", "cos", "sin")}
-        for part in ast.walk(node):
-            if isinstance(part, ast.Name):
-                part.id = shown.get(part.id, "")
-        squares = {f"x{n}": square for n, square in enumerate(self.squares)}
-        circles = {
-            str(self.names[a]): (str(self._gen[f"cos {a}"]), str(self._gen[f"sin {a}"])) for a in self.model.angles
-        }
-        return differs_somewhere(node, true, squares, circles, text)
+        return self._value(_parsed(what, text))
 
     def _value(self, node: ast.expr, inside: bool = False) -> fmpq_mpoly:
         """What sums, products, small powers, quotients by numbers, lengths, sines and cosines stand for.
@@ -375,12 +351,11 @@ def _plain(name: str) -> str:
     return name[1:]
 
 
-def _parsed(model: Model, what: str, text: str) -> ast.expr:
-    most = _MAX_TEXT if model == MECHANISM else _LARGE_TEXT
-    if len(text) > most and model != MECHANISM:
-        raise _TooLarge(f"the stored {what} is longer than {most} letters")
+def _parsed(what: str, text: str) -> ast.expr:
+    if len(text) > _LARGE_TEXT:
+        raise _TooLarge(f"the stored {what} is longer than {_LARGE_TEXT} letters")
     text = in_quotients(text)
-    if len(text) > most or _SIGNS.fullmatch(text) is None or _WRONG.search(text):
+    if _SIGNS.fullmatch(text) is None or _WRONG.search(text):
         raise Violation(f"the stored {what} is not a formula in the names of problem records")
     try:
         return ast.parse(_NAME.sub(lambda m: f"x{m[0]}", text).replace("^", "**"), mode="eval").body

@@ -17,7 +17,7 @@ from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.expressions import Expression
 from ptmcad.verification.certified.lines import Line, line_of
 from ptmcad.verification.certified.parallel import Parameters
-from ptmcad.verification.certified.vectors import Terms
+from ptmcad.verification.certified.terms import Terms
 from ptmcad.verification.derivation import Configuration, along_loops, formulas, has_index
 
 Multi = tuple[int, ...]

@@ -11,8 +11,8 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.text.numerals import text_of
+from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.counted import Places, differs, stored
-from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.points import counting_of
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.report import Unchecked, Violation

@@ -15,7 +15,7 @@ from ptmcad.text.expressions import Expression
 from ptmcad.verification.certified.kinks import Sides
 from ptmcad.verification.certified.lines import Line
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.vectors import Terms, evaluated
+from ptmcad.verification.certified.terms import Terms, evaluated
 from ptmcad.verification.certified.waves import Cone, Form, Key, Waves, form_of
 from ptmcad.verification.exclusion.formulas import Formulas
 

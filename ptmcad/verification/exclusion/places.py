@@ -13,9 +13,8 @@ import numpy as np
 from flint import arb
 
 from ptmcad.text.balls import ball_of
-from ptmcad.verification.certified.boxes import Box, Floats
+from ptmcad.verification.certified.boxes import Box, Floats, Unproved
 from ptmcad.verification.certified.counted import Where
-from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.exclusion.formulas import enclosing
 from ptmcad.verification.exclusion.pieces import no_pieces

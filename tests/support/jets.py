@@ -1,4 +1,4 @@
-"""Values in balls with their first and second derivatives by the unknowns.
+"""An independent derivation: values in balls with their first and second derivatives by the unknowns.
 
 Guarantee: each ball of a result contains what follows from any numbers in the operands' balls; what does not depend on
 an unknown has no entry for it, so that nothing is spent on zeros.

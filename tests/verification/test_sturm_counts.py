@@ -1,91 +1,20 @@
-"""The verification's discriminants and resultants from residues, and its Sturm sequences in balls."""
+"""The verification's Sturm sequences in balls, and the roots that they number."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from fractions import Fraction
 
 import pytest
-from flint import arb, ctx, fmpq, fmpz_poly, nmod_poly
+from flint import arb, ctx, fmpq, fmpz_poly
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.examples import examples
 
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification import elimination, residues, sturm
+from ptmcad.verification import sturm
 from ptmcad.verification.branches import Branch
 from ptmcad.verification.claims import PlaneCurve
-
-ROW = st.lists(st.integers(-9, 9) | st.integers(-(10**20), 10**20) | st.just(0), max_size=4)
-
-
-@st.composite
-def rows(draw: st.DrawFn, least: int) -> list[fmpz_poly]:
-    found = [fmpz_poly(draw(ROW)) for _ in range(draw(st.integers(least, 5)) + 1)]
-    assume(found[-1] != 0)
-    return found
-
-
-def terms(p: Sequence[fmpz_poly]) -> elimination.Terms:
-    return tuple((i, j, int(a)) for j, c in enumerate(p) for i, a in enumerate(c.coeffs()) if a)
-
-
-@given(rows(2))
-@settings(max_examples=examples(60))
-def test_discriminants_are_those_of_values_in_integers(p: list[fmpz_poly]) -> None:
-    expected = elimination.discriminant(terms(p))
-    assert residues.discriminant(p) in (expected, -expected)
-    assert residues.discriminant_degree(p) >= expected.degree()
-    assert expected == 0 or all(expected % f**e == 0 for f, e in residues.known_factors(p))
-
-
-@given(rows(1), rows(1))
-@settings(max_examples=examples(60))
-def test_resultants_are_those_of_values_in_integers(p: list[fmpz_poly], q: list[fmpz_poly]) -> None:
-    expected = elimination.resultant(terms(p), terms(q))
-    assert residues.resultant(p, q, max(expected.degree(), 0)) in (expected, -expected)
-
-
-def dense(n: int, d: int) -> list[fmpz_poly]:
-    return [fmpz_poly([(i * j + 3 * i + j * j) % 11 - 5 for j in range(d)]) for i in range(n)]
-
-
-def test_long_ones_are_put_together_from_residues(monkeypatch: pytest.MonkeyPatch) -> None:
-    p = dense(20, 14)
-    found = elimination.discriminant(terms(p))
-    monkeypatch.setattr(elimination, "LONG", 10**9)
-    elimination.discriminant.cache_clear()
-    expected = elimination.discriminant(terms(p))
-    elimination.discriminant.cache_clear()
-    assert found in (expected, -expected)
-
-
-@pytest.mark.parametrize("fault", ["residue", "degree", "bits", "factor"])
-def test_a_planted_fault_is_caught(fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    p = dense(9, 8)
-    plain = residues._lifted
-
-    def faulty(value: residues.Value, polynomials: Sequence[residues.Rows], bounds: residues.Bounds) -> fmpz_poly:
-        wrong = [fault == "residue"]
-
-        def once(f: Sequence[nmod_poly]) -> int:
-            found = value(f)
-            if wrong[0]:
-                wrong[0], found = False, found + 1
-            return found
-
-        if fault == "degree":
-            bounds = bounds._replace(degree=bounds.degree - 1)
-        elif fault == "bits":
-            bounds = bounds._replace(bits=40)
-        elif fault == "factor":
-            bounds = bounds._replace(factors=((fmpz_poly([-3, 1]), 1),))
-        return plain(once, polynomials, bounds)
-
-    monkeypatch.setattr(residues, "_lifted", faulty)
-    with pytest.raises(residues.NotReproduced):
-        residues.discriminant(p)
 
 
 @st.composite
