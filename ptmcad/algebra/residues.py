@@ -1,4 +1,4 @@
-"""Interpolation modulo primes of one machine word, and integers from their residues.
+"""Primes of one machine word, quotients modulo them, and integers from their residues.
 
 Guarantee: exact. Consecutive integers are the points of interpolation, so that no divisor is divisible by the prime.
 
@@ -40,37 +40,6 @@ def quotients(numerators: Sequence[int], denominators: Sequence[int], prime: int
         found.append(numerators[k] * before % prime * inverse % prime)
         inverse = inverse * denominators[k] % prime
     return found[::-1]
-
-
-def newton(values: Sequence[int], prime: int) -> list[int]:
-    """The coefficients in Newton's form for consecutive integers: sum_j values_j / j! (-1)^(k-j) / (k-j)!."""
-    factorials = list(accumulate(range(1, len(values)), lambda a, b: a * b % prime, initial=1))
-    inverse = quotients([1] * len(values), factorials, prime)
-    left = nmod_poly([v * w for v, w in zip(values, inverse, strict=True)], prime)
-    right = nmod_poly([-w if k % 2 else w for k, w in enumerate(inverse)], prime)
-    found = [int(c) for c in left.mul_low(right, len(values)).coeffs()]
-    return found + [0] * (len(values) - len(found))
-
-
-_BLOCK = 48
-
-
-def blocks(first: int, length: int) -> list[fmpz_poly]:
-    """The products of (u - first - k) over `_BLOCK` numbers k each, from 0 on, as far as Newton's form needs them."""
-    starts = range(first, first + length - _BLOCK, _BLOCK)
-    return [math.prod((fmpz_poly([-s - k, 1]) for k in range(_BLOCK)), start=fmpz_poly([1])) for s in starts]
-
-
-def expanded(newton: Sequence[int], first: int, blocks: Sequence[fmpz_poly], prime: int) -> nmod_poly:
-    """The polynomial with these coefficients in Newton's form: Horner's scheme in blocks, and for the blocks."""
-    result = nmod_poly([0], prime)
-    for b in range(len(blocks), -1, -1):
-        start = b * _BLOCK
-        part = nmod_poly([0], prime)
-        for k in reversed(range(start, min(start + _BLOCK, len(newton)))):
-            part = part * nmod_poly([-(first + k), 1], prime) + newton[k]
-        result = result * nmod_poly(blocks[b], prime) + part if b < len(blocks) else part
-    return result
 
 
 def combined(images: Sequence[tuple[nmod_poly, int]]) -> fmpz_poly:

@@ -18,7 +18,7 @@ from ptmcad import load
 from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import DegeneratePoint
-from ptmcad.exact.signatures import count_by_signature
+from support.signatures import count_by_signature
 from ptmcad.text.flint_numbers import from_fraction
 
 SYSTEM = system_of("ptm")

@@ -18,7 +18,7 @@ from ptmcad.answer.counts import Counts
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import system_from
-from ptmcad.exact.signatures import count_by_signature
+from support.signatures import count_by_signature
 from ptmcad.text.flint_numbers import from_fraction
 
 POINTS = 200

@@ -25,7 +25,7 @@ from ptmcad.errors import ConfigError, HypothesisError
 from ptmcad.exact.cad.curves import curve
 from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import DegeneratePoint
-from ptmcad.exact.signatures import count_by_signature
+from support.signatures import count_by_signature
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 POINTS = 100

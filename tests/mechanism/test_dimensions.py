@@ -20,7 +20,7 @@ from ptmcad.exact.models import ParametricSystem, system_from, system_of
 from ptmcad.exact.models.system import from_potential
 from ptmcad.exact.point_system import solutions_at
 from ptmcad.exact.poses import exact_poses
-from ptmcad.exact.signatures import count_by_signature
+from support.signatures import count_by_signature
 from ptmcad.exact.variety import discriminant_variety
 from ptmcad.mechanism import described
 

@@ -183,7 +183,7 @@ def test_the_reference_agrees_with_signatures_of_hermite_forms(seed: int) -> Non
     """Counts by the sextic's roots and by Tarski queries on the quotient algebra."""
 
     from ptmcad.exact.models import system_of
-    from ptmcad.exact.signatures import count_by_signature
+    from support.signatures import count_by_signature
 
     p = dict(random_case(seed, 0).sibling.parameters)  # type: ignore[union-attr]
     counts = count_by_signature(system_of("ptm"), {n: from_fraction(v) for n, v in p.items()})

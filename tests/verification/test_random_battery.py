@@ -24,7 +24,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import DegenerateSliceError, HypothesisError
 from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import system_from
-from ptmcad.exact.signatures import count_by_signature
+from support.signatures import count_by_signature
 from ptmcad.text.flint_numbers import from_fraction
 
 POINTS = 30
