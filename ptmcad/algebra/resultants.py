@@ -149,3 +149,16 @@ def interpolate(at: Callable[[int], fmpz], degree: int, check: Check = nothing) 
     for k in range(degree - 1, -1, -1):
         result = result * fmpz_poly([-(first + k), 1]) + newton[k]
     return result
+
+
+def interpolate_rows(at: Callable[[int], fmpz_poly], degree: int, check: Check = nothing) -> dict[tuple[int, int], fmpz]:
+    """The coefficients of u^i w^j of a polynomial in Z[u, w], of at most this degree in u, from its values at integers
+    u."""
+    first = -(max(degree, 0) // 2)
+    values = [at(first + k) for k in range(degree + 1)]
+    found: dict[tuple[int, int], fmpz] = {}
+    for j in range(max((len(value) for value in values), default=0)):
+        column = [value[j] for value in values]
+        row = interpolate(lambda k, column=column: column[k - first], degree, check)  # type: ignore[misc]
+        found.update({(i, j): c for i, c in enumerate(row.coeffs()) if c})
+    return found
