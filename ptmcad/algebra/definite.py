@@ -1,7 +1,7 @@
 """Whether a polynomial is negative, or zero, somewhere in an open rectangle: decided, not sampled.
 
 Guarantee: `PROVED` and a `Found` point are theorems. `OPEN` is returned only where the work would be more than was
-allowed, `Near` only where a zero over an irrational abscissa cannot be separated from an end of the fibre.
+allowed, `Near` only where a polynomial that changes sign nowhere may touch zero over an irrational abscissa.
 
 Why this decides. Write p as a constant times powers of different irreducible factors over Q. An irreducible f that
 changes sign does so across a curve; two factors meet in finitely many points; so p changes sign in the rectangle if and
@@ -10,8 +10,7 @@ both variables has simple roots over every abscissa that is not a root of its di
 fibre is constant between abscissae that are roots of it or of f on the two long edges. So f changes sign in the open
 rectangle if and only if it has a root over the sample of one of these intervals. When it has none, its only zeros are
 isolated ones, where its gradient vanishes; over these the discriminant has a multiple root, because its derivative by
-the coefficients of f is there a multiple of (1, v, v^2, ...), v being the double root. In the fibre over such an
-abscissa all zeros are multiple, so they are the zeros of the greatest common divisor of f and its derivative there.
+the coefficients of f is there a multiple of (1, v, v^2, ...), v being the double root.
 
 References: McCallum, J. Symb. Comp. 5 (1988), on projections; Gelfand, Kapranov and Zelevinsky, Discriminants,
 Resultants and Multidimensional Determinants, chapter 1, on the derivative of the discriminant.
@@ -22,11 +21,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from itertools import pairwise
-from math import comb
 
-from flint import arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly
+from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 
+from ptmcad.algebra.branches import avoids_zero
 from ptmcad.algebra.polynomials import (
     Coefficient,
     UnivariatePolynomial,
@@ -46,15 +44,14 @@ from ptmcad.algebra.real_roots import (
     squarefree_part,
 )
 from ptmcad.algebra.resultants import discriminant
-from ptmcad.algebra.tower import common_divisor, derivative, quotient
 from ptmcad.algebra.window import Interval
 
 MAX_WORK = 2 * 10**10
 """Of a discriminant: values, times the cube of the degree, times the bits of a coefficient; some twenty seconds."""
 BITS = 400
-"""To which the distance of a polynomial from zero over a singular abscissa is looked at."""
-_HALVINGS, _SHOWN = 60, 40
-"""Parts of 2^-60 of a fibre are not halved any more; zeros are located to 2^-40 of it."""
+"""Of the balls in which a polynomial is looked at over a singular abscissa."""
+_HALVINGS = 60
+"""Parts of 2^-60 of a fibre are not halved any more."""
 
 Point = tuple[fmpq, fmpq]
 
@@ -239,24 +236,37 @@ def _nonzero_point(p: Coefficient, x: Interval, y: Interval) -> Point:
 
 
 def _isolated_zero(f: Coefficient, x: Interval, y: Interval) -> Found | Near | None:
-    """A zero of an irreducible polynomial that changes sign nowhere in the open rectangle, if there is one."""
+    """A zero of an irreducible polynomial that changes sign nowhere in the open rectangle, if there is one.
+
+    Over a rational value of one of the axes it is found. Over another one, where coefficients are not rational, nothing
+    is said but that there may be one, unless it is excluded in balls, or over the other axis.
+    """
     if min(int(d) for d in f.degrees()) == 0:
         return None  # its roots are simple
     base = _base(f)
+    found = _touching(f, base, x, y)
+    other = _touching(f, 1 - base, x, y) if isinstance(found, Near) else found
+    return found if isinstance(other, Near) else other
+
+
+def _touching(f: Coefficient, base: int, x: Interval, y: Interval) -> Found | Near | None:
+    """The same, as it is seen over one axis."""
     window, fibre = ((x, y), (y, x))[base]
     rows = coefficients_in(f, 1 - base)
     d = discriminant(rows)
     for m, _ in d.gcd(d.derivative()).factor()[1]:
         for root in isolate(m, *window):
-            found = _over_rational(rows, m, fibre) if m.degree() == 1 else _over_irrational(rows, root, fibre)
-            if found is not None:
-                height, sure = found
-                there = _narrow(root, window)
+            there = _narrow(root, window)
+            if m.degree() == 1:
+                roots = isolate(squarefree_part(univariate(tuple(rows), _only_root(m))), *fibre)
+                height = _narrow(roots[0], fibre) if roots else None
+            else:
+                height = _undecided(rows, refine(root, fmpq(1, 2**BITS)), fibre)
+            if height is not None:
                 point = (there.middle, height.middle) if base == 0 else (height.middle, there.middle)
-                if not sure:
+                if m.degree() > 1:
                     return Near(point)
-                distance = max(there.high - there.low, height.high - height.low)
-                return Found(point, distance == 0, distance)
+                return Found(point, height.is_rational, height.high - height.low)
     return None
 
 
@@ -264,100 +274,22 @@ def _only_root(m: UnivariatePolynomial) -> fmpq:
     return fmpq(-m[0], m[1])
 
 
-def _over_rational(
-    rows: Sequence[UnivariatePolynomial], m: UnivariatePolynomial, fibre: Interval
-) -> tuple[RealRoot, bool] | None:
-    roots = isolate(squarefree_part(univariate(tuple(rows), _only_root(m))), *fibre)
-    return (_narrow(roots[0], fibre), True) if roots else None
-
-
-def _over_irrational(
-    rows: Sequence[UnivariatePolynomial], root: RealRoot, fibre: Interval
-) -> tuple[RealRoot, bool] | None:
-    """Where the polynomial is zero in the open fibre over an algebraic abscissa; None when it is nowhere.
-
-    The second value is False where that is not sure. Zeros at the fibre's ends are divided out first, exactly: they are
-    outside of the open rectangle.
-    """
-    modulus = fmpq_poly(root.polynomial)
-    width = fibre[1] - fibre[0]
-    along = _composed(rows, fmpq_poly([fibre[0], width]))
-    there = _without_zeros_at_0(_composed(_without_zeros_at_0(along, modulus), fmpq_poly([1, -1])), modulus)
-    part = _undecided_part(_at(there, root))
-    if part is None:
-        return None
-    multiple = common_divisor(there, derivative(there), modulus)
-    if len(multiple) == 1:
-        return None  # a zero would be simple, and f would change sign there
-    simple = quotient(multiple, common_divisor(multiple, derivative(multiple), modulus), modulus)
-    part = _undecided_part(_at(simple, root), zero=True)
-    if part is None:
-        return None
-    low, high, sure = part
-    # the second composition turned the fibre round
-    return RealRoot(root.polynomial, fibre[1] - width * high, fibre[1] - width * low), sure
-
-
-def _composed(rows: Sequence[fmpq_poly | fmpz_poly], inner: fmpq_poly) -> list[fmpq_poly]:
-    """sum_j c_j(u) inner(t)^j as coefficients of powers of t, each a polynomial in u."""
-    result: list[fmpq_poly] = [fmpq_poly([0]) for _ in rows]
-    power = fmpq_poly([1])
-    for row in rows:
-        for i, c in enumerate(power.coeffs()):
-            result[i] += fmpq_poly(row) * c
-        power *= inner
-    return result
-
-
-def _without_zeros_at_0(coefficients: Sequence[fmpq_poly], modulus: fmpq_poly) -> list[fmpq_poly]:
-    reduced = [c % modulus for c in coefficients]
-    first = next(k for k, c in enumerate(reduced) if c)  # an irreducible f vanishes on no line
-    return reduced[first:]
-
-
-def _at(coefficients: Sequence[fmpq_poly], root: RealRoot) -> list[arb]:
-    """The coefficients' values at an algebraic number, in balls."""
-    near = refine(root, fmpq(1, 2**BITS))
-    with ctx.workprec(2 * BITS):
-        ball = (arb(near.low)).union(arb(near.high))
-        return [arb_poly(c)(ball) for c in coefficients]
-
-
-def _undecided_part(coefficients: Sequence[arb], zero: bool = False) -> tuple[fmpq, fmpq, bool] | None:
-    """A part of [0, 1] on which no sign is proved; None when there is no zero in [0, 1].
-
-    Parameters
-    ----------
-    zero : whether a part at whose ends the signs differ will do; the last value returned says that it is one.
-    """
-    n = len(coefficients) - 1
-    with ctx.workprec(2 * BITS):
-        bernstein = [
-            sum((coefficients[i] * fmpq(comb(k, i), comb(n, i)) for i in range(k + 1)), arb(0)) for k in range(n + 1)
-        ]
-        parts = [(bernstein, fmpq(0), fmpq(1))]
+def _undecided(rows: Sequence[UnivariatePolynomial], there: RealRoot, fibre: Interval) -> RealRoot | None:
+    """A part of the fibre where a polynomial may be zero over an abscissa that is known in a short interval, as if it
+    were a root; None when it is proved to be zero nowhere."""
+    with ctx.workprec(BITS):
+        abscissa = arb(there.low).union(arb(there.high))
+        p = arb_poly([arb_poly(row)(abscissa) for row in rows])
+        parts = [fibre]
         while parts:
-            b, low, width = parts.pop()
-            if all(c > 0 for c in b) or all(c < 0 for c in b):
+            low, high = parts.pop()
+            if avoids_zero(p, low, high):
                 continue
-            if zero and b[0] * b[-1] < 0 and width < fmpq(1, 2**_SHOWN):
-                return low, low + width, True
-            if width < fmpq(1, 2**_HALVINGS):
-                return low, low + width, False
-            left, right = _halved(b)
-            parts.append((left, low, width / 2))
-            parts.append((right, low + width / 2, width / 2))
+            if high - low < (fibre[1] - fibre[0]) / 2**_HALVINGS:
+                return RealRoot(there.polynomial, low, high)
+            middle = (low + high) / 2
+            parts += [(middle, high), (low, middle)]
     return None
-
-
-def _halved(b: Sequence[arb]) -> tuple[list[arb], list[arb]]:
-    """De Casteljau's subdivision."""
-    left, right, row = [b[0]], [b[-1]], list(b)
-    while len(row) > 1:
-        row = [(s + t) / 2 for s, t in pairwise(row)]
-        left.append(row[0])
-        right.append(row[-1])
-    return left, right[::-1]
 
 
 def _middle(interval: Interval) -> fmpq:

@@ -1,7 +1,6 @@
-"""Determinants of matrices over Q(x, y), by fraction-free elimination or by values at integers.
+"""Determinants of matrices over Q(x, y), by fraction-free elimination, or of one variable by values at integers.
 
-Guarantee: exact. Values in one axis are taken in Z, those in two modulo primes, see `pencils`; which way is taken is
-predicted from the number of terms.
+Guarantee: exact.
 
 References: Bareiss, Math. Comp. 22 (1968); von zur Gathen & Gerhard, Modern Computer Algebra, section 5.5 (determinants
 by evaluation and interpolation).
@@ -9,12 +8,13 @@ by evaluation and interpolation).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
-from flint import fmpz_mat, fmpz_poly
+from flint import fmpz_mat, fmpz_poly, nmod_mat
 
+from ptmcad.algebra.assignment import least_assignment
 from ptmcad.algebra.polynomials import (
-    PLANE,
     Coefficient,
     Ratio,
     coefficients_in,
@@ -23,14 +23,12 @@ from ptmcad.algebra.polynomials import (
     lcm,
     ratio,
 )
-from ptmcad.algebra.resultants import interpolate, nothing
+from ptmcad.algebra.residues import primes
 
 MIN_INTERPOLATED = 12
 """Rows; of fewer the elimination is as fast."""
-MIN_MODULAR = 6
-"""Rows, likewise for values modulo primes."""
-_MANY_TERMS = 10_000
-"""Rows times terms from which on costs are predicted; with fewer the elimination takes some tens of milliseconds."""
+MANY_TERMS = 15_000
+"""Rows times terms, in two variables; with fewer, likewise."""
 
 
 def determinant(rows: list[list[Ratio]]) -> Ratio:
@@ -60,63 +58,53 @@ def determinant(rows: list[list[Ratio]]) -> Ratio:
         if not common.is_one():
             numerator = numerator * common
             matrix[i] = [c / common for c in line]
-    return ratio(numerator * _primitive_determinant(matrix, denominator), denominator)
+    return ratio(numerator * _primitive_determinant(matrix), denominator)
 
 
-def _primitive_determinant(matrix: list[list[Coefficient]], denominator: Coefficient) -> Coefficient:
-    """The determinant, by the way that is predicted to be the shortest.
-
-    Parameters
-    ----------
-    denominator : its irreducible factors may divide the determinant to high powers.
-    """
-    axis = _only_axis(matrix) if len(matrix) >= MIN_INTERPOLATED else None
-    if axis is not None:
-        return _interpolated(matrix, axis)
-    found = _modular(matrix, denominator) if len(matrix) >= MIN_MODULAR else None
-    return _bareiss(matrix) if found is None else found
-
-
-def _modular(matrix: list[list[Coefficient]], denominator: Coefficient) -> Coefficient | None:
-    """The determinant by values modulo primes; None where the elimination is predicted to be shorter."""
-    if matrix[0][0].context() is not PLANE or len(matrix) * sum(len(e) for row in matrix for e in row) < _MANY_TERMS:
-        return None
-    from ptmcad.algebra import pencils  # few slices need it
-
-    pencil = pencils.Pencil(matrix)
-    asked = pencils.bounds(pencil, pencils.places_of(denominator))
-    if asked is None:
-        return constant_like(matrix[0][0], 0)
-    if pencils.seconds(pencil, asked) * _MARGIN > pencils.seconds_in_polynomials(pencil, asked):
-        return None
-    cofactor, factors = pencils.determinant(matrix, asked, nothing)
-    for factor, exponent in factors:
-        cofactor = cofactor * factor**exponent
-    return cofactor
-
-
-_MARGIN = 2
-"""By how much the prediction has to favour values modulo primes."""
-
-
-def _only_axis(matrix: Sequence[Sequence[Coefficient]]) -> int | None:
-    """The number of the one axis that occurs, of two; None where another number of them does."""
+def _primitive_determinant(matrix: list[list[Coefficient]]) -> Coefficient:
+    """The determinant, by the way that is likely to be the shorter one."""
+    terms = sum(len(entry) for row in matrix for entry in row)
     degrees = [max(d) for d in zip(*(entry.degrees() for row in matrix for entry in row), strict=True)]
-    return degrees.index(max(degrees)) if len(degrees) == 2 and sum(d > 0 for d in degrees) == 1 else None
+    if len(degrees) != 2 or len(matrix) < MIN_INTERPOLATED or (min(degrees) > 0 and len(matrix) * terms < MANY_TERMS):
+        return _bareiss(matrix)
+    return _interpolated(matrix)
 
 
-def _interpolated(matrix: Sequence[Sequence[Coefficient]], axis: int) -> Coefficient:
-    """The determinant of a matrix in one axis, from its values at as many integers as its degree may ask for."""
-    entries = [[_in_axis(entry, axis) for entry in row] for row in matrix]
-    bounds = [[max(0, entry.degree()) for entry in row] for row in entries]
-    most = min(sum(map(max, bounds)), sum(map(max, zip(*bounds, strict=True))))
-    found = interpolate(lambda x: fmpz_mat([[entry(x) for entry in row] for row in entries]).det(), most)
-    ring = matrix[0][0].context()
-    return ring.from_dict({(k, 0) if axis == 0 else (0, k): int(c) for k, c in enumerate(found.coeffs()) if c})
+def _interpolated(matrix: Sequence[Sequence[Coefficient]]) -> Coefficient:
+    """The determinant from its values at integer points modulo primes of one word.
+
+    Its degree in either variable is at most that of a product of entries, one of each row and column; the sum of its
+    coefficients' moduli is at most the product over the rows of these sums.
+    """
+    zero = constant_like(matrix[0][0], 0)
+    costs = [[[None if e.is_zero() else -int(e.degrees()[k]) for e in row] for row in matrix] for k in (0, 1)]
+    least = [least_assignment(cost) for cost in costs]
+    if least[0] is None or least[1] is None:
+        return zero
+    across, up = (range(1 - bound) for bound in least)
+    entries = [coefficients_in(entry, 1) for row in matrix for entry in row]
+    values = []
+    for x in across:
+        on_line = [fmpz_poly([c(x) for c in entry]) for entry in entries]
+        values += [fmpz_mat(len(matrix), len(matrix), [entry(y) for entry in on_line]) for y in up]
+    most = 2 * math.prod(sum(abs(int(c)) for entry in row for c in entry.coeffs()) for row in matrix)
+    modulus, found = 1, [0] * len(values)
+    for prime in primes():
+        if modulus > most:
+            break
+        dets = nmod_mat(len(across), len(up), [int(nmod_mat(v, prime).det()) for v in values], prime)
+        image = _powers(across, prime).inv() * dets * _powers(up, prime).transpose().inv()
+        inverse = pow(modulus, -1, prime)
+        found = [a + modulus * ((int(b) - a) * inverse % prime) for a, b in zip(found, image.entries(), strict=True)]
+        modulus *= prime
+    balanced = (c - modulus if 2 * c > modulus else c for c in found)
+    places = ((i, j) for i in across for j in up)
+    return zero.context().from_dict({place: c for place, c in zip(places, balanced, strict=True) if c})
 
 
-def _in_axis(entry: Coefficient, axis: int) -> fmpz_poly:
-    return coefficients_in(entry, 1 - axis)[0]
+def _powers(points: range, prime: int) -> nmod_mat:
+    """Vandermonde's matrix."""
+    return nmod_mat(len(points), len(points), [pow(x, k, prime) for x in points for k in points], prime)
 
 
 def _bareiss(matrix: list[list[Coefficient]]) -> Coefficient:

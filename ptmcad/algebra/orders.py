@@ -1,7 +1,6 @@
-"""Orders of discriminants and resultants at a place of Q(u), from the orders of the coefficients: Newton's polygons.
+"""Degrees of discriminants and resultants in u, from those of the coefficients: Newton's polygons.
 
-Guarantee: proved bounds, of the degree in u (the order at infinity is its negative) from above, of the multiplicity
-of an irreducible factor from below.
+Guarantee: proved bounds from above. The degree is the negative of the order at infinity.
 
 Let o be the order at a place, with o(0) infinite. It extends to the roots of p = sum_i c_i v^i over an algebraic
 closure, and the slopes of the lower convex hull of the points (i, o(c_i)) are the orders of the roots, with a change
@@ -13,16 +12,13 @@ terms.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import pairwise
 
 from flint import fmpz_poly
 
 Coefficients = Sequence[fmpz_poly]
-Factors = tuple[tuple[fmpz_poly, int], ...]
-"""Irreducible polynomials in Z[u] with exponents."""
-_SHIFTS = (0, -1, 1)
 
 
 def discriminant_degree(p: Coefficients) -> int:
@@ -45,26 +41,6 @@ def resultant_degree(p: Coefficients, q: Coefficients) -> int:
     total = (m + further) * left[n] + (n + far) * right[m] + sum(second) * (n - len(first))
     total += sum(first) * (m - len(second)) + sum((min(r, s) for r in first for s in second), Fraction(0))
     return -math.ceil(total)
-
-
-def discriminant_factors(p: Coefficients) -> Factors:
-    """Powers of irreducible polynomials that divide the discriminant, as far as they are seen easily.
-
-    The places are those at which several roots come close to infinity, or to 0, 1 or -1: the discriminant is the same
-    for v + s in place of v.
-    """
-    found: dict[tuple[int, ...], tuple[fmpz_poly, int]] = {}
-    for s in _SHIFTS:
-        shifted = _shifted(p, s)
-        for end in (shifted[0], shifted[-1]):
-            for factor, multiplicity in end.factor()[1] if end else ():
-                if multiplicity > 1:
-                    places = {i: _multiplicity(c, factor) for i, c in enumerate(shifted) if c}
-                    order = _of_discriminant(places, len(p) - 1) or 0
-                    key = tuple(int(c) for c in factor.coeffs())
-                    if order > found.get(key, (factor, 0))[1]:
-                        found[key] = (factor, order)
-    return tuple(found.values())
 
 
 def _degrees(p: Coefficients) -> dict[int, int]:
@@ -94,29 +70,3 @@ def _roots(orders: Mapping[int, int]) -> list[Fraction]:
 
 def _slope(left: tuple[int, int], right: tuple[int, int]) -> Fraction:
     return Fraction(right[1] - left[1], right[0] - left[0])
-
-
-def _multiplicity(p: fmpz_poly, factor: fmpz_poly) -> int:
-    found = 0
-    while not (division := divmod(p, factor))[1]:
-        p, found = division[0], found + 1
-    return found
-
-
-def _shifted(p: Coefficients, s: int) -> Coefficients:
-    """p(u, v + s)."""
-    row = list(p)
-    for i in range(len(row) - 1 if s else 0):
-        for j in range(len(row) - 2, i - 1, -1):
-            row[j] = row[j] + s * row[j + 1]
-    return row
-
-
-def values(factors: Factors, points: Iterable[int]) -> list[int]:
-    """Of the product of the powers, at integers."""
-    return [math.prod(int(f(u)) ** e for f, e in factors) for u in points]
-
-
-def degree(factors: Factors) -> int:
-    """Of the product of the powers."""
-    return sum(int(f.degree()) * e for f, e in factors)

@@ -16,7 +16,7 @@ from flint import fmpq, fmpq_mat, fmpq_poly, fmpz_poly
 
 from ptmcad.algebra.fibre import Fibre, RationalPolynomial, evaluate, hermite_matrix, signature
 from ptmcad.algebra.isolation import root_bound
-from ptmcad.algebra.number_field import Element, Modulus, RealField, Residue, polynomial_at
+from ptmcad.algebra.number_field import Element, Expression, Modulus, RealField, polynomial_at
 from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
 
 
@@ -58,14 +58,14 @@ def points(algebra: Fibre, bound: int | None = 1) -> Points:
     radical = _product([factor for factor, _ in factors])
     numerators = _trace_polynomials(algebra, matrix, radical)
     limit = root_bound(radical) if bound is None else fmpq(bound * sum(form) + 1)
-    coordinates: dict[int, tuple[Modulus, list[Residue]]] = {}
+    coordinates: dict[int, tuple[Modulus, list[Expression]]] = {}
     found = []
     for root in isolate(radical, -limit, limit):
         number = next(n for n, (factor, _) in enumerate(factors) if _owns(factor, root))
         factor, multiplicity = factors[number]
         interval = RealRoot(factor, root.low, root.high)
         if number not in coordinates:
-            modulus = Modulus.of(factor)
+            modulus = Modulus(factor)
             coordinates[number] = modulus, _coordinates(RealField(modulus, interval), numerators)
         modulus, residues = coordinates[number]
         field = RealField(modulus, interval)
@@ -135,11 +135,11 @@ def _trace(matrix: fmpq_mat) -> fmpq:
     return sum((matrix[i, i] for i in range(matrix.nrows())), fmpq(0))
 
 
-def _coordinates(field: RealField, numerators: Sequence[fmpq_poly]) -> list[Residue]:
+def _coordinates(field: RealField, numerators: Sequence[fmpq_poly]) -> list[Expression]:
     """The unknowns at the points of one factor: quotients of the trace polynomials by the first of them."""
     first, *others = map(field.element, numerators)
     inverse = first.inverse()  # it vanishes at no point of the fibre
-    return [(other * inverse).part for other in others]
+    return [(other * inverse).expression for other in others]
 
 
 def _owns(factor: fmpz_poly, root: RealRoot) -> bool:

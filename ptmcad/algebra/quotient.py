@@ -8,14 +8,10 @@ References: Lazard & Rouillier, J. Symb. Comp. 42 (2007); Le & Safey El Din, arX
 
 from __future__ import annotations
 
-import itertools
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 from operator import add
 from typing import NamedTuple
-
-from flint import fmpz_mat
 
 from ptmcad.algebra.assignment import least_assignment
 from ptmcad.algebra.determinants import determinant
@@ -27,12 +23,10 @@ from ptmcad.algebra.polynomials import (
     add_ratios,
     common_factor,
     constant_like,
-    irreducible_factors,
     lcm,
     multiplicity,
     ratio,
 )
-from ptmcad.algebra.resultants import nothing
 from ptmcad.errors import LimitReached
 
 Vector = tuple[tuple[Coefficient, ...], Coefficient]
@@ -192,10 +186,15 @@ def bounded_away_from_zero(rows: Sequence[Vector], product: Ratio, factor: Coeff
     polynomial times a common denominator keeps a constant coefficient that does not vanish on the curve, and its roots
     stay away from 0 wherever that coefficient does.
     """
+    return _least_order(rows, factor) == _order(product[0], product[1], factor)
+
+
+def _least_order(rows: Sequence[Vector], factor: Coefficient) -> int | None:
+    """A bound from below for the order along a curve of each coefficient of a matrix's characteristic polynomial."""
     orders = [[_order(c, denominator, factor) for c in row] for row, denominator in rows]
     for k, row in enumerate(orders):
         row[k] = min(row[k] or 0, 0)  # a row may be left out with its column
-    return least_assignment(orders) == _order(product[0], product[1], factor)
+    return least_assignment(orders)
 
 
 def _order(numerator: Coefficient, denominator: Coefficient, factor: Coefficient) -> int | None:
@@ -208,122 +207,34 @@ def multiplication_denominator(algebra: QuotientAlgebra) -> Coefficient:
     return lcm(algebra.table[shifted(m, k)][1] for m in algebra.basis for k in range(len(m)))
 
 
-def table_terms(algebra: QuotientAlgebra) -> int:
-    """The number of terms in the multiplication matrices of the unknowns."""
-    rows = (algebra.table[shifted(m, k)][0] for m in algebra.basis for k in range(len(m)))
-    return sum(len(c) for row in rows for c in row)
-
-
-def power_trace_denominators(algebra: QuotientAlgebra, k: int) -> Coefficient:
-    """The common denominator of trace(u^j), j = 1 ... dimension, for the unknown number k.
-
-    By Newton's identities the zeros of this polynomial are the poles of the characteristic polynomial of u: the
-    points of the plane near which the unknown u is unbounded on the solutions.
-    """
-    scale = algebra.one
-    vectors = [algebra.table[m] for m in algebra.basis]
-    for _ in range(algebra.dimension):
-        vectors = [_times_unknown(algebra, k, v) for v in vectors]
-        total: Ratio = (algebra.zero, algebra.one)
-        for i, (numerators, denominator) in enumerate(vectors):
-            total = add_ratios(total, ratio(numerators[i], denominator))
-        scale = lcm((scale, total[1]))
-    return scale
-
-
-def poles_of_characteristic_polynomial(
-    algebra: QuotientAlgebra, k: int, suspects: Sequence[Coefficient]
+def poles(
+    algebra: QuotientAlgebra, suspects: Sequence[Coefficient], coordinates: Sequence[int], values: int | None = None
 ) -> list[Coefficient]:
-    """Those of the irreducible polynomials on which the characteristic polynomial of the unknown number k has a pole.
+    """Those of the irreducible polynomials on which the characteristic polynomial of some coordinate has a pole.
 
-    The same answer as by `power_trace_denominators`, with proof of each, from one interpolation.
+    Near these points of the plane the coordinate is unbounded on the solutions. As many values of the polynomial as its
+    degree have together the poles of its coefficients, since Vandermonde's matrix is one of constants. Often the
+    entries' orders tell that there is none.
+
+    Parameters
+    ----------
+    values : fewer are as good but where poles cancel in them by chance: what is returned has a pole in any case.
     """
-    from ptmcad.algebra import pencils  # few slices need it
-
-    rows = [algebra.table[shifted(m, k)] for m in algebra.basis]
-    matrix, scales = [row for row, _ in rows], [scale for _, scale in rows]
-    coefficients, factors = pencils.characteristic(matrix, scales, pencils.places_of(lcm(scales)), nothing)
-    found = []
-    for f in suspects:
-        leading = sum(multiplicity(scale, f) for scale in scales)
-        known = sum(e for g, e in factors if g == f)
-        if any(c and known + multiplicity(c, f) < leading for c in coefficients):
-            found.append(f)
+    number = algebra.dimension if values is None else min(values, algebra.dimension)
+    found: list[Coefficient] = []
+    for k in coordinates:
+        rows = [algebra.table[shifted(m, k)] for m in algebra.basis]
+        open_ones = [f for f in suspects if f not in found and (_least_order(rows, f) or 0) < 0]
+        for value in range(2, 2 + number):
+            if all(f in found for f in open_ones):
+                break
+            matrix = [
+                [ratio(denominator * value - c if i == j else -c, denominator) for j, c in enumerate(row)]
+                for i, (row, denominator) in enumerate(rows)
+            ]
+            below = determinant(matrix)[1]
+            found += [f for f in open_ones if f not in found and (below % f).is_zero()]
     return found
-
-
-def poles_at_points(
-    algebra: QuotientAlgebra, asked: Sequence[Coefficient], coordinates: Sequence[int]
-) -> list[Coefficient]:
-    """Those of the asked-for factors of `multiplication_denominator` on which solutions are seen to have poles.
-
-    Guarantee: every polynomial that is returned divides the denominator of a power trace. For at an integer point the
-    traces' denominators consist of primes of the values of the normal forms' denominators there; a prime that among
-    these divides only the value of one factor, and is there, comes from that factor. One that is not returned had no
-    such prime among those of values with a product of `_LARGE` or more, at as many points as that takes. That none is
-    missed is not proved: where a numerator vanishes modulo all these primes, which has a probability near 1/`_LARGE`.
-    """
-    denominator = multiplication_denominator(algebra)
-    content = math.gcd(*(int(c) for _, c in denominator.terms()))
-    every = irreducible_factors(denominator)
-    # of each polynomial in which no pole was seen so far, the product of its values' parts with primes of their own
-    products, found = [1] * len(asked), [False] * len(asked)
-    points = _points()
-    while any(p < _LARGE and not pole for p, pole in zip(products, found, strict=True)):
-        point = next(points)
-        values = [abs(int(f(*point))) for f in every]
-        if 0 in values:
-            continue
-        denominators = math.lcm(*(_trace_denominator(algebra, k, point) for k in coordinates))
-        for k, f in enumerate(asked):
-            others = content * math.prod(v for g, v in zip(every, values, strict=True) if g != f)
-            own = _without_primes_of(abs(int(f(*point))), others)
-            products[k] *= own
-            found[k] = found[k] or math.gcd(own, denominators) > 1
-    return [f for f, pole in zip(asked, found, strict=True) if pole]
-
-
-_LARGE = 2**96
-"""A product of a factor's values from which on it is no accident that no trace has a pole."""
-
-
-def _points() -> Iterator[tuple[int, int]]:
-    """Integer points without end, the same in every run.
-
-    Any do, but at large ones values have more primes of their own. They grow, so that any curve is left in the end.
-    """
-    yield from ((1_000_003, 998_244_353), (2_147_483_647, 179_424_673))
-    import random  # which few need
-
-    source = random.Random("points")
-    for bits in itertools.count(32):
-        yield source.getrandbits(bits), source.getrandbits(bits)
-
-
-def _trace_denominator(algebra: QuotientAlgebra, k: int, point: tuple[int, int]) -> int:
-    """The common denominator of trace(u^j), j = 1 ... dimension, at a point, for the unknown number k."""
-    size = algebra.dimension
-    rows, scales = [], []
-    for m in algebra.basis:
-        numerators, denominator = algebra.table[shifted(m, k)]
-        rows.append([int(c(*point)) for c in numerators])
-        scales.append(int(denominator(*point)))
-    scale = math.lcm(*scales)
-    # powers of an integer matrix, which need no greatest common divisors on the way
-    matrix = fmpz_mat(size, size, [c * (scale // s) for row, s in zip(rows, scales, strict=True) for c in row])
-    power, common = matrix, 1
-    for j in range(1, size + 1):
-        denominator_of_power = scale**j
-        trace = int(sum(power[i, i] for i in range(size)))
-        common = math.lcm(common, denominator_of_power // math.gcd(denominator_of_power, trace))
-        power = power * matrix
-    return common
-
-
-def _without_primes_of(n: int, other: int) -> int:
-    while (common := math.gcd(n, other)) > 1:
-        n //= common
-    return n
 
 
 def trace_form(algebra: QuotientAlgebra) -> list[list[Ratio]]:

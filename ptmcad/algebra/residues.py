@@ -1,24 +1,13 @@
-"""Interpolation modulo primes of one machine word, and integers from their residues.
-
-Guarantee: exact. Consecutive integers are the points of interpolation, so that no divisor is divisible by the prime.
-
-Reference: von zur Gathen & Gerhard, Modern Computer Algebra, sections 5.2 to 5.4 and 10.3.
-"""
+"""Primes of one machine word."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
-from itertools import accumulate
+from collections.abc import Iterator
 
-from flint import fmpz, fmpz_poly, nmod_poly
+from flint import fmpz
 
 PRIME_BITS = 63
 """FLINT's arithmetic is fastest where two residues add up without overflow."""
-
-
-class FaultyValue(ArithmeticError):
-    """A result disagrees with a value that it was not made from: the machine or the program is at fault."""
 
 
 def primes() -> Iterator[int]:
@@ -28,61 +17,3 @@ def primes() -> Iterator[int]:
         if candidate.is_prime():
             yield int(candidate)
         candidate -= 2
-
-
-def quotients(numerators: Sequence[int], denominators: Sequence[int], prime: int) -> list[int]:
-    """Modulo a prime that divides no denominator; one inverse is computed."""
-    products = list(accumulate(denominators, lambda a, b: a * b % prime))
-    inverse = pow(products[-1], -1, prime)
-    found = []
-    for k in range(len(numerators) - 1, -1, -1):
-        before = products[k - 1] if k else 1
-        found.append(numerators[k] * before % prime * inverse % prime)
-        inverse = inverse * denominators[k] % prime
-    return found[::-1]
-
-
-def newton(values: Sequence[int], prime: int) -> list[int]:
-    """The coefficients in Newton's form for consecutive integers: sum_j values_j / j! (-1)^(k-j) / (k-j)!."""
-    factorials = list(accumulate(range(1, len(values)), lambda a, b: a * b % prime, initial=1))
-    inverse = quotients([1] * len(values), factorials, prime)
-    left = nmod_poly([v * w for v, w in zip(values, inverse, strict=True)], prime)
-    right = nmod_poly([-w if k % 2 else w for k, w in enumerate(inverse)], prime)
-    found = [int(c) for c in left.mul_low(right, len(values)).coeffs()]
-    return found + [0] * (len(values) - len(found))
-
-
-_BLOCK = 48
-
-
-def blocks(first: int, length: int) -> list[fmpz_poly]:
-    """The products of (u - first - k) over `_BLOCK` numbers k each, from 0 on, as far as Newton's form needs them."""
-    starts = range(first, first + length - _BLOCK, _BLOCK)
-    return [math.prod((fmpz_poly([-s - k, 1]) for k in range(_BLOCK)), start=fmpz_poly([1])) for s in starts]
-
-
-def expanded(newton: Sequence[int], first: int, blocks: Sequence[fmpz_poly], prime: int) -> nmod_poly:
-    """The polynomial with these coefficients in Newton's form: Horner's scheme in blocks, and for the blocks."""
-    result = nmod_poly([0], prime)
-    for b in range(len(blocks), -1, -1):
-        start = b * _BLOCK
-        part = nmod_poly([0], prime)
-        for k in reversed(range(start, min(start + _BLOCK, len(newton)))):
-            part = part * nmod_poly([-(first + k), 1], prime) + newton[k]
-        result = result * nmod_poly(blocks[b], prime) + part if b < len(blocks) else part
-    return result
-
-
-def combined(images: Sequence[tuple[nmod_poly, int]]) -> fmpz_poly:
-    """The polynomial with these images modulo primes whose coefficients are least in absolute value."""
-    modulus = math.prod(prime for _, prime in images)
-    parts = []
-    for image, prime in images:
-        scaled = image * pow(modulus // prime % prime, -1, prime)
-        parts.append((fmpz_poly([int(c) for c in scaled.coeffs()]), prime))
-    while len(parts) > 1:  # of coprime p and q, remainders a / q and b / p have the sum (a q + b p) / (p q)
-        pairs = zip(parts[::2], parts[1::2], strict=False)
-        rest = parts[-1:] if len(parts) % 2 else []
-        parts = [(a * q + b * p, p * q) for (a, p), (b, q) in pairs] + rest
-    residues = [int(c) % modulus for c in parts[0][0].coeffs()]
-    return fmpz_poly([c - modulus if 2 * c > modulus else c for c in residues])

@@ -1,9 +1,8 @@
 """Discriminants and resultants in Z[u] of polynomials in Z[u][v], by evaluation at integers and interpolation.
 
 Guarantee: exact. The number of evaluation points comes from a proved bound for the degree, see `orders`: nothing is
-left to chance. Values of high degree are taken modulo primes, see `modular`, the others in Z; predicted cost decides.
-Of a long polynomial that a reflection v to 2 m(u) - v maps to itself, the discriminant in (v - m)^2 is computed, of
-half the degree; where m = 0 that is left to the caller.
+left to chance. Of a long polynomial that a reflection v to 2 m(u) - v maps to itself, the discriminant in (v - m)^2 is
+computed, of half the degree; where m = 0 that is left to the caller.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from ptmcad.algebra.reflections import axis_of, squared
 Coefficients = Sequence[fmpz_poly]
 Check = Callable[[], None]
 LONG = 100_000
-"""Points times the product of the degrees in v; of less, values in integers take milliseconds."""
+"""Points times the product of the degrees in v; less takes milliseconds."""
 
 
 def nothing() -> None:
@@ -37,13 +36,21 @@ def discriminant(p: Coefficients, check: Check = nothing) -> fmpz_poly:
     if n < 2:
         return fmpz_poly([1])
     bound = discriminant_degree(p)
-    if (bound + 1) * n * (n - 1) >= LONG and (axis := axis_of(p)):
-        return _by_reflection(p, axis, check)
     if (bound + 1) * n * (n - 1) >= LONG:
-        from ptmcad.algebra import modular  # not loaded for short ones
+        if axis := axis_of(p):
+            return _by_reflection(p, axis, check)
+        return _long_discriminant(tuple(tuple(int(a) for a in c.coeffs()) for c in p), bound, check)
+    return _discriminant(p, bound, check)
 
-        if modular.pays((n, n - 1), bound, modular.discriminant_bits(p)):
-            return _long_discriminant(tuple(tuple(int(a) for a in c.coeffs()) for c in p), check)
+
+@lru_cache(maxsize=4)
+def _long_discriminant(p: tuple[tuple[int, ...], ...], bound: int, check: Check) -> fmpz_poly:
+    """Kept, as a decomposition asks for it once more when it looks for points over the abscissae."""
+    return _discriminant([fmpz_poly(list(c)) for c in p], bound, check)
+
+
+def _discriminant(p: Coefficients, bound: int, check: Check) -> fmpz_poly:
+    n = len(p) - 1
 
     def at(k: int) -> fmpz:
         value = fmpz_poly([c(k) for c in p])
@@ -69,25 +76,12 @@ def _by_reflection(p: Coefficients, axis: fmpq_poly, check: Check) -> fmpz_poly:
     return full // axis.denom() ** (n * (n - 1))
 
 
-@lru_cache(maxsize=4)
-def _long_discriminant(p: tuple[tuple[int, ...], ...], check: Check) -> fmpz_poly:
-    """Modulo primes; kept, as a decomposition asks for it once more when it looks for points over the abscissae."""
-    from ptmcad.algebra import modular
-
-    return modular.discriminant([fmpz_poly(list(c)) for c in p], check)
-
-
 def resultant(p: Coefficients, q: Coefficients, check: Check = nothing) -> fmpz_poly:
     """The resultant with respect to v, up to sign; ``check`` as for `discriminant`."""
     n, m = len(p) - 1, len(q) - 1
     if n == 0 or m == 0:
         return (p[0] ** m) if n == 0 else (q[0] ** n)
     bound = resultant_degree(p, q)
-    if (bound + 1) * n * m >= LONG:
-        from ptmcad.algebra import modular
-
-        if modular.pays((n, m), bound, modular.resultant_bits(p, q)):
-            return modular.resultant(p, q, check)
 
     def at(k: int) -> fmpz:
         left, right = fmpz_poly([c(k) for c in p]), fmpz_poly([c(k) for c in q])
@@ -155,3 +149,16 @@ def interpolate(at: Callable[[int], fmpz], degree: int, check: Check = nothing) 
     for k in range(degree - 1, -1, -1):
         result = result * fmpz_poly([-(first + k), 1]) + newton[k]
     return result
+
+
+def interpolate_rows(at: Callable[[int], fmpz_poly], degree: int, check: Check = nothing) -> dict[tuple[int, int], fmpz]:
+    """The coefficients of u^i w^j of a polynomial in Z[u, w], of at most this degree in u, from its values at integers
+    u."""
+    first = -(max(degree, 0) // 2)
+    values = [at(first + k) for k in range(degree + 1)]
+    found: dict[tuple[int, int], fmpz] = {}
+    for j in range(max((len(value) for value in values), default=0)):
+        column = [value[j] for value in values]
+        row = interpolate(lambda k, column=column: column[k - first], degree, check)  # type: ignore[misc]
+        found.update({(i, j): c for i, c in enumerate(row.coeffs()) if c})
+    return found

@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from math import gcd
 
-from flint import fmpq, fmpz, fmpz_poly
+from flint import fmpq, fmpz_poly
 
 from ptmcad.algebra import orders, resultants
 from ptmcad.algebra.polynomials import PLANE, Coefficient, UnivariatePolynomial, coefficients_in, irreducible_factors
-from ptmcad.algebra.resultants import Check, interpolate, nothing
+from ptmcad.algebra.resultants import Check, interpolate_rows, nothing
 from ptmcad.algebra.window import Interval
 
 Rows = Sequence[Coefficient]
@@ -150,15 +150,7 @@ def _interpolated(
         values = [[fmpz_poly([c(k) for c in row]) for row in rows] for rows in in_w]
         return compute(values) if all(any(rows) for rows in values) else fmpz_poly([])
 
-    first = -(max(degree, 0) // 2)
-    values = [at(first + k) for k in range(degree + 1)]
-    found: dict[tuple[int, ...], fmpz] = {}
-    for j in range(max((len(value) for value in values), default=0)):
-        check()
-        entries = [value[j] for value in values]
-        column = interpolate(lambda k, entries=entries: entries[k - first], degree)  # type: ignore[misc]
-        found.update({(i, j): c for i, c in enumerate(column.coeffs()) if c})
-    return PLANE.from_dict(found)
+    return PLANE.from_dict(interpolate_rows(at, degree, check))
 
 
 def _deflated(polynomials: Sequence[Rows]) -> tuple[list[Rows], tuple[int, int]]:

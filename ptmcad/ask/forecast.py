@@ -16,7 +16,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ptmcad.algebra.resultants import LONG
 from ptmcad.exact.sizes import Sizes
 from ptmcad.exact.survey import Survey
 
@@ -69,12 +68,6 @@ class Forecast(NamedTuple):
         across, up = _powers(self.sizes)
         return min(across * 2 * max(up - 1, 0), up * 2 * max(across - 1, 0)) + 1
 
-    @property
-    def modular(self) -> bool:
-        """Whether the discriminant is so long that its values are taken modulo primes."""
-        across, up = _powers(self.sizes)
-        return self.points * min(across, up) * max(min(across, up) - 1, 1) >= LONG
-
 
 def _powers(sizes: Sizes) -> tuple[int, int]:
     """The degrees in the least powers of the axes that occur."""
@@ -102,8 +95,8 @@ def forecast(solutions: int, sizes: Sizes, seen: Survey | None = None) -> Foreca
     """The forecast for a number of complex solutions, a critical curve, and what is known of the cells.
 
     >>> found = forecast(6, Sizes((24, 12), 24, (2, 1)))
-    >>> found.seconds < 1, found.reachable, found.points, found.modular
-    (True, True, 265, False)
+    >>> found.seconds < 1, found.reachable, found.points
+    (True, True, 265)
     """
     across, up = _powers(sizes)
     seconds = _START + seconds_to_discriminant(solutions, sizes) + seconds_after(solutions, sizes, seen)
@@ -134,8 +127,7 @@ def cost_text(found: Forecast) -> str:
 
 def way_text(found: Forecast) -> str:
     """How the discriminant is predicted to be computed."""
-    how = "modulo primes" if found.modular else "in integers"
-    return f"the curve's discriminant from {found.points} values {how}"
+    return f"the curve's discriminant from {found.points} values in integers"
 
 
 def duration(seconds: float) -> str:

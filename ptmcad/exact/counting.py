@@ -5,7 +5,6 @@ so no count is ever given on the discriminant variety.
 
 The real roots of a univariate representation are isolated, then the Hessian's inertia there is found by ball
 arithmetic, with precision doubled until every sign is certain (the Hessian is nonsingular, so this ends).
-`ptmcad.exact.signatures` counts in another way.
 
 A condition that is zero at a solution is not positive there; it is found to be zero by a greatest common divisor.
 """

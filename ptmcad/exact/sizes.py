@@ -19,7 +19,6 @@ from typing import NamedTuple
 from flint import fmpq, nmod_mat
 
 from ptmcad.algebra.fibre import Fibre, Work
-from ptmcad.algebra.grid import support_of
 from ptmcad.algebra.groebner import Monomial
 from ptmcad.algebra.ratios import LinePolynomial, Numerator, degree, numerator, restricted, weighted
 from ptmcad.algebra.residues import primes
@@ -71,7 +70,7 @@ class Sizes(NamedTuple):
 
 def _terms(degrees: tuple[int, int], total: int, steps: tuple[int, int]) -> int:
     (dx, dy), (sx, sy) = degrees, steps
-    return sum(len(range(0, n, sy)) for n in support_of([(1, 0, dx), (0, 1, dy), (1, 1, total)])[::sx])
+    return sum(len(range(0, n, sy)) for n in (min(dy, total - i) + 1 for i in range(0, min(dx, total) + 1, sx)))
 
 
 def sizes(problem: SliceProblem, solutions: int, seconds: float, most: Work | None = None) -> Sizes | None:

@@ -42,11 +42,8 @@ from ptmcad.algebra.quotient import (
     multiples,
     multiplication_denominator,
     norm,
-    poles_at_points,
-    poles_of_characteristic_polynomial,
-    power_trace_denominators,
+    poles,
     quotient_algebra,
-    table_terms,
     trace_form,
 )
 from ptmcad.algebra.window import Interval, nowhere_zero
@@ -103,7 +100,7 @@ def discriminant_variety(
     for polynomial in (*equations.boundary, *limits):
         seen.adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
     singular = irreducible_factors(jacobian_norm[0])
-    escaping = [] if equations.is_compact else _with_poles(algebra, singular, equations.unbounded)
+    escaping = [] if equations.is_compact else poles(algebra, singular, equations.unbounded)
     seen.adopt([f for f in singular if f not in escaping], Kind.CRITICAL)
     seen.adopt(escaping, Kind.INFINITY)
     for polynomial in sign_changes(equations, algebra):
@@ -111,15 +108,11 @@ def discriminant_variety(
     suspects = [f for f in irreducible_factors(multiplication_denominator(algebra)) if to_plane(f) not in seen.found]
     hidden = [f for f in suspects if seen.outside(f)]
     visible = [f for f in suspects if f not in hidden]
-    if "infinity" in without:
-        seen.adopt(poles_at_points(algebra, hidden, equations.unbounded), Kind.INFINITY, NO_POINT)
-        seen.adopt(proved_poles(equations, algebra, visible), Kind.INFINITY)
-    else:
-        regular = harmless(equations, rows, jacobian_norm, visible) if settles(equations) else []
-        seen.adopt(poles_at_points(algebra, hidden, equations.unbounded), Kind.INFINITY, NO_POINT)
-        seen.adopt(poles_at_points(algebra, regular, equations.unbounded), Kind.INFINITY, HARMLESS)
-        doubtful = [f for f in visible if f not in regular]
-        seen.adopt(proved_poles(equations, algebra, doubtful), Kind.INFINITY)
+    proved = harmless(equations, rows, jacobian_norm, visible) if settles(equations) and "infinity" not in without else []
+    doubtful = [f for f in visible if f not in proved]
+    for factors, why in ((hidden, NO_POINT), (proved, HARMLESS)):  # left out, so that none need be listed
+        seen.adopt(poles(algebra, factors, equations.unbounded, _LISTED), Kind.INFINITY, why)
+    seen.adopt(poles(algebra, doubtful, equations.unbounded), Kind.INFINITY)
     if "sign-curve" in without:
         for minor in leading_minors(system, parameters) if system.has_index else ():
             seen.adopt(irreducible_factors(norm(algebra, lifted(minor, equations))[0]), Kind.AUXILIARY)
@@ -264,37 +257,8 @@ def sign_changes(equations: SliceSystem, algebra: QuotientAlgebra) -> Iterator[C
         yield product
 
 
-def _with_poles(
-    algebra: QuotientAlgebra, suspects: Sequence[Coefficient], coordinates: Sequence[int]
-) -> list[Coefficient]:
-    """Those of the polynomials on which some of the coordinates has a pole; none is missed."""
-    if algebra.dimension > MAX_TRACED or table_terms(algebra) > MAX_TERMS:
-        found: list[Coefficient] = []
-        for k in coordinates:
-            open_ones = [f for f in suspects if f not in found]
-            found += poles_of_characteristic_polynomial(algebra, k, open_ones) if open_ones else []
-        return found
-    if not suspects:
-        return []
-    poles = [power_trace_denominators(algebra, k) for k in coordinates]
-    return [f for f in suspects if any(pole.gcd(f).total_degree() > 0 for pole in poles)]
-
-
-def proved_poles(
-    equations: SliceSystem, algebra: QuotientAlgebra, suspects: Sequence[Coefficient]
-) -> list[Coefficient]:
-    """Those of the polynomials on which some coordinate of the solutions has a pole, with proof of every answer.
-
-    Where none is seen at points, the characteristic polynomials tell.
-    """
-    poles = poles_at_points(algebra, suspects, equations.unbounded)
-    return poles + _with_poles(algebra, [f for f in suspects if f not in poles], equations.unbounded)
-
-
-MAX_TRACED = 8
-"""Solutions up to which power traces show the poles; their degrees grow with the square of the number of solutions."""
-MAX_TERMS = 400
-"""Of the multiplication table, likewise."""
+_LISTED = 2
+"""Values of characteristic polynomials from which poles are listed on curves that are not used."""
 
 
 def settles(equations: SliceSystem) -> bool:

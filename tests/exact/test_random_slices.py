@@ -15,6 +15,7 @@ import pytest
 from flint import fmpz_poly
 from support import oracle
 from support.random_slices import MODEL, NUMBERS, PAIRS, REFUSED, Draw, drawn
+from support.signatures import count_by_signature
 from support.structure import check_structure
 
 from ptmcad import RegionMap, classify, slice_from_mapping, verify
@@ -25,7 +26,6 @@ from ptmcad.errors import ConfigError, HypothesisError
 from ptmcad.exact.cad.curves import curve
 from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import DegeneratePoint
-from ptmcad.exact.signatures import count_by_signature
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 POINTS = 100

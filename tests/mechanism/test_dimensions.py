@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 from flint import fmpq
+from support.signatures import count_by_signature
 
 from ptmcad.algebra.polynomials import ONE, PLANE, Ratio
 from ptmcad.algebra.trigonometric import TrigonometricRing
@@ -20,7 +21,6 @@ from ptmcad.exact.models import ParametricSystem, system_from, system_of
 from ptmcad.exact.models.system import from_potential
 from ptmcad.exact.point_system import solutions_at
 from ptmcad.exact.poses import exact_poses
-from ptmcad.exact.signatures import count_by_signature
 from ptmcad.exact.variety import discriminant_variety
 from ptmcad.mechanism import described
 

@@ -12,12 +12,12 @@ from typing import Any
 import pytest
 import yaml
 from flint import fmpq
+from support.signatures import count_by_signature
 
 from ptmcad import RegionMap, classify, slice_from_mapping
 from ptmcad.errors import MAX_FAULTS, ConfigError, Faults
 from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models.potential import potential, system_from
-from ptmcad.exact.signatures import count_by_signature
 from ptmcad.mechanism import Mechanism, described, described_system, ptm, recognised, without_loops, work
 from ptmcad.mechanism.proofs import check_bars, check_unknowns
 from ptmcad.mechanism.ptm import RECORD

@@ -182,8 +182,9 @@ def test_sides_differ_by_one_pair(at: Degenerate, beside: object) -> None:
 def test_the_reference_agrees_with_signatures_of_hermite_forms(seed: int) -> None:
     """Counts by the sextic's roots and by Tarski queries on the quotient algebra."""
 
+    from support.signatures import count_by_signature
+
     from ptmcad.exact.models import system_of
-    from ptmcad.exact.signatures import count_by_signature
 
     p = dict(random_case(seed, 0).sibling.parameters)  # type: ignore[union-attr]
     counts = count_by_signature(system_of("ptm"), {n: from_fraction(v) for n, v in p.items()})

@@ -18,13 +18,13 @@ from forger.judge import violation
 from support import mutations
 from support.mutations import FIRST
 from support.random_models import random_mechanism, random_system
+from support.signatures import count_by_signature
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import DegenerateSliceError, HypothesisError
 from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import system_from
-from ptmcad.exact.signatures import count_by_signature
 from ptmcad.text.flint_numbers import from_fraction
 
 POINTS = 30
