@@ -10,7 +10,6 @@ edges, and clusters across edges and corners.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -18,31 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.cover import tubes
-from ptmcad.cover.graph import Touching, connected, touching
+from ptmcad.cover.graph import connected, touching
 from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
 from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array, subdivide
 
 Integers = NDArray[np.int64]
 _LIMB = 20
 """Bits of a half coordinate: products of halves are summed without overflow, and put together as Python's integers."""
-
-
-@dataclass(frozen=True, slots=True)
-class Tiling:
-    """How a window is cut into leaves, and which of them touch: what takes time, and may be compiled.
-
-    Attributes
-    ----------
-    subdivide : see `ptmcad.cover.subdivision.subdivide`.
-    touching : the pairs of leaves of a subdivision that touch, as positions among the leaves' given numbers.
-    """
-
-    subdivide: Callable[[Integers, int], Subdivision]
-    touching: Callable[[Subdivision, Integers], Touching]
-
-
-PLAIN = Tiling(subdivide, lambda tree, leaves: touching(tree.bounds[leaves]))
-"""Without compiled code."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,7 +94,7 @@ class Components:
         return tuple((n, cluster) for n, clusters in enumerate(self.clusters_at) for cluster in clusters)
 
 
-def components(cover: Cover, tiling: Tiling = PLAIN) -> Components:
+def components(cover: Cover) -> Components:
     """The connected components of the open window without the closed rectangles, of a cover without slanted pieces.
 
     Raises
@@ -121,10 +102,10 @@ def components(cover: Cover, tiling: Tiling = PLAIN) -> Components:
     ValueError
         When a rectangle is not one, or the lattice is too fine.
     """
-    tree = tiling.subdivide(rectangle_array(cover), cover.steps)
+    tree = subdivide(rectangle_array(cover), cover.steps)
     parts = np.flatnonzero(tree.state != CUT)
     leaves, free = tree.bounds[parts], tree.state[parts] == FREE
-    pairs = tiling.touching(tree, parts)
+    pairs = touching(leaves)
     a_free, b_free = free[pairs.first], free[pairs.second]
     joined = (a_free & b_free & pairs.along) | ~(a_free | b_free)
     label = connected(len(leaves), pairs.first[joined], pairs.second[joined])
@@ -239,8 +220,8 @@ def sums_of_areas(boxes: Integers, group: Integers, groups: int) -> list[int]:
     return sums
 
 
-def union_area(cover: Cover, tiling: Tiling = PLAIN) -> int:
+def union_area(cover: Cover) -> int:
     """The area of the rectangles' union, in squares of a lattice step."""
-    tree = tiling.subdivide(rectangle_array(cover), cover.steps)
+    tree = subdivide(rectangle_array(cover), cover.steps)
     covered = tree.bounds[tree.state == COVERED]
     return sums_of_areas(covered, np.zeros(len(covered), dtype=np.int64), 1)[0]

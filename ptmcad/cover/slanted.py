@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.cover import tubes
-from ptmcad.cover.complement import Components, Frames, Tiling, as_rectangles, bounding_boxes, grown, sums_of_areas
-from ptmcad.cover.graph import connected
+from ptmcad.cover.complement import Components, Frames, as_rectangles, bounding_boxes, grown, sums_of_areas
+from ptmcad.cover.graph import connected, touching
 from ptmcad.cover.rectangles import Cover, Patch, Rectangle
 from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array, subdivide
 
@@ -54,7 +54,7 @@ class _Nodes:
     free: NDArray[np.bool_]
 
 
-def slanted_components(cover: Cover, tiling: Tiling) -> Components:
+def slanted_components(cover: Cover) -> Components:
     """The components of the open window without the rectangles and the tubes.
 
     Raises
@@ -68,12 +68,12 @@ def slanted_components(cover: Cover, tiling: Tiling) -> Components:
             raise ValueError(f"a patch of the cover is none: {wrong}")
     whole = Cover(cover.steps, (*cover.rectangles, *(patch.frame for patch in cover.patches)))
     array = rectangle_array(whole)
-    tree = tiling.subdivide(array, cover.steps)
+    tree = subdivide(array, cover.steps)
     parts = np.flatnonzero(tree.state != CUT)
     frames = array[len(cover.rectangles) :]
     frame_of = _frames_of(tree, frames, array)[parts]
     nodes = _nodes(tree, parts, frame_of, cover.patches)
-    pairs = tiling.touching(tree, parts)
+    pairs = touching(tree.bounds[parts])
     first, second = _edges(nodes, pairs.first, pairs.second, pairs.along, cover.patches)
     free = nodes.free
     joined = free[first] == free[second]
