@@ -25,11 +25,9 @@ def components(cover: Cover) -> Components:
     ValueError
         When a rectangle or a slanted piece is not one, frames meet others inside, or the lattice is too fine.
     """
-    from ptmcad.cover import complement, slanted
+    from ptmcad.cover import slanted
 
-    if cover.patches:
-        return slanted.slanted_components(cover)
-    return complement.components(cover)
+    return slanted.components(cover)
 
 
 def union_area(cover: Cover) -> int:
