@@ -160,12 +160,12 @@ def _check_bounded(slice: Slice) -> None:
     """Refuse free lengths where no bounds of lengths that are unknown are known, as the certified engine does."""
     if slice.model == ptm() or not slice.model.reals:
         return
-    from ptmcad.certified.plain.infinity import patches
+    from ptmcad.certified.plain.bounds import ranges
     from ptmcad.certified.plain.problem import problem_of as problem_in_intervals
     from ptmcad.certified.plain.straight import branches
 
     for branch in branches(problem_in_intervals(slice), slice.axes):
-        patches(branch, slice.axes)
+        ranges(branch, slice.axes)
 
 
 def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tuple[Check, int]:

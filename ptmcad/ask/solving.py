@@ -82,12 +82,9 @@ def poses_at(model: Model, parameters: Mapping[str, Fraction], digits: int) -> P
     if needs_intervals(model, parameters):
         assert isinstance(model, Mechanism | ClosedMechanism)  # no other has springs
         with loading("the certified engine"):
-            from ptmcad.certified.plain.loops import loop_poses
             from ptmcad.certified.plain.poses import plain_poses
             from ptmcad.certified.ptm.poses import certified_poses
         check_room("the certified engine")
-        if isinstance(model, ClosedMechanism):
-            return loop_poses(model, parameters, digits)
         return certified_poses(parameters, digits) if model == ptm() else plain_poses(model, parameters, digits)
     from ptmcad.exact.poses import exact_poses
 

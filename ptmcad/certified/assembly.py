@@ -16,7 +16,6 @@ from ptmcad.answer.regionmap import Cell, PlanStep, Region, RegionMap, Status
 from ptmcad.certified.formulation import Counter
 from ptmcad.certified.points import PointCount
 from ptmcad.certified.statement import system_text
-from ptmcad.certified.tiling import COMPILED
 from ptmcad.cover import components
 from ptmcad.cover.borders import area_bounds
 from ptmcad.cover.complement import Components
@@ -50,7 +49,7 @@ class Assembler:
         late : asked before each count but the first; components that are not counted when it says True, the smallest
             ones, stay undetermined.
         """
-        complement = components(cover, COMPILED)
+        complement = components(cover)
         pocket = min(POCKET_SHARE * cover.steps**2, Fraction(sum(complement.cluster_areas), 10))
         counted = self._counts(complement, pocket, late)
         kept = [n for n in counted if not _is_pocket(n, pocket, complement, counted, self.slice.count)]

@@ -16,7 +16,6 @@ import numpy as np
 from ptmcad.certified.refinement import Enclosure
 from ptmcad.certified.search import Boxes
 from ptmcad.certified.strips import NONE, Strips, areas_of_pieces, numbers_of_pieces, pieces, strips
-from ptmcad.certified.tiling import COMPILED
 from ptmcad.cover import from_boxes, union_area
 from ptmcad.cover.rectangles import Cover, Window
 from ptmcad.cover.simplification import combined
@@ -107,6 +106,6 @@ def thinning(enclosures: Sequence[Enclosure], lattice: Lattice, jobs: int) -> Th
     worthwhile = areas_of_pieces(together, 0.0) < CUT_COVERAGE * areas_of_pieces(together, inf)
     whole = together[~worthwhile]
     (left, right), (bottom, top) = lattice.window
-    squares = union_area(combined(lattice.cover(pieces(whole, inf))), COMPILED)
+    squares = union_area(combined(lattice.cover(pieces(whole, inf))))
     area = float((right - left) * (top - bottom) * squares / lattice.steps**2)
     return Thinning(together[worthwhile], whole, area, lattice)

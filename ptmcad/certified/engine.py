@@ -30,11 +30,9 @@ from ptmcad.certified.slanted import slanting
 from ptmcad.certified.specks import without_specks
 from ptmcad.certified.statement import plan_of
 from ptmcad.certified.tape import enclosing_floats
-from ptmcad.certified.tiling import COMPILED
 from ptmcad.cover import union_area
 from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
-from ptmcad.cover.simplification import combined, gathered, simplified
-from ptmcad.cover.subdivision import rectangle_array
+from ptmcad.cover.simplification import combined, gathered
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import DEFAULTS, Options
 from ptmcad.process.handover import LAST_SECONDS, Leaving
@@ -56,8 +54,6 @@ MAX_AXIS_END = Fraction(10**100)
 MAX_BOXES = 6_000_000
 MAX_RECTANGLES = 3_000_000
 """In a cover made of strips: its JSON has some 40 bytes for each, and Python some 200."""
-OVERLAP_RATIO = 3
-"""Where rectangles have this times the area of their union it pays to look for fewer that cover the same."""
 STRIP_TRIAL_RATIO = 100
 """Strips are tried as soon as the boxes leave at most so many times the tolerance undetermined."""
 STRIP_TARGET_SHARE = 0.5
@@ -265,8 +261,6 @@ class _Run:
     def map(self, cover: Cover, status: Status) -> RegionMap:
         """The map of a cover; what is not counted when the time is over is undetermined."""
         start, boxes = self.clock(), self.boxes()
-        if not cover.patches and _overlap(cover) > OVERLAP_RATIO:
-            cover = simplified(cover, COMPILED)
         times = self.seconds | {"total": start - self.pace.started}
         result = self.assembler.map(cover, status, times, self._must_hand_over)
         self.seconds["regions"] += self.clock() - start
@@ -418,13 +412,7 @@ def _middle(slice: Slice, tile: Rectangle) -> tuple[Fraction, Fraction]:
 
 def _share(cover: Cover) -> Fraction:
     """The part of the window that the cover has."""
-    return Fraction(union_area(cover, COMPILED), cover.steps**2)
-
-
-def _overlap(cover: Cover) -> float:
-    """How many times the rectangles cover their union, on average."""
-    left, right, bottom, top = rectangle_array(cover).T.astype(np.float64)
-    return float(((right - left) * (top - bottom)).sum()) / max(union_area(cover, COMPILED), 1)
+    return Fraction(union_area(cover), cover.steps**2)
 
 
 def _versions() -> dict[str, str]:

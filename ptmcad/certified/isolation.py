@@ -12,10 +12,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ptmcad.certified.arithmetic import down, mignitude, multiply, up
-from ptmcad.certified.compiled import ZERO, compiled, inlined
-from ptmcad.certified.contraction import Workspace, precondition, row_constant
-from ptmcad.certified.evaluation import Floats, run
+from ptmcad.certified.arithmetic import down, magnitude, mignitude, up
+from ptmcad.certified.compiled import compiled, inlined
+from ptmcad.certified.contraction import Workspace, linearise, precondition, row_coefficient, row_constant
+from ptmcad.certified.evaluation import Floats
 from ptmcad.certified.system import Arguments
 
 INFLATION = 1e-5
@@ -58,47 +58,24 @@ def holds_one(system: Arguments, box_low: Floats, box_high: Floats, work: Worksp
     |A_ii| r_i for each i. So (Y f)_i has opposite signs on opposite faces, which proves existence (Miranda), and no
     matrix in A is singular, which proves uniqueness.
     """
-    program, stages, unknowns, equations, jacobian, _, _, _, _, _, _ = system
-    low, high, low_at, high_at, middle_low, middle_high, radius, _, _, matrix, inverse = work
-    m, n = jacobian.shape
-    if not run(program, box_low, box_high, low, high, ZERO, stages[3]):
+    if linearise(system, box_low, box_high, work) < 1:
         return False
-    for k in range(box_low.shape[0]):
-        middle_low[k], middle_high[k] = box_low[k], box_high[k]
-    for j in range(n):
-        k = unknowns[j]
-        middle = 0.5 * (box_low[k] + box_high[k])
-        middle_low[k] = middle_high[k] = middle
-        radius[j] = min(down(box_high[k] - middle), down(middle - box_low[k]))
-        if not radius[j] > 0:
-            return False
-    run(program, middle_low, middle_high, low_at, high_at, ZERO, stages[1])
-    for i in range(m):
-        for j in range(n):
-            place = jacobian[i, j]
-            matrix[i, j] = 0.5 * (low[place] + high[place])
-            if not abs(matrix[i, j]) < 1e150:
-                return False
-    pivots = np.empty(m, np.int64)
-    precondition(matrix, inverse, radius, pivots)
-    for i in range(m):
+    unknowns, middle, radius = system.unknowns, work.middle_low, work.radius
+    pivots = np.empty(len(unknowns), np.int64)
+    precondition(work.matrix, work.inverse, radius, pivots)
+    for i in range(len(unknowns)):
         if pivots[i] < 0:
             return False
-        c_low, c_high = row_constant(i, equations, work)
+        c_low, c_high = row_constant(i, system.equations, work)
         others, own = max(abs(c_low), abs(c_high)), 0.0
-        for j in range(n):
-            u = v = 0.0
-            for k in range(m):
-                factor = inverse[i, k]
-                p, q = multiply(factor, factor, low[jacobian[k, j]], high[jacobian[k, j]])
-                u, v = down(u + p), up(v + q)
+        for j in range(len(unknowns)):
+            u, v = row_coefficient(i, j, work)
             if j == pivots[i]:
-                own = down(mignitude(u, v) * radius[j])
+                # the half-width about the middle, rounded down
+                x = unknowns[j]
+                own = down(mignitude(u, v) * min(down(box_high[x] - middle[x]), down(middle[x] - box_low[x])))
             else:
-                # the half-width about the middle, rounded up
-                k = unknowns[j]
-                reach = up(max(box_high[k] - middle_low[k], middle_low[k] - box_low[k]))
-                others = up(others + up(max(abs(u), abs(v)) * reach))
+                others = up(others + up(magnitude(u, v) * radius[j]))
         if not others < own:
             return False
     return True

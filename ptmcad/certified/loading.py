@@ -23,10 +23,7 @@ from ptmcad.certified.formula import Graph
 from ptmcad.certified.search import isolate
 from ptmcad.certified.strips import areas_of_pieces, numbers_of_pieces, pieces, strips
 from ptmcad.certified.system import System, equations_alone, system
-from ptmcad.certified.tiling import COMPILED
 from ptmcad.certified.tubes import tubes
-from ptmcad.cover import components
-from ptmcad.cover.rectangles import Cover
 from ptmcad.options import Options
 
 STAGE = "compiling the certified engine, once on this machine:"
@@ -46,7 +43,7 @@ def may_be_slanted(options: Options) -> bool:
 
 
 def load(progress: Progress | None = None, options: Options | None = None) -> float:
-    """Use each compiled function once, on the line x = y, its point (1/2, 1/2) and a cover of one square.
+    """Use each compiled function once, on the line x = y, and its point (1/2, 1/2).
 
     Parameters
     ----------
@@ -126,8 +123,6 @@ def _functions(slanted: bool) -> Iterator[None]:
     yield
     low, high = np.empty((2, len(line.tape)))
     run(program(line.tape), square[0, :2], square[0, 2:], low, high, 0, len(line.tape))
-    yield
-    components(Cover(2, ((0, 1, 0, 1),)), COMPILED)
     yield
     thin = strips(line.arguments(), square)
     yield

@@ -12,8 +12,8 @@ from fractions import Fraction
 
 from ptmcad.certified.formula import Formula, Graph, length
 from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism.energy import points_in, with_springs
 from ptmcad.mechanism.evaluate import evaluate
-from ptmcad.mechanism.work import split_moments
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class Potential:
 def potential(mechanism: Mechanism, values: Mapping[str, Formula], unknowns: Mapping[str, Formula]) -> Potential:
     """The potential at formulas for all variables of the description and for its unknowns, of one graph."""
     ring = _Ring(next(iter(unknowns.values())).graph, values, unknowns)
-    points = {name: (evaluate(x, ring), evaluate(y, ring)) for name, (x, y) in mechanism.points.items()}
+    points = points_in(mechanism, ring)
     lengths, forces, energy = [], [], ring.constant(Fraction(0))
     for spring in mechanism.springs:
         (x0, y0), (x1, y1) = points[spring.start], points[spring.end]
@@ -49,11 +49,7 @@ def potential(mechanism: Mechanism, values: Mapping[str, Formula], unknowns: Map
         forces.append(k * (extent - free))
         squared = dx.squared() + dy.squared() if free.value == 0 else (extent - free).squared()
         energy = energy + k * squared / 2
-    for tree in (*(torsion.energy for torsion in mechanism.torsion), *split_moments(mechanism).energies):
-        energy = energy + evaluate(tree, ring)
-    for load in mechanism.loads:
-        for force, coordinate in zip((load.x, load.y), points[load.point], strict=True):
-            energy = energy - evaluate(force, ring) * coordinate
+    energy = with_springs(mechanism, ring, points, energy)
     turned = (torsion.deflection for torsion in mechanism.torsion)
     deflections = tuple((evaluate(cosine, ring), evaluate(sine, ring)) for cosine, sine in turned)
     return Potential(points, tuple(lengths), tuple(forces), energy, deflections)

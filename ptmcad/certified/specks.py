@@ -21,7 +21,6 @@ from ptmcad.certified.covering import Lattice
 from ptmcad.certified.refinement import Enclosure
 from ptmcad.certified.search import Boxes, search_curve
 from ptmcad.certified.tape import enclosing_floats
-from ptmcad.certified.tiling import COMPILED
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover, Rectangle
 
@@ -43,7 +42,7 @@ def without_specks(cover: Cover, enclosures: Sequence[Enclosure], lattice: Latti
     cover : of all that the enclosures hold.
     area : of a box's projection, below which the search has left it alone.
     """
-    complement = components(cover, COMPILED)
+    complement = components(cover)
     most = MAX_SHARE * cover.steps**2
     small = np.array([share <= most for share in complement.cluster_areas], dtype=np.bool_)
     cluster_of = np.array(complement.cluster_of, dtype=np.int64)

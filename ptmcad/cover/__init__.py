@@ -14,35 +14,29 @@ from typing import TYPE_CHECKING, Any
 from ptmcad.cover.rectangles import Cover, Window
 
 if TYPE_CHECKING:
-    from ptmcad.cover.complement import Components, Tiling
+    from ptmcad.cover.complement import Components
 
 
-def components(cover: Cover, tiling: Tiling | None = None) -> Components:
+def components(cover: Cover) -> Components:
     """The connected components of the open window without the closed rectangles and the tubes.
-
-    Parameters
-    ----------
-    tiling : compiled code for what takes time; numpy's when None. The result is the same.
 
     Raises
     ------
     ValueError
         When a rectangle or a slanted piece is not one, frames meet others inside, or the lattice is too fine.
     """
-    from ptmcad.cover import complement, slanted
+    from ptmcad.cover import slanted
 
-    if cover.patches:
-        return slanted.slanted_components(cover, tiling or complement.PLAIN)
-    return complement.components(cover, tiling or complement.PLAIN)
+    return slanted.components(cover)
 
 
-def union_area(cover: Cover, tiling: Tiling | None = None) -> int:
+def union_area(cover: Cover) -> int:
     """The area of the rectangles' union, in squares of a lattice step; with slanted pieces what it is at most."""
     from ptmcad.cover import complement
 
     if cover.patches:
-        return cover.steps**2 - sum(components(cover, tiling).areas)
-    return complement.union_area(cover, tiling or complement.PLAIN)
+        return cover.steps**2 - sum(components(cover).areas)
+    return complement.union_area(cover)
 
 
 def from_boxes(window: Window, low: Any, high: Any, steps: int) -> Cover:

@@ -10,7 +10,6 @@ edges, and clusters across edges and corners.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -18,31 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.cover import tubes
-from ptmcad.cover.graph import Touching, connected, touching
 from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
-from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array, subdivide
+from ptmcad.cover.subdivision import COVERED, Subdivision, rectangle_array, subdivide
 
 Integers = NDArray[np.int64]
 _LIMB = 20
 """Bits of a half coordinate: products of halves are summed without overflow, and put together as Python's integers."""
-
-
-@dataclass(frozen=True, slots=True)
-class Tiling:
-    """How a window is cut into leaves, and which of them touch: what takes time, and may be compiled.
-
-    Attributes
-    ----------
-    subdivide : see `ptmcad.cover.subdivision.subdivide`.
-    touching : the pairs of leaves of a subdivision that touch, as positions among the leaves' given numbers.
-    """
-
-    subdivide: Callable[[Integers, int], Subdivision]
-    touching: Callable[[Subdivision, Integers], Touching]
-
-
-PLAIN = Tiling(subdivide, lambda tree, leaves: touching(tree.bounds[leaves]))
-"""Without compiled code."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,83 +93,6 @@ class Components:
         return tuple((n, cluster) for n, clusters in enumerate(self.clusters_at) for cluster in clusters)
 
 
-def components(cover: Cover, tiling: Tiling = PLAIN) -> Components:
-    """The connected components of the open window without the closed rectangles, of a cover without slanted pieces.
-
-    Raises
-    ------
-    ValueError
-        When a rectangle is not one, or the lattice is too fine.
-    """
-    tree = tiling.subdivide(rectangle_array(cover), cover.steps)
-    parts = np.flatnonzero(tree.state != CUT)
-    leaves, free = tree.bounds[parts], tree.state[parts] == FREE
-    pairs = tiling.touching(tree, parts)
-    a_free, b_free = free[pairs.first], free[pairs.second]
-    joined = (a_free & b_free & pairs.along) | ~(a_free | b_free)
-    label = connected(len(leaves), pairs.first[joined], pairs.second[joined])
-
-    number, areas, thick = _numbered(leaves, label, free)
-    clusters, cluster_areas, _ = _numbered(leaves, label, ~free)
-    rectangles = grown(tree, thick, bounding_boxes(leaves[free], number[free], len(areas)))
-    own = np.where(free, number, clusters)
-    border = a_free != b_free
-    inner = np.where(a_free, pairs.first, pairs.second)[border]
-    outer = np.where(a_free, pairs.second, pairs.first)[border]
-    borders = np.unique(own[inner] * (len(cluster_areas) + 1) + own[outer])
-    at: list[list[int]] = [[] for _ in areas]
-    for code in borders.tolist():
-        n, cluster = divmod(code, len(cluster_areas) + 1)
-        at[n].append(cluster)
-
-    owner = np.full(len(tree.state), -1, dtype=np.int64)
-    owner[parts] = own
-    array = rectangle_array(cover)
-    cluster_of = owner[tree.leaves_right_above(array[:, 0], array[:, 2])]
-    return Components(
-        cover,
-        areas,
-        as_rectangles(rectangles),
-        cluster_areas,
-        tuple(cluster_of.tolist()),
-        tuple(map(tuple, at)),
-        tree,
-        owner,
-    )
-
-
-def _numbered(
-    leaves: Integers, label: Integers, chosen: NDArray[np.bool_]
-) -> tuple[Integers, tuple[int, ...], Integers]:
-    """Numbers for the labels of the chosen leaves: by descending area, then from the left, then from below.
-
-    Returns
-    -------
-    number : of each leaf, -1 for those that are not chosen.
-    areas : by number.
-    thick : by number, the leaf whose smaller side is the longest.
-    """
-    number = np.full(len(leaves), -1, dtype=np.int64)
-    if not chosen.any():
-        return number, (), np.zeros((0, 4), dtype=np.int64)
-    own = leaves[chosen]
-    labels, inverse = np.unique(label[chosen], return_inverse=True)
-    areas = sums_of_areas(own, inverse, len(labels))
-    first = np.empty(len(labels), dtype=np.int64)
-    corner = np.lexsort((own[:, 2], own[:, 0]))[::-1]
-    first[inverse[corner]] = corner  # the last one written is the first from the left and below
-    size = np.minimum(own[:, 1] - own[:, 0], own[:, 3] - own[:, 2])
-    thick = np.empty(len(labels), dtype=np.int64)
-    by_size = np.lexsort((-own[:, 2], -own[:, 0], size))
-    thick[inverse[by_size]] = by_size
-    places = own[first][:, (0, 2)].tolist()
-    order = sorted(range(len(labels)), key=lambda k: (-areas[k], places[k]))
-    rank = np.empty(len(labels), dtype=np.int64)
-    rank[order] = np.arange(len(labels))
-    number[chosen] = rank[inverse]
-    return number, tuple(areas[k] for k in order), own[thick[order]]
-
-
 def bounding_boxes(leaves: Integers, group: Integers, groups: int) -> Integers:
     """The smallest rectangle around the leaves of each group."""
     boxes = np.empty((groups, 4), dtype=np.int64)
@@ -239,8 +142,8 @@ def sums_of_areas(boxes: Integers, group: Integers, groups: int) -> list[int]:
     return sums
 
 
-def union_area(cover: Cover, tiling: Tiling = PLAIN) -> int:
+def union_area(cover: Cover) -> int:
     """The area of the rectangles' union, in squares of a lattice step."""
-    tree = tiling.subdivide(rectangle_array(cover), cover.steps)
+    tree = subdivide(rectangle_array(cover), cover.steps)
     covered = tree.bounds[tree.state == COVERED]
     return sums_of_areas(covered, np.zeros(len(covered), dtype=np.int64), 1)[0]

@@ -1,61 +1,15 @@
 """Covers of fewer rectangles.
 
-Guarantee: `simplified` and `combined` cover the same points as before; `gathered` covers them and more.
+Guarantee: `combined` covers the same points as before; `gathered` covers them and more.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ptmcad.cover.complement import PLAIN, Tiling
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.rounding import cover_of
 from ptmcad.cover.subdivision import Integers, rectangle_array
-
-
-def simplified(cover: Cover, tiling: Tiling = PLAIN) -> Cover:
-    """A cover of the same points by at most as many rectangles, mostly fewer.
-
-    Rectangles that the others cover are left out, the smallest ones first; and neighbours that together are a rectangle
-    are replaced by it.
-
-    Parameters
-    ----------
-    tiling : compiled code for what takes time; numpy's when it is left out. The result is the same.
-
-    Raises
-    ------
-    ValueError
-        When a rectangle is not one, or the lattice is too fine.
-    """
-    # first what is cheap: the rest costs as much as rectangles cross each other, which they do by the thousand where
-    # a search has many boxes over each other
-    array = _fewer(rectangle_array(cover))
-    if not len(array):
-        return cover
-    tree = tiling.subdivide(array, cover.steps)
-    rectangle, leaf = tree.meeting(array, closed=False)
-    order = np.argsort(rectangle, kind="stable")
-    rectangle, leaf = rectangle[order], leaf[order]
-    own, part = array[rectangle], tree.bounds[leaf]
-    late, early = own[:, (0, 2)] > part[:, (0, 2)], own[:, (1, 3)] < part[:, (1, 3)]
-    whole = ~(late | early)
-    whole = whole[:, 0] & whole[:, 1]
-    covering = np.bincount(leaf[whole], minlength=len(tree.state))
-    number = np.bincount(rectangle, minlength=len(array))
-    ends = np.cumsum(number)
-    # a rectangle can be left out if others cover each leaf that it meets
-    fewest = np.minimum.reduceat(covering[leaf] - whole, ends - number)
-    candidates = np.flatnonzero(fewest > 0).tolist()
-    kept = np.ones(len(array), dtype=np.bool_)
-    width, tall = (array[:, 1] - array[:, 0]).astype(float), (array[:, 3] - array[:, 2]).astype(float)
-    for k in sorted(candidates, key=lambda k: (width[k] * tall[k], k)):
-        own_leaves = slice(ends[k] - number[k], ends[k])
-        left = covering[leaf[own_leaves]] - whole[own_leaves]
-        if left.min() > 0:
-            covering[leaf[own_leaves]] = left
-            kept[k] = False
-    return cover_of(_merged(array[kept]), cover.steps)
 
 
 def framed(cover: Cover) -> Cover:
@@ -65,7 +19,7 @@ def framed(cover: Cover) -> Cover:
 
 
 def combined(cover: Cover) -> Cover:
-    """A cover of the same points by at most as many rectangles, found at small cost, as a start for what costs more."""
+    """A cover of the same points by at most as many rectangles, found at small cost."""
     return cover_of(_fewer(rectangle_array(cover)), cover.steps)
 
 

@@ -1,9 +1,9 @@
-"""Components and clusters of a cover with slanted pieces.
+"""Components and clusters of a cover, which may have slanted pieces.
 
-Guarantee: two points of the open window that are outside of the rectangles and the tubes, and not on a frame's side
-within a lattice step of a tube, are in one component only if a path joins them that meets neither; and if one does
-that stays more than a lattice step away from where tubes pass the sides of their frames. Areas of components are
-rounded down, those of clusters up. (Lemma 30 of docs/soundness.md.)
+Guarantee: of rectangles alone exact. With slanted pieces, two points of the open window that are outside of the
+rectangles and the tubes, and not on a frame's side within a lattice step of a tube, are in one component only if a path
+joins them that meets neither; and if one does that stays more than a lattice step away from where tubes pass the sides
+of their frames. Areas of components are rounded down, those of clusters up. (Lemma 30 of docs/soundness.md.)
 
 The window is cut as if the frames were rectangles. A frame's open parts and its tubes take the place of its leaves:
 each of the parts is connected, because a tube that passes a frame's long side ascends or descends. Parts join what is
@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.cover import tubes
-from ptmcad.cover.complement import Components, Frames, Tiling, as_rectangles, bounding_boxes, grown, sums_of_areas
-from ptmcad.cover.graph import connected
+from ptmcad.cover.complement import Components, Frames, as_rectangles, bounding_boxes, grown, sums_of_areas
+from ptmcad.cover.graph import connected, touching
 from ptmcad.cover.rectangles import Cover, Patch, Rectangle
 from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array, subdivide
 
@@ -54,13 +54,14 @@ class _Nodes:
     free: NDArray[np.bool_]
 
 
-def slanted_components(cover: Cover, tiling: Tiling) -> Components:
-    """The components of the open window without the rectangles and the tubes.
+def components(cover: Cover) -> Components:
+    """The connected components of the open window without the closed rectangles and the tubes.
 
     Raises
     ------
     ValueError
-        When a patch is not one, or a frame meets the inside of another one or of a rectangle.
+        When a rectangle or a patch is not one, a frame meets the inside of another one or of a rectangle, or the
+        lattice is too fine.
     """
     for patch in cover.patches:
         wrong = tubes.flaw(patch, cover.steps)
@@ -68,12 +69,12 @@ def slanted_components(cover: Cover, tiling: Tiling) -> Components:
             raise ValueError(f"a patch of the cover is none: {wrong}")
     whole = Cover(cover.steps, (*cover.rectangles, *(patch.frame for patch in cover.patches)))
     array = rectangle_array(whole)
-    tree = tiling.subdivide(array, cover.steps)
+    tree = subdivide(array, cover.steps)
     parts = np.flatnonzero(tree.state != CUT)
     frames = array[len(cover.rectangles) :]
     frame_of = _frames_of(tree, frames, array)[parts]
     nodes = _nodes(tree, parts, frame_of, cover.patches)
-    pairs = tiling.touching(tree, parts)
+    pairs = touching(tree.bounds[parts])
     first, second = _edges(nodes, pairs.first, pairs.second, pairs.along, cover.patches)
     free = nodes.free
     joined = free[first] == free[second]
@@ -195,10 +196,10 @@ def _assembled(
         total[nodes.part[f] : nodes.part[f] + len(areas)] = areas
         rest.append((right - left) * (top - bottom) - sum(areas))
     roots, inverse = np.unique(label, return_inverse=True)
-    plain = sums_of_areas(nodes.leaves[outside], inverse[:count][outside], len(roots))
-    sums = list(plain)
+    leaves, group = nodes.leaves[outside], inverse[:count][outside]
+    sums = sums_of_areas(leaves, group, len(roots))
     present = np.zeros(len(roots), dtype=np.bool_)
-    present[inverse[:count][outside]] = True
+    present[group] = True
     for f, patch in enumerate(patches):
         for k in range(len(patch.tubes) + 1):
             node = nodes.part[f] + k
@@ -210,16 +211,24 @@ def _assembled(
             present[cluster] = True
     kind = np.zeros(len(roots), dtype=np.bool_)
     kind[inverse] = free
-    shown = {True: _ordered(roots, sums, kind & present), False: _ordered(roots, sums, ~kind & present)}
+    # the first from the left and below is the last one that is written; what is in frames alone comes after all others
+    first = np.tile([cover.steps, cover.steps], (len(roots), 1))
+    corner = np.lexsort((leaves[:, 2], leaves[:, 0]))[::-1]
+    first[group[corner]] = leaves[corner][:, (0, 2)]
+    places = first.tolist()
+    shown = {
+        kept: sorted(np.flatnonzero((kind == kept) & present).tolist(), key=lambda k: (-sums[k], places[k]))
+        for kept in (True, False)
+    }
     rank = np.full(len(roots), -1, dtype=np.int64)
     for order in shown.values():
         rank[order] = np.arange(len(order))
     own = rank[inverse]
-    at: list[set[int]] = [set() for _ in shown[True]]
-    for n, m, n_free in zip(own[border[0]].tolist(), own[border[1]].tolist(), free[border[0]].tolist(), strict=True):
-        component, cluster = (n, m) if n_free else (m, n)
-        if component >= 0:
-            at[component].add(cluster)
+    swapped = ~free[border[0]]
+    inner, outer = (own[np.where(swapped, border[1 - k], border[k])] for k in (0, 1))
+    at: list[list[int]] = [[] for _ in shown[True]]
+    for n, cluster in np.unique(np.stack([inner, outer], axis=1)[inner >= 0], axis=0).tolist():
+        at[n].append(cluster)
     owner = np.full(len(tree.state), -1, dtype=np.int64)
     owner[parts[outside]] = own[:count][outside]
     frame_of = np.full(len(tree.state), -1, dtype=np.int64)
@@ -235,16 +244,11 @@ def _assembled(
         _rectangles(tree, nodes, own, len(shown[True]), patches, owners),
         tuple(sums[k] for k in shown[False]),
         tuple(cluster_of.tolist()),
-        tuple(tuple(sorted(clusters)) for clusters in at),
+        tuple(map(tuple, at)),
         tree,
         owner,
-        Frames(frame_of, owners),
+        Frames(frame_of, owners) if patches else None,
     )
-
-
-def _ordered(roots: Integers, sums: list[int], chosen: NDArray[np.bool_]) -> list[int]:
-    """The chosen ones by descending area, then by their smallest node."""
-    return sorted(np.flatnonzero(chosen).tolist(), key=lambda k: (-sums[k], int(roots[k])))
 
 
 def _rectangles(
@@ -261,7 +265,7 @@ def _rectangles(
     leaves, component = nodes.leaves[open_leaf], own[:count][open_leaf]
     best = np.zeros((number, 4), dtype=np.int64)
     size = np.minimum(leaves[:, 1] - leaves[:, 0], leaves[:, 3] - leaves[:, 2])
-    order = np.argsort(size, kind="stable")
+    order = np.lexsort((-leaves[:, 2], -leaves[:, 0], size))
     best[component[order]] = leaves[order]
     has = np.zeros(number, dtype=np.bool_)
     has[component] = True

@@ -23,6 +23,7 @@ from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism.closed import ClosedMechanism
 from ptmcad.mechanism.derivative import determinant
 from ptmcad.mechanism.description import Mechanism
+from ptmcad.mechanism.energy import with_springs
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.proofs import Points, Polynomial, Ring
 from ptmcad.mechanism.sizes import MAX_TERMS, TOO_LARGE
@@ -121,13 +122,11 @@ def _second_bar(joint: XJoint, ring: Ring) -> tuple[Polynomial, Polynomial, Poly
 def _energy(points: Points) -> Polynomial:
     """With the second bars' angles as angles of their own."""
     mechanism, ring = points.mechanism, points.ring
-    twice = ring.constant(Fraction(0)) - points.work_of_loads()
+    twice = ring.constant(Fraction(0))
     for spring in mechanism.springs:
         twice = twice + points.value(spring.stiffness) * points.squared(spring.start, spring.end)
-    energy = twice * ring.constant(Fraction(1, 2))
-    for tree in (*(torsion.energy for torsion in mechanism.torsion), *split_moments(mechanism).energies):
-        energy = energy + points.value(tree)
-    return energy
+    loaded = {load.point: points.at(load.point) for load in mechanism.loads}
+    return with_springs(mechanism, ring, loaded, twice * ring.constant(Fraction(1, 2)))
 
 
 def _degree(p: Polynomial, angle: str) -> int:

@@ -3,7 +3,7 @@
 Guarantee: exact as far as the ring is. What moments do is in it as far as it has one value for each pose
 (`ptmcad.mechanism.work`).
 
-Both engines and `ptmcad.verification` add up energies of their own, so that one of them shows another one's mistakes.
+The exact engine and `ptmcad.verification` add up energies of their own, so that one shows the mistakes of another.
 """
 
 from __future__ import annotations

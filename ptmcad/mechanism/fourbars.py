@@ -102,12 +102,12 @@ class FourBar:
             return False
         points, (a, p, q, b) = Points(mechanism), self.corners
         try:
-            ground, first, second = (_turning(points, *side) for side in ((a, b), (a, p), (b, q)))
+            sides = [points.turning(*side) for side in ((a, b), (a, p), (b, q))]
         except ExpressionError:
             return False
-        if ground is None or first is None or second is None:
+        if None in sides:
             return False
-        (g1, g2), (f1, f2), (s1, s2) = ground, first, second
+        (g1, g2), (f1, f2), (s1, s2) = ((side[u] for u in mechanism.angles) for side in sides if side is not None)
         return (f1 - g1) * (s2 - g2) != (f2 - g2) * (s1 - g1)
 
     def named(self, fold: Fold, free_lengths: bool = False) -> str:
@@ -218,21 +218,3 @@ def _value(polynomial: Polynomial, parameters: Mapping[str, Expression]) -> Expr
             term = term * parameters[name] ** exponent
         total = total + term
     return total
-
-
-def _turning(points: Points, start: str, end: str) -> tuple[Fraction, ...] | None:
-    """By how much the direction of a side turns with each angle, in turns; None where it is no rigid one that turns."""
-    (x0, y0), (x1, y1) = points.at(start), points.at(end)
-    dx, dy = x1 - x0, y1 - y0
-    squared = dx * dx + dy * dy
-    found = []
-    for angle in points.mechanism.angles:
-        turned = dx * dy.derivative(angle) - dy * dx.derivative(angle)
-        first = next(iter(turned.terms), None)
-        if first is not None and first not in squared.terms:
-            return None
-        share = Fraction(0) if first is None else turned.terms[first] / squared.terms[first]
-        if (turned - squared * points.ring.constant(share)).terms:
-            return None
-        found.append(share)
-    return tuple(found)

@@ -13,15 +13,14 @@ neither part. What is told is for drawings alone.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from fractions import Fraction
 from functools import lru_cache
 from itertools import combinations
 from typing import NamedTuple
 
 from ptmcad.errors import ExpressionError
 from ptmcad.mechanism.description import Mechanism, Support, TorsionSpring
-from ptmcad.mechanism.evaluate import evaluate, multiples
-from ptmcad.mechanism.proofs import Polynomial, Ring
+from ptmcad.mechanism.evaluate import multiples
+from ptmcad.mechanism.proofs import Points, Ring
 
 MAX_WORK = 20_000
 """Products of terms for all the points' coordinates; larger ones have no derived joints."""
@@ -100,38 +99,10 @@ def _parts(mechanism: Mechanism) -> Iterator[_Part]:
     """The frame, then bars and bodies, as far as they have a direction."""
     sliding = [name for name, kind in mechanism.supports.items() if kind is not Support.PIN]
     yield _Part(tuple(n for n in mechanism.points if n not in mechanism.moving or n in sliding), _FRAME)
-    ring = Ring(MAX_WORK)
-    known: dict[str, tuple[Polynomial, Polynomial]] = {}
+    places = Points(mechanism, Ring(MAX_WORK))
     for points in (*mechanism.bars, *mechanism.bodies.values()):
-        for name in points:
-            if name not in known:
-                x, y = mechanism.points[name]
-                known[name] = evaluate(x, ring), evaluate(y, ring)
-        for start, end in combinations(points, 2):
-            (x0, y0), (x1, y1) = known[start], known[end]
-            direction = _direction(mechanism, x1 - x0, y1 - y0)
-            if direction is not None:
-                yield _Part(points, direction)
+        for pair in combinations(points, 2):
+            turns = places.turning(*pair)
+            if turns is not None and not any(turns[name] for name in mechanism.reals):
+                yield _Part(points, frozenset((name, int(n)) for name, n in turns.items() if n))
                 break
-
-
-def _direction(mechanism: Mechanism, x: Polynomial, y: Polynomial) -> Direction | None:
-    """Of (x, y): dx/du = -n y and dy/du = n x for each unknown u, with n = 0 for one on the line.
-
-    None where there is none.
-    """
-    if not (x.terms or y.terms):
-        return None
-    found = {}
-    for unknown in (*mechanism.unknowns, *mechanism.followers):
-        dx, dy = x.derivative(unknown), y.derivative(unknown)
-        term, c = next(iter((x.terms or y.terms).items()))
-        n = (dy if x.terms else dx).terms.get(term, Fraction(0)) / c * (1 if x.terms else -1)
-        if dy.terms != _times(x, n) or dx.terms != _times(y, -n) or (n and unknown in mechanism.reals):
-            return None
-        found[unknown] = int(n)
-    return frozenset((name, n) for name, n in found.items() if n)
-
-
-def _times(p: Polynomial, n: Fraction) -> dict[tuple[tuple[str, int], ...], Fraction]:
-    return {monomial: n * c for monomial, c in p.terms.items()} if n else {}

@@ -350,6 +350,24 @@ class Points:
             total += (b - a) * (b - a)
         return total
 
+    def turning(self, start: str, end: str) -> dict[str, Fraction] | None:
+        """By how much the way from one point to another, (x, y), turns with each unknown u, in turns of u: n, where
+        dx/du = -n y and dy/du = n x; None where it is no rigid one, or no way at all."""
+        (x0, y0), (x1, y1) = self.at(start), self.at(end)
+        x, y = x1 - x0, y1 - y0
+        if not (x.terms or y.terms):
+            return None
+        term, c = next(iter((x.terms or y.terms).items()))
+        found = {}
+        for unknown in (*self.mechanism.unknowns, *self.mechanism.followers):
+            dx, dy = x.derivative(unknown), y.derivative(unknown)
+            n = dy.terms.get(term, Fraction(0)) / c if x.terms else -dx.terms.get(term, Fraction(0)) / c
+            times = self.ring.constant(n)
+            if (dy - times * x).terms or (dx + times * y).terms:
+                return None
+            found[unknown] = n
+        return found
+
     def work_of_loads(self) -> Polynomial:
         """Twice the work of the dead forces."""
         total = self.ring.constant(Fraction(0))

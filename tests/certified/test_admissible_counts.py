@@ -20,7 +20,6 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.plain import curves as plain_curves
-from ptmcad.certified.plain import loopcurves
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.mechanism.ptm import RECORD
@@ -242,16 +241,12 @@ def without(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
     def kept(name: str) -> bool:
         return not any(part in name for part in names)
 
-    def curve(name: str, *rest: Any) -> Curve:
-        return Curve(name, *rest)
+    complete = plain_curves.curves
 
-    for module in (plain_curves, loopcurves):
-        whole = module.boundaries
+    def some(*given: Any, **options: Any) -> tuple[Curve, ...]:
+        return tuple(curve for curve in complete(*given, **options) if kept(curve.name))
 
-        def some(*given: Any, whole: Any = whole) -> Any:
-            return (found for found in whole(*given) if kept(found.name))
-
-        monkeypatch.setattr(module, "boundaries", some)
+    monkeypatch.setattr(plain_curves, "curves", some)
 
 
 @pytest.mark.parametrize(("name", "tolerance"), [("chain", "1/20"), ("four-bar", "1/20")])

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from ptmcad.certified.plain.nested import eliminated, nested, scaled, sharp_squares, times
 from support.few import few
 from support.pages import data_of
 
@@ -20,7 +21,6 @@ from ptmcad.certified.evaluation import program, run
 from ptmcad.certified.formula import Graph
 from ptmcad.certified.formulation import curves, point_counter
 from ptmcad.certified.plain.bounds import ranges
-from ptmcad.certified.plain.nested import eliminated, nested, scaled, sharp_squares, times
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.trigonometric import Harmonics
 from ptmcad.certified.points import PointCount

@@ -26,7 +26,6 @@ from ptmcad.certified.engine import certified_map
 from ptmcad.certified.formula import Formula
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain import curves as plain_curves
-from ptmcad.certified.plain import loopcurves
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.errors import ConfigError
@@ -346,7 +345,7 @@ def without_curves(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
 
 def test_without_flat_loops_counts_are_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     """A fold at which the tangent is not zero is not all: at b = L1 + L2 + L3 = 37/10 the whole loop comes to be."""
-    original = loopcurves.system
+    original = plain_curves.system
 
     def bent(
         equations: list[Formula], unknowns: Any, vanishing: Any, nonnegative: Sequence[Formula] = (), **more: Any
@@ -356,7 +355,7 @@ def test_without_flat_loops_counts_are_wrong(monkeypatch: pytest.MonkeyPatch) ->
         far = slopes[0].squared() + slopes[1].squared() - Fraction(1, 10**4)
         return original(equations, unknowns, vanishing, [*nonnegative, far], **more)
 
-    monkeypatch.setattr(loopcurves, "system", bent)
+    monkeypatch.setattr(plain_curves, "system", bent)
     wrong = ptmcad.classify(slice_of("flat", count="total", axes={"b": ["7/2", 4], "l0": [0, 1]}), tolerance="1/20")
     assert wrong_counts(wrong, 40)
     monkeypatch.undo()

@@ -22,8 +22,8 @@ from ptmcad.certified.plain.bounds import known_ranges
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.plain.poses import point_slice
 from ptmcad.certified.plain.problem import Problem, problem_of
-from ptmcad.certified.plain.separated import separated
 from ptmcad.certified.plain.straight import branches
+from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count, Slice
 
@@ -169,18 +169,6 @@ def test_bounds_with_a_guide_that_turns_and_of_three_sliders(record: dict[str, A
         assert all(within(f, ranges, reals) for f in found)
 
 
-def test_a_combination_has_one_length_with_the_determinant_as_its_slope() -> None:
-    """Cramer's rule, exactly, with angles and without."""
-    for record, chosen in ((TURNED, (1, 2)), (THREE, (0, 1, 2)), (PAIR, (0, 1))):
-        (problem,) = problems(ptmcad.slice_from_mapping(record))
-        found = separated(problem, chosen)
-        assert [equation.unknown for equation in found] == list(chosen)
-        for equation in found:
-            for k in chosen:
-                slope = equation.smooth.derivative(k)
-                assert slope == equation.slope if k == equation.unknown else not slope.terms
-
-
 FAR = {"a": Fraction(1, 1000), "F": Fraction(3, 2)}
 """Where the guides of two sliders without a hold are nearly parallel."""
 
@@ -198,14 +186,14 @@ def test_a_window_over_parallel_guides_has_no_bound() -> None:
 
 def test_without_regularity_all_over_the_window_a_bound_is_false(monkeypatch: pytest.MonkeyPatch) -> None:
     """With the determinant at one point in the place of the whole window equilibria are beyond."""
-    empty = bounds.empty_parts
+    empty = bounds.is_empty
 
-    def at_the_middle(tape: Any, box: Any, *most: int) -> Any:
+    def at_the_middle(tape: Any, box: Any, *more: Any) -> bool:
         narrow = box.copy()
         narrow[:2] = narrow[:2].mean(axis=1)[:, None]
-        return empty(tape, narrow, *most)
+        return empty(tape, narrow, *more)
 
-    monkeypatch.setattr(bounds, "empty_parts", at_the_middle)
+    monkeypatch.setattr(bounds, "is_empty", at_the_middle)
     (found,) = solutions(searched("slanted"), FAR, 4000, seed=3)
     assert not within(found, hull(ptmcad.slice_from_mapping(SLANTED)), [0, 1])
 
@@ -219,20 +207,14 @@ def test_without_what_pulls_a_bound_is_false(way: str, monkeypatch: pytest.Monke
     slice = slice_at(PAIR, fixed | {"l": free, "r": free, "F": force})
     found = solutions(searched("pair"), fixed | {"l": free, "r": free, "F": force}, 800, seed=4)
     assert all(within(f, hull(slice), [0, 1]) for f in found)
-    whole = bounds.separated
+    if way == "without the springs":
+        monkeypatch.setattr(bounds, "length", lambda x, _: x.graph.constant(0))
+    else:
+        whole = bounds.scaled_together
 
-    def less(problem: Problem, chosen: Any) -> Any:
-        kept = []
-        for equation in whole(problem, chosen):
-            if way == "without the springs":
-                kept.append(equation.__class__(equation.unknown, equation.slope, equation.smooth, (), ()))
-            else:
-                key = next(iter(equation.slope.terms))
-                terms = {k: c for k, c in equation.smooth.terms.items() if k[1][equation.unknown]}
-                assert key
-                smooth = equation.smooth.__class__(terms)
-                kept.append(equation.__class__(equation.unknown, equation.slope, smooth, equation.cones, ()))
-        return tuple(kept)
+        def less(polynomials: Any, weights: Any) -> Any:
+            rest, *others = whole(polynomials, weights)
+            return [TrigonometricPolynomial({k: c for k, c in rest.terms.items() if not k[1][-1]}), *others]
 
-    monkeypatch.setattr(bounds, "separated", less)
+        monkeypatch.setattr(bounds, "scaled_together", less)
     assert not all(within(f, hull(slice), [0, 1]) for f in found)

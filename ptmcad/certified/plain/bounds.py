@@ -14,14 +14,12 @@ from math import gcd, inf, isfinite
 import numpy as np
 
 from ptmcad.certified.evaluation import Floats, program, run
-from ptmcad.certified.formula import Formula, Graph, Operation
+from ptmcad.certified.formula import Formula, Graph, Operation, length
+from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.chart import chart
 from ptmcad.certified.plain.geometry import geometry
-from ptmcad.certified.plain.loopchart import loop_chart
-from ptmcad.certified.plain.nested import eliminated, nested, scaled, sharp_squares, times
 from ptmcad.certified.plain.problem import FIRST, Problem
-from ptmcad.certified.plain.separated import separated
-from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
+from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial
 from ptmcad.certified.tape import Tape, enclosing_floats, record
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Axis
@@ -33,7 +31,9 @@ MIN_POWER, MAX_POWER = -10, 40
 MAX_BOXES = 1000
 """For one bound; each is halved along an axis or an unknown where nothing excludes it."""
 MAX_BOXES_HELD = 5_000
-"""The same for a length that springs hold together with others, by all parts in which they are regular."""
+"""The same for lengths that springs hold together."""
+AXES_HELD = 1 / 64
+"""Of the widths along the axes in the choice what is halved then: what holds lengths is mostly free of the axes."""
 MIN_SHARE = 1e-12
 """Of a range, or of a number's size, below which it is not halved again."""
 MAX_WEIGHT = 3
@@ -59,13 +59,9 @@ def ranges(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Range, ...]:
 def known_ranges(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Range, ...]:
     """The range of each unknown; infinite where no bounds could be proved."""
     window = [(enclosing_floats(axis.low)[0], enclosing_floats(axis.high)[1]) for axis in axes]
-    found: tuple[Range, ...] = ()
-    # more polynomials cost more time, and are seldom needed
-    for with_products in (False, True) if len(problem.unknowns) > 1 and _rigid(problem) else (False,):
-        found = _Search(problem, window, _vanishing(problem, with_products)).ranges()
-        if all(isfinite(sum(bounds)) for bounds in found):
-            break
-    return found
+    # the equations that are polynomials: with springs those that close loops
+    rigid = problem.equations[: problem.closing] if problem.has_springs else problem.equations
+    return _Search(problem, window, [*rigid, *problem.multiples]).ranges()
 
 
 def refusal(problem: Problem, found: Sequence[Range]) -> ConfigError:
@@ -84,20 +80,6 @@ def refusal(problem: Problem, found: Sequence[Range]) -> ConfigError:
     )
 
 
-def _vanishing(problem: Problem, with_products: bool) -> list[TrigonometricPolynomial]:
-    """Polynomials that are zero at every solution."""
-    known = [*_rigid(problem), *problem.multiples]
-    if with_products:
-        reals = [k for k, name in enumerate(problem.unknowns) if name in problem.reals]
-        known += [times(f, k) for f in _rigid(problem) for k in reals]
-    return [*known, *eliminated(known)]
-
-
-def _rigid(problem: Problem) -> Sequence[TrigonometricPolynomial]:
-    """The equations that are polynomials: with cones those that close loops."""
-    return problem.equations[: problem.closing] if problem.has_springs else problem.equations
-
-
 @dataclass(frozen=True, slots=True)
 class _Search:
     """The search for bounds over a window, with some polynomials that vanish at solutions."""
@@ -114,13 +96,12 @@ class _Search:
             for k, name in enumerate(problem.unknowns)
         ]
         reals = [k for k, name in enumerate(problem.unknowns) if name in problem.reals]
-        tapes = {k: self._alone(k) for k in reals}
+        alone = self._alone()
         waiting = list(reals)
         while waiting:
             # the ranges that are known serve to bound the others
-            new = next(filter(None, (self._range(tapes[k], found, k) for k in waiting)), None)
+            new = next(filter(None, (self._range(alone, found, k) for k in waiting)), None)
             new = new or next(filter(None, (self._together(found, chosen) for chosen in _subsets(waiting))), None)
-            new = new or next(filter(None, (self._held(found, chosen) for chosen in _subsets(waiting))), None)
             if new is None:
                 return tuple(found)
             for k, bounds in new.items():
@@ -129,7 +110,7 @@ class _Search:
         for k in reals if len(reals) > 1 else ():
             # bounds that were found together, or before others were known, are wide
             start = (0.0 if found[k][0] == 0 else -inf), inf
-            again = self._range(tapes[k], [*found[:k], start, *found[k + 1 :]], k)
+            again = self._range(alone, [*found[:k], start, *found[k + 1 :]], k)
             if again is not None:
                 found[k] = max(found[k][0], again[k][0]), min(found[k][1], again[k][1])
         return tuple(found)
@@ -143,40 +124,23 @@ class _Search:
             for c in self.problem.inequalities
         )
 
-    def _alone(self, k: int) -> Tape:
-        """What vanishes at solutions, and what is not negative at those that count, for boxes that may be infinite.
-
-        The same polynomials are nested in several ways: none is the best one in all boxes.
-        """
+    def _alone(self) -> Tape:
+        """What vanishes at solutions, and what is not negative at those that count, for boxes that may be infinite."""
         problem = self.problem
-        at = loop_chart(problem) if problem.closing else chart(geometry(problem))
+        at = chart(geometry(problem))
         graph = at.equations[0].graph
         unknowns = [graph.variable(j) for j in problem.variables]
-        others = [(j, True) for j, name in enumerate(problem.unknowns) if name in problem.reals and j != k]
+        inequalities = [c.value.formula(graph, unknowns) for c in problem.inequalities]
+        return record([[*at.equations, *(f.formula(graph, unknowns) for f in self.vanishing)], inequalities])
 
-        def ways(polynomials: Iterable[TrigonometricPolynomial]) -> list[Formula]:
-            orders = [(k, False), *others], [*others, (k, False)]
-            return [nested(graph, f, unknowns, order) for f in polynomials for order in orders]
-
-        inequalities = ways(c.value for c in problem.inequalities)
-        return sharp_squares(record([[*at.equations, *ways(self.vanishing)], inequalities]))
-
-    def _range(
-        self, tape: Tape, found: Sequence[Range], k: int, parts: Sequence[Floats] = (), most: int = MAX_BOXES
-    ) -> _Found | None:
-        """The range of one unknown, whatever those without a range are; each end is a power of two, or it is known.
-
-        Parameters
-        ----------
-        parts : boxes that cover the window and the other ranges, where it is not to be the whole in one.
-        most : boxes for each of them.
-        """
-        boxes = parts or [np.array([*self.window, *found])]
+    def _range(self, tape: Tape, found: Sequence[Range], k: int) -> _Found | None:
+        """The range of one unknown, whatever those without a range are; each end is a power of two, or it is known."""
+        box = np.array([*self.window, *found])
 
         def least(sign: int) -> int | None:
             def holds(power: int) -> bool:
                 beyond = (2.0**power, inf) if sign > 0 else (-inf, -(2.0**power))
-                return all(is_empty(tape, _with(box, FIRST + k, beyond), most) for box in boxes)
+                return is_empty(tape, _with(box, FIRST + k, beyond))
 
             return _least(holds)
 
@@ -186,33 +150,12 @@ class _Search:
             low = -inf if below is None else -(2.0**below)
         return None if above is None or low == -inf else {k: (low, 2.0**above)}
 
-    def _held(self, found: Sequence[Range], chosen: tuple[int, ...]) -> _Found | None:
-        """Ranges of several lengths that springs hold together: for polynomials alone, and a single length, all that
-        this could tell has been tried."""
-        equations = separated(self.problem, chosen) if len(chosen) > 1 and self.problem.has_springs else ()
-        if not equations:
-            return None
-        # it is the determinant that has to be halved, in what it depends on
-        graph = Graph()
-        unknowns = [graph.variable(j) for j in self.problem.variables]
-        slope = record([[equations[0].slope.formula(graph, unknowns)], []])
-        parts = empty_parts(slope, np.array([*self.window, *found]))
-        if parts is None:
-            return None
-        ranges: _Found = {}
-        order = [(j, False) for j, name in enumerate(self.problem.unknowns) if name in self.problem.reals]
-        for equation in equations:
-            tape = sharp_squares(record([[], equation.nonnegative(graph, unknowns, order)]))
-            most = max(1, MAX_BOXES_HELD // len(parts))
-            ranges |= self._range(tape, found, equation.unknown, parts, most) or {}
-        return ranges or None
-
     def _together(self, found: Sequence[Range], chosen: tuple[int, ...]) -> _Found | None:
         """Ranges of unknowns of which one is always the largest: x_j = t_j u^-w_j, |t_j| at most 1, and one 1 or -1.
 
         Several weights w are tried, equal ones first.
         """
-        if not self.vanishing:
+        if not self.vanishing and not self.problem.has_springs:
             return None
         for weights in sorted(product(range(1, MAX_WEIGHT + 1), repeat=len(chosen)), key=lambda w: (max(w), sum(w))):
             if gcd(*weights) == 1:
@@ -229,24 +172,61 @@ class _Search:
         unknowns = [graph.variable(j) for j in (*self.problem.variables, FIRST + len(self.problem.unknowns))]
 
         def formulas(polynomials: Iterable[TrigonometricPolynomial]) -> list[Formula]:
-            return [scaled(f, weights).formula(graph, unknowns) for f in polynomials]
+            return [scaled_together([f], weights)[0].formula(graph, unknowns) for f in polynomials]
 
         inequalities = formulas(c.value for c in self.problem.inequalities)
-        tape = sharp_squares(record([formulas(self.vanishing), inequalities]))
+        tape = record([formulas(self.vanishing), [*inequalities, *self._balances(weights, unknowns)]])
         lowest = {k: 0.0 if found[k][0] == 0 else -1.0 for k in weights}
         faces = [(k, side) for k, low in lowest.items() for side in {1.0, low} if side]
+        most, axes = (MAX_BOXES_HELD, AXES_HELD) if self.problem.has_springs else (MAX_BOXES, 1.0)
 
         def holds(power: int) -> bool:
             box = np.array([*self.window, *found, (0.0, 2.0**-power)])
             for k, low in lowest.items():
                 box[FIRST + k] = low, 1.0
-            return all(is_empty(tape, _with(box, FIRST + k, side)) for k, side in faces)
+            return all(is_empty(tape, _with(box, FIRST + k, side), most, axes) for k, side in faces)
 
         return _least(holds)
+
+    def _balances(self, weights: Mapping[int, int], unknowns: Sequence[Formula]) -> Iterator[Formula]:
+        """Of each equation what its springs reach at most, plus the rest, and less it: not negative at solutions.
+
+        Whatever the direction u of a spring is, K u.w is at most K |w|.
+        """
+        problem, graph = self.problem, unknowns[0].graph
+        for k, equation in enumerate(problem.equations if problem.has_springs else ()):
+            parts = [equation, *(w for cone in problem.cones for w in cone.weights[k])]
+            parts += [push.weights[k] for push in problem.pushes]
+            rest, *others = (f.formula(graph, unknowns) for f in scaled_together(parts, weights))
+            ends, held = others[: 2 * len(problem.cones)], others[2 * len(problem.cones) :]
+            reach = graph.constant(0)
+            for cone, x, y in zip(problem.cones, ends[::2], ends[1::2], strict=True):
+                reach = reach + expression_formula(graph, cone.pull) * length(x, y)
+            for push, way in zip(problem.pushes, held, strict=True):
+                rest = rest - push.strength(graph) * way
+            yield from (reach + rest, reach - rest)
 
 
 _Found = dict[int, Range]
 """Ranges by the number of the unknown."""
+
+
+def scaled_together(
+    polynomials: Sequence[TrigonometricPolynomial], weights: Mapping[int, int]
+) -> list[TrigonometricPolynomial]:
+    """Some with t_j u^-w_j in the place of real unknowns, times u^d: polynomials in one more unknown, u, the last.
+
+    d is the least number that leaves no pole in any of them, so that at u = 0 they are what dominates far away.
+    """
+
+    def degree(powers: Multi) -> int:
+        return sum(w * powers[j] for j, w in weights.items())
+
+    most = max((degree(e) for f in polynomials for _, e in f.terms), default=0)
+    return [
+        TrigonometricPolynomial({((*m, 0), (*e, most - degree(e))): pair for (m, e), pair in f.terms.items()})
+        for f in polynomials
+    ]
 
 
 def _with(box: Floats, variable: int, value: float | Range) -> Floats:
@@ -270,13 +250,8 @@ def _least(holds: Callable[[int], bool]) -> int | None:
     return high
 
 
-def is_empty(tape: Tape, box: Floats, most: int = MAX_BOXES) -> bool:
+def is_empty(tape: Tape, box: Floats, most: int = MAX_BOXES, axes: float = 1.0) -> bool:
     """Whether it is proved that a box has no solution that counts; shape (variables, 2), infinite ends included."""
-    return empty_parts(tape, box, most) is not None
-
-
-def empty_parts(tape: Tape, box: Floats, most: int = MAX_BOXES) -> list[Floats] | None:
-    """The parts of a box of which each is proved to have none; None where that takes more boxes."""
     low, high = np.empty((2, len(tape)))
     finite = np.isfinite(box).all(axis=1)
     used = np.isin(np.arange(len(box)), tape.first[tape.operations == Operation.VARIABLE])
@@ -284,9 +259,9 @@ def empty_parts(tape: Tape, box: Floats, most: int = MAX_BOXES) -> list[Floats] 
         # what is no more than a rounded number is not halved
         wide = box[:, 1] - box[:, 0] > MIN_SHARE * np.abs(box).max(axis=1)
         lengths = np.where(finite & used & wide, box[:, 1] - box[:, 0], inf)
+    lengths[:FIRST] /= axes
     vanishing, nonnegative = tape.outputs
     waiting, treated = [box], 0
-    empty: list[Floats] = []
     while waiting:
         part = waiting.pop()
         treated += 1
@@ -294,16 +269,15 @@ def empty_parts(tape: Tape, box: Floats, most: int = MAX_BOXES) -> list[Floats] 
         if not run(program(tape), part[:, 0].copy(), part[:, 1].copy(), low, high, 0, len(tape)) or (
             (low[vanishing] > 0).any() or (high[vanishing] < 0).any() or (high[nonnegative] < 0).any()
         ):
-            empty.append(part)
             continue
         with np.errstate(invalid="ignore"):
             widths = np.where(finite, part[:, 1] - part[:, 0], 0.0) / lengths
         widest = int(np.argmax(widths))
         if treated >= most or widths[widest] < MIN_SHARE:
-            return None
+            return False
         middle = part[widest].mean()
         for side in (0, 1):
             half = part.copy()
             half[widest, side] = middle
             waiting.append(half)
-    return empty
+    return True

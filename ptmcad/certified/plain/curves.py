@@ -1,5 +1,5 @@
 """The curves of a slice at which counts change, for any problem: folds, equilibria that a spring's cone swallows,
-solutions at which a condition stops to hold, and such as leave to infinity.
+and solutions at which a condition stops to hold.
 
 Guarantee: each point of the window at which the chosen count changes lies on the projection of one of the curves
 (docs/soundness.md, "Plain formulas").
@@ -15,12 +15,9 @@ import numpy as np
 
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.formula import Formula
-from ptmcad.certified.plain.bounds import TURN, Range
+from ptmcad.certified.plain.bounds import TURN, Range, ranges
 from ptmcad.certified.plain.chart import Chart, chart, determinant, principal_minors
-from ptmcad.certified.plain.excesses import boundaries
 from ptmcad.certified.plain.geometry import Geometry, geometry
-from ptmcad.certified.plain.infinity import Patch, at_infinity, patches
-from ptmcad.certified.plain.loopcurves import curves_of_loops
 from ptmcad.certified.plain.problem import FIRST, Condition, Problem, problem_of
 from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.scales import TURNING_WEIGHT, short_lengths, variable_weights
@@ -39,6 +36,7 @@ class _Search:
     stable : whether only folds of minima are asked for.
     swallowed : whether solutions that springs without length swallow have curves of their own.
     dependent : whether formulas that vanish at all solutions are used besides the equations.
+    rising : whether only solutions are asked for at which the Jacobian's determinant is not negative.
     """
 
     problem: Problem
@@ -50,6 +48,7 @@ class _Search:
     swallowed: bool
     dependent: bool
     conditions: tuple[Condition, ...]
+    rising: bool
     where: str
 
 
@@ -63,57 +62,33 @@ def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) ->
     Raises
     ------
     ConfigError, GeometryError
-        As `problem_of` and `patches` do.
+        As `problem_of` and `ranges` do.
     """
-    found = (patch for branch in branches(problem_of(slice), slice.axes) for patch in patches(branch, slice.axes))
-    return tuple(curve for patch in found for curve in _of_patch(slice, count, without, patch))
+    found = branches(problem_of(slice), slice.axes)
+    return tuple(curve for branch in found for curve in _of_branch(slice, count, without, branch))
 
 
-def _of_patch(slice: Slice, count: Count, without: frozenset[str], patch: Patch) -> Iterator[Curve]:
-    problem = patch.problem
-    if problem.closing:
-        yield from curves_of_loops(slice, count, patch)
-        return
+def _of_branch(slice: Slice, count: Count, without: frozenset[str], problem: Problem) -> Iterator[Curve]:
+    bounds = ranges(problem, slice.axes)
     exact = geometry(problem, slice.axes)
     at = chart(exact)
     stable = problem.is_gradient and count.is_of_stable and "folds-of-saddles" not in without
     search = _Search(
         problem,
         exact,
-        patch.ranges,
-        variable_weights(slice, at.equations, patch.ranges),
-        short_lengths(slice, at.lengths, patch.ranges),
+        bounds,
+        variable_weights(slice, at.equations, bounds),
+        short_lengths(slice, at.lengths, bounds),
         stable,
         not stable or "cones-and-creases" in without,
-        "dependent-equations" not in without,
+        "dependent-equations" not in without and not problem.closing,
         problem.conditions(count),
-        problem.where + "".join(f" with {problem.unknowns[k]} large" for k in patch.inverse),
+        problem.closing > 0 and count.is_of_stable,
+        problem.where,
     )
     yield from _smooth(search, at)
     yield from _boundaries(search, at)
     yield from _at_free_lengths(search, at)
-    yield from _infinite(search, patch)
-
-
-def _infinite(search: _Search, patch: Patch) -> Iterator[Curve]:
-    """Where a solution leaves to infinity."""
-    for k in patch.inverse:
-        equations, conditions = at_infinity(patch, k, search.conditions)
-        if any(f.value is not None and f.value != 0 for f in equations):
-            continue  # nowhere
-        ranges = (*search.ranges[:k], (0.0, 0.0), *search.ranges[k + 1 :])
-        name = search.problem.unknowns[k]
-        yield Curve(
-            f"solution of which {name} is infinite{search.where}",
-            f"a solution leaves to infinity with {name}",
-            system(
-                equations,
-                (0, 1, *(variable for variable in search.problem.variables if variable != FIRST + k)),
-                nonnegative=conditions,
-            ),
-            ranges,
-            np.array(search.weights),
-        )
 
 
 def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
@@ -121,9 +96,9 @@ def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
     if not search.swallowed:
         # the folds' systems have the points at which a minimum is swallowed
         return (_fold(search, at), *_short_folds(search, at))
-    if len(search.problem.unknowns) == 1:
-        return (_fold(search, at), *_points_without_length(search, at))
-    return (_fold(search, at), *_short_folds(search, at), *_cones(search))
+    freedom = len(search.problem.unknowns) - search.problem.closing
+    swallowed = _points_without_length(search, at) if freedom == 1 else _cones(search)
+    return (_fold(search, at), *_short_folds(search, at), *swallowed)
 
 
 def _charted(search: _Search, at: Chart) -> list[int]:
@@ -186,6 +161,7 @@ def _values(conditions: Sequence[Condition], at: Chart) -> list[Formula]:
 def _boundaries(search: _Search, at: Chart) -> Iterator[Curve]:
     """Solutions at which a condition is zero and no other one is violated; there one stops or begins to count."""
     semidefinite = [*principal_minors(at.hessian), determinant(at.hessian)] if search.stable else []
+    semidefinite += [at.determinant()] if search.rising else []
     for k, condition in enumerate(search.conditions):
         others = _values([*search.conditions[:k], *search.conditions[k + 1 :]], at)
         yield Curve(
@@ -206,16 +182,20 @@ def _at_free_lengths(search: _Search, at: Chart) -> Iterator[Curve]:
     problem = search.problem
     graph = at.equations[0].graph
     minima = [*_semidefinite(at), at.determinant(at_equilibrium=True)] if problem.is_gradient else []
+    minima += [at.determinant()] if search.rising else []
     moments = [turned.moment for turned in at.turned]
-    for found in boundaries(problem.excesses, [graph.variable(k) for k in problem.variables]):
+    unknowns = [graph.variable(k) for k in problem.variables]
+    values = [excess.value.formula(graph, unknowns) for excess in problem.excesses]
+    for k, excess in enumerate(problem.excesses):
+        zero, *others = (f.formula(graph, unknowns) for f in excess.boundary)
         yield Curve(
-            f"{found.name}{search.where}",
-            found.reason,
+            f"point where spring {excess.spring} has its free length{search.where}",
+            f"spring {excess.spring} of a stable equilibrium has its free length",
             system(
-                [*at.equations, found.zero],
+                [*at.equations, zero],
                 (0, 1, *problem.variables),
-                ([*found.others, *moments, *at.dependent], at.balances),
-                [*found.not_negative, *minima, *_values(search.conditions, at)],
+                ([*others, *moments, *at.dependent], at.balances),
+                [*values[:k], *values[k + 1 :], *minima, *_values(search.conditions, at)],
             ),
             search.ranges,
             np.array(search.weights),
@@ -249,17 +229,18 @@ def _short_folds(search: _Search, at: Chart) -> Iterator[Curve]:
 
 
 def _points_without_length(search: _Search, at: Chart) -> Iterator[Curve]:
-    """The same as `_cones` for one unknown, where two equations d = 0 leave curves and need no direction."""
-    (unknown,) = (at.equations[0].graph.variable(k) for k in search.problem.variables)
+    """The same as `_cones` for one degree of freedom, where two equations d = 0 leave curves and need no direction."""
+    graph, closing = at.equations[0].graph, search.problem.closing
+    unknowns = [graph.variable(k) for k in search.problem.variables]
     for cone in search.problem.cones:
-        vanishing = [d.formula(unknown.graph, [unknown]) for d in cone.difference]
+        vanishing = [d.formula(graph, unknowns) for d in cone.difference]
         yield Curve(
             f"point where spring {cone.name} has no length{search.where}",
             f"an equilibrium is swallowed where spring {cone.name} has no length",
             system(
-                [f for f in vanishing if f.value != 0],
-                (0, 1, FIRST),
-                ((), at.equations),
+                [*at.equations[:closing], *(f for f in vanishing if f.value != 0)],
+                (0, 1, *search.problem.variables),
+                ((), at.equations[closing:]),
                 _values(search.conditions, at),
             ),
             search.ranges,
@@ -294,6 +275,8 @@ def _name(search: _Search) -> str:
 
 
 def _reason(search: _Search) -> str:
+    if search.problem.closing:
+        return "equilibria meet, or a loop folds flat: the Jacobian is singular"
     if search.stable:
         return "a minimum meets a saddle: det H = 0 with no negative principal minor"
     return "equilibria meet: det H = 0" if search.problem.is_gradient else "solutions meet: the Jacobian is singular"

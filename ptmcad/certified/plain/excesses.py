@@ -5,11 +5,9 @@ Guarantee: exact. A stable equilibrium is admissible if and only if the values o
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
 
-from ptmcad.certified.formula import Formula
 from ptmcad.certified.plain.ends import springs_of
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
 from ptmcad.mechanism import Mechanism
@@ -36,38 +34,6 @@ class Excess:
     def text(self) -> str:
         """What it is, in words."""
         return f"the length of spring {self.spring} less its free length"
-
-
-class Boundary(NamedTuple):
-    """Where a spring has its free length and no other one is shorter than its own.
-
-    Attributes
-    ----------
-    name, reason : of the curve over which stable equilibria are there.
-    zero, others : what is zero there; one formula is enough for a system.
-    not_negative : the other springs' excesses.
-    """
-
-    name: str
-    reason: str
-    zero: Formula
-    others: list[Formula]
-    not_negative: list[Formula]
-
-
-def boundaries(given: Sequence[Excess], unknowns: Sequence[Formula]) -> Iterator[Boundary]:
-    """One for each excess, in the graph of the unknowns."""
-    graph = unknowns[0].graph
-    values = [excess.value.formula(graph, unknowns) for excess in given]
-    for k, excess in enumerate(given):
-        zero, *others = (f.formula(graph, unknowns) for f in excess.boundary)
-        yield Boundary(
-            f"point where spring {excess.spring} has its free length",
-            f"spring {excess.spring} of a stable equilibrium has its free length",
-            zero,
-            others,
-            [*values[:k], *values[k + 1 :]],
-        )
 
 
 def excesses(mechanism: Mechanism, ring: Harmonics) -> Iterator[Excess]:

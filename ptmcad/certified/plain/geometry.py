@@ -25,7 +25,7 @@ class Geometry:
     factors : of the equations, positive in the open window.
     equations, slopes : the smooth parts over their factors, and their derivatives by the unknowns.
     shapes : of the springs with a free length.
-    turns : directions in which bodies turn together; none are used where springs are pushes.
+    turns : directions in which bodies turn together; none are used of closed loops, and where springs are pushes.
     pushes : of the problem, with their weights over the factors.
     """
 
@@ -43,9 +43,13 @@ def geometry(problem: Problem, axes: tuple[Axis, Axis] | None = None) -> Geometr
 
     Parameters
     ----------
-    axes : of the window in which factors are to be positive; without them all factors are 1, and nothing turns.
+    axes : of the window in which factors are to be positive; without them, and of closed loops, all factors are 1, and
+        nothing turns.
     """
-    factors = (constant(1),) * len(problem.equations) if axes is None else common_factors(problem, axes)
+    factors: tuple[Expression, ...] = (constant(1),) * len(problem.equations)
+    found: tuple[Turn, ...] = ()
+    if axes is not None and not problem.closing:
+        factors, found = common_factors(problem, axes), () if problem.pushes else turns(problem, axes)
     equations = tuple(over(f, g) for f, g in zip(problem.equations, factors, strict=True))
     return Geometry(
         problem,
@@ -53,7 +57,7 @@ def geometry(problem: Problem, axes: tuple[Axis, Axis] | None = None) -> Geometr
         equations,
         tuple(tuple(f.derivative(j) for j in range(len(factors))) for f in equations),
         tuple(shape(cone, factors) for cone in problem.cones),
-        () if axes is None or problem.pushes else turns(problem, axes),
+        found,
         tuple(
             replace(push, weights=tuple(over(w, g) for w, g in zip(push.weights, factors, strict=True)))
             for push in problem.pushes

@@ -15,7 +15,10 @@ from ptmcad.certified.plain.springs import Matrix, Spring
 
 
 class Bent(NamedTuple):
-    """What is taken off a matrix M: factor v (g v)^T, with the products v_i v_j and v, the sines of a spring."""
+    """What is taken off a matrix M: factor v (g v)^T, with the products v_i v_j and v, the sines of a spring.
+
+    Of closed loops v stands in one row only, and another vector in the place of the second v.
+    """
 
     factor: Formula
     products: Matrix
@@ -42,7 +45,7 @@ def bent(
 ) -> Formula:
     """det(M - sum of factor_s v_s (g v_s)^T), g being the scales.
 
-    Springs that depend on one unknown are in M's diagonal. For the others it is the sum over sets S of springs of
+    Springs that are in one equation are in M's row. For the others it is the sum over sets S of springs of
     (-1)^|S| times their factors times the sum over sets I, K of as many rows and columns of det(v_S in I) times
     det(g v_S in K) times the complementary minor of M with its sign (Cauchy and Binet; Lemma S2 of docs/soundness.md).
 
@@ -55,7 +58,8 @@ def bent(
     for bend in bends if extents is None else ():
         if len(bend.spring.active) == 1:
             (i,) = bend.spring.active
-            entries[i][i] = entries[i][i] - bend.factor * (scales[i] * bend.products[i][i])
+            row = zip(entries[i], scales, bend.products[i], strict=True)
+            entries[i] = [m - bend.factor * (g * p) for m, g, p in row]
     rigid = tuple(map(tuple, entries))
     shared = [bend for bend in bends if len(bend.spring.active) > 1 or extents is not None]
     total = matrix[0][0].graph.constant(0)

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import isfinite
 from typing import NamedTuple
 
 import numpy as np
@@ -22,12 +21,10 @@ from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.distinct import FULL_TURN, distinct
 from ptmcad.certified.evaluation import Indices, program, run
 from ptmcad.certified.formula import Formula
-from ptmcad.certified.plain.bounds import Range, known_ranges
+from ptmcad.certified.plain.bounds import Range, ranges
 from ptmcad.certified.plain.chart import Chart, chart, principal_minors
 from ptmcad.certified.plain.covering import in_description
 from ptmcad.certified.plain.geometry import geometry
-from ptmcad.certified.plain.infinity import WITNESSES, patches
-from ptmcad.certified.plain.loopchart import LoopChart, loop_chart
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS, Problem, problem_of
 from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.straight import branches
@@ -36,7 +33,7 @@ from ptmcad.certified.search import Boxes, Found, isolate
 from ptmcad.certified.system import Arguments, System, system
 from ptmcad.certified.tape import Tape, enclosing_floats, record
 from ptmcad.errors import DegenerateSliceError
-from ptmcad.question.slice import Axis, Count, Slice
+from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import text_of
 
 MANY_BOXES = 6_000_000
@@ -44,6 +41,9 @@ MANY_BOXES = 6_000_000
 
 MAX_OPEN_BOXES = 40
 """Boxes as narrow as is looked at that stay open, before a search ends: with one of them nothing is decided."""
+
+WITNESSES = tuple((Fraction(u), Fraction(v)) for u, v in (("10/21", "19/35"), ("2/13", "11/17"), ("15/19", "4/23")))
+"""Shares of the window: points that are rarely on a curve that a person has in mind."""
 
 HALVINGS = 60
 """Of a box around a solution, before it is in no other solution's way."""
@@ -63,7 +63,7 @@ class PlainCounter:
 
     Attributes
     ----------
-    ranges : over the window; None where a solution leaves to infinity somewhere: then those at each point are proved.
+    ranges : over the window.
     all, stable : the systems that a search prunes with, for all solutions that count and for the stable ones.
     equations : the equations alone.
     hessian : a tape of one stage with the Hessian's entries row by row.
@@ -74,7 +74,7 @@ class PlainCounter:
 
     slice: Slice
     problem: Problem
-    ranges: tuple[Range, ...] | None
+    ranges: tuple[Range, ...]
     all: System
     stable: System
     equations: System
@@ -221,13 +221,7 @@ class PlainCounter:
         """The zeros at a point that a search proves."""
         none = np.empty((0, 2 * (FIRST + len(self.problem.unknowns))))
         (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
-        found_ranges = self.ranges
-        if found_ranges is None:
-            here = known_ranges(self.problem, (Axis("x", x, x), Axis("y", y, y)))
-            if not all(isfinite(sum(bounds)) for bounds in here):
-                return Zeros(none, none, 1)
-            found_ranges = here
-        low, high = zip(*found_ranges, strict=True)
+        low, high = zip(*self.ranges, strict=True)
         start = np.array([[x_low, y_low, *low, x_high, y_high, *high]])
         variables = 2 + len(low)
         arguments = (self.stable if stable else self.all).arguments()
@@ -358,7 +352,7 @@ def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], No
     Raises
     ------
     ConfigError, GeometryError
-        As `problem_of` and `patches` do.
+        As `problem_of` and `ranges` do.
     DegenerateSliceError
         When a condition is zero at a solution wherever one looks, so that nothing would ever be decided.
     """
@@ -367,21 +361,20 @@ def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], No
 
 
 def _counter(slice: Slice, problem: Problem, pause: Callable[[], None] | None) -> PlainCounter:
-    found = patches(problem, slice.axes)
-    at = loop_chart(problem) if problem.closing else chart(geometry(problem))
+    at = chart(geometry(problem))
     vanishing = (at.dependent, at.balances)
     unknowns = [at.equations[0].graph.variable(k) for k in problem.variables]
     inequalities, stability, excesses = (
         [c.value.formula(at.equations[0].graph, unknowns) for c in some]
         for some in (problem.inequalities, problem.stability, problem.excesses)
     )
-    if isinstance(at, LoopChart):
+    if problem.closing:
         stability = [at.determinant()]
-    minima = _semidefinite(at) if isinstance(at, Chart) and problem.is_gradient else stability
+    minima = _semidefinite(at) if problem.is_gradient else stability
     counter = PlainCounter(
         slice,
         problem,
-        found[0].ranges if len(found) == 1 else None,
+        ranges(problem, slice.axes),
         system(at.equations, problem.variables, vanishing, inequalities, at.hessian),
         system(at.equations, problem.variables, vanishing, [*minima, *inequalities], at.hessian),
         system(at.equations, problem.variables, jacobian=at.hessian),

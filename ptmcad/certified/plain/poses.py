@@ -1,5 +1,8 @@
 """The equilibria at a point of any mechanism with springs of free lengths, with everything asked of a pose.
 
+Closed loops leave one degree of freedom: there is no index, and a pose is stable where the energy's second derivative
+along the loops is positive.
+
 Guarantee: each equilibrium is proved, and all are there unless the answer is UNDECIDED, which then says in how many
 boxes there may be more. Every number settles the digits asked for or, where it may be zero, is enclosed.
 """
@@ -7,6 +10,7 @@ boxes there may be more. Every number settles the digits asked for or, where it 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from math import isqrt
 
@@ -24,8 +28,9 @@ from ptmcad.certified.plain.rational import Point, exact_eigenvalues, exact_valu
 from ptmcad.certified.plain.spectrum import ordered_eigenvalues
 from ptmcad.certified.potential import potential
 from ptmcad.certified.tape import Tape, record
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
 from ptmcad.mechanism.evaluate import value_at
+from ptmcad.mechanism.fourbars import flat_everywhere
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.balls import bounded, enclosed
@@ -40,9 +45,10 @@ NOT_TOLD = (
     "not all equilibria could be distinguished: there are infinitely many, one is nearly degenerate, or a spring has "
     "nearly no length there"
 )
+NOT_TOLD_OF_LOOPS = NOT_TOLD.replace("or a spring", "a loop is nearly flat, or a spring")
 
 
-def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits: int) -> Poses:
+def plain_poses(model: Mechanism | ClosedMechanism, parameters: Mapping[str, Fraction], digits: int) -> Poses:
     """All equilibria of a mechanism.
 
     Parameters
@@ -55,12 +61,19 @@ def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits
     ConfigError, GeometryError
         As `ptmcad.certified.plain.points.plain_counter` does, or where a parameter is not what its kind asks for.
     """
-    slice = point_slice(mechanism, parameters)
+    slice = point_slice(model, parameters)
     prove_slice(slice)
-    zeros, unclear = solutions_at(plain_counter(slice, MAX_UNKNOWNS_AT_POINTS), Count.INDEX)
+    mechanism, count, reason = model, Count.INDEX, NOT_TOLD
+    if isinstance(model, ClosedMechanism):
+        mechanism, count, reason = model.mechanism, Count.TOTAL, NOT_TOLD_OF_LOOPS
+        if flat := flat_everywhere(mechanism, slice.parameters):
+            loop, fold = flat
+            return Poses(model, parameters, (), Status.UNDECIDED, digits, 0, loop.in_short(fold))
+    assert isinstance(mechanism, Mechanism)
+    zeros, unclear = solutions_at(plain_counter(slice, MAX_UNKNOWNS_AT_POINTS), count)
     written = tape_of(mechanism, parameters)
     poses = [pose_at(mechanism, parameters, written, at, solution, digits) for at, solution in zeros]
-    return answered(mechanism, parameters, digits, sorted(poses, key=lambda p: _order(p[0])), unclear, NOT_TOLD)
+    return answered(model, parameters, digits, sorted(poses, key=lambda p: _order(p[0])), unclear, reason)
 
 
 def answered(
@@ -104,9 +117,8 @@ def boxes_of(counter: PlainCounter, solution: Solution, precision: int) -> tuple
 
 def _order(pose: Pose) -> tuple[Fraction, ...]:
     """Stable equilibria first, then by energy; without a potential by the unknowns."""
-    if pose.energy is not None:
-        return Fraction(not pose.stable), pose.energy.center
-    return tuple(number.center for number in (*pose.angles, *pose.reals))
+    numbers = (*pose.angles, *pose.reals) if pose.energy is None else (pose.energy,)
+    return Fraction(not pose.stable), *(number.center for number in numbers)
 
 
 def point_slice(model: Model, parameters: Mapping[str, Fraction]) -> Slice:
@@ -156,7 +168,11 @@ def pose_at(
     numbers, bits = measured(mechanism, parameters, written, lambda bits: boxes_of(counter, solution, bits), digits)
     has_index = mechanism.has_potential and solution.signs and not mechanism.closing
     index = solution.signs.count("-") if has_index else None
-    return assembled(mechanism, parameters, numbers, index), bits
+    pose = assembled(mechanism, parameters, numbers, index)
+    if mechanism.closing:
+        stable = solution.signs == "+" if solution.signs else None
+        pose = replace(pose, stable=stable, admissible=is_tense(stable, pose.springs))
+    return pose, bits
 
 
 def measured(

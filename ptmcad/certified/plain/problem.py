@@ -16,12 +16,13 @@ from itertools import combinations
 
 from ptmcad.certified.formula import Formula, Graph, length
 from ptmcad.certified.parameters import expression_formula
-from ptmcad.certified.plain.ends import Vector, points_of, springs_of
+from ptmcad.certified.plain.ends import Vector, springs_of
 from ptmcad.certified.plain.excesses import Excess, excesses
 from ptmcad.certified.plain.parallel import shares
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError
 from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, System
+from ptmcad.mechanism.energy import points_in, with_springs
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.fourbars import closed_by, flat_everywhere
 from ptmcad.mechanism.work import split_moments
@@ -321,15 +322,10 @@ def _cones(mechanism: Mechanism, ring: Harmonics) -> Iterator[Cone]:
 
 def _energy(mechanism: Mechanism, ring: Harmonics) -> TrigonometricPolynomial:
     """Without what springs with a free length take off it."""
-    points, smooth = points_of(mechanism, ring), ring.constant(Fraction(0))
+    smooth = ring.constant(Fraction(0))
     for spring, (dx, dy) in springs_of(mechanism, ring):
         smooth = smooth + (evaluate(spring.stiffness, ring) * (dx * dx + dy * dy)).scaled(Fraction(1, 2))
-    for tree in (*(torsion.energy for torsion in mechanism.torsion), *split_moments(mechanism).energies):
-        smooth = smooth + evaluate(tree, ring)
-    for load in mechanism.loads:
-        for force, coordinate in zip((load.x, load.y), points[load.point], strict=True):
-            smooth = smooth - evaluate(force, ring) * coordinate
-    return smooth
+    return with_springs(mechanism, ring, points_in(mechanism, ring), smooth)
 
 
 def constant_of(value: TrigonometricPolynomial) -> Expression:

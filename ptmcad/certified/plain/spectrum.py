@@ -7,7 +7,6 @@ are to each other: no proof here separates them.
 
 from __future__ import annotations
 
-import numpy as np
 from flint import arb, arb_mat, ctx
 
 _MAX_SWEEPS = 40
@@ -73,22 +72,7 @@ def _rotate(a: list[list[arb]], v: list[list[arb]], p: int, q: int) -> None:
 
 
 def inertia(matrix: arb_mat) -> int | None:
-    """The number of negative eigenvalues of every symmetric matrix in a matrix of balls; None when undecided.
-
-    By Sylvester's law: with the columns of V near eigenvectors, V' H V is strictly diagonally dominant, so that neither
-    it nor V is singular, and the signs of its diagonal are those of its eigenvalues (Gershgorin).
-    """
-    size = matrix.nrows()
-    middle = np.array([[float(matrix[i, j].mid()) for j in range(size)] for i in range(size)])
-    if not np.isfinite(middle).all():
-        return None
-    vectors = np.linalg.eigh((middle + middle.T) / 2)[1]
-    v = arb_mat(size, size, [float(entry) for entry in vectors.flat])
-    form = v.transpose() * matrix * v
-    negative = 0
-    for i in range(size):
-        off = sum((abs(form[i, j]) for j in range(size) if j != i), arb(0))
-        if not abs(form[i, i]) > off:
-            return None
-        negative += bool(form[i, i] < 0)
-    return negative
+    """The number of negative eigenvalues of every symmetric matrix in a matrix of balls; None when undecided."""
+    eigenvalues = ordered_eigenvalues(matrix)
+    decided = all(value < 0 or value > 0 for value in eigenvalues)
+    return sum(bool(value < 0) for value in eigenvalues) if decided else None

@@ -28,17 +28,20 @@ Pair = tuple[TrigonometricPolynomial, TrigonometricPolynomial]
 
 
 class Spring(NamedTuple):
-    """A spring in one configuration; the slopes a_i of d by the unknowns are over the equations' factors.
+    """A spring in one configuration, with the vectors w_i by which it is in the equations, over these's factors.
+
+    Of open chains w_i is the slope a_i of d by the i-th unknown over the factor of that one's equation.
 
     Attributes
     ----------
     pull : stiffness times free length.
     vector, unit, extent : d, its direction u and |d|, which is d.u where the direction is a variable.
     inverse : 1/|d|.
-    active : the unknowns that d depends on.
-    cosines, sines : u.a_i and u x a_i.
-    bends : u.d^2d/dq_i dq_j, over the factor of i alone.
-    squares, crosses : a_i.a_j and a_i x a_j.
+    active : the equations that the spring is in.
+    cosines, sines : u.w_i and u x w_i.
+    turns : u x a_j, over the same factors.
+    bends : u.dw_i/dq_j.
+    squares, crosses : w_i.w_j and w_i x w_j.
     """
 
     pull: Formula
@@ -49,19 +52,22 @@ class Spring(NamedTuple):
     active: tuple[int, ...]
     cosines: tuple[Formula, ...]
     sines: tuple[Formula, ...]
+    turns: tuple[Formula, ...]
     bends: Matrix
     squares: Matrix
     crosses: Matrix
 
     def products(self) -> Matrix:
-        """(u x a_i)(u x a_j)."""
-        return tuple(tuple(p * q for q in self.sines) for p in self.sines)
+        """(u x w_i)(u x a_j)."""
+        return tuple(tuple(p * q for q in self.turns) for p in self.sines)
 
     def products_at_equilibrium(self, rest: Sequence[Formula]) -> Matrix:
-        """The same where K u.a_i is ``rest``; never to be differentiated.
+        """The same where K u.w_i is ``rest``; never to be differentiated. Of closed loops no more is known.
 
         A rest that is the constant zero says nothing where K may be zero, too: 0/0 is no interval.
         """
+        if self.turns != self.sines:
+            return self.products()
         known = [
             meet(c, r / self.pull) if i in self.active and (r.value is None or self.pull.value is not None) else c
             for i, (c, r) in enumerate(zip(self.cosines, rest, strict=True))
@@ -86,12 +92,14 @@ class Shape:
     ----------
     pull : stiffness times free length.
     difference : d.
-    slopes, bends : of d by each unknown, and of these by each.
-    squares, crosses : scalar products of the slopes, and their cross products.
+    weights, bends : what the spring is in the equations by, and the derivatives of that by each unknown.
+    slopes : of d by each unknown.
+    squares, crosses : scalar products of the weights, and their cross products.
     """
 
     pull: Expression
     difference: Pair
+    weights: tuple[Pair, ...]
     slopes: tuple[Pair, ...]
     bends: tuple[tuple[Pair, ...], ...]
     squares: tuple[tuple[TrigonometricPolynomial, ...], ...]
@@ -110,16 +118,18 @@ class Shape:
 
         dx, dy = (written(f) for f in self.difference)
         ux, uy = (direction(dx, dy), direction(dy, dx)) if phi is None else (phi.cos(), phi.sin())
-        vectors = tuple((written(a), written(b)) for a, b in self.slopes)
+        vectors = tuple((written(a), written(b)) for a, b in self.weights)
+        slopes = ((written(a), written(b)) for a, b in self.slopes)
         return Spring(
             expression_formula(graph, self.pull),
             (dx, dy),
             (ux, uy),
             length(dx, dy) if phi is None else dx * ux + dy * uy,
             inverse_length(dx, dy),
-            tuple(i for i, (a, b) in enumerate(self.slopes) if a.terms or b.terms),
+            tuple(i for i, (a, b) in enumerate(self.weights) if a.terms or b.terms),
             tuple(ux * a + uy * b for a, b in vectors),
             tuple(ux * b - uy * a for a, b in vectors),
+            tuple(ux * b - uy * a for a, b in slopes),
             tuple(tuple(ux * written(a) + uy * written(b) for a, b in row) for row in self.bends),
             tuple(tuple(map(written, row)) for row in self.squares),
             tuple(tuple(map(written, row)) for row in self.crosses),
@@ -129,12 +139,13 @@ class Shape:
 def shape(cone: Cone, factors: Sequence[Expression]) -> Shape:
     """Of a spring, with the positive factors of the equations."""
     x, y = cone.difference
-    slopes = tuple((over(x.derivative(i), g), over(y.derivative(i), g)) for i, g in enumerate(factors))
+    weights = tuple((over(a, g), over(b, g)) for (a, b), g in zip(cone.weights, factors, strict=True))
     return Shape(
         cone.pull,
         cone.difference,
-        slopes,
-        tuple(tuple((a.derivative(j), b.derivative(j)) for j in range(len(factors))) for a, b in slopes),
-        tuple(tuple(a * c + b * d for c, d in slopes) for a, b in slopes),
-        tuple(tuple(a * d - b * c for c, d in slopes) for a, b in slopes),
+        weights,
+        tuple((over(x.derivative(i), g), over(y.derivative(i), g)) for i, g in enumerate(factors)),
+        tuple(tuple((a.derivative(j), b.derivative(j)) for j in range(len(factors))) for a, b in weights),
+        tuple(tuple(a * c + b * d for c, d in weights) for a, b in weights),
+        tuple(tuple(a * d - b * c for c, d in weights) for a, b in weights),
     )
