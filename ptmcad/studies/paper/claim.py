@@ -117,7 +117,7 @@ def outcome(claim: Claim) -> Outcome:
     told = partial(_told, text, values)
     if reason := values.get("missing") or text.get("reason", ""):
         evidence = told("evidence") if values.get("corrected") else ()
-        return Outcome(Verdict.NOT_CHECKED, evidence, {}, reason=reason)
+        return Outcome(Verdict.NOT_CHECKED, tuple(evidence), {}, reason=reason)
     # a witness proves nothing while what is said of it was not shown
     witness = "" if "shown" in text and not values["corrected"] else "".join(told("witness"))
     return judge(values, told("evidence"), "".join(told("right")), witness)

@@ -136,7 +136,7 @@ def acceptable(designs: Sequence[Sequence[str]]) -> Values:
 
 def real_roots(designs: Sequence[Design]) -> Mapping[str, int]:
     """How many different real roots the eliminated polynomial has, by design."""
-    return {f"rho = {d[0]}, F3/k = F4/k = {d[4]}": squared(tuple(d)).real_roots for d in designs}  # type: ignore[arg-type]
+    return {f"rho = {d[0]}, F3/k = F4/k = {d[4]}": squared(tuple(d)).real_roots for d in designs}
 
 
 def twelve_to_thirty(designs: Sequence[Design]) -> Values:

@@ -13,6 +13,7 @@ from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
+from typing import Any
 
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
@@ -84,7 +85,8 @@ def reproduce(folder: Path, progress: Progress | None = None) -> Reproduction:
     for number, figure in enumerate(FIGURES):
         if progress is not None:
             progress("figures", number, len(FIGURES))
-        pictures |= _pictures(figure, maps[figure], solve(figure, **POINTS[figure][1]))
+        at: dict[str, Any] = dict(POINTS[figure][1])
+        pictures |= _pictures(figure, maps[figure], solve(figure, **at))
     done("figures")
     figures = [
         pages.Illustration(figure, maps[figure].slice.heading, *POINTS[figure], pictures[f"{figure}.png"],

@@ -68,7 +68,8 @@ class Squared:
     @cached_property
     def eliminated(self) -> fmpz_poly:
         """What eliminating t1 leaves."""
-        return resultant(*(coefficients_in(p, 0) for p in self.equations))
+        first, second = (coefficients_in(p, 0) for p in self.equations)
+        return resultant(first, second)
 
     @cached_property
     def circle(self) -> int:
@@ -168,17 +169,15 @@ def signed_solutions(design: Design) -> SignedSolutions:
         rows = [coefficients_in(p, 0) for p in system.equations]
         for t2 in complex_roots(next((p for p, e in system.factors if e == 1), fmpz_poly([1]))):
             t1 = _common_root(*([acb_poly(c)(t2) for c in row] for row in rows))
-            signs = [] if t1 is None else [_signs(parts, n, t1, t2) for n, parts in enumerate(system.terms)]
-            if t1 is None or None in signs:
+            own, other = (_signs(parts, n, t1, t2) for n, parts in enumerate(system.terms))
+            if t1 is None or own is None or other is None:
                 unsettled += 1
                 if t2.imag == 0:
                     raise ArithmeticError("a real root is not settled")
-                continue
-            (second, third), (first, other) = signs
-            if third != other:
+            elif own[1] != other[1]:
                 opposed += 1
             else:  # t1 is a rational function of t2, so it is real where t2 is
-                found.append((t1, t2, (first, second, third)))
+                found.append((t1, t2, (other[0], own[0], own[1])))
     return SignedSolutions(tuple(found), opposed, unsettled)
 
 
@@ -200,8 +199,10 @@ def _common_root(first: Sequence[acb], second: Sequence[acb]) -> acb | None:
     return common[0] if len(common) == 1 else None
 
 
-def _signs(parts: Sequence[Coefficient], number: int, t1: acb, t2: acb) -> tuple[int, int] | None:
+def _signs(parts: Sequence[Coefficient], number: int, t1: acb | None, t2: acb) -> tuple[int, int] | None:
     """The only signs of the two lengths at which an equation can hold; None when it is not clear."""
+    if t1 is None:
+        return None
     a, b, c, diagonal, top = (_value(p, t1, t2) for p in parts)
     d, e = 1 + t1 * t1, 1 + t2 * t2
     own, third = diagonal / (e if number else d), top / (d * e)

@@ -12,6 +12,7 @@ forces differ; ``COS1`` and ``COS2`` are cosines of the triangle with sides L1, 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -85,7 +86,20 @@ def names() -> dict[str, Any]:
         known |= {f"resultant{suffix}": found, f"sextic{suffix}": divided(found), f"a{suffix}": a, f"b{suffix}": b}
     known |= {f"q{n}": sp.factor(known["sextic"].coeff(t2, n)) for n in range(7)}
     known |= {"sin12": s1 * c2 + c1 * s2, "cos12": c1 * c2 - s1 * s2, "OTHER": OTHER, "COS1": COS1, "COS2": COS2}
-    functions = (at, unloaded, symmetric, flat, triangle, same, swapped, unequal, half, numerator, degree, real_roots)
+    functions: tuple[Callable[..., Any], ...] = (
+        at,
+        unloaded,
+        symmetric,
+        flat,
+        triangle,
+        same,
+        swapped,
+        unequal,
+        half,
+        numerator,
+        degree,
+        real_roots,
+    )
     functions += (positive, terms, independent, total, stable, flat_stable, equal_angles, sp.diff, sp.factor)
     functions += (eliminated_12, squared, parameters)
     return known | {f.__name__: f for f in functions}
@@ -201,7 +215,8 @@ def independent() -> int:
 @cache
 def equilibria(**values: Expr) -> Poses:
     """By `ptmcad.solve`; what is not given is L1 = L2 = rho = 1, k = 100 and no load."""
-    return solve(**{name: str(value) for name, value in values.items()})
+    at: dict[str, Any] = {name: str(value) for name, value in values.items()}
+    return solve(**at)
 
 
 def total(**values: Expr) -> int:
