@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ptmcad.show.render.printing import settings
-from ptmcad.studies.stress.measure import Outcome
+from ptmcad.studies.stress.campaign import Outcome
 from ptmcad.text.numerals import magnitude
 
 MIN_DRAWN_ERROR = 1e-20

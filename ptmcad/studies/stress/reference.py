@@ -11,11 +11,10 @@ multiplicities are compared. With free lengths: Newton's method in balls, proved
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, ctx, fmpq, fmpq_poly
+from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from ptmcad.studies.equilibria import IndexedPose, balls, in_balls, inverse, proved, sign
 from ptmcad.studies.sextic import sextic
@@ -26,17 +25,12 @@ DIGITS = 100
 _BITS = 400
 _MAX_BITS = 2**15
 
+Candidate = tuple[arb | None, int]
+"""A real t (None for th2 = pi) with the sign of the branch of (cos th1, sin th1)."""
+
 
 class Degenerate(ArithmeticError):
     """Some equilibrium has a singular Hessian, or there are infinitely many."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Candidate:
-    """A real t (None for th2 = pi) with the sign of the branch of (cos th1, sin th1)."""
-
-    t: arb | None
-    sign: int
 
 
 def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...]:
@@ -52,7 +46,7 @@ def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...]:
     while bits <= _MAX_BITS:
         with ctx.workprec(bits):
             candidates = _candidates(p)
-            poses = [_pose(p, c) for c in candidates] if candidates is not None else [None]
+            poses = [None] if candidates is None else [_pose(parameters, p, *c) for c in candidates]
             found = tuple(pose for pose in poses if pose is not None)
             if len(found) == len(poses):
                 return found
@@ -60,77 +54,52 @@ def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...]:
     raise ArithmeticError(f"{_MAX_BITS} bits do not settle the equilibria")
 
 
-def _candidates(p: Mapping[str, fmpq]) -> list[_Candidate] | None:
+def _candidates(p: Mapping[str, fmpq]) -> list[Candidate] | None:
     """The real roots of N with their signs; None when the precision is too low for a sign."""
-    found_by_hand = sextic(p)
-    polynomial, first_moment, second_moment, length = (
-        fmpq_poly(list(c)) for c in (found_by_hand.coefficients, found_by_hand.v, found_by_hand.w, found_by_hand.square)
-    )
+    by_hand = sextic(p)
+    parts = (by_hand.coefficients, by_hand.v, by_hand.w, by_hand.square)
+    polynomial, v, w, square = (fmpq_poly(list(c)) for c in parts)
     if polynomial.degree() < 0:
         raise Degenerate("the sextic vanishes")
-    found: list[_Candidate] = []
+    found: list[Candidate] = []
     missing = 6 - polynomial.degree()
     if missing:
         # at th2 = pi, V = -F3 and W = F4
         if p["F3"] == 0 and p["F4"] == 0 and missing == 2:
-            found += [_Candidate(None, 1), _Candidate(None, -1)]
+            found += [(None, 1), (None, -1)]
         elif missing == 1 and p["F3"] != 0:
-            found.append(_Candidate(None, 1 if -p["F3"] * p["F4"] > 0 else -1))
+            found.append((None, 1 if -p["F3"] * p["F4"] > 0 else -1))
         else:
             raise Degenerate("th2 = pi is a multiple solution")
     for factor, multiplicity in polynomial.numer().factor()[1]:
-        of_factor = fmpq_poly(factor)
-        both = (first_moment % of_factor).degree() < 0 and (second_moment % of_factor).degree() < 0
-        for root in _real_roots(factor):
+        v_zero, w_zero, square_zero = ((q % fmpq_poly(factor)).degree() < 0 for q in (v, w, square))
+        both = v_zero and w_zero
+        pairs: Any = factor.complex_roots()  # FLINT's stub says otherwise
+        for root in (root.real for root, _ in pairs if root.imag == 0):
             if multiplicity != (2 if both else 1):
                 raise Degenerate("the sextic has a multiple root")
-            if both and (length % of_factor).degree() < 0:
+            if both and square_zero:
                 raise Degenerate("the first equation leaves th1 free")
-            if both:
-                found += [_Candidate(root, 1), _Candidate(root, -1)]
-                continue
-            side = sign(_at(first_moment, root) * _at(second_moment, root))
-            if not side:
+            signs = (1, -1) if both else (sign(arb_poly(v)(root) * arb_poly(w)(root)),)
+            if 0 in signs:
                 return None
-            found.append(_Candidate(root, side))
+            found += [(root, side) for side in signs]
     return found
 
 
-def _real_roots(factor: Any) -> list[arb]:
-    """The real roots of an irreducible polynomial over Z, isolated with proof at the context's precision."""
-    return [root.real for root, _ in factor.complex_roots() if root.imag == 0]
-
-
-def _at(polynomial: fmpq_poly, t: arb) -> arb:
-    total = arb(0)
-    for c in reversed(polynomial.coeffs()):
-        total = total * t + arb(c)
-    return total
-
-
-def _pose(p: Mapping[str, fmpq], candidate: _Candidate) -> IndexedPose | None:
+def _pose(parameters: Mapping[str, Fraction], p: Mapping[str, fmpq], t: arb | None, side: int) -> IndexedPose | None:
     """The pose of a candidate; None when the precision is too low."""
-    t = candidate.t
     if t is None:
         th2, c2, s2 = arb.pi(), arb(-1), arb(0)
     else:
-        th2 = 2 * t.atan()
-        c2, s2 = (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
+        th2, c2, s2 = 2 * t.atan(), (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
     g = arb(p["k3"] * p["L2"])
-    x = (arb((p["k2"] + p["k3"]) * p["rho"] + p["F3x"]) - g * c2) * candidate.sign
-    y = (arb(p["F3"]) + g * s2) * candidate.sign
-    length = (x * x + y * y).sqrt()
-    if not length > 0:
-        return None
+    x = (arb((p["k2"] + p["k3"]) * p["rho"] + p["F3x"]) - g * c2) * side
+    y = (arb(p["F3"]) + g * s2) * side
     th1 = arb(0) if y.is_exact() and y == 0 and x > 0 else arb.atan2(y, x)
-    c1, s1 = x / length, y / length
-    h11 = arb(p["L1"]) * length * candidate.sign
-    h12 = -g * arb(p["L1"]) * (c1 * c2 - s1 * s2)
-    pull = arb(p["k3"] * p["L1"])
-    a2 = arb((p["k1"] + p["k3"]) * p["rho"] - p["F4x"])
-    h22 = arb(p["L2"]) * ((a2 - pull * c1) * c2 + (pull * s1 + arb(p["F4"])) * s2)
+    h11, h12, h22 = in_balls(balls(parameters), (th1, th2)).hessian
     determinant = sign(h11 * h22 - h12 * h12)
-    if determinant == 0 or not (_fine(th1) and _fine(th2)):
+    if not determinant or (determinant > 0 and not sign(h11)) or not (_fine(th1) and _fine(th2)):
         return None
     return IndexedPose(th1, th2, 1 if determinant < 0 else 0 if h11 > 0 else 2)
 
@@ -139,9 +108,6 @@ def _fine(angle: arb) -> bool:
     """Whether an angle is known to `DIGITS` digits, or to be tiny (exactly zero, perhaps)."""
     radius = arb(angle.rad())
     return bool(radius < abs(angle) * arb(10) ** -DIGITS or abs(angle) + radius < arb(10) ** (-3 * DIGITS))
-
-
-# ---------------------------------------------------------------------------------------------------- free lengths
 
 
 def newton_pose(parameters: Mapping[str, Fraction], start: tuple[float, float]) -> IndexedPose | None:
