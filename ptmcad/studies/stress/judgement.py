@@ -77,12 +77,15 @@ def judge(case: Case, found: Any) -> Verdict:
     TypeError
         When the answer is of another kind than the question.
     """
-    judges = {"point": (Poses, _judge_point), "line": (CountIntervals, _judge_line)}
-    kind, verdict = judges.get(case.question.kind, (RegionMap, _judge_map))
-    if not isinstance(found, kind):
-        raise TypeError(f"{case.name}: the answer is of another kind than the question")
+    kind = case.question.kind
     with ctx.workprec(_BITS):
-        return verdict(case, found)
+        if kind == "point" and isinstance(found, Poses):
+            return _judge_point(case, found)
+        if kind == "line" and isinstance(found, CountIntervals):
+            return _judge_line(case, found)
+        if kind.endswith("map") and isinstance(found, RegionMap):
+            return _judge_map(case, found)
+    raise TypeError(f"{case.name}: the answer is of another kind than the question")
 
 
 def _counts(poses: Sequence[Any] | None) -> tuple[int, int]:
@@ -159,7 +162,7 @@ def _reference(question: Question, found: Poses, double: Sequence[IndexedPose]) 
 def _apart(angles: Sequence[arb], pose: IndexedPose) -> arb:
     """The larger of the distances of two angles, on the unit circle."""
     chords = [abs(2 * ((a - b) / 2).sin()) for a, b in zip(angles, (pose.th1, pose.th2), strict=True)]
-    return chords[0].max(chords[1])
+    return arb(chords[0].max(chords[1]))
 
 
 def _error(found: Poses, reference: Sequence[IndexedPose]) -> Fraction | None:

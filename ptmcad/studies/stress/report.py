@@ -9,7 +9,6 @@ import csv
 import io
 import json
 from collections.abc import Iterable, Sequence
-from itertools import groupby
 from math import isfinite
 from typing import Any
 
@@ -55,8 +54,8 @@ def markdown(campaign: Campaign) -> str:
     names = [*HEADINGS, "work x tame"]
     wrong, total = len(campaign.double_wrong), len(campaign.outcomes)
     blocks: list[str | list[str]] = []
-    for family, chosen in groupby(campaign.outcomes, lambda o: o.case.family):
-        rows = [[*cells(o), f"{o.work_ratio:.2g}"] for o in chosen]
+    for family in dict.fromkeys(o.case.family for o in campaign.outcomes):
+        rows = [[*cells(o), f"{o.work_ratio:.2g}"] for o in campaign.outcomes if o.case.family == family]
         blocks += [f"## {family[0].upper()}{family[1:]}", table_of(names, rows)]
     written = (
         f"Written by `ptmcad stress` with seed {campaign.seed}. ptmcad is right in {total - len(campaign.wrong)} of "
