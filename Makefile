@@ -118,7 +118,7 @@ scaling: $(VENV)/.installed-bench
 	$(BIN)/python -m ptmcad.studies.bench.scaling --out docs/benchmarks
 
 stress: $(VENV)/.installed
-	$(BIN)/ptmcad stress all --random 25 --format table,json,md,png --out docs/benchmarks
+	$(BIN)/ptmcad stress all --random 25 --format table,json,png --out docs/benchmarks
 
 docs: $(VENV)/.installed-docs
 	$(BIN)/ptmcad classify configs/fig4.yaml --format png --out docs/img

@@ -239,16 +239,3 @@ class CertifiedIntervals:
     at: Mapping[str, Fraction]
     intervals: tuple[CertifiedInterval, ...]
     changes: tuple[CertifiedChange, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class CriticalFreeLength:
-    """A degenerate solution: its free length, and the signs of l1, l2 and l3; (1, 1, 1) is a pose."""
-
-    free: Enclosure
-    signs: tuple[int, int, int]
-
-    @property
-    def fold(self) -> bool:
-        """Whether equilibria of the mechanism meet here: positive lengths and a positive free length."""
-        return self.signs == (1, 1, 1) and self.free.low > 0

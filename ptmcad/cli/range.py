@@ -109,7 +109,6 @@ class Wanted:
     start: str | None
     pose: int | None
     digits: int
-    critical: bool
     quantities: tuple[str, ...]
 
     def request(self, asked: AskedLine, at: Mapping[str, str]) -> Request:
@@ -122,7 +121,7 @@ class Wanted:
         """
         over, start = asked.over is not None, _start(self.start, at)
         quantities = tuple(dict.fromkeys(self.quantities))
-        request = Request(asked.along, at, over, self.rows, start, self.pose, self.digits, self.critical, quantities)
+        request = Request(asked.along, at, over, self.rows, start, self.pose, self.digits, quantities)
         if quantities and not at:
             raise ConfigError(f"needs the value of the other axis too, as in --at {SECOND}=3/2", key="--quantity")
         if not over and click.get_current_context().get_parameter_source("rows") is not ParameterSource.DEFAULT:
@@ -184,8 +183,6 @@ class Output:
               help="Draw all branches, stable and unstable, of a quantity: an unknown, energy, stiffness (the least "
                    "eigenvalue), force:SPRING, length:SPRING, angle:UNKNOWN, x:POINT or y:POINT. "
                    "Repeatable.")  # fmt: skip
-@click.option("--critical", is_flag=True,
-              help="Along the springs' free length: all critical values by elimination, with msolve.")  # fmt: skip
 @limit_options
 @gathered(asked=AskedLine, wanted=Wanted, output=Output)
 def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits) -> None:
@@ -226,7 +223,7 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
         why = "no file is written, see --format"
         report_idle((Idle("out", not names, why), Idle("name", not names, why)))
         with ProgressBar() as progress:
-            if enclosed and not request.critical:
+            if enclosed:
                 from ptmcad.ask.classification import load_certified
                 from ptmcad.options import DEFAULTS
 

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_of
-from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Slice
 
 if TYPE_CHECKING:
@@ -32,7 +31,6 @@ class Request:
     ----------
     at : the value of the slice's other axis, empty when only ``over`` is asked for.
     over : whether to tabulate the widths over the other axis, in so many rows.
-    critical : whether to find the critical free lengths by elimination instead.
     start, pose : of the paths; ``start`` None for none.
     quantities : of which to draw all branches.
     """
@@ -44,19 +42,22 @@ class Request:
     start: Fraction | None
     pose: int | None
     digits: int
-    critical: bool
     quantities: tuple[str, ...]
 
 
 def request_codec() -> Codec[Request]:
-    """A request as JSON's data, with which `answer` gives the same once more."""
+    """A request as JSON's data, with which `answer` gives the same once more.
+
+    Earlier versions could be asked for critical free lengths too (``critical``): `ptmcad.studies.paper.critical`.
+    """
     from ptmcad.show.document import codec
 
     text = codec.line(MAX_TEXT)
     return codec.record(
-        Request, along=text, at=codec.named(text), over=codec.TRUTH, rows=codec.NATURAL,
-        start=codec.optional(codec.RATIONAL), pose=codec.COUNT, digits=codec.NATURAL, critical=codec.TRUTH,
+        lambda critical, **asked: Request(**asked), along=text, at=codec.named(text), over=codec.TRUTH,
+        rows=codec.NATURAL, start=codec.optional(codec.RATIONAL), pose=codec.COUNT, digits=codec.NATURAL,
         quantities=codec.listed(text),
+        critical=codec.Key(codec.TRUTH, lambda _: False, default=False),
     )  # fmt: skip
 
 
@@ -85,8 +86,6 @@ def answer(slice: Slice, request: Request) -> Answer:
         known = _enclosed(slice, request) if request.at else Answer(question_of(slice), {}, {})
         known = _with_bands(known, slice, request) if request.over else known
         return _with_poses(known, slice, request)
-    if request.critical:
-        raise ConfigError("is for springs with a free length; ends are exact without", key="--critical")
     if request.over:
         refuse_free_lengths(slice)  # before the line is asked for, whose refusal would not say what to leave out
     texts, parts = [question_of(slice)], {}
@@ -173,22 +172,12 @@ def _with_branches(found: Answer, slice: Slice, request: Request, line: Callable
 
 def _enclosed(slice: Slice, request: Request) -> Answer:
     """The answer where springs have free lengths."""
-    from ptmcad.show.ranges import certified, document, table
+    from ptmcad.certified.intervals import certified_intervals
+    from ptmcad.show.ranges import certified, document
 
-    texts, parts = [question_of(slice)], dict[str, Any]()
-    if request.critical:
-        from ptmcad.exact.ranges.free_lengths import critical_on_line
-
-        critical = critical_on_line(slice, request.along, request.at)
-        texts.append(table.critical_table(critical, request.digits))
-        parts["critical"] = document.critical_data(critical, request.digits)
-    else:
-        from ptmcad.certified.intervals import certified_intervals
-
-        line = certified_intervals(slice, request.along, request.at, request.digits)
-        texts.append(certified.table(line, request.digits))
-        parts["enclosed"] = document.enclosed_data(line, request.digits)
-    return Answer("\n\n".join(texts), parts, {})
+    line = certified_intervals(slice, request.along, request.at, request.digits)
+    text = f"{question_of(slice)}\n\n{certified.table(line, request.digits)}"
+    return Answer(text, {"enclosed": document.enclosed_data(line, request.digits)}, {})
 
 
 def _picture(

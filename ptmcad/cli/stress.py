@@ -102,7 +102,7 @@ def command(
         ptmcad stress --random 100 --seed 7 --format table
         ptmcad stress all --random 100
     """
-    from ptmcad.studies.stress.named import chosen  # the cases' numbers need no library
+    from ptmcad.studies.stress.case import chosen  # the cases' numbers need no library
 
     timeout = limits.timeout
     limit = None if timeout is None else timeout + GRACE_SECONDS
@@ -138,7 +138,7 @@ def command(
 
 def _cases(names: tuple[str, ...], number: int, seed: int, *, everything: bool) -> tuple[Case, ...]:
     """The named cases, unless only random ones are asked for, and the random ones."""
-    from ptmcad.studies.stress.named import chosen
+    from ptmcad.studies.stress.case import chosen
 
     found = chosen(names) if names or not number or everything else ()
     if number:

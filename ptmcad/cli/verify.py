@@ -286,7 +286,7 @@ def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> Ver
         report = verify_range(data, slice, progress, maxima)
     except (ValueError, KeyError, TypeError, AttributeError, IndexError) as error:
         raise ConfigError(f"is damaged or not a ptmcad-range/1 file: {error}", file=str(path)) from error
-    if not report.ok:
+    if not report.ok or "critical" in data:  # which an earlier version answered
         return report
     if is_enclosed(slice, request):
         load_certified(progress, DEFAULTS)

@@ -207,17 +207,8 @@ def inverse(hessian: Sequence[arb]) -> tuple[arb, arb, arb] | None:
     return arb((h22 / determinant).mid()), arb((-h12 / determinant).mid()), arb((h11 / determinant).mid())
 
 
-@dataclass(frozen=True, slots=True)
-class Proved:
-    """An equilibrium: the box of angles, the number of negative eigenvalues, and the squared lengths over the box."""
-
-    box: tuple[arb, arb]
-    negative: int
-    squares: tuple[arb, ...]
-
-
-def proved(parameters: Mapping[str, arb], middle: Sequence[arb], radius: arb) -> Proved | None:
-    """The equilibrium within a radius of two angles, exact numbers; None when Krawczyk's test does not prove one."""
+def proved(parameters: Mapping[str, arb], middle: Sequence[arb], radius: arb) -> IndexedPose | None:
+    """The equilibrium, in a box of angles, within a radius of two exact ones; None when Krawczyk's test shows none."""
     box = middle[0] + radius * arb(0, 1), middle[1] + radius * arb(0, 1)
     (g1, g2), over = in_balls(parameters, middle).gradient, in_balls(parameters, box)
     h11, h12, h22 = over.hessian
@@ -230,4 +221,4 @@ def proved(parameters: Mapping[str, arb], middle: Sequence[arb], radius: arb) ->
     determinant = sign(h11 * h22 - h12 * h12)
     if not (reach1 < radius and reach2 < radius) or not determinant or (determinant > 0 and not sign(h11)):
         return None
-    return Proved(box, 1 if determinant < 0 else 0 if h11 > 0 else 2, over.squares)
+    return IndexedPose(*box, 1 if determinant < 0 else 0 if h11 > 0 else 2)

@@ -127,24 +127,6 @@ def test_a_line_with_free_lengths_as_json(tmp_path: Path, capsys: pytest.Capture
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["--slice", "rho,L2", "--along", "rho", "--at", "L2=3/2"], "springs with a free length"),
-        ([FREE02, "--along", "rho", "--at", "L2=3/2"], "the free length of all three springs"),
-        (["--slice", "rho,l0", "--along", "l0", "--range", "l0=0:1", "--at", "rho=1,k1=2"], "springs of one stiffness"),
-        (["--slice", "rho,l0", "--along", "l0", "--range", "l0=0:1", "--at", "rho=1,F3x=2"], "horizontal"),
-        (["--slice", "rho,l0", "--along", "l0", "--range", "l0=0:1", "--at", "rho=1", "--set", "F3=l0"], "F3"),
-    ],
-    ids=["no free length", "another axis", "unequal springs", "horizontal load", "load that varies"],
-)
-def test_what_elimination_can_not_do_is_told(
-    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run(["range", *arguments, "--critical"]) == 2
-    assert message in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
     "at", [pytest.param([], marks=pytest.mark.slow), ["--at", "L2=3/2"]], ids=["over alone", "with a line"]
 )
 def test_a_band_with_free_lengths(at: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -14,13 +14,11 @@ from support.programs import needs_msolve
 
 from ptmcad.algebra import msolve
 from ptmcad.certified.intervals import certified_intervals
-from ptmcad.errors import ConfigError
-from ptmcad.exact.ranges.critical_lengths import NAMES, critical_system
-from ptmcad.exact.ranges.free_lengths import critical_free_lengths, critical_on_line
 from ptmcad.question.config import slice_from_options
-from ptmcad.studies.paper.squaring.solutions import signed_solutions
+from ptmcad.studies.paper.critical import UNKNOWNS, critical_free_lengths, critical_system
+from ptmcad.studies.paper.squaring import Design, signed_solutions
 
-RHO, RODS, LOADS = Fraction(7, 10), (Fraction(1), Fraction(3, 2)), (Fraction(-1, 10), Fraction(-1, 10))
+DESIGN: Design = ("7/10", "1", "3/2", "1/5", "-1/10", "-1/10")
 
 
 def potential(rho: float, l1: float, l2: float, l0: float, f3: float, f4: float, a: float, b: float) -> float:
@@ -36,15 +34,14 @@ def test_equations_are_derivatives_of_the_potential(seed: int) -> None:
     random = Random(seed)
     exact = [Fraction(random.randint(1, 30), 10) for _ in range(5)]
     rho, l1, l2, f3, f4 = map(float, exact)
-    design = dict(zip(("rho", "L1", "L2", "F3", "F4"), exact, strict=True))
-    texts = critical_system(design | {"F3x": Fraction(0), "F4x": Fraction(0)})
+    texts = critical_system((*map(str, exact[:3]), "1", *map(str, exact[3:])))  # type: ignore[arg-type]
     equations = [sympy.sympify(text.replace("^", "**")) for text in texts]
     ratios = []
     for _ in range(3):
         free, a, b = random.uniform(0.5, 3), random.uniform(-3, 3), random.uniform(-3, 3)
         x3, y3, x4, y4 = l1 * cos(a), l1 * sin(a), rho - l2 * cos(b), l2 * sin(b)
         inverses = 1 / hypot(x4, y4), 1 / hypot(x3 - rho, y3), 1 / hypot(x3 - x4, y3 - y4)
-        at = dict(zip(NAMES, (*inverses, cos(a), sin(a), cos(b), sin(b), free), strict=True))
+        at = dict(zip(map(str, UNKNOWNS), (*inverses, cos(a), sin(a), cos(b), sin(b), free), strict=True))
         values = [float(e.subs(at)) for e in equations]
         assert max(map(abs, values[:5])) < 1e-7
         h = 1e-3
@@ -87,12 +84,7 @@ def test_what_is_no_answer_is_an_error(answer: str) -> None:
 def test_a_missing_program_is_one_message(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(msolve, "program", lambda: None)
     with pytest.raises(msolve.MsolveError, match="not installed"):
-        critical_free_lengths(RHO, RODS, LOADS)
-
-
-def test_a_length_that_is_not_positive_is_refused() -> None:
-    with pytest.raises(ConfigError, match="positive"):
-        critical_free_lengths(Fraction(0), RODS, LOADS)
+        critical_free_lengths(DESIGN)
 
 
 @needs_msolve
@@ -108,21 +100,21 @@ def test_real_solutions_of_a_small_system() -> None:
 @needs_msolve
 def test_a_time_limit_is_kept() -> None:
     with pytest.raises(msolve.MsolveError, match="did not end"):
-        critical_free_lengths(RHO, RODS, LOADS, timeout=0.2)
+        critical_free_lengths(DESIGN, timeout=0.2)
 
 
 @needs_msolve
 @pytest.mark.slow
 def test_fifty_two_critical_lengths_and_the_counts_around_them() -> None:
     """52 real ones at rho = 7/10, L2 = 3/2, f = -1/10; over all signs exact counts change by 2 at each positive one."""
-    found = critical_free_lengths(RHO, RODS, LOADS)
+    found = critical_free_lengths(DESIGN)
     assert len(found) == 52
-    signed = {(round(c.free.center, 20), c.signs) for c in found}
+    signed = {(round(free.center, 20), signs) for free, signs in found}
     assert signed == {(-free, tuple(-s for s in signs)) for free, signs in signed}
-    positive = [c for c in found if c.free.low > 0]
-    samples = [positive[0].free.center / 2]
-    samples += [((a.free.center + b.free.center) / 2).limit_denominator(10**6) for a, b in pairwise(positive)]
-    counts = [signed_solutions((RHO, RODS, free, LOADS)) for free in samples]
+    positive = [free for free, _ in found if free.low > 0]
+    samples = [positive[0].center / 2]
+    samples += [((a.center + b.center) / 2).limit_denominator(10**6) for a, b in pairwise(positive)]
+    counts = [signed_solutions((*DESIGN[:3], str(free), *DESIGN[4:])) for free in samples]
     for critical, (before, after) in zip(positive, pairwise(counts), strict=False):
         assert abs(after.real - before.real) == 2, critical
 
@@ -134,7 +126,7 @@ def test_elimination_and_intervals_find_the_same_folds() -> None:
     pytest.importorskip("numba")
     axes = {"slice": "rho,l0", "ranges": ["l0=0:2"], "sets": ["L2=3/2", "F3=-10", "F4=-10"]}
     slice = slice_from_options(**axes)  # type: ignore[arg-type]
-    algebra = [c.free for c in critical_on_line(slice, "l0", {"rho": "7/10"}) if c.fold]
+    algebra = [free for free, signs in critical_free_lengths(DESIGN) if signs == (1, 1, 1) and 0 < free.center < 2]
     line = certified_intervals(slice, "l0", {"rho": "7/10"}, 10)
     folds = [c.at for c in line.changes if c.names == ("fold",)]
     assert len(algebra) == 7

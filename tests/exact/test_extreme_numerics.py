@@ -24,8 +24,8 @@ from ptmcad.exact.cad.curves import Curve
 from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import point_system
 from ptmcad.question.config import slice_from_mapping
-from ptmcad.studies.stress.measure import answer, work_of
-from ptmcad.studies.stress.slices import FIG4, LOADED, SliceQuestion, ten
+from ptmcad.studies.stress.campaign import answer, work_of
+from ptmcad.studies.stress.case import Question, chosen
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.verification.sturm import roots_between
 
@@ -223,9 +223,7 @@ def test_walls_share_their_fibres_and_hopeless_strips_are_not_tried(monkeypatch:
 
     monkeypatch.setattr(area, "by_component", lambda curves: {n: Counted(c) for n, c in found(curves).items()})
     monkeypatch.setattr(area, "_refine", followed)
-    s = ten(30)
-    vast = SliceQuestion(LOADED, {"rho": (Fraction(0), s), "L2": (Fraction(0), s)})
-    answer(vast)
+    answer(chosen(["map-window-1e30"])[0].question)
     assert len(rounds) == 1
     assert seen
     assert len(seen) == len(set(seen))
@@ -296,6 +294,9 @@ def test_refinement_keeps_the_root() -> None:
     assert refine(root, fmpq(1, 10**60)).high ** 2 > 2
 
 
+FIG4 = chosen(["map-window-1e30"])[0].sibling
+
+
 @cache
 def usual_work() -> int:
     return work_of(FIG4)
@@ -304,20 +305,20 @@ def usual_work() -> int:
 @pytest.mark.parametrize("force", [pytest.param(Fraction(1, 10**6), marks=pytest.mark.slow), Fraction(1, 10**20)])
 def test_areas_next_to_a_limit_take_little_more_work(force: Fraction) -> None:
     """The loaded curve runs along the unloaded lines, several branches within force^(2/3) of each other."""
-    nearly = SliceQuestion({"F3": -force, "F4": -force}, FIG4.axes)
+    nearly = Question({"F3": -force, "F4": -force}, FIG4.axes)
     assert work_of(nearly) <= 3 * usual_work()
 
 
 @pytest.mark.slow
 def test_a_vast_window_takes_at_most_five_times_the_work() -> None:
-    vast = SliceQuestion(LOADED, {"rho": (Fraction(0), ten(12)), "L2": (Fraction(0), ten(12))})
+    vast = Question(FIG4.parameters, dict.fromkeys(FIG4.axes, (Fraction(0), Fraction(10**12))))
     assert work_of(vast) <= 5 * usual_work()
 
 
 @pytest.mark.slow
 def test_areas_next_to_a_limit_are_confirmed_by_verification() -> None:
     """The checker integrates power series; it shares no code with arcs."""
-    nearly = SliceQuestion({"F3": ten(-12), "F4": ten(-12)}, FIG4.axes)
+    nearly = Question(dict.fromkeys(FIG4.parameters, Fraction(1, 10**12)), FIG4.axes)
     assert ptmcad.verify(answer(nearly)).ok
 
 

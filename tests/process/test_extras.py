@@ -16,9 +16,7 @@ from ptmcad.cli import run
 from ptmcad.process.extras import Extra
 from ptmcad.studies.bench import ablation
 from ptmcad.studies.stress import campaign
-from ptmcad.studies.stress.case import Case, PointAnswer
-from ptmcad.studies.stress.named import chosen
-from ptmcad.studies.stress.points import point
+from ptmcad.studies.stress.case import Case, chosen, point
 
 HAS_NUMBA = find_spec("numba") is not None
 ROOT = Path(__file__).resolve().parents[2]
@@ -52,7 +50,7 @@ def test_stress_needs_numba_for_free_lengths_only() -> None:
     for case in chosen(()):
         given = {**case.question.parameters, **case.sibling.parameters}
         assert (case.name in free) == any(k.startswith("l0") for k in given), case.name
-    plain = Case("plain", "units", Fraction(1), point(), point(), PointAnswer(), "none")
+    plain = Case("plain", "units", Fraction(1), point(), point(), "none")
     assert not plain.has_free_lengths
     done = campaign.campaign((plain,), seed=1, repeats=1)
     assert len(done.outcomes) == 1

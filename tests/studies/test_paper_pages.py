@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from ptmcad.studies.paper import equations, printed
-from ptmcad.studies.paper.claim import Claim, Outcome, Verdict, unchecked
-from ptmcad.studies.paper.pages import Illustration, claims_html, claims_markdown, index_html
-from ptmcad.studies.paper.reproduce import FILES, Reproduction, claims_json, judge_all
+from ptmcad.studies.paper import equations
+from ptmcad.studies.paper.claim import Claim, Outcome, Verdict, all_claims, judged
+from ptmcad.studies.paper.pages import Illustration, claims_html, claims_json, claims_markdown, index_html
+from ptmcad.studies.paper.reproduce import FILES, Reproduction
 
 NASTY = 'a <b>&"quoted"</b> | * _x_'
 
@@ -29,10 +29,9 @@ def made_up() -> tuple[tuple[Claim, Outcome], ...]:
         Outcome(Verdict.NOT_CHECKED, (), {}, reason=NASTY),
         Outcome(Verdict.UNDECIDED, (), {}, reason=NASTY),
     ]
-    sections = ("abstract", "2", "3", "3", "conclusions")
     return tuple(
-        (Claim(f"{s}-{n}", s, NASTY, f"statement {n}", unchecked("unused")), o)
-        for n, (s, o) in enumerate(zip(sections, outcomes, strict=True))
+        (Claim(f"{s}-{n}", {"quotation": NASTY, "statement": f"statement {n}", "reason": "unused"}), o)
+        for n, (s, o) in enumerate(zip(("a", "2", "3", "3", "c"), outcomes, strict=True))
     )
 
 
@@ -95,10 +94,7 @@ def test_summary_counts_and_shows_what_is_not_confirmed() -> None:
 
 def test_claims_run_in_the_order_given() -> None:
     claims = [claim for claim, _ in made_up()]
-    seen: list[tuple[str, int, int]] = []
-    judged = judge_all(claims, progress=lambda *report: seen.append(report))
-    assert [c.name for c, _ in judged] == [c.name for c in claims]
-    assert seen[-1] == ("claims", 4, 5)
+    assert [c.name for c, _ in judged(claims)] == [c.name for c in claims]
 
 
 def test_equations_are_the_right_ones() -> None:
@@ -114,13 +110,22 @@ def test_equations_are_the_right_ones() -> None:
         return sp.sympify(right.replace("^", "**"), locals=names)
 
     k = names["k"]
-    assert sp.expand(k * read("(5)") - printed.EQUATION_5) == 0
-    assert sp.expand(k * read("(6)") - printed.EQUATION_6) == 0
-    assert sp.expand(read("(10)") - printed.EQUATION_10) == 0
-    assert sp.expand(read("(11)") - printed.EQUATION_11) == 0
-    assert sp.expand(read("(12)") - printed.EQUATION_12) == 0
-    assert sp.expand(read("(15)") - printed.BOUNDARY_15) == 0
-    assert sp.expand(read("(16)") - printed.BOUNDARY_16) == 0
+    texts = {claim.name: claim.text for claim in all_claims()}
+
+    def stated(name: str, key: str = "printed") -> sp.Expr:
+        return sp.sympify(texts[name][key][0].partition(" = ")[2].replace("^", "**"), locals=names)
+
+    fifteen, sixteen = (
+        sp.sympify(text.replace("^", "**"), locals=names | {"F": names["F4"]})
+        for text in texts["4.2-eq15-16"]["with"]["texts"]
+    )
+    assert sp.expand(k * read("(5)") - stated("3-eq5")) == 0
+    assert sp.expand(k * read("(6)") - stated("3-eq6", "shown")) == 0
+    assert sp.expand(2 * read("(10)") - stated("3.2-eq10")) == 0
+    assert sp.expand(read("(11)") - stated("3.2-eq11")) == 0
+    assert sp.expand(read("(12)") - stated("3.2-eq12")) == 0
+    assert sp.expand(read("(15)") - fifteen) == 0
+    assert sp.expand(read("(16)") - sixteen) == 0
     root = k * names["rho"] * names["t2"] ** 2 - names["F4"] * names["t2"] - k * names["rho"]
     assert sp.cancel(read("(13)") + 4 * names["L1"] ** 2 * root**2 / (1 + names["t2"] ** 2) ** 2) == 0
 

@@ -19,22 +19,20 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.cli import run
 from ptmcad.studies.equilibria import angle_error
 from ptmcad.studies.stress import campaign as campaign_module
-from ptmcad.studies.stress.campaign import campaign
-from ptmcad.studies.stress.case import Case, PointAnswer, PointQuestion, SliceQuestion
-from ptmcad.studies.stress.constructions import Degenerate, beside_cusp, beside_fold
+from ptmcad.studies.stress.campaign import answer, campaign, work_of
+from ptmcad.studies.stress.case import Case, Question, chosen, named_cases, point
+from ptmcad.studies.stress.constructions import FEW, NAMED, Degenerate
 from ptmcad.studies.stress.doubles import double_poses
-from ptmcad.studies.stress.judgement import judge
-from ptmcad.studies.stress.measure import Verdict, answer, work_of
-from ptmcad.studies.stress.named import chosen, named_cases
+from ptmcad.studies.stress.judgement import Verdict, judge
 from ptmcad.studies.stress.picture import draw_stress, exponent
-from ptmcad.studies.stress.points import CUSP, FOLD, MAXIMUM_CUSP, MAXIMUM_FOLD, OTHER_FOLD, TAME, point
-from ptmcad.studies.stress.random_cases import KINDS, mirrored, random_case, stiffened, stretched, swapped
+from ptmcad.studies.stress.random_cases import KINDS, changed, random_case, stiffened, stretched
 from ptmcad.studies.stress.reference import Degenerate as DegeneratePoint
 from ptmcad.studies.stress.reference import newton_pose, sextic_poses
 from ptmcad.studies.stress.report import markdown, to_csv, to_json
 from ptmcad.text.flint_numbers import from_fraction
 
 CASES = named_cases()
+TAME = point(F3=-10, F4=-10)
 TWINS = (
     "map-units-force-1e12", "map-units-length-1e9", "map-unloaded-length-1e9", "line-units-force-1e12",
     "map-units-length-1e-9", "map-forces-1e-6",
@@ -120,7 +118,7 @@ def test_double_precision_is_right_where_nothing_cancels(name: str) -> None:
 
 
 HARDEST = [
-    max((c for c in CASES if c.family == family and isinstance(c.question, PointQuestion)), default=None,
+    max((c for c in CASES if c.family == family and not c.question.axes), default=None,
         key=lambda c: abs(exponent(c.stiffness)))
     for family in dict.fromkeys(c.family for c in CASES)
 ]  # fmt: skip
@@ -140,7 +138,7 @@ def test_precision_starts_low_and_grows_by_doubling() -> None:
     tame = ptmcad.solve(**TAME.parameters).bits
     assert tame == 112
     for c in CASES:
-        if c.family == "units" and isinstance(c.question, PointQuestion):
+        if c.family == "units" and not c.question.axes:
             assert ptmcad.solve(**c.question.parameters).bits == tame  # scaling cancels nothing
     reached = [
         ptmcad.solve(**point(F3=-(Fraction(10) ** e), F4=-(Fraction(10) ** e)).parameters).bits for e in (-5, -15, -30)
@@ -152,9 +150,7 @@ def test_precision_starts_low_and_grows_by_doubling() -> None:
 # ---------------------------------------------------------------------------------------------------- constructions
 
 
-@pytest.mark.parametrize(
-    ("at", "multiplicity"), [(FOLD, 2), (OTHER_FOLD, 2), (MAXIMUM_FOLD, 2), (CUSP, 3), (MAXIMUM_CUSP, 3)]
-)
+@pytest.mark.parametrize(("at", "multiplicity"), [(at, 3 if at.cusp else 2) for at in NAMED.values()], ids=list(NAMED))
 def test_constructed_poses_are_degenerate(at: Degenerate, multiplicity: int) -> None:
     """On the fold itself two equilibria coincide, at the cusp three: zero is recognised exactly."""
     poses = ptmcad.solve(**at.parameters)
@@ -166,12 +162,32 @@ def test_constructed_poses_are_degenerate(at: Degenerate, multiplicity: int) -> 
         sextic_poses(at.parameters)
 
 
-@pytest.mark.parametrize(("at", "beside"), [(FOLD, beside_fold), (MAXIMUM_FOLD, beside_fold), (CUSP, beside_cusp)])
-def test_sides_differ_by_one_pair(at: Degenerate, beside: object) -> None:
+@pytest.mark.parametrize("name", ["fold", "fold of maxima", "cusp"])
+def test_sides_differ_by_one_pair(name: str) -> None:
     """By the second method alone, at a distance at which nothing is extreme."""
-    for sign, counts in ((1, at.many), (-1, at.few)):
-        poses = sextic_poses(beside(at, sign * Fraction(1, 1000)))  # type: ignore[operator]
+    at = NAMED[name]
+    for sign, counts in ((1, at.many), (-1, FEW)):
+        poses = sextic_poses(at.beside(sign * Fraction(1, 1000)))
         assert (len(poses), sum(p.index == 0 for p in poses)) == counts
+
+
+def test_cases_expect_what_the_constructions_say() -> None:
+    for c in CASES:
+        kind, _, side = c.name.rpartition("-1e")[0].rpartition("-")
+        if c.family in ("fold", "cusp"):
+            total, stable = NAMED[kind.replace("-", " ")].many if side == "many" else FEW
+            assert c.expected == f"{total}/{stable}"
+
+
+def test_cases_expect_what_rose_and_astroid_say() -> None:
+    """The counts of the symmetric slice from its two curves, with x = 2 rho and y = |F|/k; L2 = 1 + 1e-20 is near."""
+    for c in CASES:
+        if c.source.startswith("the rose and the astroid"):
+            p = c.question.parameters
+            x, y = 2 * p["rho"], -p["F3"] / p["k1"]
+            rose = (x * x + y * y) ** 3 - 4 * x * x * y * y
+            astroid = (x * x + y * y - 4) ** 3 + 108 * x * x * y * y
+            assert c.expected == ("4/1" if rose < 0 or astroid > 0 else "6/2" if x > y else "6/1")
 
 
 # --------------------------------------------------------------------------------------------------- second methods
@@ -186,7 +202,7 @@ def test_the_reference_agrees_with_signatures_of_hermite_forms(seed: int) -> Non
 
     from ptmcad.exact.models import system_of
 
-    p = dict(random_case(seed, 0).sibling.parameters)  # type: ignore[union-attr]
+    p = dict(random_case(seed, 0).sibling.parameters)
     counts = count_by_signature(system_of("ptm"), {n: from_fraction(v) for n, v in p.items()})
     indices = [pose.index for pose in sextic_poses({n: Fraction(v) for n, v in p.items()})]
     assert (indices.count(0), indices.count(1), indices.count(2)) == counts.index
@@ -203,8 +219,8 @@ def test_newton_in_balls_proves_what_the_sextic_finds() -> None:
 
 
 def test_newton_in_balls_proves_nothing_at_a_degenerate_pose() -> None:
-    c1, s1, c2, s2 = map(float, FOLD.pose)
-    assert newton_pose(dict(FOLD.parameters), (math.atan2(s1, c1), math.atan2(s2, c2))) is None
+    c1, s1, c2, s2 = map(float, NAMED["fold"].pose)
+    assert newton_pose(dict(NAMED["fold"].parameters), (math.atan2(s1, c1), math.atan2(s2, c2))) is None
 
 
 def test_double_precision_agrees_on_a_tame_point() -> None:
@@ -223,9 +239,8 @@ def test_a_wrong_answer_is_called_wrong() -> None:
     assert not judge(c, other).right
     assert "reference" in " ".join(judge(c, ptmcad.solve(**point(k=1001, F3=-10, F4=-10).parameters)).remarks)
     question = case("window-line-1e-20").question
-    assert isinstance(question, SliceQuestion)
-    halved = SliceQuestion(question.parameters, {n: (low, high) for n, (low, high) in question.axes.items()} | {
-        "rho": (question.axes["rho"][0], sum(question.axes["rho"]) / 2)})  # fmt: skip
+    low, high = question.axes["rho"]
+    halved = Question(question.parameters, {**question.axes, "rho": (low, (low + high) / 2)})
     assert not judge(case("window-line-1e-20"), answer(halved)).right
 
 
@@ -249,8 +264,8 @@ def test_random_cases_are_the_same_in_every_run_and_of_all_kinds() -> None:
 @given(st.integers(0, 1000), st.integers(-40, 40).map(lambda e: Fraction(10) ** e))
 @settings(max_examples=20, deadline=None)
 def test_symmetries_undo_each_other(seed: int, factor: Fraction) -> None:
-    p = {n: Fraction(v) for n, v in random_case(seed, 0).sibling.parameters.items()}  # type: ignore[union-attr]
-    assert mirrored(mirrored(p)) == swapped(swapped(p)) == p
+    p = {n: Fraction(v) for n, v in random_case(seed, 0).sibling.parameters.items()}
+    assert changed(changed(p, "mirrored"), "mirrored") == changed(changed(p, "swapped"), "swapped") == p
     assert stiffened(stiffened(p, factor), 1 / factor) == stretched(stretched(p, factor), 1 / factor) == p
 
 
@@ -335,9 +350,8 @@ def test_a_wrong_answer_gives_exit_status_1(
 
 
 def test_answers_of_another_kind_are_refused() -> None:
-    c = case("window-line-1e-20")
     with pytest.raises(TypeError, match="another kind"):
-        judge(Case(c.name, c.family, c.stiffness, c.question, c.sibling, PointAnswer(), c.source), None)
+        judge(case("window-line-1e-20"), ptmcad.solve(**TAME.parameters))
 
 
 def test_families_and_names_choose_cases() -> None:

@@ -7,11 +7,10 @@ the same text.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from typing import Any
 
 from ptmcad.answer.counts import Counts
-from ptmcad.answer.intervals import CertifiedIntervals, CountInterval, CountIntervals, CriticalFreeLength
+from ptmcad.answer.intervals import CertifiedIntervals, CountInterval, CountIntervals
 from ptmcad.answer.paths import PathEnd, PathPoint, PosePaths, Target
 from ptmcad.answer.widths import Attainment, CertifiedWidths, OperationWidths
 from ptmcad.question.slice import Axis
@@ -71,11 +70,6 @@ def enclosed_data(found: CertifiedIntervals, digits: int) -> dict[str, Any]:
         ],
         "changes": [{"at": place_data(c.at, digits), "met": list(c.names), "proved": c.proved} for c in found.changes],
     }
-
-
-def critical_data(found: Sequence[CriticalFreeLength], digits: int) -> list[dict[str, Any]]:
-    """Critical free lengths as JSON data."""
-    return [{"at": place_data(c.free, digits), "signs": list(c.signs), "fold": c.fold} for c in found]
 
 
 def _axis(axis: Axis) -> dict[str, Any]:
@@ -190,7 +184,7 @@ def _place(point: PathPoint | Target) -> dict[str, Any]:
 
 
 def document(name: str, mechanism: str, parts: dict[str, Any]) -> str:
-    """The JSON text of an answer; ``parts`` has some of the entries line, enclosed, critical, over and path."""
+    """The JSON text of an answer; ``parts`` has some of the entries line, enclosed, over and path."""
     data = {
         "format": FORMAT,
         "name": name,

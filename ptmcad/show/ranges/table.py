@@ -10,7 +10,7 @@ from fractions import Fraction
 
 from flint import arb, ctx
 
-from ptmcad.answer.intervals import CountIntervals, CriticalFreeLength, End, Span
+from ptmcad.answer.intervals import CountIntervals, End, Span
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
 from ptmcad.answer.widths import Maximum, OperationWidths
 from ptmcad.answer.words import kind_name, noun
@@ -242,14 +242,3 @@ def degrees(angle: Enclosure, digits: int) -> str:
         ball = ball_of(angle.low).union(ball_of(angle.high)) * 180 / arb.pi()
         text = narrowly_known(enclosure_of(ball), digits)
     return UNDECIDED if text is None else f"{text}°"
-
-
-def critical_table(found: Sequence[CriticalFreeLength], digits: int) -> str:
-    """One row for each critical free length."""
-    if not found:
-        return "no critical free length in the window, by elimination"
-    rows = [["critical by elimination", "signs of l1, l2, l3", ""]]
-    for c in found:
-        decimal = settled(c.free, digits) or "near 0"
-        rows.append([decimal, " ".join("+" if s > 0 else "-" for s in c.signs), "fold" if c.fold else ""])
-    return "\n".join(aligned(rows))

@@ -1,17 +1,37 @@
-"""Claims of the paper and what computation says of them: frozen data, with the rule that turns evidence into a verdict.
+"""Claims of the paper and what computation says of them, with the rule that turns what was computed into a verdict.
 
-Guarantee: a verdict is reached only through `judge`; a printed statement that fails is called corrected only when the
-right one was shown to hold, and refuted only with a witness. What no computation can decide says why (`unchecked`).
+Guarantee: a verdict is reached only through `outcome`; a printed statement that fails is called corrected only when the
+right one was shown to hold, and refuted only with a witness. What no computation can decide says why.
+
+``claims.yaml`` has for each claim a few words of the paper (quotation) and the claim in other words (statement). What
+is computed of it are statements of `ptmcad.studies.paper.statements` that hold if the claim does (printed), or if what
+is called right does (shown), and a check, a function of `ptmcad.studies.paper.maps` or `ptmcad.studies.paper.free` with
+what it is called with. The rest is what is said of it: evidence, the right statement, a witness, with names of computed
+values in braces. A claim that says the same as another is ``like`` it; one that no computation decides has a reason.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from enum import Enum
+from functools import cache, partial
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
 
-Fact = bool | int | str | tuple[int, ...] | tuple[str, ...]
-"""One computed result: what a test can compute again. Exact numbers that are not integers are text."""
+import yaml
+
+from ptmcad.process.extras import Extra
+from ptmcad.studies.paper.statements import holds
+
+TEXTS = Path(__file__).with_name("claims.yaml")
+_HERE = "ptmcad.studies.paper"
+
+Values = Mapping[str, Any]
+"""What a check computed, by name: facts, and under ``printed`` and ``corrected`` whether the statement holds as it is
+printed and whether the right one does in its place; under ``missing`` why the check cannot be made here."""
 
 
 class Verdict(Enum):
@@ -25,115 +45,123 @@ class Verdict(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
-    """What a check computed; the sentences that tell it are the claim's, in ``claims.yaml``.
-
-    Attributes
-    ----------
-    printed : whether the statement holds as it is printed.
-    facts : the computed values.
-    corrected : whether the statement that the claim's text calls right was shown to hold in its place.
-    said : further values that the sentences name; several sentences, where one is nothing but such a name.
-    missing : why the check cannot be made here, where that is so.
-    """
-
-    printed: bool
-    facts: Mapping[str, Fact]
-    corrected: bool = False
-    said: Mapping[str, object] = field(default_factory=dict)
-    missing: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """The result of one check.
-
-    Attributes
-    ----------
-    evidence : sentences, each stating something that was computed.
-    facts : the computed values behind them.
-    right : the right formula or statement where the verdict is CORRECTED.
-    witness : where the statement fails when it is REFUTED.
-    reason : why it was NOT_CHECKED or stayed UNDECIDED.
-    """
-
-    verdict: Verdict
-    evidence: tuple[str, ...]
-    facts: Mapping[str, Fact]
-    right: str = ""
-    witness: str = ""
-    reason: str = ""
-
-
-@dataclass(frozen=True, slots=True)
 class Claim:
     """One statement of the paper.
 
     Attributes
     ----------
     name : unique, such as ``3.1-parallelogram``; it begins with the section.
-    section : of the paper; ``abstract`` and ``conclusions`` are sections too.
-    quotation : a few words by which a reader finds the place.
-    statement : the claim in other words.
-    check : computes the outcome; takes nothing, changes nothing.
+    text : of ``claims.yaml``.
     """
 
     name: str
-    section: str
-    quotation: str
-    statement: str
-    check: Callable[[], Outcome]
+    text: Mapping[str, Any]
+
+    @property
+    def section(self) -> str:
+        """Of the paper; ``abstract`` and ``conclusions`` are sections too."""
+        section = self.name.partition("-")[0]
+        return {"a": "abstract", "c": "conclusions"}.get(section, section)
+
+    @property
+    def quotation(self) -> str:
+        """A few words by which a reader finds the place."""
+        return str(self.text["quotation"])
+
+    @property
+    def statement(self) -> str:
+        """The claim in other words."""
+        return str(self.text["statement"])
 
 
-def outcome(finding: Finding, evidence: Sequence[str] = (), right: str = "", witness: str = "") -> Outcome:
-    """The outcome of a check that computed whether the printed statement holds.
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What was computed of a claim.
 
-    Parameters
+    Attributes
     ----------
-    evidence, right, witness : what the claim's text says, with names of computed values in braces.
+    evidence : sentences, each stating something that was computed.
+    facts : the computed values behind them.
+    right : the right formula or statement where the verdict is CORRECTED.
+    witness : where the statement fails.
+    reason : why it was NOT_CHECKED or stayed UNDECIDED.
     """
-    values = {**finding.facts, **finding.said}
-    told: list[str] = []
-    for sentence in () if finding.missing and not values else evidence:
+
+    verdict: Verdict
+    evidence: tuple[str, ...] = ()
+    facts: Values | None = None
+    right: str = ""
+    witness: str = ""
+    reason: str = ""
+
+
+Judged = tuple[Claim, Outcome]
+
+
+@cache
+def all_claims() -> tuple[Claim, ...]:
+    """Every claim, in the order of the paper's sections."""
+    texts: dict[str, dict[str, Any]] = yaml.safe_load(TEXTS.read_text(encoding="utf-8"))
+    return tuple(Claim(name, {**texts.get(text.get("like", ""), {}), **text}) for name, text in texts.items())
+
+
+def outcome(claim: Claim) -> Outcome:
+    """Compute what is to be computed of a claim, and judge it."""
+    text = claim.text
+    values: dict[str, Any] = dict(_check(text) if "check" in text else {})
+    for key, name in (("printed", "printed"), ("shown", "corrected")):
+        if key in text:
+            facts = {statement: holds(statement) for statement in text[key]}
+            values |= facts
+            values[name] = bool(values.get(name, True)) and all(facts.values())
+    told = partial(_told, text, values)
+    if reason := values.get("missing") or text.get("reason", ""):
+        evidence = told("evidence") if values.get("corrected") else ()
+        return Outcome(Verdict.NOT_CHECKED, tuple(evidence), {}, reason=reason)
+    # a witness proves nothing while what is said of it was not shown
+    witness = "" if "shown" in text and not values["corrected"] else "".join(told("witness"))
+    return judge(values, told("evidence"), "".join(told("right")), witness)
+
+
+def _check(text: Mapping[str, Any]) -> Values:
+    if text.get("needs") == "certified" and find_spec("numba") is None:
+        return {"missing": f"the certified engine decides it: {Extra.certified.message}"}
+    module, function = text["check"].split(".")
+    found: Values = getattr(import_module(f"{_HERE}.{module}"), function)(**text.get("with", {}))
+    return found
+
+
+def _told(text: Mapping[str, Any], values: Values, key: str) -> Iterable[str]:
+    """The sentences under a key; one that is nothing but the name of several sentences is these."""
+    told = text.get(key, ())
+    for sentence in (told,) if isinstance(told, str) else told:
         several = values.get(sentence.strip("{}"))
-        told += several if isinstance(several, tuple) else [sentence.format_map(values)]
-    if finding.missing:
-        return unchecked(finding.missing, *told)()
-    right, witness = right.format_map(values), witness.format_map(values)
-    return judge(finding.printed, tuple(told), finding.facts, corrected=finding.corrected, right=right, witness=witness)
+        yield from several if isinstance(several, tuple) else (sentence.format_map(values),)
 
 
-def judge(
-    printed: bool,
-    evidence: tuple[str, ...],
-    facts: Mapping[str, Fact],
-    *,
-    corrected: bool = False,
-    right: str = "",
-    witness: str = "",
-) -> Outcome:
-    """The outcome of a check that computed whether the printed statement holds.
-
-    Parameters
-    ----------
-    printed : whether the statement holds as it is printed.
-    corrected : whether the statement ``right`` was shown to hold in its place.
-    witness : where the printed statement fails, in words with exact numbers.
+def judge(values: Values, evidence: Iterable[str] = (), right: str = "", witness: str = "") -> Outcome:
+    """The outcome of a claim of which something was computed.
 
     Guarantee
     ---------
-    CONFIRMED if ``printed``; else CORRECTED if ``corrected``; else REFUTED if there is a witness; else UNDECIDED.
+    CONFIRMED if it holds as it is printed; else CORRECTED if the statement ``right`` was shown to hold in its place;
+    else REFUTED if there is a witness; else UNDECIDED.
     """
-    if printed:
-        return Outcome(Verdict.CONFIRMED, evidence, facts)
-    if corrected and right:
-        return Outcome(Verdict.CORRECTED, evidence, facts, right=right, witness=witness)
+    if values.get("printed"):
+        return Outcome(Verdict.CONFIRMED, tuple(evidence), values)
+    if values.get("corrected") and right:
+        return Outcome(Verdict.CORRECTED, tuple(evidence), values, right, witness)
     if witness:
-        return Outcome(Verdict.REFUTED, evidence, facts, witness=witness)
+        return Outcome(Verdict.REFUTED, tuple(evidence), values, witness=witness)
     reason = "neither the printed statement nor a corrected one was shown to hold"
-    return Outcome(Verdict.UNDECIDED, evidence, facts, reason=reason)
+    return Outcome(Verdict.UNDECIDED, (), values, reason=reason)
 
 
-def unchecked(reason: str, *evidence: str) -> Callable[[], Outcome]:
-    """The check of a statement that no computation can decide; ``reason`` says why."""
-    return lambda: Outcome(Verdict.NOT_CHECKED, evidence, {}, reason=reason)
+def judged(claims: Sequence[Claim]) -> Iterable[Judged]:
+    """The claims with their outcomes, one after the other; what one claim shares with another is computed once."""
+    known: dict[str, Outcome] = {}
+    for claim in claims:
+        shared = claim.text.get("like", claim.name)
+        if shared not in known:
+            known[shared] = outcome(claim)
+        yield claim, known[shared]

@@ -1,54 +1,62 @@
-"""The paper's equations, corrected, as text and LaTeX, written from the model and not from the paper.
+"""The paper's equations, corrected, as text and LaTeX, derived from the model and not from the paper.
 
 Guarantee: every expression is derived from the potential of the model by differentiation, substitution of half angles
-and elimination, or is a factor of a computed discriminant variety.
+and elimination (`ptmcad.studies.paper.statements`), or is a curve of a computed discriminant variety.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 
 import sympy as sp
 
-from ptmcad.studies.paper.claims.symmetric import OTHER, eliminated_12, on_unequal
-from ptmcad.studies.paper.claims.symmetric import equations as symmetric_equations
-from ptmcad.studies.paper.claims.unloaded import COS1, COS2
-from ptmcad.studies.paper.slices import curves
-from ptmcad.studies.paper.symbolic import (
-    F3,
-    F4,
-    L1,
-    L2,
-    UNLOADED,
-    VERTICAL,
-    Expr,
-    F3x,
-    F4x,
-    c1,
-    c2,
-    determinant,
-    gradient,
-    half_angle_equations,
-    hessian,
-    k,
-    potential,
-    rho,
-    s1,
-    s2,
-    sextic,
-    t1,
-    t2,
-)
+from ptmcad.studies.paper.maps import curves
+from ptmcad.studies.paper.statements import expression
+from ptmcad.studies.paper.symbolic import F3, F4, HORIZONTAL, Expr, c1, c2, k, s1, s2
 from ptmcad.studies.tables import page
-from ptmcad.text.plane import PlanePolynomial
 
+_OVER_K = {force: k * sp.Symbol(str(force).lower()) for force in (F3, F4, *HORIZONTAL)}
 _THETA1, _THETA2 = sp.symbols("theta_1 theta_2", real=True)
-_REDUCED = {F3: k * sp.Symbol("f3"), F4: k * sp.Symbol("f4"), F3x: k * sp.Symbol("f3x"), F4x: k * sp.Symbol("f4x")}
-_LATEX_NAMES = {
-    L1: "L_1", L2: "L_2", rho: r"\rho", t1: "t_1", t2: "t_2", F3: "F_3", F4: "F_4",
-    **{sp.Symbol(n): t for n, t in (("f3", "f_3"), ("f4", "f_4"), ("f3x", "f_{3x}"), ("f4x", "f_{4x}"))},
-}  # fmt: skip
+_ANGLES = {c1: sp.cos(_THETA1), s1: sp.sin(_THETA1), c2: sp.cos(_THETA2), s2: sp.sin(_THETA2)}
+_LATEX = {"U": "U", "cos(theta_1)": r"\cos\theta_1", "cos(theta_2)": r"\cos\theta_2", "det(H)": r"\det H"}
+
+_EQUATIONS = (
+    ("(2)", "potential", "U", "U"),
+    ("(3)", "-(1/(L2 k)) dU/dth2", "0", "-g2/(L2*k)"),
+    ("(4)", "-(1/(L1 k)) dU/dth1", "0", "-g1/(L1*k)"),
+    ("(5)", "(4) in half angles, times -1", "0", "E1"),
+    ("(6)", "(3) in half angles, times -1", "0", "E2"),
+    ("H(1,1)", "Hessian", "H(1,1)", "H11"),
+    ("H(1,2)", "Hessian", "H(1,2)", "H12"),
+    ("H(2,2)", "Hessian", "H(2,2)", "H22"),
+    ("(7)", "(3) unloaded", "0", "-unloaded(g2)/(L2*k)"),
+    ("(8)", "(4) unloaded", "0", "-unloaded(g1)/(L1*k)"),
+    ("(9)", "non-flat equilibria, unloaded; sin th1 and sin th2 have one sign", "cos(theta_1)", "COS1"),
+    ("(9)", "the same", "cos(theta_2)", "COS2"),
+    ("(10)", "equal rods and forces: k/2 times the difference of (5) and (6)", "0", "factor(symmetric(k*(E1 - E2)/2))"),
+    ("(11)", "equal rods and forces: k times (6)", "0", "symmetric(k*E2)"),
+    ("(10')", "t1 from the second factor of (10)", "t1", "OTHER"),
+    ("(12)", "t2 where th1 and th2 differ", "0", "eliminated_12()"),
+    ("(13)", "where th1 and th2 differ", "det(H)", "unequal(detH)"),
+    ("(15)", "boundary of fig. 3, L1 = L2 = 1, k = 100", "0", "curve 0"),
+    ("(16)", "boundary of fig. 3, L1 = L2 = 1, k = 100", "0", "curve 1"),
+    ("(5), horizontal forces", "section 5.1", "0", "E1_h"),
+    ("(6), horizontal forces", "section 5.1", "0", "E2_h"),
+    *(
+        (
+            f"q{n}",
+            f"coefficient of t2^{n} in the polynomial of degree 6 that elimination of t1 leaves",
+            f"q{n}",
+            f"q{n}",
+        )
+        for n in range(6, -1, -1)
+    ),
+)
+"""Number in the paper, what it is, its left side, and the right one in the language of statements."""
+_NAMES = {sp.Symbol(f"f{n}x"): f"f_{{{n}x}}" for n in (3, 4)}
+_IN_FORCES = {"(2)", "H(1,1)", "H(2,2)", "(9)", "(10)", "(11)", "(10')", "(12)", "(13)", "(15)", "(16)"}
+"""Those in which forces stay what they are; in the others they are over k."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,68 +69,31 @@ class Equation:
     latex: str
 
 
+@cache
+def equations() -> tuple[Equation, ...]:
+    """The equations of the paper in their order, corrected."""
+    # of the two curves of fig. 3 the one through the origin is first
+    found = sorted((c.polynomial for c in curves("fig3")), key=lambda p: any(i == j == 0 for i, j, _ in p.terms))
+    boundaries = {f"curve {n}": p.to_sympy(("rho", "F4")) for n, p in enumerate(found)}
+    result = []
+    for number, what, left, text in _EQUATIONS:
+        right = boundaries[text] if text in boundaries else expression(text)
+        if number.startswith("q"):
+            right = right.subs(_OVER_K).subs(k, 1)
+        elif number not in _IN_FORCES:
+            right = sp.expand(right.subs(_OVER_K))
+        shown = _shown(right)
+        latex = f"{_LATEX.get(left, sp.latex(sp.Symbol(left)))} = {sp.latex(shown, symbol_names=_NAMES)}"
+        result.append(Equation(number, what, f"{left} = {sp.sstr(shown).replace('**', '^')}", latex))
+    return tuple(result)
+
+
 def _shown(expression: Expr) -> Expr:
+    """With the angles, and products of their cosines and sines as those of their sum."""
     total = _THETA1 + _THETA2
     compact = sp.expand(expression).subs(c1 * c2, sp.cos(total) + s1 * s2).expand()
     compact = compact.subs(s1 * c2, sp.sin(total) - c1 * s2).expand()
-    expression = compact if compact.has(total) else expression
-    angles = {c1: sp.cos(_THETA1), s1: sp.sin(_THETA1), c2: sp.cos(_THETA2), s2: sp.sin(_THETA2)}
-    return expression.subs(angles)
-
-
-def _equation(number: str, what: str, left: str, left_latex: str, right: Expr) -> Equation:
-    shown = _shown(right)
-    latex = sp.latex(shown, symbol_names=_LATEX_NAMES)
-    return Equation(number, what, f"{left} = {sp.sstr(shown).replace('**', '^')}", f"{left_latex} = {latex}")
-
-
-@lru_cache(maxsize=1)
-def equations() -> tuple[Equation, ...]:
-    """The equations of the paper in their order, corrected."""
-    first, second = (sp.expand(g.subs(_REDUCED) / k) for g in gradient())
-    e3 = sp.expand(-second.subs({sp.Symbol("f4x"): 0}) / L2)
-    e4 = sp.expand(-first.subs({sp.Symbol("f3x"): 0}) / L1)
-    e5, e6 = (sp.expand(e.subs(_REDUCED)) for e in half_angle_equations())
-    still = {sp.Symbol("f3x"): 0, sp.Symbol("f4x"): 0}
-    h11, h12, h22 = (h.subs(VERTICAL) for h in hessian())
-    tenth = sp.factor(sp.expand(sum(s * e for s, e in zip((1, -1), symmetric_equations(), strict=True)) / 2))
-    found = [
-        _equation("(2)", "potential", "U", "U", sp.expand(potential().subs(VERTICAL))),
-        _equation("(3)", "-(1/(L2 k)) dU/dth2", "0", "0", e3),
-        _equation("(4)", "-(1/(L1 k)) dU/dth1", "0", "0", e4),
-        _equation("(5)", "(4) in half angles, times -1", "0", "0", e5.subs(still)),
-        _equation("(6)", "(3) in half angles, times -1", "0", "0", e6.subs(still)),
-        _equation("H(1,1)", "Hessian", "H(1,1)", "H(1,1)", h11),
-        _equation("H(1,2)", "Hessian", "H(1,2)", "H(1,2)", h12),
-        _equation("H(2,2)", "Hessian", "H(2,2)", "H(2,2)", h22),
-        _equation("(7)", "(3) unloaded", "0", "0", sp.expand(-gradient()[1].subs(UNLOADED) / (L2 * k))),
-        _equation("(8)", "(4) unloaded", "0", "0", sp.expand(-gradient()[0].subs(UNLOADED) / (L1 * k))),
-        _equation("(9)", "non-flat equilibria, unloaded; sin th1 and sin th2 have one sign", "cos(theta_1)",
-                  r"\cos\theta_1", COS1),
-        _equation("(9)", "the same", "cos(theta_2)", r"\cos\theta_2", COS2),
-        _equation("(10)", "equal rods and forces: k/2 times the difference of (5) and (6)", "0", "0", tenth),
-        _equation("(11)", "equal rods and forces: k times (6)", "0", "0", symmetric_equations()[1]),
-        _equation("(10')", "t1 from the second factor of (10)", "t1", "t_1", OTHER),
-        _equation("(12)", "t2 where th1 and th2 differ", "0", "0", eliminated_12()),
-        _equation("(13)", "where th1 and th2 differ", "det(H)", r"\det H", on_unequal(determinant())),
-    ]  # fmt: skip
-    base, force = sp.symbols("rho F")
-    for number, component in zip(("(15)", "(16)"), _rose_first(), strict=True):
-        polynomial = component.to_sympy(("rho", "F")).subs({base: rho, force: F4})
-        found.append(_equation(number, "boundary of fig. 3, L1 = L2 = 1, k = 100", "0", "0", polynomial))
-    found.append(_equation("(5), horizontal forces", "section 5.1", "0", "0", e5))
-    found.append(_equation("(6), horizontal forces", "section 5.1", "0", "0", e6))
-    unit = {F3: sp.Symbol("f3"), F4: sp.Symbol("f4")}
-    for power, coefficient in zip(range(6, -1, -1), sextic(), strict=True):
-        name = f"q{power}"
-        what = f"coefficient of t2^{power} in the polynomial of degree 6 that elimination of t1 leaves"
-        found.append(_equation(name, what, name, f"q_{power}", coefficient.subs(unit)))
-    return tuple(found)
-
-
-def _rose_first() -> list[PlanePolynomial]:
-    """The two curves of fig. 3: the one through the origin first."""
-    return sorted((c.polynomial for c in curves("fig3")), key=lambda p: any(i == j == 0 for i, j, _ in p.terms))
+    return (compact if compact.has(total) else expression).subs(_ANGLES)
 
 
 _INTRODUCTION = """
@@ -137,25 +108,23 @@ def as_markdown() -> str:
     return page("# The paper's equations, corrected", _INTRODUCTION, *blocks)
 
 
+_DOCUMENT = r"""\documentclass{article}
+\usepackage[a4paper,margin=2cm]{geometry}
+\usepackage{amsmath,breqn}
+\begin{document}
+\section*{The equations of the planar tensegrity mechanism, corrected}
+Here $f_3 = F_3/k$, $f_4 = F_4/k$, $f_{3x} = F_{3x}/k$, $f_{4x} = F_{4x}/k$; in (10) to (13) $L_1$ is the
+length of both rods.\par
+"""
+
+
 def as_latex() -> str:
     """The equations as a LaTeX document; long ones are set by the breqn package, which breaks lines."""
-    lines = [
-        r"\documentclass{article}",
-        r"\usepackage[a4paper,margin=2cm]{geometry}",
-        r"\usepackage{amsmath,breqn}",
-        r"\begin{document}",
-        r"\section*{The equations of the planar tensegrity mechanism, corrected}",
-        r"Here $f_3 = F_3/k$, $f_4 = F_4/k$, $f_{3x} = F_{3x}/k$, $f_{4x} = F_{4x}/k$; in (10) to (13) $L_1$ is the",
-        r"length of both rods.\par",
-    ]
-    for e in equations():
-        lines += [
-            r"\noindent " + _escaped(f"{e.number}: {e.what}"),
-            r"\begin{dmath*}",
-            e.latex,
-            r"\end{dmath*}",
-        ]
-    return "\n".join([*lines, r"\end{document}"]) + "\n"
+    blocks = (
+        rf"\noindent {_escaped(f'{e.number}: {e.what}')}" + "\n\\begin{dmath*}\n" + e.latex + "\n\\end{dmath*}\n"
+        for e in equations()
+    )
+    return "".join([_DOCUMENT, *blocks, "\\end{document}\n"])
 
 
 def _escaped(text: str) -> str:

@@ -1,152 +1,144 @@
-"""The mechanism's equations in SymPy, in the paper's symbols, translated from the exact model.
+"""The mechanism's equations in SymPy, derived from its description once, for all claims, equations and folds.
 
-Guarantee: potential, gradient and Hessian are those of `ptmcad.exact.models`, with k1 = k2 = k3 = k; nothing of the
-paper enters them. What is printed in the paper is in `ptmcad.studies.paper.printed`, and the two are compared as
-polynomials.
+Guarantee: potential, gradient and Hessian follow from the description's points, springs and loads by differentiation;
+nothing of the paper enters them. The symbols are the paper's: L1, L2, rho, k, F3, F4, F3x, F4x; c1, s1, c2, s2 for
+cosines and sines; t1, t2 for tangents of half angles; l1, l2, l3 for the springs' lengths and l0 for their free one.
 
-The symbols: L1, L2, rho, k, F3, F4, F3x, F4x; c1, s1, c2, s2 for cosines and sines; t1, t2 for tangents of half angles.
+All stiffnesses are k here and all free lengths l0.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from functools import lru_cache
+from collections.abc import Mapping, Sequence
+from functools import cache
+from types import SimpleNamespace
 from typing import Any
 
 import sympy as sp
 
-from ptmcad.exact.models.potential import geometry_of, system_from
 from ptmcad.mechanism import ptm
+from ptmcad.mechanism.evaluate import evaluate
 
 Expr = Any
 """A SymPy expression; SymPy has no types of its own for a type checker."""
 
-L1, L2, rho, k = sp.symbols("L1 L2 rho k", positive=True)
+L1, L2, rho, k, l0 = sp.symbols("L1 L2 rho k l0", positive=True)
 F3, F4, F3x, F4x = sp.symbols("F3 F4 F3x F4x", real=True)
 c1, s1, c2, s2, t1, t2 = sp.symbols("c1 s1 c2 s2 t1 t2", real=True)
-L = L1
-"""The common rod length of section 3.2."""
+LENGTHS = sp.symbols("l1 l2 l3", positive=True)
+CIRCLES = ((c1, s1), (c2, s2))
+HORIZONTAL = (F3x, F4x)
 
-VERTICAL: Mapping[Expr, Expr] = {F3x: 0, F4x: 0}
-UNLOADED: Mapping[Expr, Expr] = {F3: 0, F4: 0, **VERTICAL}
-SYMMETRIC: Mapping[Expr, Expr] = {L2: L1, F3: F4, **VERTICAL}
-FLAT = tuple({c1: a, s1: 0, c2: b, s2: 0} for a in (1, -1) for b in (1, -1))
-"""The four flat configurations: th1, th2 each 0 or pi."""
+HALF: Mapping[Expr, Expr] = {
+    x: value
+    for (c, s), t in zip(CIRCLES, (t1, t2), strict=True)
+    for x, value in ((c, (1 - t**2) / (1 + t**2)), (s, 2 * t / (1 + t**2)))
+}
+CLEAR = (1 + t1**2) * (1 + t2**2)
 
-_PARAMETERS = {"L1": L1, "L2": L2, "rho": rho, "k1": k, "k2": k, "k3": k, "F3": F3, "F4": F4, "F3x": F3x, "F4x": F4x}
+_MECHANISM = ptm()
+_PARAMETERS = (
+    {str(s): s for s in (L1, L2, rho, F3, F4, F3x, F4x)}
+    | dict.fromkeys(_MECHANISM.stiffnesses, k)
+    | dict.fromkeys(_MECHANISM.free_lengths, l0)
+)
+_RING: Any = SimpleNamespace(
+    constant=lambda value: sp.Rational(value.numerator, value.denominator),
+    parameter=_PARAMETERS.__getitem__,
+    cos=lambda angle: CIRCLES[_MECHANISM.angles.index(angle)][0],
+    sin=lambda angle: CIRCLES[_MECHANISM.angles.index(angle)][1],
+)
 
 
-def _expression(p: Any) -> Expr:
-    ring = system_from(ptm()).ring
-    parameters = [_PARAMETERS[name] for name in ring.parameters]
-    total = sp.Integer(0)
-    for powers, part in ring.split(p).items():
-        for exponents, c in part.items():
-            term = sp.Rational(int(c.p), int(c.q))
-            for symbol, e in zip((*parameters, c1, s1, c2, s2), (*exponents, *powers), strict=True):
-                term *= symbol**e
-            total += term
-    return total
+@cache
+def points() -> Mapping[str, tuple[Expr, Expr]]:
+    """The coordinates of A1, A2, A3 and A4."""
+    return {name: (evaluate(x, _RING), evaluate(y, _RING)) for name, (x, y) in _MECHANISM.points.items()}
 
 
-@lru_cache(maxsize=1)
+@cache
+def squares() -> tuple[Expr, ...]:
+    """The springs' squared lengths."""
+    ends = [(points()[s.start], points()[s.end]) for s in _MECHANISM.springs]
+    found = (sp.expand(sum((b - a) ** 2 for a, b in zip(*pair, strict=True))) for pair in ends)
+    return tuple(sp.expand(q.subs({s**2: 1 - c**2 for c, s in CIRCLES})) for q in found)
+
+
+@cache
 def potential() -> Expr:
-    """U in c1, s1, c2, s2; Wenger & Chablat (1) with horizontal forces added."""
-    return _expression(system_from(ptm()).potential)
-
-
-@lru_cache(maxsize=1)
-def coordinates() -> Mapping[str, tuple[Expr, Expr]]:
-    """The nodes A1, A2, A3 and A4 of the model."""
-    return {name: (_expression(x), _expression(y)) for name, (x, y) in geometry_of(ptm()).nodes.items()}
+    """Of springs and loads, with the free length; squares of the lengths are put in."""
+    total = sum(k / 2 * (square - 2 * l0 * x + l0**2) for x, square in zip(LENGTHS, squares(), strict=True))
+    for load in _MECHANISM.loads:
+        x, y = points()[load.point]
+        total -= evaluate(load.x, _RING) * x + evaluate(load.y, _RING) * y
+    return sp.expand(total)
 
 
 def by_angle(expression: Expr, number: int) -> Expr:
-    """The derivative of a polynomial in cosines and sines by th1 or th2."""
-    cosine, sine = ((c1, s1), (c2, s2))[number - 1]
-    return sp.expand(sp.diff(expression, sine) * cosine - sp.diff(expression, cosine) * sine)
+    """The derivative by th1 or th2 of an expression in cosines, sines and the three lengths."""
+    cosine, sine = CIRCLES[number - 1]
+    total = sp.diff(expression, sine) * cosine - sp.diff(expression, cosine) * sine
+    for length, square in zip(LENGTHS, squares(), strict=True):
+        if (slope := sp.diff(expression, length)) != 0:
+            total += slope * by_angle(square, number) / (2 * length)
+    return sp.expand(total)
 
 
-@lru_cache(maxsize=1)
+@cache
 def gradient() -> tuple[Expr, Expr]:
-    """dU/dth1 and dU/dth2."""
-    first, second = (_expression(g) for g in system_from(ptm()).equations)
-    return first, second
+    """dU/dth1 and dU/dth2, with the free length and horizontal loads."""
+    return by_angle(potential(), 1), by_angle(potential(), 2)
 
 
-@lru_cache(maxsize=1)
+@cache
 def hessian() -> tuple[Expr, Expr, Expr]:
-    """H(1,1), H(1,2) and H(2,2)."""
-    (a, b), (_, d) = ((_expression(h) for h in row) for row in system_from(ptm()).jacobian)
-    return a, b, d
-
-
-def determinant() -> Expr:
-    """det H = H(1,1) H(2,2) - H(1,2)^2."""
-    a, b, d = hessian()
-    return sp.expand(a * d - b**2)
+    """H(1,1), H(1,2) and H(2,2), likewise."""
+    first, second = gradient()
+    return by_angle(first, 1), by_angle(first, 2), by_angle(second, 2)
 
 
 def half_angles(expression: Expr) -> Expr:
     """cos = (1 - t^2)/(1 + t^2) and sin = 2 t/(1 + t^2) put in, for both angles."""
-    return expression.subs(
-        {
-            c1: (1 - t1**2) / (1 + t1**2),
-            s1: 2 * t1 / (1 + t1**2),
-            c2: (1 - t2**2) / (1 + t2**2),
-            s2: 2 * t2 / (1 + t2**2),
-        }
-    )
-
-
-def cleared(expression: Expr) -> Expr:
-    """An expression of degree 1 in each angle, in half angles, times (1 + t1^2)(1 + t2^2)."""
-    return sp.expand(sp.cancel(half_angles(expression) * (1 + t1**2) * (1 + t2**2)))
+    return sp.sympify(expression).subs(HALF)
 
 
 def vanishes(expression: Expr) -> bool:
     """Whether a rational function of all symbols is zero wherever c^2 + s^2 = 1 for both angles."""
-    numerator = sp.numer(sp.together(half_angles(sp.sympify(expression))))
-    return bool(sp.expand(numerator) == 0)
+    return bool(sp.expand(sp.numer(sp.together(half_angles(expression)))) == 0)
 
 
-def equal(left: Expr, right: Expr) -> bool:
-    """Whether two expressions agree as functions of the angles and parameters."""
-    return vanishes(left - right)
+def without(expression: Expr, *symbols: Expr) -> Expr:
+    """An expression with some parameters zero."""
+    return sp.sympify(expression).subs(dict.fromkeys(symbols, 0))
 
 
-@lru_cache(maxsize=1)
+@cache
 def half_angle_equations() -> tuple[Expr, Expr]:
-    """The equilibrium equations in half angles, divided by L1 k and L2 k: the right (5), (6) with F3x, F4x."""
-    first, second = gradient()
-    return sp.expand(cleared(first) / (L1 * k)), sp.expand(cleared(second) / (L2 * k))
+    """The gradient without free lengths in half angles, divided by L1 k and L2 k and times (1 + t1^2)(1 + t2^2)."""
+    first, second = (
+        sp.expand(sp.cancel(half_angles(without(g, l0)) * CLEAR / (length * k)))
+        for g, length in zip(gradient(), (L1, L2), strict=True)
+    )
+    return first, second
 
 
-def quadratic_elimination(p: Expr, q: Expr, unknown: Expr) -> tuple[Expr, Expr, Expr]:
-    """Two polynomials of degree 2 in an unknown: their resultant, and their combination a x + b of degree 1.
-
-    Returns
-    -------
-    The resultant, a and b: with p = p2 x^2 + p1 x + p0 and q likewise, a = p2 q1 - q2 p1 and b = p2 q0 - q2 p0.
-    """
-    p0, p1, p2 = (p.coeff(unknown, e) for e in range(3))
-    q0, q1, q2 = (q.coeff(unknown, e) for e in range(3))
+def quadratic_elimination(equations: Sequence[Expr]) -> tuple[Expr, Expr, Expr]:
+    """Two polynomials of degree 2 in t1: their resultant, and a and b of their combination a t1 + b."""
+    (p0, p1, p2), (q0, q1, q2) = ([p.coeff(t1, e) for e in range(3)] for p in equations)
     a, b = sp.expand(p2 * q1 - q2 * p1), sp.expand(p2 * q0 - q2 * p0)
     return sp.expand(b**2 - a * (p1 * q0 - q1 * p0)), a, b
 
 
-@lru_cache(maxsize=1)
-def sextic() -> tuple[Expr, ...]:
-    """Coefficients, highest first, of the polynomial in t2 that elimination of t1 leaves, vertical forces, over k = 1.
+def divided(expression: Expr) -> Expr:
+    """A polynomial in t2 divided by 1 + t2^2.
 
     Raises
     ------
     ArithmeticError
-        If the resultant does not have the factor 1 + t2^2 once.
+        When it has not this factor exactly once.
     """
-    first, second = (e.subs({**VERTICAL, k: 1}) for e in half_angle_equations())
-    resultant, _, _ = quadratic_elimination(first, second, t1)
-    quotient, remainder = sp.div(sp.Poly(resultant, t2), sp.Poly(1 + t2**2, t2))
-    if not remainder.is_zero or sp.div(quotient, sp.Poly(1 + t2**2, t2))[1].is_zero:
-        raise ArithmeticError("the resultant has not the factor 1 + t2^2 once")
-    return tuple(sp.factor(c) for c in quotient.all_coeffs())
+    factor = sp.Poly(1 + t2**2, t2)
+    quotient, remainder = sp.div(sp.Poly(expression, t2), factor)
+    if not remainder.is_zero or sp.div(quotient, factor)[1].is_zero:
+        raise ArithmeticError("the polynomial has not the factor 1 + t2^2 once")
+    return quotient.as_expr()

@@ -1,80 +1,69 @@
 """A stress case: a question with extreme numbers, its tame sibling, and the answer with where it comes from.
 
-Guarantee: all numbers are exact. An expected answer says what is known beforehand; what it leaves open is None.
+Guarantee: all numbers are exact. An expected answer says what is known beforehand; what it leaves open is empty. Names
+are unique. The named cases are data, ``cases.yaml``, whose head says how they are written. Their counts follow from a
+theorem or a construction named in ``source``, and do not come from the program. The theorems are those of the manual:
+without load two equilibria are stable, of six, exactly if |L2 - L1| < 2 rho < L1 + L2, else one of four; loads that are
+small (large) enough against k rho and k L change nothing else (leave four, one of them stable); equations stay the same
+when stiffnesses and forces, or lengths and force/stiffness, are scaled together. Areas are in the product of the axes'
+units.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import Any
 
-from ptmcad.studies.slices import Exact
+import yaml
+
+from ptmcad.errors import ConfigError, shown
+from ptmcad.mechanism import ptm
+from ptmcad.studies.stress.constructions import NAMED, Pose
+from ptmcad.text.expressions import constant
+from ptmcad.text.parsing import parse
+from ptmcad.text.syntax import did_you_mean
+
+ALL = "all"
+"""The name that stands for every named case."""
+DIGITS = Fraction(1234567891234567891234567891234567891234, 10**40)
+NODE = Fraction("0.70710678118654752440084436210484903928483593768847403658833986899536623923105351")
+TEXTS = Path(__file__).with_name("cases.yaml")
+
+Span = tuple[Fraction, Fraction]
 
 
 @dataclass(frozen=True, slots=True)
-class PointQuestion:
-    """All equilibria at a point: `ptmcad.solve`."""
+class Question:
+    """What ptmcad is asked: without axes `ptmcad.solve`, with axes `ptmcad.classify` or, along one, `ptmcad.intervals`.
+
+    Attributes
+    ----------
+    parameters : of the paper's mechanism; of a point all of them but free lengths that are zero.
+    tolerance : the share of the window that the certified engine may leave undetermined; None for the exact engine.
+    along, fixed : the axis that varies along a line, and the value of the other one.
+    """
 
     parameters: Mapping[str, Fraction]
-
-
-@dataclass(frozen=True, slots=True)
-class SliceQuestion:
-    """The region map of a slice: `ptmcad.classify`, by the certified engine where springs have free lengths.
-
-    Attributes
-    ----------
-    parameters : exact numbers, or text of them or of expressions in the axes.
-    tolerance : the share of the window that the certified engine may leave undetermined.
-    along, at : where an axis is named, the intervals of constant count along it at a value of the other one are asked
-        instead: `ptmcad.intervals`.
-    """
-
-    parameters: Mapping[str, Exact]
-    axes: Mapping[str, tuple[Fraction, Fraction]]
+    axes: Mapping[str, Span] = field(default_factory=dict)
     tolerance: Fraction | None = None
     along: str = ""
-    at: Mapping[str, Fraction] = field(default_factory=dict)
+    fixed: Mapping[str, Fraction] = field(default_factory=dict)
 
+    @property
+    def kind(self) -> str:
+        """What is asked, in a word."""
+        if not self.axes:
+            return "point"
+        return "line" if self.along else "map" if self.tolerance is None else "certified map"
 
-Question = PointQuestion | SliceQuestion
-
-
-@dataclass(frozen=True, slots=True)
-class PointAnswer:
-    """Numbers of equilibria and of stable ones.
-
-    Attributes
-    ----------
-    pose : the angles' cosines and sines at one of the equilibria (c1, s1, c2, s2), where one is known exactly.
-    """
-
-    total: int | None = None
-    stable: int | None = None
-    pose: tuple[Fraction, Fraction, Fraction, Fraction] | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class MapAnswer:
-    """Stable counts of the regions, in increasing order, and bounds for the area where two equilibria are stable.
-
-    Of a certified map only the different counts are compared: what it leaves open may part a region.
-    """
-
-    stable: tuple[int, ...]
-    area_of_two: tuple[Fraction, Fraction] | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class LineAnswer:
-    """Stable counts of the intervals in their order, and bounds for the ends between intervals of different counts."""
-
-    stable: tuple[int, ...]
-    ends: tuple[tuple[Fraction, Fraction], ...]
-
-
-Answer = PointAnswer | MapAnswer | LineAnswer
+    @property
+    def has_free_lengths(self) -> bool:
+        """Whether it is for the certified engine."""
+        return any(name.startswith("l0") and value for name, value in self.parameters.items())
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +76,11 @@ class Case:
         a fold; the plot's horizontal axis.
     sibling : the tame question that costs are compared with.
     source : where the expected answer comes from.
+    expected : as it is shown: 6/2 of a point (all and stable equilibria), 1 2 1 of maps and lines (stable counts, of
+        regions in increasing order, of intervals in theirs); empty where a second method alone knows it.
+    pose : of a point, cosines and sines of one of the equilibria, where one is known exactly.
+    area : of a map, bounds for the area where two equilibria are stable.
+    ends : of a line, bounds for the ends between intervals of different counts.
     slow : whether it takes more than about a second.
     """
 
@@ -95,12 +89,99 @@ class Case:
     stiffness: Fraction
     question: Question
     sibling: Question
-    expected: Answer
     source: str
-    slow: bool = field(default=False)
+    expected: str = ""
+    pose: Pose | None = None
+    area: Span | None = None
+    ends: tuple[Span, ...] = ()
+    slow: bool = False
 
     @property
     def has_free_lengths(self) -> bool:
         """Whether a question is for the certified engine."""
-        given = (*self.question.parameters.items(), *self.sibling.parameters.items())
-        return any(name.startswith("l0") and value not in (0, "0") for name, value in given)
+        return self.question.has_free_lengths or self.sibling.has_free_lengths
+
+
+def point(**given: Fraction | int | str) -> Question:
+    """A point of the paper's mechanism: L1 = 1, L2 = 3/2, rho = 7/10, k = 100 and no load unless given."""
+    values = {name: Fraction(value) for name, value in given.items()}
+    p = {"L1": Fraction(1), "L2": Fraction(3, 2), "rho": Fraction(7, 10)}
+    p |= dict.fromkeys(ptm().stiffnesses, values.pop("k", Fraction(100))) | dict.fromkeys(ptm().forces, Fraction(0))
+    if free := values.pop("l0", Fraction(0)):
+        p |= dict.fromkeys(ptm().free_lengths, free)
+    if unknown := sorted(values.keys() - p.keys()):
+        raise ValueError(f"unknown parameters {unknown}")
+    return Question(p | values)
+
+
+@cache
+def named_cases() -> tuple[Case, ...]:
+    """Every named case."""
+    entries = yaml.safe_load(TEXTS.read_text(encoding="utf-8"))["cases"]
+    return tuple(_case(entry, e) for entry in entries for e in entry["e"])
+
+
+def _case(entry: Mapping[str, Any], e: int) -> Case:
+    known = {"s": Fraction(10) ** e, "digits": DIGITS, "node": NODE}
+    at = entry["question"].get("at")
+    return Case(
+        entry["name"].format(e=e),
+        entry["family"],
+        known["s"],
+        _question(entry["question"], known),
+        _question(entry["tame"], known),
+        entry["source"],
+        entry.get("expected", ""),
+        NAMED[at].pose if at in NAMED and NAMED[at].cusp and "axes" not in entry["question"] else None,
+        _span(entry["area"], known) if "area" in entry else None,
+        tuple(_span(end, known) for end in entry.get("ends", ())),
+        e in entry.get("slow", ()),
+    )
+
+
+def _question(entry: Mapping[str, Any], known: Mapping[str, Fraction]) -> Question:
+    axes = entry.get("axes", {})
+    base: Mapping[str, Fraction] = {}
+    if "at" in entry:
+        base = NAMED[entry["at"]].beside(_number(entry.get("beside", 0), known))
+        known = {**known, **base}
+    given = {name: _number(text, known) for name, text in entry.get("parameters", {}).items()}
+    values = {name: value for name, value in {**base, **given}.items() if name not in axes}
+    if not axes:
+        return point(**values)
+    return Question(
+        values,
+        {name: _span(ends, known) for name, ends in axes.items()},
+        _number(entry["tolerance"], known) if "tolerance" in entry else None,
+        entry.get("along", ""),
+        {name: _number(text, known) for name, text in entry.get("fixed", {}).items()},
+    )
+
+
+def _span(ends: Sequence[object], known: Mapping[str, Fraction]) -> Span:
+    low, high = (_number(end, known) for end in ends)
+    return low, high
+
+
+def _number(text: object, known: Mapping[str, Fraction]) -> Fraction:
+    return parse(str(text), {name: constant(value) for name, value in known.items()}).constant()
+
+
+def chosen(names: Sequence[str]) -> tuple[Case, ...]:
+    """The cases of these names and families; all of them for ``all`` and when none is given.
+
+    Raises
+    ------
+    ConfigError
+        For a name that is neither.
+    """
+    cases = named_cases()
+    known = {case.name for case in cases} | {case.family for case in cases} | {ALL}
+    for name in names:
+        if name not in known:
+            raise ConfigError(
+                f"{shown(repr(name), 60)} is no stress case and no family: ptmcad stress --list shows them"
+                f"{did_you_mean(name, tuple(sorted(known)))}",
+                key="NAMES",
+            )
+    return tuple(c for c in cases if not names or ALL in names or c.name in names or c.family in names)

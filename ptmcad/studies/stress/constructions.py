@@ -1,7 +1,7 @@
 """Parameters at which an equilibrium is known exactly to be degenerate, and which side of them has more equilibria.
 
-Guarantee: exact. At the parameters of `fold` and `cusp` the given rational pose is an equilibrium with a singular
-Hessian; the signs that distinguish the sides are computed in rational numbers.
+Guarantee: exact. At the parameters the given rational pose is an equilibrium with a singular Hessian; the signs that
+distinguish the sides are computed in rational numbers.
 
 Derivation. The potential is phi_1(th1) + phi_2(th2) + G cos(th1 + th2), with G = k3 L1 L2 and phi_i a sine wave. So at
 an equilibrium, writing h_ij for the Hessian, c12 and s12 for cosine and sine of th1 + th2,
@@ -29,6 +29,8 @@ from fractions import Fraction
 Parameters = Mapping[str, Fraction]
 Pose = tuple[Fraction, Fraction, Fraction, Fraction]
 """cos th1, sin th1, cos th2, sin th2."""
+FEW = (4, 1)
+"""Equilibria and stable ones on the side that has fewer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,110 +39,86 @@ class Degenerate:
 
     Attributes
     ----------
-    many, few : (total, stable) on the two sides.
-    side : sign of the change, along `beside_fold` or `beside_cusp`, that leads to ``many``.
+    many : (total, stable) on the side that has more.
+    side : sign of the change in `beside` that leads to ``many``.
     """
 
     parameters: Parameters
     pose: Pose
+    cusp: bool
     many: tuple[int, int]
-    few: tuple[int, int]
     side: int
+
+    def beside(self, distance: Fraction) -> Parameters:
+        """The parameters at a distance; positive is towards more equilibria.
+
+        Of a fold F3 is changed by so many times the force k2 rho; of a cusp h22 by so many times k3 L2^2, while the
+        pose is kept an equilibrium.
+        """
+        p, (_, _, c2, s2) = self.parameters, self.pose
+        change = self.side * distance
+        if not self.cusp:
+            return {**p, "F3": p["F3"] + change * p["k2"] * p["rho"]}
+        # h22 / L2 = (a2 - k3 L1 c1) / c2 and F4 = (a2 s2 - k3 L1 s12) / c2
+        shift = change * p["k3"] * p["L2"] * c2
+        return {**p, "F4x": p["F4x"] - shift, "F4": p["F4"] + shift * s2 / c2}
 
 
 def rational_pose(t1: Fraction, t2: Fraction) -> Pose:
     """The pose whose half angles have these tangents."""
-    c1, s1 = (1 - t1 * t1) / (1 + t1 * t1), 2 * t1 / (1 + t1 * t1)
-    c2, s2 = (1 - t2 * t2) / (1 + t2 * t2), 2 * t2 / (1 + t2 * t2)
-    return c1, s1, c2, s2
+    return (1 - t1**2) / (1 + t1**2), 2 * t1 / (1 + t1**2), (1 - t2**2) / (1 + t2**2), 2 * t2 / (1 + t2**2)
 
 
-def fold(lengths: tuple[Fraction, Fraction], rho: Fraction, springs: tuple[Fraction, ...], pose: Pose) -> Degenerate:
-    """Loads under which a pose is an equilibrium on a fold; F3x is zero.
-
-    Raises
-    ------
-    ValueError
-        When the pose is on no fold: a cosine, h11 or the third derivative along the kernel is zero.
-    """
-    first, second = lengths
-    _, k2, k3 = springs
-    c1, s1, c2, s2 = pose
-    c12, s12 = c1 * c2 - s1 * s2, s1 * c2 + c1 * s2
-    a1 = (k2 + k3) * rho
-    if c1 == 0 or c2 == 0:
-        raise ValueError("no vertical load balances a vertical bar")
-    h11, h12 = first * (a1 - k3 * second * c2) / c1, -k3 * first * second * c12
-    if h11 == 0:
-        raise ValueError("h11 is zero")
-    a2 = k3 * first * c1 + c2 * h12 * h12 / (second * h11)
-    third = 3 * k3 * first * second * s12 * h12 * -h11 * (h12 - h11)
-    if third == 0:
-        raise ValueError("the third derivative along the kernel is zero")
-    # a larger F3 adds -L1 c1 to the first component of the gradient
-    turn = -first * c1 * h12
-    many, few = ((6, 2), (4, 1)) if h11 > 0 else ((6, 1), (4, 1))
-    return Degenerate(_loaded(lengths, rho, springs, pose, a1, a2), pose, many, few, -1 if turn * third > 0 else 1)
-
-
-def beside_fold(at: Degenerate, distance: Fraction) -> Parameters:
-    """The parameters with F3 changed by so many times the force k2 rho; positive is towards more equilibria."""
-    p = at.parameters
-    return {**p, "F3": p["F3"] + at.side * distance * p["k2"] * p["rho"]}
-
-
-def cusp(lengths: tuple[Fraction, Fraction], rho: Fraction, springs: tuple[Fraction, ...], pose: Pose) -> Degenerate:
-    """Loads under which a pose is an equilibrium at a cusp of the folds.
+def degenerate(
+    lengths: tuple[Fraction, Fraction], rho: Fraction, springs: tuple[Fraction, ...], pose: Pose, *, cusp: bool
+) -> Degenerate:
+    """Loads under which a pose is an equilibrium on a fold, with F3x zero, or at a cusp of the folds.
 
     Raises
     ------
     ValueError
-        When the pose is at no cusp: a cosine, or the cosine or sine of th1 + th2, is zero.
+        When there are none: a cosine, h11, h12 or the derivative that tells the sides is zero.
     """
-    first, second = lengths
-    c1, s1, c2, s2 = pose
-    c12, s12 = c1 * c2 - s1 * s2, s1 * c2 + c1 * s2
-    if 0 in (c1, c2, c12, s12):
-        raise ValueError("a cosine or a sine is zero")
-    k3 = springs[2]
-    h = -k3 * first * second * c12
-    a1, a2 = k3 * second * c2 + h * c1 / first, k3 * first * c1 + h * c2 / second
-    many, few = ((6, 2), (4, 1)) if h > 0 else ((6, 1), (4, 1))
-    return Degenerate(_loaded(lengths, rho, springs, pose, a1, a2), pose, many, few, 1 if h > 0 else -1)
-
-
-def beside_cusp(at: Degenerate, distance: Fraction) -> Parameters:
-    """The parameters with h22 changed by this much, relative to k3 L2^2, the pose being kept an equilibrium."""
-    p = at.parameters
-    _, _, c2, s2 = at.pose
-    change = at.side * distance * p["k3"] * p["L2"]  # of h22 / L2
-    # h22 / L2 = (a2 - k3 L1 c1) / c2 and F4 = (a2 s2 - k3 L1 s12) / c2
-    shift = change * c2
-    return {**p, "F4x": p["F4x"] - shift, "F4": p["F4"] + shift * s2 / c2}
-
-
-def _loaded(
-    lengths: tuple[Fraction, Fraction],
-    rho: Fraction,
-    springs: tuple[Fraction, ...],
-    pose: Pose,
-    a1: Fraction,
-    a2: Fraction,
-) -> Parameters:
-    """The parameters for which (k2 + k3) rho + F3x = a1, (k1 + k3) rho - F4x = a2 and the pose is an equilibrium."""
     first, second = lengths
     k1, k2, k3 = springs
     c1, s1, c2, s2 = pose
-    s12 = s1 * c2 + c1 * s2
-    return {
-        "L1": first,
-        "L2": second,
-        "rho": rho,
-        "k1": k1,
-        "k2": k2,
-        "k3": k3,
+    c12, s12 = c1 * c2 - s1 * s2, s1 * c2 + c1 * s2
+    if c1 == 0 or c2 == 0:
+        raise ValueError("no vertical load balances a vertical bar")
+    h12 = -k3 * first * second * c12
+    h11 = h12 if cusp else first * ((k2 + k3) * rho - k3 * second * c2) / c1
+    if h11 == 0:
+        raise ValueError("h11 is zero")
+    third = -3 * k3 * first * second * s12 * h12 * h11 * (h12 - h11)
+    if s12 == 0 or (third == 0 and not cusp):
+        raise ValueError("the derivative along the kernel is zero")
+    # a larger F3 adds -L1 c1 to the first component of the gradient
+    towards = h11 if cusp else first * c1 * h12 * third
+    # (k2 + k3) rho + F3x = a1 and (k1 + k3) rho - F4x = a2
+    a1, a2 = k3 * second * c2 + h11 * c1 / first, k3 * first * c1 + h12 * h12 / h11 * c2 / second
+    parameters = {
+        **dict(zip(("L1", "L2", "rho", "k1", "k2", "k3"), (first, second, rho, *springs), strict=True)),
         "F3": s1 * (a1 - k3 * second * c2) / c1 - k3 * second * s2,
         "F4": (a2 * s2 - k3 * first * s12) / c2,
         "F3x": a1 - (k2 + k3) * rho,
         "F4x": (k1 + k3) * rho - a2,
     }
+    return Degenerate(parameters, pose, cusp, (6, 2) if h11 > 0 else (6, 1), 1 if towards > 0 else -1)
+
+
+def _named() -> dict[str, Degenerate]:
+    lengths, springs = (Fraction(1), Fraction(3, 2)), (Fraction(100),) * 3
+    tangents = {
+        "fold": ("1/3", "2/5"), "other fold": ("3/2", "1/5"), "fold of maxima": ("-2", "3"),
+        "cusp": ("1/2", "3/7"), "cusp of maxima": ("1/3", "2/5"),
+    }  # fmt: skip
+    return {
+        name: degenerate(
+            lengths, Fraction(7, 10), springs, rational_pose(Fraction(t1), Fraction(t2)), cusp="cusp" in name
+        )
+        for name, (t1, t2) in tangents.items()
+    }
+
+
+NAMED = _named()
+"""Those that the named cases lie beside."""

@@ -10,12 +10,11 @@ from collections.abc import Sequence
 from fractions import Fraction
 from math import log10
 
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ptmcad.show.render.printing import settings
-from ptmcad.studies.stress.measure import Outcome
+from ptmcad.studies.stress.campaign import Outcome
 from ptmcad.text.numerals import magnitude
 
 MIN_DRAWN_ERROR = 1e-20
@@ -44,23 +43,21 @@ def draw_stress(outcomes: Sequence[Outcome]) -> Figure:
             if k % COLUMNS == 0:
                 place.set_ylabel("error", fontsize=8)
         if axes:
-            handles, labels = _legend(axes[0])
-            figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False, fontsize=9, title=NOTE,
-                          title_fontsize=9)  # fmt: skip
+            figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False,
+                          fontsize=9, title=NOTE, title_fontsize=9)  # fmt: skip
         return figure
 
 
 def _family(axes: Axes, family: str, outcomes: Sequence[Outcome]) -> None:
-    for right, marker, colour in ((True, "o", RIGHT), (False, "X", WRONG)):
-        chosen = [o for o in outcomes if bool(o.verdict.double_right) is right]
-        axes.semilogy(
-            [exponent(o.case.stiffness) for o in chosen], [_drawn(o.verdict.double_error) for o in chosen],
-            linestyle="none", marker=marker, markersize=6, color=colour, markeredgewidth=0.3, markeredgecolor="white",
-        )  # fmt: skip
-    axes.semilogy(
-        [exponent(o.case.stiffness) for o in outcomes], [_drawn(o.verdict.error) for o in outcomes],
-        linestyle="none", marker="_", markersize=7, color=OURS,
-    )  # fmt: skip
+    right, wrong = ([o for o in outcomes if o.verdict.double_right is good] for good in (True, False))
+    for chosen, error, label, style in (
+        (right, "double_error", "double precision, count right", {"marker": "o", "color": RIGHT}),
+        (wrong, "double_error", "double precision, count wrong", {"marker": "X", "color": WRONG}),
+        (outcomes, "error", "ptmcad, middle of the enclosure", {"marker": "_", "color": OURS}),
+    ):
+        heights = [_drawn(getattr(o.verdict, error)) for o in chosen]
+        axes.semilogy([exponent(o.case.stiffness) for o in chosen], heights, linestyle="none", markersize=6.5,
+                      label=label, **style)  # fmt: skip
     axes.set_ylim(MIN_DRAWN_ERROR / 10, 30)
     axes.set_yticks([1e-20, 1e-15, 1e-10, 1e-5, 1], ["1e-20", "1e-15", "1e-10", "1e-5", "1"])
     axes.minorticks_off()
@@ -70,15 +67,6 @@ def _family(axes: Axes, family: str, outcomes: Sequence[Outcome]) -> None:
     axes.xaxis.set_major_formatter(lambda value, _: f"1e{value:g}")
     axes.locator_params(axis="x", nbins=4, integer=True)
     axes.grid(True, color="#dddddd", linewidth=0.5)
-
-
-def _legend(axes: Axes) -> tuple[list[Artist], list[str]]:
-    shown = ((RIGHT, "o", "double precision, count right"), (WRONG, "X", "double precision, count wrong"),
-             (OURS, "_", "ptmcad, middle of the enclosure"))  # fmt: skip
-    handles: list[Artist] = [
-        axes.plot([], [], linestyle="none", marker=marker, color=colour, markersize=7)[0] for colour, marker, _ in shown
-    ]
-    return handles, [label for _, _, label in shown]
 
 
 def exponent(value: Fraction) -> float:

@@ -5,38 +5,28 @@ length all equilibria are there; with free lengths those to which some start lea
 
 Without free lengths: the real roots of the sextic (`ptmcad.studies.sextic`) are isolated with proof; th2 = pi counts as
 a root for each degree that is missing. Where V and W vanish both signs hold, elsewhere that of V W. Nothing is lost, as
-multiplicities are compared. With free lengths: Newton's method in balls, proved by Krawczyk's operator.
+multiplicities are compared. With free lengths no more is known than where to start. From either Newton's method in
+balls goes on, and Krawczyk's operator proves the pose.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, ctx, fmpq, fmpq_poly
+from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from ptmcad.studies.equilibria import IndexedPose, balls, in_balls, inverse, proved, sign
 from ptmcad.studies.sextic import sextic
 from ptmcad.text.flint_numbers import from_fraction
 
-DIGITS = 100
-"""To which the angles of a pose are known, or more."""
-_BITS = 400
-_MAX_BITS = 2**15
+BITS = (600, 2400, 9600)
+"""Of precision, tried in turn; a pose is proved within 2^(-2/3 bits) of its angles."""
 
 
 class Degenerate(ArithmeticError):
     """Some equilibrium has a singular Hessian, or there are infinitely many."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Candidate:
-    """A real t (None for th2 = pi) with the sign of the branch of (cos th1, sin th1)."""
-
-    t: arb | None
-    sign: int
 
 
 def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...]:
@@ -48,113 +38,68 @@ def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...]:
         When some equilibrium is, or when N has no finite number of roots.
     """
     p = {name: from_fraction(v) for name, v in parameters.items()}
-    bits = _BITS
-    while bits <= _MAX_BITS:
+    for bits in BITS:
         with ctx.workprec(bits):
             candidates = _candidates(p)
-            poses = [_pose(p, c) for c in candidates] if candidates is not None else [None]
-            found = tuple(pose for pose in poses if pose is not None)
-            if len(found) == len(poses):
-                return found
-        bits *= 2
-    raise ArithmeticError(f"{_MAX_BITS} bits do not settle the equilibria")
+        poses = [None] if candidates is None else [newton_pose(parameters, c, bits) for c in candidates]
+        found = tuple(pose for pose in poses if pose is not None)
+        if len(found) == len(poses):
+            return found
+    raise ArithmeticError(f"{BITS[-1]} bits do not settle the equilibria")
 
 
-def _candidates(p: Mapping[str, fmpq]) -> list[_Candidate] | None:
-    """The real roots of N with their signs; None when the precision is too low for a sign."""
-    found_by_hand = sextic(p)
-    polynomial, first_moment, second_moment, length = (
-        fmpq_poly(list(c)) for c in (found_by_hand.coefficients, found_by_hand.v, found_by_hand.w, found_by_hand.square)
-    )
-    if polynomial.degree() < 0:
-        raise Degenerate("the sextic vanishes")
-    found: list[_Candidate] = []
+def _candidates(p: Mapping[str, fmpq]) -> list[tuple[arb, arb]] | None:
+    """The angles that belong to the real roots of N; None when the precision is too low for a sign."""
+    by_hand = sextic(p)
+    parts = (by_hand.coefficients, by_hand.v, by_hand.w, by_hand.square)
+    polynomial, v, w, square = (fmpq_poly(list(c)) for c in parts)
     missing = 6 - polynomial.degree()
-    if missing:
-        # at th2 = pi, V = -F3 and W = F4
-        if p["F3"] == 0 and p["F4"] == 0 and missing == 2:
-            found += [_Candidate(None, 1), _Candidate(None, -1)]
-        elif missing == 1 and p["F3"] != 0:
-            found.append(_Candidate(None, 1 if -p["F3"] * p["F4"] > 0 else -1))
-        else:
-            raise Degenerate("th2 = pi is a multiple solution")
+    if missing > 6:
+        raise Degenerate("the sextic vanishes")
+    # at th2 = pi, V = -F3 and W = F4
+    flat = p["F3"] == 0 and p["F4"] == 0
+    if missing not in ((0, 2) if flat else (0, 1)) or (missing == 1 and p["F3"] == 0):
+        raise Degenerate("th2 = pi is a multiple solution")
+    found: list[tuple[arb | None, int]] = [(None, side) for side in (1, -1)[:missing]] if flat else []
+    if missing == 1:
+        found.append((None, 1 if -p["F3"] * p["F4"] > 0 else -1))
     for factor, multiplicity in polynomial.numer().factor()[1]:
-        of_factor = fmpq_poly(factor)
-        both = (first_moment % of_factor).degree() < 0 and (second_moment % of_factor).degree() < 0
-        for root in _real_roots(factor):
+        v_zero, w_zero, square_zero = ((q % fmpq_poly(factor)).degree() < 0 for q in (v, w, square))
+        both = v_zero and w_zero
+        pairs: Any = factor.complex_roots()  # FLINT's stub says otherwise
+        for root in (root.real for root, _ in pairs if root.imag == 0):
             if multiplicity != (2 if both else 1):
                 raise Degenerate("the sextic has a multiple root")
-            if both and (length % of_factor).degree() < 0:
+            if both and square_zero:
                 raise Degenerate("the first equation leaves th1 free")
-            if both:
-                found += [_Candidate(root, 1), _Candidate(root, -1)]
-                continue
-            side = sign(_at(first_moment, root) * _at(second_moment, root))
-            if not side:
+            signs = (1, -1) if both else (sign(arb_poly(v)(root) * arb_poly(w)(root)),)
+            if 0 in signs:
                 return None
-            found.append(_Candidate(root, side))
-    return found
+            found += [(root, side) for side in signs]
+    return [_angles(p, t, side) for t, side in found]
 
 
-def _real_roots(factor: Any) -> list[arb]:
-    """The real roots of an irreducible polynomial over Z, isolated with proof at the context's precision."""
-    return [root.real for root, _ in factor.complex_roots() if root.imag == 0]
-
-
-def _at(polynomial: fmpq_poly, t: arb) -> arb:
-    total = arb(0)
-    for c in reversed(polynomial.coeffs()):
-        total = total * t + arb(c)
-    return total
-
-
-def _pose(p: Mapping[str, fmpq], candidate: _Candidate) -> IndexedPose | None:
-    """The pose of a candidate; None when the precision is too low."""
-    t = candidate.t
-    if t is None:
-        th2, c2, s2 = arb.pi(), arb(-1), arb(0)
-    else:
-        th2 = 2 * t.atan()
-        c2, s2 = (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
+def _angles(p: Mapping[str, fmpq], t: arb | None, side: int) -> tuple[arb, arb]:
+    """th1 and th2 of a root (None for th2 = pi) with the sign of (cos th1, sin th1)."""
+    th2 = arb.pi() if t is None else 2 * t.atan()
     g = arb(p["k3"] * p["L2"])
-    x = (arb((p["k2"] + p["k3"]) * p["rho"] + p["F3x"]) - g * c2) * candidate.sign
-    y = (arb(p["F3"]) + g * s2) * candidate.sign
-    length = (x * x + y * y).sqrt()
-    if not length > 0:
-        return None
-    th1 = arb(0) if y.is_exact() and y == 0 and x > 0 else arb.atan2(y, x)
-    c1, s1 = x / length, y / length
-    h11 = arb(p["L1"]) * length * candidate.sign
-    h12 = -g * arb(p["L1"]) * (c1 * c2 - s1 * s2)
-    pull = arb(p["k3"] * p["L1"])
-    a2 = arb((p["k1"] + p["k3"]) * p["rho"] - p["F4x"])
-    h22 = arb(p["L2"]) * ((a2 - pull * c1) * c2 + (pull * s1 + arb(p["F4"])) * s2)
-    determinant = sign(h11 * h22 - h12 * h12)
-    if determinant == 0 or not (_fine(th1) and _fine(th2)):
-        return None
-    return IndexedPose(th1, th2, 1 if determinant < 0 else 0 if h11 > 0 else 2)
+    x = arb((p["k2"] + p["k3"]) * p["rho"] + p["F3x"]) - g * (-1 if t is None else (1 - t * t) / (1 + t * t))
+    y = arb(p["F3"]) + g * (0 if t is None else 2 * t / (1 + t * t))
+    return arb.atan2(arb((y * side).mid()), arb((x * side).mid())), th2
 
 
-def _fine(angle: arb) -> bool:
-    """Whether an angle is known to `DIGITS` digits, or to be tiny (exactly zero, perhaps)."""
-    radius = arb(angle.rad())
-    return bool(radius < abs(angle) * arb(10) ** -DIGITS or abs(angle) + radius < arb(10) ** (-3 * DIGITS))
-
-
-# ---------------------------------------------------------------------------------------------------- free lengths
-
-
-def newton_pose(parameters: Mapping[str, Fraction], start: tuple[float, float]) -> IndexedPose | None:
+def newton_pose(
+    parameters: Mapping[str, Fraction], start: tuple[arb | float, arb | float], bits: int = BITS[0]
+) -> IndexedPose | None:
     """The equilibrium that Newton's method finds from a start, proved; None when it finds none.
 
     Parameters
     ----------
     start : th1, th2 in radians.
     """
-    bits = 512
     with ctx.workprec(bits):
-        p = balls(parameters)
-        angles = [arb(start[0]), arb(start[1])]
+        p, radius = balls(parameters), arb(2) ** (-2 * bits // 3)
+        angles = [arb(arb(a).mid()) for a in start]
         for _ in range(60):
             value, hessian, _ = in_balls(p, angles)
             rough = inverse(hessian)
@@ -165,7 +110,6 @@ def newton_pose(parameters: Mapping[str, Fraction], start: tuple[float, float]) 
             if not all(s.is_finite() for s in step):
                 return None
             angles = [arb((a - s).mid()) for a, s in zip(angles, step, strict=True)]
-            if all(abs(s) < arb(2) ** -(bits - 60) for s in step):
+            if all(abs(s) < radius for s in step):
                 break
-        found = proved(p, angles, arb(2) ** -(bits - 100))
-        return None if found is None else IndexedPose(*found.box, found.negative)
+        return proved(p, angles, radius)

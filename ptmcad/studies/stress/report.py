@@ -1,4 +1,4 @@
-"""A campaign as text: a table for the terminal, a page for the manual, JSON and CSV.
+"""A campaign as text: a table for the terminal, a page, JSON and CSV.
 
 Guarantee: JSON and CSV hold every figure; a number that does not exist is null or empty, never 0.
 """
@@ -12,9 +12,8 @@ from collections.abc import Iterable, Sequence
 from math import isfinite
 from typing import Any
 
-from ptmcad.studies.stress.campaign import MAX_COST, Campaign
-from ptmcad.studies.stress.case import Case, SliceQuestion
-from ptmcad.studies.stress.measure import Outcome
+from ptmcad.studies.stress.campaign import MAX_COST, Campaign, Outcome
+from ptmcad.studies.stress.case import Case
 from ptmcad.studies.tables import columns, page
 from ptmcad.studies.tables import markdown as table_of
 from ptmcad.text.numerals import shortest_text
@@ -23,34 +22,28 @@ _OF_VERDICT = (
     "expected", "found", "right", "remarks", "double", "double_right", "error", "double_error", "condition", "bits"
 )  # fmt: skip
 _OF_COST = ("calls", "sibling_calls", "seconds", "sibling_seconds", "ratio", "ratio_low", "ratio_high")
-HEADINGS = ("case", "known", "ptmcad", "double", "double's error", "condition", "bits", "ms", "x tame")
-
-
-def number_text(value: float | None, digits: int = 2) -> str:
-    """A number for a table: ``-`` when there is none."""
-    return "-" if value is None else f"{value:.{digits}g}"
+HEADINGS = ("case", "known", "ptmcad", "double", "double's error", "condition", "bits")
+TIMES = ("ms", "x tame")
 
 
 def cells(outcome: Outcome) -> tuple[str, ...]:
     """A row of the table, in the order of `HEADINGS`."""
-    v, c = outcome.verdict, outcome.cost
+    v = outcome.verdict
+    numbers = ("-" if value is None else f"{value:.2g}" for value in (v.double_error, v.condition))
     return (
         outcome.case.name,
         v.expected,
         v.found if v.right else f"{v.found} WRONG",
         v.double if v.double_right else f"{v.double} wrong",
-        number_text(v.double_error),
-        number_text(v.condition),
+        *numbers,
         str(v.bits or "-"),
-        f"{1000 * c.seconds:.3g}",
-        f"{c.ratio:.2g}",
     )
 
 
 def table(campaign: Campaign) -> str:
     """The campaign as a table for a terminal, with a summary below."""
-    lines = columns([HEADINGS, *map(cells, campaign.outcomes)])
-    return "\n".join([*lines, "", *summary(campaign)])
+    rows = [(*cells(o), f"{1000 * o.seconds:.3g}", f"{o.ratio:.2g}") for o in campaign.outcomes]
+    return "\n".join([*columns([(*HEADINGS, *TIMES), *rows]), "", *summary(campaign)])
 
 
 def markdown(campaign: Campaign) -> str:
@@ -58,18 +51,15 @@ def markdown(campaign: Campaign) -> str:
 
     Times are left out, so that the same versions write the same page; the work beside its sibling's stands for them.
     """
-    kept = [k for k, name in enumerate(HEADINGS) if name not in ("ms", "x tame")]
-    names = [*(HEADINGS[k] for k in kept), "work x tame"]
+    names = [*HEADINGS, "work x tame"]
     wrong, total = len(campaign.double_wrong), len(campaign.outcomes)
     blocks: list[str | list[str]] = []
     for family in dict.fromkeys(o.case.family for o in campaign.outcomes):
-        chosen = [(cells(o), o) for o in campaign.outcomes if o.case.family == family]
-        rows = [[*(row[k] for k in kept), f"{o.cost.work_ratio:.2g}"] for row, o in chosen]
+        rows = [[*cells(o), f"{o.work_ratio:.2g}"] for o in campaign.outcomes if o.case.family == family]
         blocks += [f"## {family[0].upper()}{family[1:]}", table_of(names, rows)]
     written = (
         f"Written by `ptmcad stress` with seed {campaign.seed}. ptmcad is right in {total - len(campaign.wrong)} of "
-        f"{total} cases; double precision is wrong in {wrong}. "
-        "[What is tried, and what the columns mean](../stress.md)."
+        f"{total} cases; double precision is wrong in {wrong}."
     )
     return page("# The stress cases, one by one", written, *blocks)
 
@@ -82,9 +72,9 @@ def summary(campaign: Campaign) -> Iterable[str]:
         yield f"  {outcome.case.name}: {'; '.join(outcome.verdict.remarks)}"
     yield f"double precision is wrong in {len(campaign.double_wrong)} of {total}"
     if campaign.outcomes:
-        worst = max(campaign.outcomes, key=lambda o: o.cost.ratio)
+        worst = max(campaign.outcomes, key=lambda o: o.ratio)
         yield (
-            f"an extreme case costs at most {worst.cost.ratio:.2g} times its tame sibling ({worst.case.name}); "
+            f"an extreme case costs at most {worst.ratio:.2g} times its tame sibling ({worst.case.name}); "
             f"more than {MAX_COST:g} times: {len(campaign.expensive)}"
         )
     if not campaign.complete:
@@ -93,25 +83,14 @@ def summary(campaign: Campaign) -> Iterable[str]:
 
 def listing(cases: Sequence[Case]) -> str:
     """Name, family, question and source of each case."""
-    return "\n".join(columns([(c.name, c.family, question_text(c), c.source) for c in cases]))
-
-
-def question_text(case: Case) -> str:
-    """What is asked, in a word."""
-    if not isinstance(case.question, SliceQuestion):
-        return "point"
-    return "line" if case.question.along else "map" if case.question.tolerance is None else "certified map"
+    return "\n".join(columns([(c.name, c.family, c.question.kind, c.source) for c in cases]))
 
 
 def to_json(campaign: Campaign) -> str:
     """Everything about a campaign."""
     document = {
         "kind": "ptmcad stress",
-        "complete": campaign.complete,
-        "seed": campaign.seed,
-        "repeats": campaign.repeats,
-        "machine": campaign.machine,
-        "versions": campaign.versions,
+        **{name: getattr(campaign, name) for name in ("complete", "seed", "repeats", "machine", "versions")},
         "cases": [record(outcome) for outcome in campaign.outcomes],
     }
     return json.dumps(document, indent=1, allow_nan=False) + "\n"
@@ -129,22 +108,15 @@ def to_csv(campaign: Campaign) -> str:
 
 
 def record(outcome: Outcome) -> dict[str, Any]:
-    """A case and what came out, as plain data."""
+    """A case and what came out, as plain data; None for a number that JSON does not have."""
     case = outcome.case
     values = {
         "name": case.name,
         "family": case.family,
-        "asked": question_text(case),
+        "asked": case.question.kind,
         "stiffness": shortest_text(case.stiffness),
         "source": case.source,
         **{name: getattr(outcome.verdict, name) for name in _OF_VERDICT},
-        **{name: getattr(outcome.cost, name) for name in _OF_COST},
+        **{name: getattr(outcome, name) for name in _OF_COST},
     }
-    return {name: _plain(value) for name, value in values.items()}
-
-
-def _plain(value: object) -> object:
-    """A list for a tuple, and None for a number that JSON does not have."""
-    if isinstance(value, tuple):
-        return list(value)
-    return None if isinstance(value, float) and not isfinite(value) else value
+    return {n: None if isinstance(value, float) and not isfinite(value) else value for n, value in values.items()}
