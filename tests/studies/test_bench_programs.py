@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -43,10 +44,9 @@ def test_the_question_about_a_slice() -> None:
 @pytest.mark.skipif(methods.qepcad.program() is None, reason="qepcad is not installed")
 @pytest.mark.parametrize("base", [0, 1])
 def test_qepcad_gets_the_axis_first_over_which_the_maps_stacks_stand(base: int, tmp_path: Path) -> None:
-    from dataclasses import replace
-
-    (job,) = jobs(Method.QEPCAD, case(tmp_path, replace(cubic(), base=base)))
-    assert not isinstance(job, str)
+    found = jobs(Method.QEPCAD, case(tmp_path, replace(cubic(), base=base)))
+    assert not isinstance(found, str)
+    (job,) = found
     assert job.commands[0][1].splitlines()[1] == ("(a, b)" if base == 0 else "(b, a)")
 
 

@@ -130,7 +130,7 @@ def command() -> tuple[str, ...] | None:
 
 
 def formula(output: str) -> str:
-    """The quantifier-free formula in a text that QEPCAD wrote, empty when there is none: it exits with 0 after errors."""
+    """The quantifier-free formula that QEPCAD wrote, empty when there is none: it exits with 0 after most errors."""
     found = _ANSWER.search(output)
     return " ".join(found.group(1).split()) if found else ""
 
