@@ -7,6 +7,8 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install
 JOBS ?= 2
 # the paper's loaded slices, on which every method is measured
 PAPER := fig3 fig4 fig5-caption fig5-text
+SYSTEMS := fig2 fig4 stiffness systems/cubic systems/orthogonal-3r systems/kuramoto systems/kuramoto-4 \
+	mechanisms/x-joint mechanisms/two-bar-chain mechanisms/two-dof-tensegrity mechanisms/four-bar mechanisms/five-bar
 
 # where this is set, each of the hundreds of processes that the tests start would compile all sources again
 unexport PYTHONDONTWRITEBYTECODE
@@ -22,7 +24,7 @@ help:
 	@echo "make check      ruff, its formatter, what may import what, and mypy in strict mode, on the tests less so"
 	@echo "make bench      error, run time and memory on every slice in configs/, into docs/benchmarks/: ten minutes"
 	@echo "make ablation   what each saving is worth, into docs/benchmarks/: nine minutes"
-	@echo "make systems    twelve systems beside msolve, Singular, QEPCAD and gcad, into docs/benchmarks/: a quarter of an hour"
+	@echo "make systems    twelve systems beside msolve, Singular, QEPCAD and gcad, into out/systems/: a quarter of an hour"
 	@echo "make scaling    how time and memory grow, into docs/benchmarks/: three minutes"
 	@echo "make stress     stiff and extreme cases against double precision, into docs/benchmarks/: some minutes"
 	@echo "make docs       the manual, as out/docs/html/index.html, and the pictures of fig. 4, into docs/img/"
@@ -103,19 +105,21 @@ $(VENV)/.installed-bench: $(VENV)/.installed
 	@touch $@
 
 bench: $(VENV)/.installed-bench
-	$(BIN)/python -m ptmcad.studies.bench --rounds 3 --picture-rounds 1 --out docs/benchmarks
-	$(BIN)/ptmcad bench $(PAPER:%=configs/%.yaml) --time-limit 36 --out docs/benchmarks
+	$(BIN)/python -m ptmcad.studies.bench times --out docs/benchmarks
+	$(BIN)/ptmcad bench $(PAPER:%=configs/%.yaml) --time-limit 36 --out out/bench
 	$(BIN)/ptmcad bench $(filter-out $(PAPER:%=configs/%.yaml),$(wildcard configs/*.yaml)) --quick --rounds 1 --time-limit 5 \
-		--method exact --method certified --method companion --page --out docs/benchmarks
+		--method exact --method certified --method companion --page --out out/bench
+	cp out/bench/*.bench.json out/bench/fig4.bench.svg out/bench/fig5-caption.bench.svg docs/benchmarks
 
 ablation: $(VENV)/.installed
-	$(BIN)/python -m ptmcad.studies.bench.ablation --out docs/benchmarks
+	$(BIN)/python -m ptmcad.studies.bench ablation --out docs/benchmarks
 
-systems: $(VENV)/.installed
-	$(BIN)/python -m ptmcad.studies.bench.systems --out docs/benchmarks
+systems: $(VENV)/.installed-bench
+	$(BIN)/ptmcad bench $(SYSTEMS:%=configs/%.yaml) --quick --page --out out/systems \
+		--method exact --method msolve --method singular --method qepcad --method gcad
 
 scaling: $(VENV)/.installed-bench
-	$(BIN)/python -m ptmcad.studies.bench.scaling --out docs/benchmarks
+	$(BIN)/python -m ptmcad.studies.bench scaling --out docs/benchmarks
 
 stress: $(VENV)/.installed
 	$(BIN)/ptmcad stress all --random 25 --format table,json,png --out docs/benchmarks

@@ -62,18 +62,16 @@ def classify(
     area_tolerance : largest relative width of each region's area bounds, 1e-4 when None; for the exact engine.
     jobs : number of threads of the certified engine, all processors when None; the exact engine uses one.
     progress : called as progress(stage, done, total).
-    without : names of savings to do without, of `ptmcad.question.savings`; ``"all"`` stands for all of the engine's.
     partial : called with the map after each stage that improves it.
     resume : a certified map of the same slice and count, stopped or not, from which to go on. Its cover is taken as
         it stands: what `ptmcad.verify` says of the result rests on it.
     areas : False leaves the regions' areas out: of each is then known that it is at most the window's. The certified
         engine gets them at no extra cost, and gives them in any case.
-    keep : the older name of ``without``.
 
     Raises
     ------
     ConfigError
-        For an unknown engine, count or saving, a tolerance out of range, an option that the engine does not have, a
+        For an unknown engine or count, a tolerance out of range, an option that the engine does not have, a
         slice that the engine does not take, or a map to go on from that is not of this slice.
     HypothesisError
         When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.

@@ -1,7 +1,7 @@
 """What an exact map will take, in seconds and memory, from counts of what there is to compute.
 
 Not guaranteed: the time is a sum over the stages of what each has to do, with constants fitted to measurements
-(docs/benchmarks/forecast.md), within a factor of three on the shipped and on most random slices.
+(docs/benchmarks/forecast.csv), within a factor of three on the shipped and on most random slices.
 
 Equations become a curve by arithmetic with the entries of multiplication tables, as many as the square of the number of
 solutions, each product of which takes time as the square of their terms; and by an interpolation of the norm.

@@ -17,7 +17,7 @@ from ptmcad.question.config import load
 from ptmcad.question.shipped import record_file
 from ptmcad.question.slice import Slice
 
-METHODS = ("exact", "certified", "companion", "multistart", "qepcad", "gcad")
+METHODS = ("exact", "certified", "companion", "multistart", "qepcad", "singular", "msolve", "gcad")
 DEFAULT = "fig4"
 
 
@@ -61,8 +61,8 @@ def command(
 
     Without CONFIG: fig4, which is shipped. Methods are the exact engine at several area
     tolerances, the certified engine at falling tolerances, grids of companion matrices and of scipy's root finder,
-    and QEPCAD and gcad where they are installed. Each runs as a process of its own; methods take turns. Errors are
-    measured exactly against the exact map.
+    and QEPCAD, Singular, msolve and gcad where they are installed, on the parts that are theirs. Each runs as a process
+    of its own; methods take turns. Errors are measured exactly against the exact map.
 
     Writes NAME.bench.json, .csv, .svg and .png, and NAME.error-time.json for `ptmcad report`, and prints a table. With
     --compare the exit status is 1 when something became slower or worse beyond noise.
@@ -79,10 +79,9 @@ def command(
         return _compare(*compare)
     slices = _slices(configs)
     require(Extra.bench, key="bench")
-    from ptmcad.studies.bench.files import PAGE, SUFFIXES, save, save_page
     from ptmcad.studies.bench.measuring import Settings, measure
     from ptmcad.studies.bench.methods import Method
-    from ptmcad.studies.bench.words import terminal
+    from ptmcad.studies.bench.report import PAGE, SUFFIXES, save, save_page, terminal
     from ptmcad.verification import verify
 
     check_writable(out, (*(f"{slice.name}.{suffix}" for slice, _ in slices for suffix in SUFFIXES), PAGE))
@@ -115,7 +114,7 @@ def _slices(configs: tuple[Path, ...]) -> list[tuple[Slice, Path]]:
 
 def _compare(old: Path, new: Path) -> int:
     from ptmcad.studies.bench.compare import BAD, compare, comparison_table
-    from ptmcad.studies.bench.document import read_study
+    from ptmcad.studies.bench.study import read_study
 
     changes = compare(read_study(old), read_study(new))
     click.echo(comparison_table(changes))

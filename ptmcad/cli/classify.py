@@ -314,8 +314,7 @@ def _classify_family(
 @click.option("--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True)
 @out_option
 @click.option("--explain", is_flag=True, help="Print what is computed, what is left out, and why.")
-@click.option("--without", multiple=True, callback=_names_of_savings, metavar="NAME",
-              help="Do without a saving, compute what it leaves out; 'all' for every one. Repeatable.")  # fmt: skip
+@click.option("--without", multiple=True, callback=_names_of_savings, hidden=True)  # for the ablation study
 @click.option("--keep", multiple=True, callback=_names_of_savings, hidden=True)  # the older name of --without
 @click.option(
     "--jobs",

@@ -13,7 +13,6 @@ from ptmcad.errors import A_MAP, expect
 from ptmcad.options import Progress
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas
-from ptmcad.verification.auxiliary import check_auxiliary
 from ptmcad.verification.certified.checks import verify_certified
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.claims import Claims
@@ -23,7 +22,7 @@ from ptmcad.verification.exclusion.check import EFFORT, check_free_area, places_
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.model import check_system
 from ptmcad.verification.parameters import check_boundary, check_text
-from ptmcad.verification.plan import check_plan
+from ptmcad.verification.plan import check_plan, refuse_ablation
 from ptmcad.verification.poses import verify_poses
 from ptmcad.verification.report import Check, Headway, VerifyReport, checked
 from ptmcad.verification.solutions import check_solutions
@@ -32,7 +31,7 @@ from ptmcad.verification.variety import check_conditions, check_irreducible, che
 from ptmcad.verification.window import check_left_out
 
 NOT_CHECKED = (
-    ("plan without trace", "predicted costs; which savings were made that make no difference in this file"),
+    ("plan without trace", "predicted costs; whether savings were made that leave no trace in this file"),
     ("provenance", "name, title, reference, versions, precision, timings: no claims about the regions"),
 )
 
@@ -68,6 +67,11 @@ def verify(
     effort : how much of a certified map's free area is to be proved free of critical curves: 0 none of it, each number
         more four times as many boxes, 10 all; `ptmcad.verification.exclusion.check.EFFORT` when None.
 
+    Raises
+    ------
+    ConfigError
+        For a map that was made without some saving, for an ablation study.
+
     Guarantee
     ---------
     When the report is ``ok``, every claim in its table holds; the variety's completeness up to an error probability
@@ -82,6 +86,7 @@ def verify(
     if isinstance(result, Poses):
         return verify_poses(result, progress)
     expect(result, RegionMap, "result", A_MAP)
+    refuse_ablation(result)
     if result.cover is not None or result.status is Status.CERTIFIED:
         free_area = partial(check_free_area, EFFORT if effort is None else effort)
         return verify_certified(result, seed, boxes, free_area, places_of, progress)
@@ -113,7 +118,6 @@ def checks_of(result: RegionMap, seed: int | None) -> tuple[CheckOf, ...]:
         ("boundary components", "factors of the parameters", partial(check_boundary, seed=drawn)),
         ("left out", "Sturm counts, resultants", check_left_out),
         ("plan", "built once more", check_plan),
-        ("auxiliary components", "values at random points", partial(check_auxiliary, seed=drawn)),
         *_SINCE_VARIETY,
     )
 

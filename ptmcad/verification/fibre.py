@@ -106,10 +106,6 @@ class Fibre:
         """The product of the Jacobian's determinant over all complex solutions."""
         return fmpq(self.jacobian.det())
 
-    def minor_norm(self, order: int) -> fmpq:
-        """The product of the Jacobian's leading principal minor of an order over all complex solutions."""
-        return fmpq(determinant([row[:order] for row in self.jacobian_entries[:order]]).det())
-
     def norm_where_nonzero(self, p: fmpq_mpoly) -> fmpq:
         """The product of a polynomial over the complex solutions at which it is not zero."""
         coefficients = [fmpq(c) for c in self.matrix(p).charpoly().coeffs()]
@@ -131,11 +127,6 @@ class Fibre:
         signs = [1 if c > 0 else -1 for c in coefficients if c != 0]
         positive = sum(a != b for a, b in pairwise(signs))
         return positive, n - zero - positive
-
-    def determinant_of_traces(self, monomials: Sequence[Monomial]) -> fmpq:
-        """The determinant of the matrix with entries trace(f g), for all f and g among the monomials."""
-        powers = [self._monomial(m) for m in monomials]
-        return fmpq(_traces_of_products(powers, powers).det())
 
     @cached_property
     def _powers(self) -> list[fmpq_mat]:
@@ -306,24 +297,6 @@ def _saturated(point: Polynomials) -> tuple[list[fmpq_mpoly], tuple[str, ...]]:
     for p in point.inequalities:
         inverse = inverse * lifted(p)
     return [*map(lifted, point.generators()), inverse - 1], names
-
-
-def standard_monomials(model: Model, values: Mapping[str, Fraction]) -> tuple[Monomial, ...]:
-    """The monomials that are standard in the order with the first coordinate before the others.
-
-    It is graded reverse lexicographic, as the one in which `fibre` computes is, which has the coordinates the other way
-    round. Solutions at which an inequality's polynomial vanishes are not left out.
-
-    Raises
-    ------
-    NotFinite
-        When there are infinitely many complex solutions.
-    """
-    point = equations_at(model, values)
-    ring: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(point.names, Ordering.degrevlex)
-    turned = [ring.from_dict({tuple(reversed(m)): fmpq(c) for m, c in p.to_dict().items()}) for p in point.generators()]
-    basis, _ = algebra(turned, point.names)
-    return tuple(tuple(reversed(m)) for m in basis)
 
 
 def _identity(n: int) -> fmpq_mat:

@@ -1,13 +1,11 @@
-"""Check of the plan: what it says was computed, left out and kept is what the result shows.
+"""Check of the plan: what it says was computed and left out is what the result shows.
 
-Guarantee: the steps are those that the slice's parameters, the stored components and the savings that were switched off
-ask for, in their order. What a saving leaves out is not in the result, and what one that was switched off would have
-left out is (for curves that no other saving asks for see `ptmcad.verification.auxiliary`, for critical values
-`ptmcad.verification.structure`).
+Guarantee: the steps are those that the slice's parameters and the stored components ask for, in their order, with every
+saving made; what a saving leaves out is not in the result.
 
 Not guaranteed: what leaves no trace in a result. These are the predicted costs by which the base axis was chosen;
-whether the savings "imports" and "equal-counts" were made; whether another one was, where it makes no difference; and
-that a harmless curve that is used could not have been left out.
+whether the savings "imports" and "equal-counts" were made; and that a harmless curve that is used could not have been
+left out.
 """
 
 from __future__ import annotations
@@ -16,7 +14,8 @@ import re
 from collections.abc import Iterator
 from math import gcd
 
-from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, PlanStep, RegionMap
+from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, Kind, PlanStep, RegionMap
+from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Model, System
 from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.derivation import has_index
@@ -26,7 +25,6 @@ from ptmcad.verification.window import plainly_outside
 _COST = r"([0-9]+(?:\.[0-9]+)?(?:e\+[0-9]+)?)"
 _CHOICE = re.compile(rf"predicted cost {_COST} against {_COST}", re.ASCII)
 _SAME_COST = "both orders are predicted to cost the same"
-_KEPT = "kept, as asked for"
 _GENERAL = (
     ("imports", "imports of numpy, matplotlib, sympy and numba", "nothing needs them before it asks"),
     ("", "terms of {zero}", "they are zero on this slice"),
@@ -45,11 +43,26 @@ _NO_SIGN_CHANGE = "no eigenvalue of H changes its sign off the critical curves"
 _NO_AREAS = PlanStep("areas of the regions", False, "not asked for")
 
 
+def refuse_ablation(result: RegionMap) -> None:
+    """Refuse a map that was made without some saving: it serves to measure what the saving is worth.
+
+    Raises
+    ------
+    ConfigError
+        That names the savings.
+    """
+    off = sorted({step.saving for step in result.plan if step.saving and step.done})
+    if off:
+        raise ConfigError(
+            f"{result.slice.name} was computed without the saving{'s' * (len(off) > 1)} {', '.join(off)}, to measure "
+            "what it is worth, and such results are not checked: classify it anew"
+        )
+
+
 def check_plan(claims: Claims) -> str:
     """Every step of the plan."""
     result = claims.result
-    without = switched_off(result)
-    expected = list(_expected(result, without))
+    expected = list(_expected(result))
     if len(expected) != len(result.plan):
         raise Violation(f"the plan has {len(result.plan)} steps, not {len(expected)}")
     for n, (step, other) in enumerate(zip(result.plan, expected, strict=True)):
@@ -58,8 +71,8 @@ def check_plan(claims: Claims) -> str:
             done = "computed" if other.done else "left out"
             raise Violation(f"step {n} of the plan is not {str(step)[:100]!r}, but {other.what!r}, {done}: "
                             f"{other.reason or 'by predicted cost'}")  # fmt: skip
-    _check_left_out(claims, without)
-    return f"{len(expected)} steps, {len(without)} savings switched off"
+    _check_left_out(claims)
+    return f"{len(expected)} steps"
 
 
 def _is_choice(reason: str) -> bool:
@@ -68,12 +81,7 @@ def _is_choice(reason: str) -> bool:
     return reason == _SAME_COST if costs is None else float(costs[1]) <= float(costs[2])
 
 
-def switched_off(result: RegionMap) -> frozenset[str]:
-    """The savings that the plan says were switched off."""
-    return frozenset(step.saving for step in result.plan if step.saving and step.done)
-
-
-def _expected(result: RegionMap, without: frozenset[str]) -> Iterator[PlanStep]:
+def _expected(result: RegionMap) -> Iterator[PlanStep]:
     """The plan; the reason is empty where predicted costs decided."""
     names = result.slice.axis_names
     zero = ", ".join(n for n, e in result.slice.parameters.items() if not e.numerator)
@@ -81,21 +89,16 @@ def _expected(result: RegionMap, without: frozenset[str]) -> Iterator[PlanStep]:
         if saving == "equal-counts" and _NO_AREAS in result.plan:
             yield _NO_AREAS
         elif zero or saving:
-            yield _step(saving, what.format(zero=zero), why, without)
-    if "no-real-points" in without:
-        yield _step("no-real-points", "components without a point in the window", "", without)
+            yield PlanStep(what.format(zero=zero), False, why, saving)
     for c in result.components:
         yield _of_component(c, names)
     this, other = (f"decomposition over {names[axis]}" for axis in (result.base, 1 - result.base))
-    if "axis-order" in without:
-        yield PlanStep(this, True, "the first axis, as asked for", "axis-order")
-    else:
-        yield PlanStep(this, True, "")
-        yield PlanStep(other, False, "regions do not depend on it", "axis-order")
+    yield PlanStep(this, True, "")
+    yield PlanStep(other, False, "regions do not depend on it", "axis-order")
     powers = ", ".join(_even_powers(result))
     if powers:
         why = f"computed in the power, where only such occur: {powers}"
-        yield _step("even-powers", "discriminants and resultants of full degree", why, without)
+        yield PlanStep("discriminants and resultants of full degree", False, why, "even-powers")
 
 
 def _general(model: Model) -> Iterator[tuple[str, str, str]]:
@@ -111,10 +114,6 @@ def _general(model: Model) -> Iterator[tuple[str, str, str]]:
             yield saving, "projections of the leading minors of H", _NO_SIGN_CHANGE
         else:
             yield saving, what, why.replace("det H", "the Jacobian's determinant") if equations else why
-
-
-def _step(saving: str, what: str, why: str, without: frozenset[str]) -> PlanStep:
-    return PlanStep(what, saving in without, _KEPT if saving in without else why, saving)
 
 
 def _of_component(c: Component, names: tuple[str, str]) -> PlanStep:
@@ -133,23 +132,17 @@ def _even_powers(result: RegionMap) -> Iterator[str]:
                 yield f"{name}^{power} in component {n}"
 
 
-def _check_left_out(claims: Claims, without: frozenset[str]) -> None:
-    """What savings leave out, or would have left out, against the components, the areas and the base."""
+def _check_left_out(claims: Claims) -> None:
+    """What savings leave out against the components and the areas."""
     result = claims.result
-    reasons = {c.left_out for c in result.components}
-    if "no-real-points" in without and NO_POINT in reasons:
-        raise Violation("a component without a point in the window is left out, but the plan says that such are kept")
-    if "no-real-points" not in without:
-        for n, c in enumerate(result.components):
-            if not c.left_out and plainly_outside(PlaneCurve.of(n, c.polynomial, result.base), claims):
-                raise Violation(f"component {n} is used, but it has no point in the window, and the plan does not say "
-                                "that such are kept")  # fmt: skip
-    if "infinity" in without and HARMLESS in reasons:
-        raise Violation("a component is left out as harmless, but the plan says that such are kept")
+    for n, c in enumerate(result.components):
+        if c.kind is Kind.AUXILIARY:
+            raise Violation(f"component {n} is auxiliary, but no saving was switched off that leaves it out")
+        if not c.left_out and plainly_outside(PlaneCurve.of(n, c.polynomial, result.base), claims):
+            raise Violation(f"component {n} is used, but it has no point in the window, and the plan does not say "
+                            "that such are kept")  # fmt: skip
     if _NO_AREAS in result.plan:
         x, y = result.slice.axes
         window = (x.high - x.low) * (y.high - y.low)
         if any(low != 0 or high < window for low, high in (region.area for region in result.regions)):
             raise Violation("areas are known, but the plan says that they were not asked for")
-    if "axis-order" in without and result.base != 0:
-        raise Violation("the base is not the first axis, but the plan says that it was asked for")

@@ -63,16 +63,11 @@ def _factors_of(coefficients: tuple[fmpz, ...]) -> tuple[fmpz_poly, ...]:
 
 def _projection(claims: Claims) -> dict[tuple[int, ...], tuple[fmpz_poly, set[str]]]:
     """The irreducible polynomials of the projection, each with all its origins."""
-    full_degree = any(step.saving == "even-powers" and step.done for step in claims.result.plan)
     found: list[tuple[fmpz_poly, str]] = []
     for line in claims.lines:
         found += [(f, "vertical line") for f in _factors(line.in_v[0])]
     for i, c in enumerate(claims.curves):
         found += projection_of_one(c, claims.height)
-        if full_degree and c.exponent_gcd(1) > 1:
-            # disc p(u, v^k) has the factors p(u, 0) and the leading coefficient besides
-            origin = f"component {c.number}: turning or singular point"
-            found += [(f, origin) for end in (c.in_v[0], c.in_v[-1]) for f in _factors(end)]
         for d in claims.curves[i + 1 :]:
             k = gcd(c.exponent_gcd(0), d.exponent_gcd(0))
             m = gcd(c.exponent_gcd(1), d.exponent_gcd(1))

@@ -316,7 +316,7 @@ def _check_poles(claims: Claims, points: Iterator[FibrePoint]) -> None:
             if not any(holds(k, point) for point in clear):
                 text = c.polynomial.text(result.slice.axis_names)[:60]
                 raise Violation(f"component {k} is said to be {message}: {text}")
-    foreign = [_foreign_poles(claims, point) for point in far]
+    foreign = [_foreign_poles(point) for point in far]
     # constant factors of denominators have their primes at every point, but for accidents
     own = [_without(f, prod(g for j, g in enumerate(foreign) if j != i)) for i, f in enumerate(foreign)]
     if all(f.bit_length() > CLEAR_BITS for f in own):  # a curve that is missing has values of some hundred bits
@@ -365,10 +365,9 @@ def _constant_coefficient(matrix: fmpq_mat) -> int:
     return int((lowest * lcm(*(int(c.q) for c in coefficients))).p)
 
 
-def _foreign_poles(claims: Claims, point: FibrePoint) -> int:
+def _foreign_poles(point: FibrePoint) -> int:
     """Denominator of the power traces without the primes of the stored components."""
-    components = zip(claims.result.components, point.values, strict=True)
-    return _without(point.denominator, prod(v for c, v in components if c.kind is not Kind.AUXILIARY) * _SMALL_PRIMES)
+    return _without(point.denominator, prod(point.values) * _SMALL_PRIMES)
 
 
 def _at(claims: Claims, point: FibrePoint) -> str:

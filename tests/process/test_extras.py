@@ -14,7 +14,6 @@ import pytest
 
 from ptmcad.cli import run
 from ptmcad.process.extras import Extra
-from ptmcad.studies.bench import ablation
 from ptmcad.studies.stress import campaign
 from ptmcad.studies.stress.case import Case, chosen, point
 
@@ -54,15 +53,6 @@ def test_stress_needs_numba_for_free_lengths_only() -> None:
     assert not plain.has_free_lengths
     done = campaign.campaign((plain,), seed=1, repeats=1)
     assert len(done.outcomes) == 1
-
-
-def test_ablation_refuses_before_the_exact_slices(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(ablation, "_exact", refuse)
-    records = [str(ROOT / "configs" / f"{name}.yaml") for name in ("fig2", *ablation.CERTIFIED)]
-    assert ablation.main([*records, "--rounds", "1"]) == 2
-    assert "runs on the package numba" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

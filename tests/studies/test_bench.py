@@ -7,27 +7,34 @@ import math
 import sys
 from fractions import Fraction
 from pathlib import Path
+from random import Random
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from support.shipped_records import EXACT
 
 from ptmcad.question import config
-from ptmcad.studies.bench import ablation, qepcad, suite
+from ptmcad.studies.bench import __main__ as command
+from ptmcad.studies.bench import qepcad, records
+from ptmcad.studies.bench.harness import Job, ratio, table, take_turns
 from ptmcad.studies.bench.process import Outcome, Usage, run
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 
 
-def test_maps_with_free_lengths_are_not_timed_by_default(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_maps_with_free_lengths_are_not_timed_by_default(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     """They take as long as they are given."""
     monkeypatch.chdir(CONFIGS.parent)
-    seen: list[Path] = []
-    monkeypatch.setattr(suite, "measure", lambda records, plan, date: seen.extend(records))
-    monkeypatch.setattr(suite, "to_markdown", lambda found: "")
-    assert suite.main([]) == 0
-    assert [path.resolve() for path in seen] == list(EXACT)
+    seen: list[str] = []
+    monkeypatch.setattr(records, "turns", lambda jobs, options: seen.extend(job.subject for job in jobs))
+    monkeypatch.setattr(records, "check", lambda slice: SimpleNamespace(forecast=None))
+    assert command.main(["times"]) == 0
+    assert {*seen} == {"floor", *(f"configs/{path.stem}" for path in EXACT)}
     assert "fig4" in {path.stem for path in EXACT}
+    assert "not run" in capsys.readouterr().out
 
 
 def value(terms: qepcad.Terms, x: float, y: float, t: float) -> float:
@@ -101,45 +108,102 @@ def test_process_that_fails_and_process_that_hangs() -> None:
     assert hanging.seconds < 30
 
 
-def test_qepcad_that_ends_without_an_answer_has_failed() -> None:
-    usage = Usage(Outcome.DONE, 1.0, 1.0, 1.0, "Failure occurred in: GCSI")
-    assert qepcad.judged(usage).outcome is Outcome.FAILED
-    answered = Usage(Outcome.DONE, 1.0, 1.0, 1.0, "\nAn equivalent quantifier-free formula:\n\nx > 0 /\\\ny < 0\n\n\n")
-    assert qepcad.judged(answered) is answered
-    assert qepcad.answer(answered) == "x > 0 /\\ y < 0"
+def test_qepcad_that_ends_without_an_answer_has_none() -> None:
+    assert qepcad.formula("Failure occurred in: GCSI") == ""
+    assert qepcad.formula("\nAn equivalent quantifier-free formula:\n\nx > 0 /\\\ny < 0\n\n\n") == "x > 0 /\\ y < 0"
 
 
-def test_summary() -> None:
-    runs = [Usage(Outcome.DONE, seconds, 0.5, peak) for seconds, peak in ((3.0, 10.0), (1.0, 30.0), (2.0, 20.0))]
-    found = suite.summary(runs)
-    assert found == {"runs": 3, "median": 2.0, "minimum": 1.0, "maximum": 3.0, "processor": 0.5, "peak": 30.0}
-    assert suite.summary([*runs, Usage(Outcome.TIMED_OUT, 60.2, 1.0, 1.0)]) == "timed out after 60 s"
-    assert suite.summary([]) == "not run"
+def job(code: str, *more: str, answer: Path | None = None, check: Any = lambda usage: "") -> Job:
+    return Job("fig4", "python", code, [([sys.executable, "-c", text], "") for text in (code, *more)], answer, check)
 
 
-def test_report_with_and_without_figures() -> None:
-    summary = {"runs": 2, "median": 0.25, "minimum": 0.2, "maximum": 0.3, "processor": 0.2, "peak": 60.0}
-    rows = [{"name": "fig4", "text": summary, "over_floor": 2.0, "pictures": summary},
-            {"name": "fig2", "text": "failed: a | b", "over_floor": 0.0, "pictures": "not run"}]  # fmt: skip
-    page = suite.to_markdown({"machine": {"cores": "2"}, "versions": {"python": "3.11"}, "date": "", "seed": 1,
-                              "rounds": 2, "floor": summary, "rows": rows})  # fmt: skip
-    assert "| fig4 | 0.250 (0.200-0.300) | 2.00 | 0.25 | 60 / 60 |" in page
-    assert r"| fig2 | failed: a \| b | - | not run | - / - |" in page
+def test_a_job_is_a_row_of_a_table() -> None:
+    measured = job("pass", "pass")
+    for seconds, peak in ((3.0, 10.0), (1.0, 30.0), (2.0, 20.0)):
+        measured.record(Usage(Outcome.DONE, seconds, 0.5, peak), 60)
+    row = measured.row()
+    assert (row["runs"], row["seconds"], row["least"], row["most"]) == (3, 2.0, 1.0, 3.0)
+    assert (row["processor"], row["peak MiB"]) == (0.5, 30.0)
+    assert ratio(measured, measured) == 1
+    late = job("pass")
+    late.record(Usage(Outcome.TIMED_OUT, 60.2, 1.0, 1.0), 60)
+    assert late.row()["reason"] == "not in 60 s"
+    assert ratio(measured, late) is None
+    assert job("pass").row()["reason"] == "not run"
+    lines = table([row, late.row()]).splitlines()
+    assert lines[0].split()[-1] == "reason" and lines[2].endswith("not in 60 s")
 
 
-@pytest.mark.parametrize("study", [suite, ablation], ids=["bench", "ablation"])
-def test_the_stored_page_is_made_of_the_stored_record(study: Any, request: pytest.FixtureRequest) -> None:
-    stored = CONFIGS.parent / "docs" / "benchmarks" / f"{request.node.callspec.id}.json"
-    page = stored.with_suffix(".md").read_text(encoding="utf-8")
-    assert study.to_markdown(json.loads(stored.read_text(encoding="utf-8"))) == page
+def test_a_program_that_fails_hangs_or_is_silent(tmp_path: Path) -> None:
+    for code, reason, more in (
+        ("import sys; sys.exit('no good')", "failed: no good", {}),
+        ("pass", "failed: no answer", {"answer": tmp_path / "answer"}),
+        ("print('x')", "failed: not that", {"check": lambda usage: "not that" if usage.output == "x\n" else ""}),
+        ("import time; time.sleep(60)", "not in 0.5 s", {}),
+    ):
+        failing = job(code, **more)
+        failing.attempt(0.5 if "sleep" in code else 30)
+        assert failing.reason == reason
+        take_turns([failing], 2, Random(1), lambda job: pytest.fail("it is not tried again"))
+    written = tmp_path / "answer"
+    twice = job("pass", f"open({str(written)!r}, 'w').write('3')", answer=written)
+    written.write_text("of an earlier round")
+    assert twice.attempt(30).outcome is Outcome.DONE
+    assert (written.read_text(), len(twice.usages)) == ("3", 1)
+
+
+def test_jobs_take_turns() -> None:
+    order: list[str] = []
+    jobs = [job(name) for name in "abc"]
+    take_turns(jobs, 3, Random(1), lambda job: order.append(job.setting))
+    assert [sorted(order[k : k + 3]) for k in (0, 3, 6)] == [["a", "b", "c"]] * 3
+    assert order[:3] != order[3:6] or order[3:6] != order[6:]
 
 
 @pytest.mark.parametrize("difference", ["", "other neighbours"])
-def test_ablation_ends_with_1_where_an_answer_differs(difference: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    stored = json.loads((CONFIGS.parent / "docs" / "benchmarks" / "ablation.json").read_text(encoding="utf-8"))
-    stored["exact"][0]["switched off"]["all"]["difference"] = difference
-    monkeypatch.setattr(ablation, "ablation", lambda *_: stored)
-    assert ablation.main([str(CONFIGS / "fig2.yaml")]) == bool(difference)
+def test_a_study_ends_with_1_where_an_answer_differs(
+    difference: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(records, "ablation", lambda options: [{"subject": "fig2", "differs": difference}])
+    assert command.main(["ablation", "--out", str(tmp_path / "out")]) == bool(difference)
+    found = json.loads((tmp_path / "out" / "ablation.json").read_text(encoding="utf-8"))
+    assert found["rows"] == [{"subject": "fig2", "differs": difference}]
+    assert found["machine"]["cores"] and found["versions"]["python-flint"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["times", "--rounds", "0"], "--rounds must be positive"),
+        (["scaling", "--timeout", "nan"], "--timeout must be positive"),
+        (["scaling", "folds"], "no family 'folds'; there are degree"),
+        (["ablation", "nowhere.yaml"], "nowhere.yaml"),
+        (["times", "--out", "file"], "file"),
+    ],
+    ids=lambda x: " ".join(x) if isinstance(x, list) else "",
+)
+def test_bad_input(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: Any
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("file").write_text("")
+    try:
+        status: Any = command.main(arguments)
+    except SystemExit as end:
+        status = end.code
+    assert status == 2
+    assert message in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_ablation(tmp_path: Path) -> None:
+    """One round on the smallest slice: every saving is there, and nothing differs."""
+    assert command.main(["ablation", str(CONFIGS / "fig2.yaml"), "--rounds", "1", "--out", str(tmp_path)]) == 0
+    rows = json.loads((tmp_path / "ablation.json").read_text(encoding="utf-8"))["rows"]
+    assert {row["subject"] for row in rows} == {"fig2", "fig2, axes exchanged"}
+    assert {"all made", "axis-order", "imports", "all"} <= {row["setting"] for row in rows}
+    assert {row["differs"] for row in rows} == {""}
+    assert all(row["over all made"] > 0 for row in rows)
 
 
 @pytest.mark.slow
@@ -149,5 +213,5 @@ def test_qepcad_answers(task: qepcad.Task) -> None:
     asked = qepcad.question(config.load(CONFIGS / "fig3.yaml"))
     command = qepcad.command()
     assert isinstance(asked, qepcad.Question) and command is not None
-    usage = qepcad.judged(run(command, text=asked.text(task), timeout=60))
-    assert usage.outcome is Outcome.DONE, usage.message
+    usage = run(command, text=asked.text(task), timeout=60)
+    assert qepcad.formula(usage.output), usage.message

@@ -1,8 +1,9 @@
 """Two studies of one slice compared: what became slower or worse, beyond noise.
 
-Guarantee: figures of error are compared as they are, because they are the same in every run of the same program. Times
-are compared as multiples of each study's own floor, so that machines of different speed compare; one is slower only if
-its fastest run is slower than the slowest run of the other by `MARGIN`, with the spread of both floors allowed for.
+Guarantee: an error is worse only if its bounds do not overlap the earlier ones. Times are compared
+as multiples of each study's own floor, so that machines of different speed compare; one is slower
+only if its fastest run is slower than the slowest run of the other by `MARGIN`, with the spread of
+both floors allowed for.
 
 Not guaranteed: that a small change is found; a median within the spread of the earlier runs says nothing.
 """
@@ -12,15 +13,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
+from typing import Any
 
 from ptmcad.errors import ConfigError
 from ptmcad.studies.bench.harness import Times
-from ptmcad.studies.bench.study import Figures, Measurement, Study
+from ptmcad.studies.bench.study import Measurement, Study
 from ptmcad.studies.tables import columns
 
 MARGIN = 1.1
 SINGLE_RUN_MARGIN = 1.5
 """The same where one of the two was run once only, so that its spread is not known."""
+_COMPARED = ("wrong", "undetermined", "wrong_centres", "missed", "distance")
+"""Figures, numbers or bounds, larger being worse."""
 
 
 class Verdict(Enum):
@@ -59,84 +63,66 @@ def compare(old: Study, new: Study) -> tuple[Change, ...]:
     for key in ("slice", "seed"):
         if getattr(old, key) != getattr(new, key):
             raise ConfigError(f"the two studies differ in {key}: {getattr(old, key)} and {getattr(new, key)}", key=key)
-    before = {(m.method, m.setting): m for m in old.measurements}
-    after = {(m.method, m.setting): m for m in new.measurements}
-    found: list[Change] = []
-    for place, m in before.items():
-        found += _changes(old, new, m, after.get(place))
-    for place, m in after.items():
-        if place not in before and m.seconds is not None:
-            found.append(Change(*place, Verdict.GAINED, "not in the old study"))
-    return tuple(found)
-
-
-def _changes(old: Study, new: Study, before: Measurement, after: Measurement | None) -> Iterator[Change]:
-    place = (before.method, before.setting)
-    if before.seconds is None:
-        if after is not None and after.seconds is not None:
-            yield Change(*place, Verdict.GAINED, f"{after.seconds.median:g} s; before: {before.reason}")
-        return
-    if after is None or after.seconds is None:
-        yield Change(*place, Verdict.LOST, "not in the new study" if after is None else after.reason)
-        return
-    differences = list(_worse(before, after))
-    yield from differences
-    verdict, ratio = _time(old.floor, before.seconds, new.floor, after.seconds)
-    detail = (
-        f"{ratio:.2f} times the time, machine allowed for ({before.seconds.median:g} s at a floor of "
-        f"{old.floor.median:g} s, now {after.seconds.median:g} at {new.floor.median:g})"
+    before, after = ({(m.method, m.setting): m for m in study.measurements} for study in (old, new))
+    return tuple(
+        Change(*place, *found)
+        for place in dict.fromkeys([*before, *after])
+        for found in _changes(old.floor, before.get(place), new.floor, after.get(place))
     )
+
+
+def _changes(
+    old_floor: Times, before: Measurement | None, new_floor: Times, after: Measurement | None
+) -> Iterator[tuple[Verdict, str]]:
+    old, new = (m.seconds if m is not None else None for m in (before, after))
+    if old is None or before is None:
+        if new is not None:
+            why = "not in the old study" if before is None else f"before: {before.reason}"
+            yield Verdict.GAINED, f"{new.median:g} s; {why}"
+        return
+    if new is None or after is None:
+        yield Verdict.LOST, "not in the new study" if after is None else after.reason
+        return
+    differences = list(_errors(before, after))
+    yield from differences
+    margin = MARGIN if old.runs > 1 and new.runs > 1 else SINGLE_RUN_MARGIN
+    verdict = Verdict.SAME
+    if new.minimum / new_floor.maximum > margin * old.maximum / old_floor.minimum:
+        verdict = Verdict.SLOWER
+    elif old.minimum / old_floor.maximum > margin * new.maximum / new_floor.minimum:
+        verdict = Verdict.FASTER
     if verdict is not Verdict.SAME or not differences:
-        yield Change(*place, verdict, detail)
+        ratio = (new.median / new_floor.median) / (old.median / old_floor.median)
+        yield (
+            verdict,
+            f"{ratio:.2f} times the time, machine allowed for ({old.median:g} s at a floor of "
+            f"{old_floor.median:g} s, now {new.median:g} at {new_floor.median:g})",
+        )
 
 
-def _time(old_floor: Times, before: Times, new_floor: Times, after: Times) -> tuple[Verdict, float]:
-    """The verdict, and the ratio of medians over their floors."""
-    margin = MARGIN if before.runs > 1 and after.runs > 1 else SINGLE_RUN_MARGIN
-    ratio = (after.median / new_floor.median) / (before.median / old_floor.median)
-    if after.minimum / new_floor.maximum > margin * before.maximum / old_floor.minimum:
-        return Verdict.SLOWER, ratio
-    if before.minimum / old_floor.maximum > margin * after.maximum / new_floor.minimum:
-        return Verdict.FASTER, ratio
-    return Verdict.SAME, ratio
-
-
-def _worse(before: Measurement, after: Measurement) -> Iterator[Change]:
+def _errors(before: Measurement, after: Measurement) -> Iterator[tuple[Verdict, str]]:
     """Differences of the figures of error."""
-    place = (before.method, before.setting)
-    old, new = before.figures or {}, after.figures or {}
-    for count, f in old.items():
-        if count not in new:
-            yield Change(*place, Verdict.LOST, f"{count}: no error is reported any more")
+    widths = (before.area_width, after.area_width)
+    pairs: list[tuple[str, Any, Any]] = [("width of area bounds", *widths)]
+    for count, f in (before.figures or {}).items():
+        g = (after.figures or {}).get(count)
+        if g is None:
+            yield Verdict.LOST, f"{count}: no error is reported any more"
             continue
-        for name, a, b in _pairs(f, new[count]):
-            if a != b:
-                yield Change(*place, Verdict.WORSE if b > a else Verdict.BETTER, f"{count}, {name}: {a:g}, now {b:g}")
-    if before.area_width is not None and after.area_width is not None and before.area_width != after.area_width:
-        worse = after.area_width > before.area_width
-        yield Change(*place, Verdict.WORSE if worse else Verdict.BETTER,
-                     f"width of area bounds: {before.area_width:g}, now {after.area_width:g}")  # fmt: skip
-
-
-def _pairs(old: Figures, new: Figures) -> Iterator[tuple[str, float, float]]:
-    """Figures that both have, larger being worse."""
-    yield "wrong share", old.wrong[1], new.wrong[1]
-    yield "undetermined share", old.undetermined, new.undetermined
-    for name, a, b in (
-        ("wrong centres", old.wrong_centres, new.wrong_centres),
-        ("missed regions", old.missed, new.missed),
-    ):
-        if a is not None and b is not None:
-            yield name, a, b
-    if old.distance is not None and new.distance is not None:
-        yield "distance of the boundary", old.distance[1], new.distance[1]
+        for name in _COMPARED:
+            pairs.append((f"{count}, {name.replace('_', ' ')}", getattr(f, name), getattr(g, name)))
+    for name, a, b in pairs:
+        if a is None or b is None:
+            continue
+        (low, high), (least, most) = (x if isinstance(x, tuple) else (x, x) for x in (a, b))
+        if least > high or most < low:
+            yield Verdict.WORSE if least > high else Verdict.BETTER, f"{name}: {high:g}, now {most:g}"
 
 
 def comparison_table(changes: tuple[Change, ...]) -> str:
     """A line for each change, the bad ones first, and a line that sums up."""
     ordered = sorted(changes, key=lambda c: (c.verdict not in BAD, c.verdict is Verdict.SAME))
     lines = columns([(c.verdict.value, c.method, c.setting, c.detail) for c in ordered])
-    bad = [c for c in changes if c.verdict in BAD]
-    tally = {v: sum(c.verdict is v for c in bad) for v in (Verdict.SLOWER, Verdict.WORSE, Verdict.LOST)}
+    tally = {verdict: sum(c.verdict is verdict for c in changes) for verdict in Verdict if verdict in BAD}
     summary = ", ".join(f"{number} {verdict.value}" for verdict, number in tally.items() if number)
     return "\n".join([*lines, summary or "nothing became slower or worse beyond noise"])

@@ -1,177 +1,314 @@
 """The error of a drawn map, defined once: share of the window that is wrong, regions missed, distance of the boundary.
 
-Guarantee: shares and numbers of regions are exact up to the bounds that are given with them; nothing is sampled.
-See docs/error.md for the definitions.
+Guarantee: shares and distances are between their bounds; nothing is sampled. docs/error.md has the
+definitions.
 
-A grid's map is the union of its n x n pixels, each of which shows the count that the grid has at its centre. Over a
-place u of the base let v_1 < ... < v_m be the walls and c_0, ..., c_m the true counts between them. With G_c(u, v), the
-length of what is below v and does not show c, the wrong length over u is
-
-    G_{c_m}(u, 1) + sum_k [G_{c_{k-1}}(u, v_k) - G_{c_k}(u, v_k)].
-
-The bracket, and either of its terms, changes by at most as much as v_k, so a chord in the place of a wall brings an
-error of at most its distance times its width. Along a chord G is piecewise linear: its integral is a rational number.
-Each term belongs to one region, so that what is wrong is known for each region too.
+A drawn map is made of pieces, rectangles with the count that is shown: pixels of a grid, or the
+parts of a certified map's window that its cover leaves. In a piece the area of a region is the sum
+of the areas below the walls that the region is below, less those below the walls that it is above;
+below a chord that is the integral of a clipped linear function. A wall is within its proved
+distance of its chords, and that is all that is not known.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from itertools import zip_longest
 
 import numpy as np
-from flint import fmpq
-from numpy.typing import NDArray
 
-from ptmcad.studies.bench.distance import Distances, distances, grid_boundary
-from ptmcad.studies.bench.reference import Column, Reference, Walls, regions
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.cover import components, tubes
+from ptmcad.cover.complement import Components
+from ptmcad.cover.subdivision import FREE
+from ptmcad.studies.bench.truth import UNKNOWN, Counts, Floats, Truth, shown_count
+from ptmcad.text.numerals import decimal
 
-Counts = NDArray[np.int16]
-Bounds = tuple[Fraction, Fraction]
+Bounds = tuple[float, float]
+DIGITS = 6
+DENSITY = 8
+"""Points on the side of a pixel, and on the whole window's side for a certified map."""
+MAX_PIECE = 2.0**-11
+STRIPS = 2**11
+"""Of a frame with slanted pieces, in which these are between two heights."""
 
 
 @dataclass(frozen=True, slots=True)
-class MapError:
-    """How far a drawn map is from the exact one, for one count.
+class Figures:
+    """How far a drawn map is from the exact one, for one count; None where there is no such figure.
 
     Attributes
     ----------
     wrong : bounds of the share of the window's area that shows a wrong count or none.
-    undetermined : exact share that shows none.
-    wrong_centres : pixels whose centre shows a wrong count; None when the map has no pixels.
+    undetermined : share that shows none.
+    wrong_centres : pixels whose centre shows a wrong count.
     regions : of the exact map.
-    missed : regions in which no pixel that is centred there, or no part that is decided, shows the region's count.
+    missed : regions in which no pixel that is centred there, or no part, shows the region's count.
     faintest : bounds of the smallest share of a region's own area that shows its count.
-    distance : between the drawn boundary and the true one; None when one of them is empty and the other is not.
+    distance : bounds of the Hausdorff distance between the drawn boundary and the true one.
     """
 
     wrong: Bounds
-    undetermined: Fraction
-    wrong_centres: int | None
-    regions: int
-    missed: int
-    faintest: Bounds
-    distance: Distances | None
+    undetermined: float
+    wrong_centres: int | None = None
+    regions: int | None = None
+    missed: int | None = None
+    faintest: Bounds | None = None
+    distance: Bounds | None = None
 
 
-def exact_error(walls: Walls) -> MapError:
-    """Of an exact map: by construction nothing is wrong, and its boundary is the true curves themselves."""
-    zero, one = Fraction(0), Fraction(1)
-    return MapError((zero, zero), zero, None, len(walls.counts), 0, (one, one), Distances((0.0, 0.0), (0.0, 0.0)))
+def exact_error(truth: Truth) -> Figures:
+    """Of an exact map: nothing is wrong, and its boundary is the true curves themselves."""
+    zero = (0.0, 0.0)
+    return Figures(zero, 0.0, None, len(truth.counts), 0, (1.0, 1.0), zero)
 
 
-def grid_error(exact: Reference, walls: Walls, columns: tuple[Column, ...], drawn: Counts, count: str) -> MapError:
+def grid_error(truth: Truth, cells: np.ndarray, drawn: Counts) -> Figures:
     """Of a grid.
 
     Parameters
     ----------
-    walls : of the exact map, for the count.
-    columns : where the pixels' centres lie, see `ptmcad.studies.bench.reference.centres`.
-    drawn : the counts that are shown, of shape (n, n), the first index along the slice's first axis; negative where
-        none is shown.
+    cells : of the centres, see `ptmcad.studies.bench.truth.cells_at_centres`.
+    drawn : the counts that are shown, of shape (n, n), the first index along the slice's first axis;
+        negative where none is shown.
     """
-    picture = drawn if exact.result.base == 0 else drawn.T
-    wrong, by_region = wrong_areas(walls, picture)
-    centres, missed = _centres(regions(exact.result, count), walls, columns, picture)
-    return MapError(
-        wrong=wrong,
-        undetermined=Fraction(int((drawn < 0).sum()), drawn.size),
-        wrong_centres=centres,
-        regions=len(walls.counts),
-        missed=missed,
-        faintest=faintest(walls, by_region),
-        distance=distances(walls, grid_boundary(picture), Fraction(1, len(picture))),
+    picture = drawn if truth.result.base == 0 else drawn.T
+    n = len(picture)
+    starts = np.ones((n, n + 1), dtype=bool)
+    starts[:, 1:-1] = picture[:, 1:] != picture[:, :-1]
+    column, row = np.nonzero(starts)
+    run = np.flatnonzero(row < n)
+    pieces = np.stack([column[run], column[run] + 1, row[run], row[run + 1]], axis=1) / n
+    shown = picture[column[run], row[run]]
+
+    i, j = np.nonzero(picture[1:, :] != picture[:-1, :])
+    level = np.nonzero(picture[:, 1:] != picture[:, :-1])
+    sides = np.concatenate([
+        np.stack([i + 1, i + 1, j, j + 1], axis=1),
+        np.stack([level[0], level[0] + 1, level[1] + 1, level[1] + 1], axis=1),
+    ]) / n  # fmt: skip
+
+    counts = np.array(truth.counts)
+    region = np.where(cells >= 0, np.array(truth.region_of)[cells], -1)
+    right = (region >= 0) & (counts[region] == picture)
+    seen = np.unique(region[right])
+    undetermined = float((drawn < 0).mean())
+    wrong, by_region = _wrong(truth, pieces, shown, undetermined)
+    return Figures(
+        wrong,
+        undetermined,
+        int((region >= 0).sum() - right.sum()),
+        len(counts),
+        len(counts) - len(seen),
+        _faintest(truth, by_region),
+        distance(truth, sides, 1 / n / DENSITY),
     )
 
 
-def faintest(walls: Walls, wrong: Sequence[Bounds]) -> Bounds:
-    """The smallest share of a region that is shown with its count, from the areas that are not."""
-    shares = [
-        (max(1 - high / area[0], Fraction(0)) if area[0] else Fraction(0), 1 - low / area[1])
-        for area, (low, high) in zip(walls.areas, wrong, strict=True)
-    ]
-    return min(low for low, _ in shares), max(Fraction(0), min(high for _, high in shares))
+def cover_error(truth: Truth, result: RegionMap, count: str) -> Figures | None:
+    """Of a certified map of the same slice; None when its cells do not have this count.
+
+    Raises
+    ------
+    ValueError
+        When it is no certified map.
+    """
+    cover = result.cover
+    if cover is None:
+        raise ValueError("an exact map has no cover")
+    if any(shown_count(cell.stable, cell.total, count) is None for cell in result.cells):
+        return None
+    parts = components(cover)
+    tree = parts.subdivision
+    number = {}
+    for cell in result.cells:
+        at = zip(result.slice.axes, (cell.sample[0], cell.sample[1]), strict=True)
+        place = ((x - axis.low) / (axis.high - axis.low) * cover.steps for axis, x in at)
+        number[parts.locate(*place)] = int(shown_count(cell.stable, cell.total, count))
+    leaves = np.flatnonzero((tree.state == FREE) & (parts.owner >= 0))
+    free, owner, covered = _strips(parts)
+    pieces = np.concatenate([tree.bounds[leaves], free]) / cover.steps
+    owners = np.concatenate([parts.owner[leaves], owner]).tolist()
+    shown = np.array([number.get(n, -1) for n in owners], dtype=np.int64)
+    rectangles = np.array(cover.rectangles, dtype=float).reshape(-1, 4)
+    drawn = np.concatenate([rectangles, covered]) / cover.steps
+    undetermined = float(result.undetermined)
+    loose = 1 - float(_areas(pieces).sum()) - undetermined
+    base = truth.result.base
+    wrong, by_region = _wrong(truth, _turned(pieces, base), shown, undetermined, max(loose, 0.0))
+    return Figures(
+        wrong,
+        _up(result.undetermined),
+        None,
+        len(truth.counts),
+        int((by_region <= truth.doubts).sum()),
+        _faintest(truth, by_region, max(loose, 0.0)),
+        distance(truth, _turned(drawn, base), MAX_PIECE),
+    )
 
 
-def _centres(region_of: tuple[int, ...], walls: Walls, columns: tuple[Column, ...], picture: Counts) -> tuple[int, int]:
-    """Centres with a wrong count, and regions that no centre in them shows."""
-    wrong, seen = 0, set()
-    for k, runs in enumerate(columns):
-        for cell, first, end in runs:
-            region = region_of[cell]
-            right = int((picture[k, first:end] == walls.counts[region]).sum())
-            wrong += end - first - right
-            if right:
-                seen.add(region)
-    return wrong, len(walls.counts) - len(seen)
+def _strips(parts: Components) -> tuple[Floats, np.ndarray, Floats]:
+    """Frames of slanted pieces in strips: what is free of tubes, its components, and rectangles around the tubes."""
+    free, owners, covered = [np.zeros((0, 4))], [np.zeros(0, dtype=np.int64)], [np.zeros((0, 4))]
+    patches = parts.cover.patches
+    for patch, own in zip(patches, () if parts.frames is None else parts.frames.owners, strict=True):
+        cuts = np.linspace(*tubes.ends(patch), STRIPS + 1)
+        bottom, top = tubes.heights(patch)
+        order = [0, 1, 2, 3] if patch.along == 0 else [2, 3, 0, 1]
+        below = np.full(STRIPS, float(bottom))
+        for tube, number in zip_longest(patch.tubes, own):
+            low, high = np.full(STRIPS, float(top)), below
+            if tube is not None:
+                hull = _halves(np.array([tube.controls], dtype=float))
+                low = (hull.min(axis=1) - tube.half).clip(below, top)
+                high = (hull.max(axis=1) + tube.half).clip(low, top)
+                covered.append(np.stack([cuts[:-1], cuts[1:], low, high], axis=1)[:, order])
+            free.append(np.stack([cuts[:-1], cuts[1:], below, low], axis=1)[:, order])
+            owners.append(np.full(STRIPS, number))
+            below = high
+    return np.concatenate(free), np.concatenate(owners), np.concatenate(covered)
 
 
-def wrong_areas(walls: Walls, picture: Counts) -> tuple[Bounds, tuple[Bounds, ...]]:
-    """The share of the window where the picture does not show the true count, in all and in each region.
+def _halves(controls: Floats) -> Floats:
+    """Bernstein coefficients of a polynomial over each of the strips, by halving, from left to right."""
+    while len(controls) < STRIPS:
+        left, right, row = [controls[:, 0]], [controls[:, -1]], controls
+        while row.shape[1] > 1:
+            row = (row[:, 1:] + row[:, :-1]) / 2
+            left.append(row[:, 0])
+            right.append(row[:, -1])
+        both = np.stack([np.stack(left, axis=1), np.stack(right[::-1], axis=1)], axis=1)
+        controls = both.reshape(-1, controls.shape[1])
+    return controls
+
+
+def _areas(rectangles: Floats) -> Floats:
+    return (rectangles[:, 1] - rectangles[:, 0]) * (rectangles[:, 3] - rectangles[:, 2])
+
+
+def _turned(rectangles: Floats, base: int) -> Floats:
+    return rectangles if base == 0 else rectangles[:, [2, 3, 0, 1]]
+
+
+def _wrong(truth: Truth, pieces: Floats, shown: np.ndarray, least: float, loose: float = 0.0) -> tuple[Bounds, Floats]:
+    """Bounds of the share that is wrong, and the areas in which regions show their counts.
 
     Parameters
     ----------
-    picture : shape (n, n), the first index along the base.
+    least : the share that is undetermined.
+    loose : the share that no piece holds though something is shown there.
     """
-    n = len(picture)
-    sums = {c: _sums(picture, c) for c in set(walls.counts)}
-    parts = [fmpq(0)] * len(walls.counts)
-    doubt = sum((from_fraction(gap[1] - gap[0]) for gap in walls.gaps), fmpq(0))
-    doubts = [doubt] * len(walls.counts)
-    for low_end, high_end, top in walls.tops:
-        below = sums[walls.counts[top]][:, n]
-        columns = _columns(from_fraction(low_end), from_fraction(high_end), n)
-        parts[top] += sum(((b - a) * int(below[k]) for k, a, b in columns), fmpq(0)) / n
-    for chord, lower, upper in walls.chords:
-        left, right = from_fraction(chord.left), from_fraction(chord.right)
-        at_left = from_fraction(chord.at_left)
-        blurred = from_fraction(chord.distance) * (right - left)
-        doubt += blurred
-        doubts[lower] += blurred
-        doubts[upper] += blurred
-        rise = (from_fraction(chord.at_right) - at_left) / (right - left)
-        for k, a, b in _columns(left, right, n):
-            ends = (at_left + (a - left) * rise, at_left + (b - left) * rise)
-            low, high = min(ends) * n, max(ends) * n
-            parts[lower] += (b - a) * _mean(sums[walls.counts[lower]][k], low, high, n) / n
-            parts[upper] -= (b - a) * _mean(sums[walls.counts[upper]][k], low, high, n) / n
-    return _around(sum(parts, fmpq(0)), doubt), tuple(map(_around, parts, doubts))
+    by_region = shown_areas(truth, pieces, shown)
+    wrong = 1 - float(by_region.sum())
+    low, high = wrong - truth.doubt - loose, wrong + truth.doubt
+    return outward(max(low, least), min(max(high, least), 1.0)), by_region
 
 
-def _around(value: fmpq, doubt: fmpq) -> Bounds:
-    return max(to_fraction(value - doubt), Fraction(0)), min(to_fraction(value + doubt), Fraction(1))
+def shown_areas(truth: Truth, pieces: Floats, shown: np.ndarray) -> Floats:
+    """For each region the area in which pieces show its count, up to `Truth.doubts`.
+
+    Parameters
+    ----------
+    pieces : disjoint rectangles as rows (left, right, bottom, top).
+    """
+    found = np.zeros(len(truth.counts))
+    for left, right, region in truth.tops:
+        part = pieces[shown == truth.counts[region]]
+        width = np.minimum(part[:, 1], right) - np.maximum(part[:, 0], left)
+        found[region] += (width.clip(0) * (part[:, 3] - part[:, 2])).sum()
+    for wall in truth.walls:
+        for region, sign in ((wall.below, 1), (wall.above, -1)):
+            found[region] += sign * _below(wall.points, pieces[shown == truth.counts[region]])
+    return found
 
 
-def _sums(picture: Counts, count: int) -> Any:
-    """For each column and 0 <= j <= n, how many of its lowest j pixels do not show the count."""
-    n = len(picture)
-    sums = np.zeros((n, n + 1), dtype=np.int32)
-    np.cumsum(picture != count, axis=1, out=sums[:, 1:])
-    return sums
+def _below(points: Floats, pieces: Floats) -> float:
+    """The area of pieces below a polyline, over the polyline."""
+    u, v = points.T
+    first = np.searchsorted(u[1:], pieces[:, 0], "right")
+    number = (np.searchsorted(u[:-1], pieces[:, 1], "left") - first).clip(0)
+    of, chord = _numbered(number)
+    chord += first[of]
+    left, right = np.maximum(pieces[of, 0], u[chord]), np.minimum(pieces[of, 1], u[chord + 1])
+    slope = (v[chord + 1] - v[chord]) / (u[chord + 1] - u[chord])
+    ends = np.sort([v[chord] + (left - u[chord]) * slope, v[chord] + (right - u[chord]) * slope], axis=0)
+    low, high = ends - pieces[of, 2]
+    tall = pieces[of, 3] - pieces[of, 2]
+    inside = np.clip(ends - pieces[of, 2], 0, tall)
+    risen = (inside[1] - inside[0]) * (inside[0] + inside[1]) / 2
+    whole = (high - np.maximum(low, tall)).clip(0) * tall
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean = np.where(high > low, (risen + whole) / (high - low), inside[0])
+    return float(((right - left).clip(0) * mean).sum())
 
 
-def _columns(left: fmpq, right: fmpq, n: int) -> list[tuple[int, fmpq, fmpq]]:
-    """The parts of an interval in the columns of a grid."""
-    first, end = int((left * n).floor()), int((right * n).ceil())
-    return [(k, max(left, fmpq(k, n)), min(right, fmpq(k + 1, n))) for k in range(first, end)]
+def _numbered(number: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """For items that are repeated so many times: each repetition's item, and its number within it."""
+    of = np.repeat(np.arange(len(number)), number)
+    return of, np.arange(len(of)) - np.repeat(np.cumsum(number) - number, number)
 
 
-def _mean(sums: Any, low: fmpq, high: fmpq, n: int) -> fmpq:
-    """The mean of n G over the heights from low to high, which are in pixels; G is linear in each pixel."""
-    first = min(int(low.floor()), n - 1)
-    last = min(max(int(high.ceil()) - 1, first), n - 1)
+def _faintest(truth: Truth, by_region: Floats, loose: float = 0.0) -> Bounds:
+    """Bounds of the smallest share of a region that is shown with its count."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        low = np.nan_to_num((by_region - truth.doubts) / truth.areas[:, 1])
+        high = np.nan_to_num((by_region + truth.doubts + loose) / truth.areas[:, 0], nan=1.0)
+    return outward(max(0.0, float(low.min())), min(1.0, max(0.0, float(high.min()))))
 
-    def at(j: int, height: fmpq) -> fmpq:
-        below = int(sums[j])
-        return below + (height - j) * (int(sums[j + 1]) - below)
 
-    if first == last:
-        return at(first, (low + high) / 2)
-    total = fmpq(0)
-    for j in range(first, last + 1):
-        a, b = max(low, fmpq(j)), min(high, fmpq(j + 1))
-        total += (b - a) * at(j, (a + b) / 2)
-    return total / (high - low)
+def distance(truth: Truth, drawn: Floats, spacing: float) -> Bounds | None:
+    """The Hausdorff distance between the true walls and rectangles that are drawn, in the unit square.
+
+    Parameters
+    ----------
+    drawn : rectangles as rows (left, right, bottom, top), which may be sides of no width.
+
+    Returns
+    -------
+    None when just one of the two is empty.
+    """
+    walls = [w for w in truth.walls if w.distance < UNKNOWN]
+    chords = [np.concatenate([w.points[:-1], w.points[1:]], axis=1) for w in walls]
+    upright = truth.upright[:, [0, 1, 0, 2]]
+    segments = np.concatenate([*chords, upright])
+    if not len(segments) or not len(drawn):
+        return (0.0, 0.0) if not len(segments) and not len(drawn) else None
+    apart = max((w.distance for w in walls), default=0.0)
+    left, right, bottom, top = drawn.T
+    wide = right - left > top - bottom
+    across, up = (left + right) / 2, (bottom + top) / 2
+    middles = np.where(
+        wide[:, None],
+        np.stack([left, up, right, up], axis=1),
+        np.stack([across, bottom, across, top], axis=1),
+    )
+    thick = np.minimum(right - left, top - bottom) / 2
+    true, of_wall = _points(segments, spacing, np.zeros(len(segments)))
+    shown, of_drawn = _points(middles, spacing, thick)
+
+    from scipy.spatial import cKDTree
+
+    to_shown, to_true = cKDTree(shown).query(true)[0], cKDTree(true).query(shown)[0]
+    low = max(float(to_shown.max() - of_drawn.max()), float(to_true.max() - of_wall.max()))
+    high = max(float((to_shown + of_wall).max()), float((to_true + of_drawn).max()))
+    return outward(max(0.0, low - apart), high + apart)
+
+
+def _points(segments: Floats, spacing: float, thick: Floats) -> tuple[Floats, Floats]:
+    """Points on segments (u0, v0, u1, v1), and how far from each what it stands for may be."""
+    start, way = segments[:, :2], segments[:, 2:] - segments[:, :2]
+    length = np.hypot(way[:, 0], way[:, 1])
+    pieces = np.maximum(1, np.ceil(length / spacing)).astype(np.int64)
+    of, within = _numbered(pieces)
+    share = (within + 0.5) / pieces[of]
+    return start[of] + share[:, None] * way[of], np.hypot(length / pieces / 2, thick)[of]
+
+
+def outward(low: float | Fraction, high: float | Fraction) -> Bounds:
+    """Both bounds in six digits, the lower rounded down and the upper rounded up."""
+    return float(decimal(Fraction(low), up=False, digits=DIGITS)), _up(high)
+
+
+def _up(value: float | Fraction) -> float:
+    return float(decimal(Fraction(value), up=True, digits=DIGITS))

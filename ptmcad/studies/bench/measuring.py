@@ -1,40 +1,37 @@
 """Running a study: methods take turns, times are taken, and each answer is measured against the exact map.
 
-Guarantee: all methods are run at their first setting before any is at its second; there each round runs every method
-once, in an order drawn from the seed, beside the reference job. Nothing is measured while something else is run.
+Guarantee: all methods are run at their first setting before any is at its second; there each round
+runs every method once, in an order drawn from the seed, beside the reference job. Nothing is
+measured while something else is run.
 """
 
 from __future__ import annotations
 
 import json
-import os
 import random
 import sys
 import tempfile
-import threading
-import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from multiprocessing import get_all_start_methods, get_context
+from itertools import zip_longest
 from pathlib import Path
 
 import numpy as np
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.classification import classify
-from ptmcad.errors import PtmcadError
+from ptmcad.errors import LimitReached, PtmcadError
 from ptmcad.question.slice import Slice
 from ptmcad.show.table import count_text
-from ptmcad.studies.bench import qepcad
-from ptmcad.studies.bench.cover_error import cover_error
-from ptmcad.studies.bench.error import MapError, exact_error, grid_error
-from ptmcad.studies.bench.harness import Times, made_with, rounds, times
-from ptmcad.studies.bench.methods import Job, Method, jobs, question
+from ptmcad.studies.bench import programs, qepcad
+from ptmcad.studies.bench.error import Figures, cover_error, exact_error, grid_error, outward
+from ptmcad.studies.bench.harness import Job, Times, made_with, take_turns, times
+from ptmcad.studies.bench.methods import GRIDS, Case, Method, finest_count, jobs, question
 from ptmcad.studies.bench.process import Outcome, Usage, run
-from ptmcad.studies.bench.reference import COUNTS, Column, Reference, Walls, centres, reference, shown_count, walls
-from ptmcad.studies.bench.study import Figures, Measurement, Study, figures, outward
+from ptmcad.studies.bench.study import Measurement, Study
+from ptmcad.studies.bench.truth import Truth, cells_at_centres, shown_count, truths
 
 FLOOR = (
     sys.executable,
@@ -44,30 +41,17 @@ FLOOR = (
 """The reference job: start-up, and some linear algebra that is always the same."""
 MAX_REPEATED_SECONDS = 1.25
 """Seconds from which on a job is not repeated."""
-MAX_PANELS = 10_000
-"""Of all walls together: what is steep takes many, and some slices have walls too steep for the measurement."""
 NO_MAP = "no exact map to compare with: the share is the engine's"
 NO_WALLS = "errors not measured: the true walls are too steep for chains of chords; shares are the engine's"
+FORMULA = "an exact formula by its own claim, up to a set of measure zero; the sextic was given"
+MAP_SECONDS = 120.0
+"""For the map that errors are measured against, at least; without it shares are the engines'."""
 GRACE_SECONDS = 1.0
 """Seconds that an engine has to save what it has when its time is over."""
 GROWTH = 4.5
 """A grid is taken to need so many times the time of the one before, which has a quarter of its pixels."""
 
 Report = Callable[[str], None]
-
-
-@dataclass(slots=True)
-class _Runs:
-    """What the runs of one job gave so far."""
-
-    job: Job
-    usages: list[Usage]
-    computing: list[float]
-    reason: str = ""
-
-    @property
-    def due(self) -> bool:
-        return not self.reason and not (self.usages and self.usages[0].seconds > MAX_REPEATED_SECONDS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,127 +96,79 @@ def measure(
     PtmcadError
         When the slice has no map, or an answer of ours contradicts the reference.
     """
-    exact, sides, sound = None, None, None
+    exact, known, sound = None, None, None
     if not slice.has_free_lengths:
         report(f"{slice.name}: the exact map that errors are measured against")
-        result = classify(slice, count="index")
-        sound = verified(result)
-        exact = reference(result)
-        sides = _walls(exact)
+        with suppress(LimitReached):
+            exact = classify(slice, count=finest_count(slice), timeout=max(MAP_SECONDS, settings.time_limit))
+            sound = verified(exact)
+            known = truths(exact)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        asked = question(slice, None if exact is None else exact.result)
-        (folder / "question.json").write_text(asked, encoding="utf-8")
-        started, absent = _begin(slice, record, folder, settings)
+        (folder / "question.json").write_text(question(slice), encoding="utf-8")
+        case = Case(slice, record.resolve(), exact, folder, settings.quick, settings.seed)
+        ranked: list[Sequence[Job]] = []
+        absent: list[Measurement] = []
+        for method in settings.methods:
+            found = jobs(method, case)
+            if isinstance(found, str):
+                absent.append(Measurement(method.value, "", None, reason=found))
+            else:
+                ranked.append(found)
         if warm_up:
-            _compile(started)
-        report(f"{slice.name}: {len(started)} jobs")
-        floor = _rounds(started, settings, report)
+            _compile(ranked)
+        floor = _run_all(ranked, settings, report)
         report(f"{slice.name}: errors")
-        measured = _all_measured(_Known(started, slice, exact, sides))
+        measured = [_measured(slice, exact, known, job) for found in ranked for job in found]
     return Study(
-        slice=slice.name, heading=slice.heading, **made_with(), seed=settings.seed,
-        rounds=settings.rounds, time_limit=settings.time_limit, quick=settings.quick, verified=sound, floor=floor,
+        slice=slice.name, heading=slice.heading, **made_with(), seed=settings.seed, rounds=settings.rounds,
+        time_limit=settings.time_limit, quick=settings.quick, verified=sound, floor=times(floor),
         measurements=(*measured, *absent),
     )  # fmt: skip
 
 
-def _walls(exact: Reference) -> dict[str, Walls] | None:
-    """The exact map's walls as chains of chords; None where that takes more than `MAX_PANELS` panels."""
-    panels = 0
-
-    def count() -> None:
-        nonlocal panels
-        panels += 1
-        if panels > MAX_PANELS:
-            raise _TooManyError
-
-    try:
-        return walls(exact, count)
-    except _TooManyError:
-        return None
-
-
-class _TooManyError(Exception):
-    """More panels than the measurement may take."""
-
-
-def _begin(slice: Slice, record: Path, folder: Path, settings: Settings) -> tuple[list[_Runs], list[Measurement]]:
-    started: list[_Runs] = []
-    absent: list[Measurement] = []
-    for method in settings.methods:
-        found = jobs(method, slice, record.resolve(), folder, settings.quick, settings.seed)
-        if isinstance(found, str):
-            absent.append(Measurement(method.value, "", None, reason=found))
-        else:
-            started += [_Runs(job, [], []) for job in found]
-    return started, absent
-
-
-def _compile(started: Sequence[_Runs]) -> None:
+def _compile(ranked: Sequence[Sequence[Job]]) -> None:
     """Run the certified engine's first job, if there is one: what is reported is the time of every later run."""
-    for r in started:
-        if r.job.method is Method.CERTIFIED:
-            run(r.job.commands[0][0], timeout=300)
-            return
+    for found in ranked:
+        if found[0].what == Method.CERTIFIED.value:
+            run(found[0].commands[0][0], timeout=300)
 
 
-def _rounds(runs: Sequence[_Runs], settings: Settings, report: Report) -> Times:
-    """Run all jobs; the times of the reference job are returned."""
-    order, limit = random.Random(settings.seed), settings.time_limit
-    spent = {r.job.method: 0.0 for r in runs}
+def _run_all(ranked: Sequence[Sequence[Job]], settings: Settings, report: Report) -> list[float]:
+    """Run all jobs; the seconds of the reference job are returned."""
+    limit = settings.time_limit
+    spent = {method.value: 0.0 for method in settings.methods}
     last = dict(spent)
-    floor = []
-    run(FLOOR)
-    for rank in range(1 + max((r.job.rank for r in runs), default=0)):
-        ranked = [r for r in runs if r.job.rank == rank]
-        for turns in rounds(settings.rounds, lambda _, ranked=ranked: ranked, order):  # type: ignore[misc]
-            floor.append(run(FLOOR).seconds)
-            for r in turns:
-                method = r.job.method
-                left = limit - spent[method]
-                # a finer tolerance takes no less than the coarser one before it
-                growth = GROWTH if r.job.grows else 1.0 if method is Method.CERTIFIED else 0.0
-                needed = r.usages[-1].seconds if r.usages else growth * last[method]
-                if not r.due or (r.usages and left < needed):
-                    continue
-                if left <= needed:
-                    r.reason = f"left out: it does not fit into the {limit:g} s for each method"
-                    continue
-                report(f"{method.value}, {r.job.setting}")
-                last[method] = _run(r, left, limit)
-                spent[method] += last[method]
-    return times(floor)
+    floor = Job("", "", "reference job", ((FLOOR, ""),))
 
+    def attempt(job: Job) -> None:
+        if job is floor:
+            job.attempt(300)
+            return
+        repeated = bool(job.usages)
+        if repeated and job.usages[0].seconds > MAX_REPEATED_SECONDS:
+            return
+        left = limit - spent[job.what]
+        certified = job.what == Method.CERTIFIED.value
+        # a finer tolerance takes no less than the coarser one before it
+        growth = 1.0 if certified else 0.0 if job.what == Method.EXACT.value else GROWTH
+        needed = job.usages[-1].seconds if repeated else growth * last[job.what]
+        if left <= needed:
+            if not repeated:
+                job.reason = f"left out: it does not fit into the {limit:g} s for each method"
+            return
+        report(f"{job.what}, {job.setting}")
+        usage = _until(job, left) if certified else job.attempt(left)
+        last[job.what] = usage.seconds
+        spent[job.what] += usage.seconds
+        if usage.outcome is Outcome.TIMED_OUT:
+            job.reason = f"stopped: the {limit:g} s for each method were used up"
 
-def _run(r: _Runs, left: float, time_limit: float) -> float:
-    """Run a job once, record it, and return the seconds that it took."""
-    job = r.job
-    if job.method is Method.CERTIFIED:
-        total = [_until(job, left)]
-    else:
-        total = []
-        for command, text in job.commands:
-            usage = run(command, text=text, timeout=max(left - sum(u.seconds for u in total), 0.1))
-            total.append(qepcad.judged(usage) if job.method is Method.QEPCAD else usage)
-            if total[-1].outcome is not Outcome.DONE:
-                break
-    seconds, last = sum(u.seconds for u in total), total[-1]
-    if last.outcome is Outcome.DONE:
-        processor, peak = sum(u.processor_seconds for u in total), max(u.peak_mebibytes for u in total)
-        r.usages.append(Usage(last.outcome, seconds, processor, peak))
-        if job.method in (Method.COMPANION, Method.MULTISTART, Method.GCAD):
-            r.computing.append(json.loads(last.output)["computing"])
-        elif job.answer is not None:
-            r.computing.append(json.loads(job.answer.read_text(encoding="utf-8"))["timings"]["total"])
-    elif not r.usages:
-        message = last.message.strip().splitlines()
-        r.reason = (
-            f"stopped: the {time_limit:g} s for each method were used up"
-            if last.outcome is Outcome.TIMED_OUT
-            else f"{last.outcome.value}: {message[-1] if message else 'no message'}"
-        )
-    return seconds
+    run(FLOOR)  # fills caches
+    order = random.Random(settings.seed)
+    for rank in zip_longest(*ranked):
+        take_turns([floor, *filter(None, rank)], settings.rounds, order, attempt)
+    return [usage.seconds for usage in floor.usages]
 
 
 def _until(job: Job, left: float) -> Usage:
@@ -242,99 +178,72 @@ def _until(job: Job, left: float) -> Usage:
     command = (*job.commands[0][0], "--timeout", f"{max(left - GRACE_SECONDS, 0.1):.2f}")
     usage = run(command, timeout=left + GRACE_SECONDS)
     if job.answer.exists():
-        return replace(usage, outcome=Outcome.DONE)
-    return replace(usage, outcome=Outcome.TIMED_OUT) if "time limit" in usage.message else usage
+        usage = replace(usage, outcome=Outcome.DONE)
+    elif "time limit" in usage.message:
+        usage = replace(usage, outcome=Outcome.TIMED_OUT)
+    job.record(usage, left)
+    return usage
 
 
-@dataclass(frozen=True, slots=True)
-class _Known:
-    """What errors are measured with: the runs, and the exact map and its walls where there are any."""
-
-    runs: Sequence[_Runs]
-    slice: Slice
-    exact: Reference | None
-    sides: dict[str, Walls] | None
-
-
-def _all_measured(known: _Known) -> tuple[Measurement, ...]:
-    """The errors of all jobs' answers, computed side by side where a system can fork: nothing is timed by now."""
-    processes = min(os.cpu_count() or 1, len(known.runs))
-    if processes < 2 or "fork" not in get_all_start_methods():
-        return tuple(_measured(known, r) for r in known.runs)
-    with ProcessPoolExecutor(processes, get_context("fork"), _inherit, (known, os.getpid())) as pool:
-        return tuple(pool.map(_measured_here, range(len(known.runs))))
-
-
-_inherited: list[_Known] = []
-"""In a forked process, what it computes with: far too much to be sent to it."""
-
-
-def _inherit(known: _Known, parent: int) -> None:
-    _inherited[:] = [known]
-    threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
-
-
-def _end_with(parent: int) -> None:
-    """End this process when its parent has ended, however that did: the other processes keep its pipes open."""
-    while os.getppid() == parent:
-        time.sleep(0.2)
-    os._exit(1)
-
-
-def _measured_here(number: int) -> Measurement:
-    return _measured(_inherited[0], _inherited[0].runs[number])
-
-
-def _measured(known: _Known, r: _Runs) -> Measurement:
-    job, exact, sides = r.job, known.exact, known.sides
-    if not r.usages:
-        return Measurement(job.method.value, job.setting, None, reason=r.reason or "not run")
+def _measured(slice: Slice, exact: RegionMap | None, known: dict[str, Truth] | None, job: Job) -> Measurement:
+    method = Method(job.what)
+    if not job.usages:
+        return Measurement(job.what, job.setting, None, reason=job.reason or "not run")
     found: dict[str, Figures] = {}
     width: float | None = None
     note = ""
-    if job.method in (Method.EXACT, Method.CERTIFIED):
+    output = job.usages[-1].output
+    if method in (Method.EXACT, Method.CERTIFIED):
         assert job.answer is not None
-        result = RegionMap.from_json(job.answer.read_text(encoding="utf-8"))
-        width = outward((Fraction(0), area_width(result)))[1]
-        if result.status is Status.PARTIAL:
-            note = "stopped at the limit, short of its tolerance"
-        if job.method is Method.EXACT and exact is not None:
+        result = RegionMap.from_json(output := job.answer.read_text(encoding="utf-8"))
+        width = outward(0, area_width(result))[1]
+        note = "stopped at the limit, short of its tolerance" if result.status is Status.PARTIAL else ""
+        if method is Method.EXACT and exact is not None:
             _agree(result, exact)
-        if exact is None or sides is None:
-            share = outward((result.undetermined, result.undetermined))
-            found[known.slice.count.value] = Figures(wrong=share, undetermined=share[1])
-            note = "; ".join([note] * bool(note) + [NO_MAP if exact is None else NO_WALLS])
-        elif job.method is Method.EXACT:
-            found = {count: figures(exact_error(sides[count])) for count in COUNTS}
+        if not known:
+            share = outward(result.undetermined, result.undetermined)
+            found[slice.count.value] = Figures(wrong=share, undetermined=share[1])
+            note = "; ".join(filter(None, [note, NO_MAP if exact is None else NO_WALLS]))
+        elif method is Method.EXACT:
+            found = {count: exact_error(truth) for count, truth in known.items()}
         else:
-            errors = {count: cover_error(exact, sides[count], result, count) for count in COUNTS}
-            found = {count: figures(error) for count, error in errors.items() if error is not None}
-    elif job.method in (Method.COMPANION, Method.MULTISTART):
+            errors = {count: cover_error(truth, result, count) for count, truth in known.items()}
+            found = {count: error for count, error in errors.items() if error is not None}
+    elif method in GRIDS:
         assert job.answer is not None and exact is not None
-        if sides is None:
-            return Measurement(job.method.value, job.setting, None, reason=NO_WALLS)
-        found = grid_figures(exact, sides, np.load(job.answer))
-        note = qepcad.LOSES_PI if qepcad.question(known.slice) == qepcad.LOSES_PI else ""
-    elif job.method is Method.QEPCAD:
-        count = "stable" if "stable" in job.setting else "total"
-        found[count] = Figures(wrong=(0.0, 0.0), undetermined=0.0)
-        note = "an exact formula by its own claim, up to a set of measure zero; the sextic was given"
-    else:
-        found["index"] = Figures(wrong=(0.0, 0.0), undetermined=0.0)
-        note = "cells by its own claim; the curves were given, and nothing is counted"
+        if known is None:
+            return Measurement(job.what, job.setting, None, reason=NO_WALLS)
+        found = grid_figures(exact, known, np.load(job.answer))
+        note = qepcad.LOSES_PI if qepcad.question(slice) == qepcad.LOSES_PI else ""
+    elif job.setting.startswith("where"):
+        found["stable" if "stable" in job.setting else "total"] = Figures(wrong=(0.0, 0.0), undetermined=0.0)
+        note = FORMULA
+    elif exact is not None:
+        answer = output if job.answer is None else job.answer.read_text(encoding="utf-8")
+        asked = programs.elimination(slice, True)
+        note = f"no counts; {programs.agreement(job.what, answer, exact, asked)}"
     return Measurement(
-        method=job.method.value,
+        method=job.what,
         setting=job.setting,
-        seconds=times([u.seconds for u in r.usages]),
-        computing=times(r.computing) if r.computing else None,
-        peak=round(max(u.peak_mebibytes for u in r.usages), 1),
+        seconds=times([u.seconds for u in job.usages]),
+        computing=_computing(output),
+        peak=round(max(u.peak_mebibytes for u in job.usages), 1),
         note=note,
         figures=found,
         area_width=width,
     )
 
 
-def grid_figures(exact: Reference, sides: dict[str, Walls], drawn: np.ndarray) -> dict[str, Figures]:
+def _computing(output: str) -> Times | None:
+    """The seconds of the computation alone, where the answer, JSON, says them."""
+    if not output.startswith("{"):
+        return None
+    said = json.loads(output)
+    seconds = said["timings"]["total"] if "timings" in said else said.get("computing")
+    return times([seconds]) if seconds else None
+
+
+def grid_figures(exact: RegionMap, known: dict[str, Truth], drawn: np.ndarray) -> dict[str, Figures]:
     """The figures of a grid for each count.
 
     Parameters
@@ -342,34 +251,26 @@ def grid_figures(exact: Reference, sides: dict[str, Walls], drawn: np.ndarray) -
     drawn : stable and total counts, of shape (2, n, n).
     """
     stable, total = drawn.astype(np.int16)
-    columns: tuple[Column, ...] = centres(exact, len(stable))
-    found: dict[str, MapError] = {
-        count: grid_error(exact, sides[count], columns, shown_count(stable, total, count), count) for count in COUNTS
-    }
-    return {count: figures(error) for count, error in found.items()}
+    cells = cells_at_centres(exact, len(stable))
+    return {count: grid_error(truth, cells, shown_count(stable, total, count)) for count, truth in known.items()}
 
 
 def area_width(result: RegionMap) -> Fraction:
     """The widest bounds of the area of all points with one count, as a share of the window's area."""
     first, second = result.slice.axes
     window = (first.high - first.low) * (second.high - second.low)
-    low: dict[str, Fraction] = {}
-    high: dict[str, Fraction] = {}
+    if result.cover is not None:  # the undetermined part may belong to any count
+        return result.undetermined if result.regions else Fraction(1)
+    widths: dict[str, Fraction] = {}
     for region in result.regions:
         key = count_text(region, result.slice.count)
-        low[key] = low.get(key, Fraction(0)) + region.area[0]
-        high[key] = high.get(key, Fraction(0)) + region.area[1]
-    widths = [
-        # in a certified map the undetermined part may belong to any count
-        (high[key] - low[key]) / window if result.cover is None else result.undetermined
-        for key in low
-    ]
-    return max(widths, default=Fraction(1))
+        widths[key] = widths.get(key, Fraction(0)) + (region.area[1] - region.area[0]) / window
+    return max(widths.values(), default=Fraction(1))
 
 
-def _agree(result: RegionMap, exact: Reference) -> None:
+def _agree(result: RegionMap, exact: RegionMap) -> None:
     """Refuse an exact map that says other than the reference at one of its samples, or leaves something open."""
     for cell in result.cells:
-        found = exact.result.locate(**dict(cell.sample))
+        found = exact.locate(**dict(cell.sample))
         if (found.stable, found.total) != (cell.stable, cell.total) or result.undetermined:
             raise PtmcadError(f"two exact maps of {result.slice.name} differ at {dict(cell.sample)}")

@@ -1,25 +1,29 @@
 """The methods that are compared, each as processes to run at a number of settings.
 
-Guarantee: each job gets the same slice, with exact numbers where the method takes them; what a method cannot do for a
-slice, or what is not installed, is reported with its reason.
+Guarantee: each job gets the same slice, with exact numbers where the method takes them; what a
+method cannot do for a slice, or what is not installed, is reported with its reason.
 """
 
 from __future__ import annotations
 
 import json
+import shutil
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
+from functools import lru_cache, partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
+from ptmcad.algebra import msolve
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.mechanism import ptm
+from ptmcad.exact.slicevariety import slice_variety
 from ptmcad.question.slice import Slice
-from ptmcad.studies.bench import qepcad
-from ptmcad.studies.bench.process import Outcome, run
-from ptmcad.studies.moments import source
+from ptmcad.studies.bench import programs, qepcad
+from ptmcad.studies.bench.harness import PTMCAD, Job
+from ptmcad.studies.bench.process import run
+from ptmcad.text.expressions import Expression
 
 
 class Method(Enum):
@@ -30,6 +34,8 @@ class Method(Enum):
     COMPANION = "companion"
     MULTISTART = "multistart"
     QEPCAD = "qepcad"
+    SINGULAR = "singular"
+    MSOLVE = "msolve"
     GCAD = "gcad"
 
 
@@ -58,115 +64,147 @@ RIVALS = {
         "grid of companion matrices", "N = {}", ("25", "50", "100", "200", "400", "800", "1600"), 4
     ),
     Method.MULTISTART: Rival("grid of scipy starts", "N = {}", ("12", "25"), 1, "scipy"),
-    Method.QEPCAD: Rival("QEPCAD on the sextic made by hand", "where {}", ("6, where 4", "2 stable"), 2),
+    Method.QEPCAD: Rival("QEPCAD", "{}", ("where 6, where 4", "where 2 stable", "cells of the curves"), 3),
+    Method.SINGULAR: Rival("Singular, critical curve alone", "{}", ("critical curve",), 1),
+    Method.MSOLVE: Rival("msolve, critical curve alone", "{}", ("critical curve",), 1),
     Method.GCAD: Rival("gcad on the finished curves, no counts", "{}", ("curves",), 1, "gcad"),
 }
-OURS = (Method.EXACT, Method.CERTIFIED)
+GRIDS = (Method.COMPANION, Method.MULTISTART)
 TRIAL_SECONDS = 20.0
 
 
+def question(slice: Slice) -> str:
+    """The slice as JSON for the rivals, in floats."""
+    parameters = {
+        name: [[[i, j, float(c)] for i, j, c in terms] for terms in (value.numerator, value.denominator)]
+        for name, value in slice.parameters.items()
+    }
+    window = [[float(a.low), float(a.high)] for a in slice.axes]
+    return json.dumps({"window": window, "parameters": parameters})
+
+
 @dataclass(frozen=True, slots=True)
-class Job:
-    """Processes that answer the question at one setting; their times are added.
+class Case:
+    """What the methods are asked about.
 
     Attributes
     ----------
-    commands : each with its standard input.
-    answer : the file that they write, None where the answer is on standard output.
-    rank : jobs of a method are run in this order, the shortest first.
-    grows : whether it is known to need more time than the job before it.
-    """
-
-    method: Method
-    setting: str
-    commands: tuple[tuple[tuple[str, ...], str], ...]
-    answer: Path | None
-    rank: int
-    grows: bool = False
-
-
-def question(slice: Slice, exact: RegionMap | None) -> str:
-    """The slice as JSON for the rivals: floats, the exact map's curves, and the paper's equations as code."""
-    curves = () if exact is None else [c.polynomial.terms for c in exact.components if not c.left_out]
-    return json.dumps(
-        {
-            "window": [[float(a.low), float(a.high)] for a in slice.axes],
-            "rational_window": [[str(a.low), str(a.high)] for a in slice.axes],
-            "base": 0 if exact is None else exact.base,
-            "parameters": {
-                name: [[[i, j, float(c)] for i, j, c in terms] for terms in (value.numerator, value.denominator)]
-                for name, value in slice.parameters.items()
-            },
-            "curves": [[[i, j, str(c)] for i, j, c in terms] for terms in curves],
-            "moments": source() if slice.model == ptm() else "",
-        }
-    )
-
-
-def jobs(method: Method, slice: Slice, record: Path, folder: Path, quick: bool, seed: int) -> tuple[Job, ...] | str:
-    """A method's jobs for a slice, or why there are none.
-
-    Parameters
-    ----------
     record : the slice's own file.
+    exact : its map, for the curves; None where there is none.
     folder : with the question as ``question.json``; answers go there too.
     quick : fewer and coarser settings.
     """
-    rival = RIVALS[method]
-    if method is Method.EXACT and slice.has_free_lengths:
+
+    slice: Slice
+    record: Path
+    exact: RegionMap | None
+    folder: Path
+    quick: bool
+    seed: int
+
+
+def jobs(method: Method, case: Case) -> list[Job] | str:
+    """A method's jobs, from the shortest, or why there are none."""
+    rival, slice = RIVALS[method], case.slice
+    if slice.has_free_lengths and method is not Method.CERTIFIED:
         return "square roots: springs have a free length"
-    if method not in OURS and slice.has_free_lengths:
-        return "with free lengths there is no sextic"
-    if method not in OURS and slice.mechanism != "ptm":
+    if method in GRIDS and slice.mechanism != "ptm":
         return f"the sextic is the paper's mechanism's, not that of {slice.mechanism}"
     if rival.needs and find_spec(rival.needs) is None:
         return f"{rival.needs} is not installed (make bench installs it)"
-    if method is Method.QEPCAD:
-        return _qepcad(slice)
-    found = []
-    for rank, setting in enumerate(rival.settings[: rival.quick if quick else None]):
-        target = folder / f"{method.value}-{setting}"
-        if method in OURS:
-            command = (*_classify(method, slice, record), setting, "--format", "json", "--out", str(target))
-            target /= f"{slice.name}.json"
+    found, reason = [], ""
+    for setting in rival.settings[: rival.quick if case.quick else None]:
+        asking = _job(method, case, setting)
+        if isinstance(asking, str):
+            reason = asking
         else:
-            target = target.with_suffix(".json" if method is Method.GCAD else ".npy")
-            more = (str(seed),) if method is Method.MULTISTART else ()
-            asked = (str(folder / "question.json"), setting, str(target), *more)
-            module = "gcad_curves" if method is Method.GCAD else method.value
-            command = (sys.executable, "-m", f"ptmcad.studies.bench.{module}", *asked)
-        grows = rank > 0 and method not in OURS
-        found.append(Job(method, rival.label.format(setting), ((command, ""),), target, rank, grows))
-    return tuple(found)
+            asking.setting = rival.label.format(setting)
+            found.append(asking)
+    return found or reason
 
 
-def _classify(method: Method, slice: Slice, record: Path) -> tuple[str, ...]:
-    """The command without its setting."""
-    count = slice.count.value if slice.has_free_lengths else "index"
-    option = "--area-tolerance" if method is Method.EXACT else "--tolerance"
-    return (sys.executable, "-m", "ptmcad", "classify", str(record), "--engine", method.value, "--count", count, option)
-
-
-def _qepcad(slice: Slice) -> tuple[Job, ...] | str:
-    """Both total counts in the better elimination order, which a trial shows."""
-    command = qepcad.command()
-    if command is None:
+def _job(method: Method, case: Case, setting: str) -> Job | str:
+    """The job at a setting, or why there is none."""
+    name, folder = case.slice.name, case.folder
+    target = folder / f"{method.value}-{setting}"
+    match method:
+        case Method.EXACT | Method.CERTIFIED:
+            option = "--area-tolerance" if method is Method.EXACT else "--tolerance"
+            command = [*PTMCAD, "classify", str(case.record), "--engine", method.value, "--count",
+                       finest_count(case.slice), option, setting, "--format", "json", "--out", str(target)]  # fmt: skip
+            return Job(name, method.value, "", ((command, ""),), target / f"{name}.json")
+        case Method.COMPANION | Method.MULTISTART:
+            target = target.with_suffix(".npy")
+            command = [sys.executable, "-m", "ptmcad.studies.bench.rivals", method.value,
+                       str(folder / "question.json"), setting, str(target), str(case.seed)]  # fmt: skip
+            return Job(name, method.value, "", ((command, ""),), target)
+        case Method.QEPCAD if setting.startswith("where"):
+            return _counts_by_qepcad(case.slice, setting)
+        case Method.SINGULAR:
+            if shutil.which("Singular") is None:
+                return "Singular is not installed"
+            script = programs.singular_script(programs.elimination(case.slice, case.exact is not None))
+            command = ["Singular", "--quiet", "--no-rc"]
+            return Job(name, method.value, "", ((command, script),), None, partial(programs.incomplete, programs.END))
+        case Method.MSOLVE:
+            program = msolve.program()
+            if program is None:
+                return "msolve is not installed"
+            asked = programs.elimination(case.slice, case.exact is not None)
+            (folder / "system.ms").write_text(asked.text, encoding="ascii")
+            command = [program, "-e", str(len(asked.unknowns)), "-g", "2", "-f", str(folder / "system.ms"),
+                       "-o", str(target)]  # fmt: skip
+            return Job(name, method.value, "", ((command, ""),), target)
+    if case.exact is None:
+        return "there are no finished curves"
+    if method is Method.GCAD:
+        script = programs.gcad_script(case.exact)
+        return Job(name, method.value, "", (([sys.executable, "-"], script),))
+    there = qepcad.command()
+    if there is None:
         return "qepcad is not installed"
-    asked = qepcad.question(slice)
-    if isinstance(asked, str):
-        return asked
-    seconds = {}
-    for swapped in (False, True):
-        usage = qepcad.judged(run(command, text=asked.text(qepcad.Task.SIX, swapped=swapped), timeout=TRIAL_SECONDS))
-        if usage.outcome is Outcome.DONE:
-            seconds[swapped] = usage.seconds
-    if not seconds:
+    ordered = exchanged(case.slice) if case.exact.base else case.slice
+    session = slice_variety(ordered).text("qepcad") + programs.STUCK
+    return Job(name, method.value, "", ((there, session),), None, partial(programs.incomplete, programs.QUIT))
+
+
+def finest_count(slice: Slice) -> str:
+    """The count that shows most; with free lengths the slice's own."""
+    if slice.has_free_lengths:
+        return slice.count.value
+    return "index" if slice.model.has_potential else "stable" if slice.model.tells_stability else "total"
+
+
+def exchanged(slice: Slice) -> Slice:
+    """The slice with its axes exchanged."""
+
+    def turned(e: Expression) -> Expression:
+        return Expression(*(tuple(sorted((j, i, c) for i, j, c in part)) for part in (e.numerator, e.denominator)))
+
+    parameters = {name: turned(e) for name, e in slice.parameters.items()}
+    return replace(slice, axes=slice.axes[::-1], parameters=parameters)
+
+
+def _counts_by_qepcad(slice: Slice, setting: str) -> Job | str:
+    """On the sextic, in the better elimination order, which a trial shows."""
+    command, asked = qepcad.command(), qepcad.question(slice)
+    if command is None or isinstance(asked, str):
+        return "qepcad is not installed" if command is None else str(asked)
+    best = _better_order(command, asked)
+    if best is None:
         return f"no answer within {TRIAL_SECONDS:.0f} s in either order of the axes"
-    best = min(seconds, key=lambda swapped: seconds[swapped])
-    texts = {task: (command, asked.text(task, swapped=best)) for task in qepcad.Task}
-    commands = (tuple(texts[task] for task in qepcad.TOTAL), (texts[qepcad.Task.TWO_STABLE],))
-    rival = RIVALS[Method.QEPCAD]
-    return tuple(
-        Job(Method.QEPCAD, rival.label.format(setting), asking, None, rank)
-        for rank, (setting, asking) in enumerate(zip(rival.settings, commands, strict=True))
-    )
+    tasks = (qepcad.Task.TWO_STABLE,) if "stable" in setting else qepcad.TOTAL
+    commands = [(command, asked.text(task, swapped=best)) for task in tasks]
+    return Job(slice.name, Method.QEPCAD.value, "", commands, None,
+               lambda usage: "" if qepcad.formula(usage.output) else "no answer")  # fmt: skip
+
+
+@lru_cache(maxsize=1)
+def _better_order(command: tuple[str, ...], asked: qepcad.Question) -> bool | None:
+    """Whether to exchange the axes; None where neither order ends in time."""
+    trials = []
+    for swapped in (False, True):
+        usage = run(command, text=asked.text(qepcad.Task.SIX, swapped=swapped), timeout=TRIAL_SECONDS)
+        if qepcad.formula(usage.output):
+            trials.append((usage.seconds, swapped))
+    return min(trials)[1] if trials else None

@@ -1,23 +1,23 @@
 """A process that is run once and measured.
 
-Guarantee: the figures are the kernel's for that process and the descendants it waited for (`os.wait4`), so nothing that
-the benchmark itself does is counted.
-
-Not guaranteed: a peak below the benchmark's own size, because a forked child starts with its parent's pages counted.
-The modules of this package therefore import nothing large.
+Guarantee: the figures are the kernel's for that process and the descendants it waited for
+(`os.wait4`). It is started by a small process, this file run by itself, because a child's peak is
+at least the size of the process that starts it: so whoever measures may be as large as it likes.
 """
 
 from __future__ import annotations
 
+import json
 import os
-import resource
 import subprocess
+import sys
 import tempfile
 import threading
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
+from pathlib import Path
 
 _MESSAGE_LENGTH = 300
 
@@ -36,7 +36,7 @@ class Usage:
 
     Attributes
     ----------
-    seconds : wall time from before the fork to after the exit.
+    seconds : wall time from before the start to after the exit.
     processor_seconds : user and system time.
     peak_mebibytes : largest resident set.
     output : what it wrote to standard output.
@@ -56,14 +56,8 @@ def run(command: Sequence[str], *, text: str = "", timeout: float | None = None)
 
     Parameters
     ----------
-    command : program and arguments.
     text : its standard input.
     timeout : seconds after which it is killed.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such program.
 
     Examples
     --------
@@ -72,49 +66,56 @@ def run(command: Sequence[str], *, text: str = "", timeout: float | None = None)
     >>> usage.outcome, usage.output, usage.peak_mebibytes > 1
     (<Outcome.DONE: 'done'>, 'desserts\\n', True)
     """
-    with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
-        given.write(text.encode())
-        given.seek(0)
-        start = time.perf_counter()
-        process = subprocess.Popen(command, stdin=given, stdout=output, stderr=errors)
-        resources, expired = _awaited(process, timeout)
-        seconds = time.perf_counter() - start
-        outcome = Outcome.TIMED_OUT if expired else Outcome.FAILED
-        if process.returncode == 0:
-            outcome = Outcome.DONE
-        output.seek(0)
-        errors.seek(0)
-        return Usage(
-            outcome=outcome,
-            seconds=seconds,
-            processor_seconds=resources.ru_utime + resources.ru_stime,
-            peak_mebibytes=resources.ru_maxrss / 1024,
-            output=output.read().decode(errors="replace"),
-            message=""
-            if outcome is Outcome.DONE
-            else errors.read().decode(errors="replace")[-_MESSAGE_LENGTH:].strip(),
-        )
+    with tempfile.TemporaryDirectory() as folder:
+        names = ("figures", "input", "output", "errors")
+        figures, *paths = (os.path.join(folder, name) for name in names)
+        with open(paths[0], "w", encoding="utf-8") as given:
+            given.write(text)
+        with open(paths[0]) as given, open(paths[1], "w") as output, open(paths[2], "w") as errors:
+            limit = "" if timeout is None else str(timeout)
+            subprocess.run(
+                [sys.executable, "-I", "-S", __file__, figures, limit, *command],
+                stdin=given,
+                stdout=output,
+                stderr=errors,
+                check=False,
+            )
+        told, wrong = (Path(path).read_text(encoding="utf-8", errors="replace") for path in paths[1:])
+        if not os.path.exists(figures):
+            return Usage(Outcome.FAILED, 0.0, 0.0, 0.0, told, wrong[-_MESSAGE_LENGTH:].strip())
+        with open(figures) as stream:
+            status, expired, seconds, processor, peak = json.load(stream)
+    outcome = Outcome.DONE if status == 0 else Outcome.TIMED_OUT if expired else Outcome.FAILED
+    message = "" if outcome is Outcome.DONE else wrong[-_MESSAGE_LENGTH:].strip()
+    return Usage(outcome, seconds, processor, peak, told, message)
 
 
-def _awaited(process: subprocess.Popen[bytes], timeout: float | None) -> tuple[resource.struct_rusage, bool]:
-    """What the process took, and whether it was killed when its time was over; its exit status is set."""
+def _measure(figures: str, limit: str, *command: str) -> None:
+    """Run the command, and write what it took into a file, in the order that `run` reads."""
     expired = threading.Event()
+    start = time.perf_counter()
+    process = subprocess.Popen(command)
 
     def expire() -> None:
         expired.set()
         process.kill()
 
-    timer = threading.Timer(timeout, expire) if timeout is not None else None
-    if timer is not None:
-        timer.daemon = True
-        timer.start()
+    timer = threading.Timer(float(limit or threading.TIMEOUT_MAX), expire)
+    timer.daemon = True
+    timer.start()
     try:
-        _, status, resources = os.wait4(process.pid, 0)
+        _, status, used = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
     finally:
-        if timer is not None:
-            timer.cancel()
-        if process.returncode is None:  # interrupted: the process must not outlive its measurement
+        timer.cancel()
+        if process.returncode is None:  # interrupted: it must not outlive its measurement
             process.kill()
             process.wait()
-    return resources, expired.is_set()
+    seconds = time.perf_counter() - start
+    processor, peak = used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
+    with open(figures, "w") as stream:
+        json.dump((process.returncode, expired.is_set(), seconds, processor, peak), stream)
+
+
+if __name__ == "__main__":
+    _measure(*sys.argv[1:])

@@ -17,12 +17,11 @@ import math
 import re
 import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 
 from ptmcad.question.slice import Axis, Slice
-from ptmcad.studies.bench.process import Outcome, Usage
 from ptmcad.studies.sextic import sextic
 from ptmcad.text.expressions import Expression
 from ptmcad.text.terms import signed_terms
@@ -130,20 +129,8 @@ def command() -> tuple[str, ...] | None:
     return (where, "-noecho", f"+N{_GARBAGE_COLLECTED_CELLS}") if where is not None else None
 
 
-def judged(usage: Usage) -> Usage:
-    """The same run, but a failure when QEPCAD ended without an answer: it exits with 0 after most errors."""
-    if usage.outcome is Outcome.DONE and not answer(usage):
-        return replace(usage, outcome=Outcome.FAILED, message="no answer")
-    return usage
-
-
-def answer(usage: Usage) -> str:
-    """The quantifier-free formula in QEPCAD's output, empty when there is none."""
-    return formula(usage.output)
-
-
 def formula(output: str) -> str:
-    """The quantifier-free formula in a text that QEPCAD wrote, empty when there is none."""
+    """The quantifier-free formula that QEPCAD wrote, empty when there is none: it exits with 0 after most errors."""
     found = _ANSWER.search(output)
     return " ".join(found.group(1).split()) if found else ""
 

@@ -135,15 +135,9 @@ def with_non_adjacencies(r: RegionMap) -> RegionMap:
     return replace(r, non_adjacencies=tuple(found))
 
 
-def switched_off(r: RegionMap) -> frozenset[str]:
-    """The savings that the plan says were switched off."""
-    return frozenset(step.saving for step in r.plan if step.saving and step.done)
-
-
-def with_plan(r: RegionMap, without: frozenset[str] | None = None) -> RegionMap:
+def with_plan(r: RegionMap) -> RegionMap:
     """The plan that goes with slice and components; the reason for the base axis is the true map's."""
-    without = switched_off(r) if without is None else without
-    steps = plan_of(r.slice, r.components, r.base, (1, 2), without, NO_AREAS not in r.plan)
+    steps = plan_of(r.slice, r.components, r.base, (1, 2), frozenset(), NO_AREAS not in r.plan)
     old = next((step.reason for step in r.plan if "predicted" in step.reason), "predicted cost 1 against 2")
     return replace(r, plan=tuple(replace(s, reason=old) if "predicted" in s.reason else s for s in steps))
 

@@ -17,7 +17,6 @@ from forger.consistency import (
     renumbered_cells,
     settled,
     swapped,
-    switched_off,
     with_plan,
 )
 from forger.decompose import decomposed
@@ -34,8 +33,6 @@ from ptmcad.answer.regionmap import (
 )
 from ptmcad.question.slice import Point
 from ptmcad.text.plane import PlanePolynomial
-
-AUXILIARY = {"sign-curve", "hermite-matrix"}
 
 
 def _times(p: PlanePolynomial, q: PlanePolynomial) -> PlanePolynomial:
@@ -64,30 +61,19 @@ def _lines(r: RegionMap) -> Iterator[PlanePolynomial]:
 
 
 def component_invented(r: RegionMap) -> Iterator[Alteration]:
-    """A line or conic that separates nothing, of any kind; left out where it has no point in the window.
-
-    Its saving is said to be switched off where an auxiliary one needs that.
-    """
+    """A line or conic that separates nothing, of any kind; left out where it has no point in the window."""
     for n, p in enumerate(_lines(r)):
         for kind in Kind:
             new = Component(p, kind, "" if n < 2 else NO_POINT)
-            without = switched_off(r)
-            yield partial(decomposed, r, (*r.components, new), without)
-            if kind is Kind.AUXILIARY:
-                for saving in sorted(AUXILIARY - without):
-                    yield partial(decomposed, r, (*r.components, new), without | {saving})
+            yield partial(decomposed, r, (*r.components, new))
 
 
 def component_of_another_kind(r: RegionMap) -> Iterator[Alteration]:
-    """Its step of the plan follows; a saving that brings auxiliary ones in is said to be switched off."""
+    """Its step of the plan follows."""
     for k, c in enumerate(r.components):
         for kind in Kind:
             if kind is not c.kind:
-                other = replace(r, components=put(r.components, k, kind=kind))
-                yield partial(with_plan, other)
-                if kind is Kind.AUXILIARY:
-                    for saving in sorted(AUXILIARY - switched_off(r)):
-                        yield partial(with_plan, other, switched_off(r) | {saving})
+                yield partial(with_plan, replace(r, components=put(r.components, k, kind=kind)))
 
 
 def component_altered(r: RegionMap) -> Iterator[Alteration]:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from forger.consistency import NO_AREAS, settled, switched_off, with_plan
+from forger.consistency import NO_AREAS, settled, with_plan
 from ptmcad.answer.regionmap import Component, RegionMap
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.assembly import Reached, assemble
@@ -32,14 +32,14 @@ from ptmcad.options import Options
 from ptmcad.text.flint_numbers import from_fraction
 
 
-def decomposed(r: RegionMap, components: Sequence[Component], without: frozenset[str] | None = None) -> RegionMap:
+def decomposed(r: RegionMap, components: Sequence[Component]) -> RegionMap:
     """The map with these components, over the same base, and with all that follows from them."""
     problem = problem_of(r.slice)
-    base, without = r.base, switched_off(r) if without is None else without
+    base = r.base
     variety = Variety(
         tuple(components), r.complex_solutions, base, curves_of(components, base), lines_of(components, base), (1, 2)
     )
-    projection = projection_of(problem, variety, without)
+    projection = projection_of(problem, variety)
     stacks = stacks_of(problem, variety, projection)
     known = [_equilibria(problem, at) for at in stacks.points]
     some = next((e for e in known if e is not None), None) or _equilibria(problem, _inside(r))
@@ -51,10 +51,10 @@ def decomposed(r: RegionMap, components: Sequence[Component], without: frozenset
     except ArithmeticError:
         counts = with_keys(problem, counts.found[:1] * len(known))
         neighbours = neighbours_of(variety, projection, stacks, counts, crossings)
-    options = Options(without=without, areas=NO_AREAS not in r.plan)
+    options = Options(areas=NO_AREAS not in r.plan)
     cells = Cells(projection, stacks, counts, neighbours)
     found = replace(assemble(problem, options, Reached(variety, cells)), plan=r.plan, system=r.system)
-    found = with_plan(found, without)
+    found = with_plan(found)
     areas = {frozenset(tuple(r.cells[n].sample) for n in g.cells): g.area for g in r.regions}
     whole = (Fraction(0), found.regions[0].area[1])
     if NO_AREAS in r.plan:

@@ -1,4 +1,4 @@
-"""True maps to alter: shipped slices, with savings switched off or not, and random ones."""
+"""True maps to alter: shipped slices, with areas or without, and random ones."""
 
 from __future__ import annotations
 
@@ -13,12 +13,9 @@ CONFIGS = Path(__file__).resolve().parents[3] / "configs"
 
 
 def named(name: str) -> RegionMap:
-    """The map of a shipped slice, with savings that are switched off after plus signs, or of a random one by number."""
+    """The map of a shipped slice, without areas where its name ends with ``+no-areas``, or of a random one."""
     if name.isdigit():
         number = int(name)
         return ptmcad.classify(ptmcad.slice_from_mapping(drawn(number, len(REFUSED.get(number, ()))).record))
-    stem, *without = name.split("+")
-    areas = "no-areas" not in without
-    return ptmcad.classify(
-        ptmcad.load(CONFIGS / f"{stem}.yaml"), without=[k for k in without if k != "no-areas"], areas=areas
-    )
+    stem, _, without = name.partition("+")
+    return ptmcad.classify(ptmcad.load(CONFIGS / f"{stem}.yaml"), areas=not without)

@@ -13,11 +13,9 @@ from forger.consistency import (
     changed,
     put,
     renumbered_components,
-    switched_off,
     window_area,
     with_plan,
 )
-from forger.decompose import decomposed
 from ptmcad.algebra.polynomials import from_expression
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.exact.assembly import _solutions
@@ -181,24 +179,8 @@ def _turned(text: str) -> str:
     return f"{'-' if sign == '-' else ''}{tail} {first}"
 
 
-def component_left_in(r: RegionMap) -> Iterator[Alteration]:
-    """One without a point in the window is used, which the plan says."""
-    if "no-real-points" not in switched_off(r) and any(c.left_out == "no point in the window" for c in r.components):
-        everything = tuple(
-            replace(c, left_out="" if c.left_out == "no point in the window" else c.left_out) for c in r.components
-        )
-        yield partial(decomposed, r, everything, switched_off(r) | {"no-real-points"})
-
-
-def savings_without_trace(r: RegionMap) -> Iterator[Alteration]:
-    """Imports and areas beside walls that separate nothing were computed or not: no entry depends on it."""
-    for saving in ("imports", "equal-counts"):
-        if saving == "imports" or NO_AREAS not in r.plan:
-            yield partial(with_plan, r, switched_off(r) ^ {saving})
-
-
 KINDS = (
     regions_in_another_order, components_in_another_order, tables_in_another_order, other_segments, other_samples,
     samples_of_other_cells, refined_critical_values, refined_boxes, wider_areas, lopsided_areas, partial_status,
-    another_question, other_units_of_force, other_words, component_left_in, savings_without_trace,
+    another_question, other_units_of_force, other_words,
 )  # fmt: skip

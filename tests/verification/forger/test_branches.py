@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from flint import arb, arb_poly, arb_series, ctx, fmpq
 
-from forger.consistency import drop, put, swapped, switched_off, with_plan
+from forger.consistency import drop, put, swapped, with_plan
 from forger.maps import named
 from ptmcad.answer.regionmap import (
     HARMLESS,
@@ -38,7 +38,6 @@ from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas
-from ptmcad.verification.auxiliary import check_auxiliary
 from ptmcad.verification.branches import Effort, _along
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
@@ -58,7 +57,6 @@ Change = Callable[[RegionMap], RegionMap]
 Check = Callable[[Claims], str]
 boundary: Check = partial(check_boundary, seed="branches")
 norm: Check = partial(check_norm, seed="branches")
-auxiliary: Check = partial(check_auxiliary, seed="branches")
 
 
 @cache
@@ -136,10 +134,6 @@ def kind_of(k: int, kind: Kind) -> Change:
 
 def more_components(*more: Component) -> Change:
     return lambda r: replace(r, components=(*r.components, *more))
-
-
-def keeping(*savings: str) -> Change:
-    return lambda r: with_plan(r, switched_off(r) | set(savings))
 
 
 def first(r: RegionMap, **what: Any) -> int:
@@ -293,7 +287,6 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (norm, "fig3", lambda r: replace(r, components=r.components[1:]), "a curve of the variety is missing or wrong"),
     (norm, "fig3", more_components(Component(LINE, Kind.INFINITY)), "solutions have no pole on it"),
     (norm, "fig3", of("components", 0, left_out=HARMLESS), "component 0 is said to be harmless, but det H may vanish"),
-    (norm, "fig3", lambda r: kind_of(first(r, kind=Kind.INFINITY), Kind.AUXILIARY)(r), "a pole on no stored component"),
     (norm, "fig3", with_values(k1=0, k2=0, k3=0, F3=0, F4=0), "there are infinitely many solutions at"),
     (boundary, "fig3", lambda r: replace(r, components=drop(r.components, first(r, kind=Kind.BOUNDARY))),
      "is not stored, but it bounds the domain of|is not stored, but equation"),
@@ -304,22 +297,10 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (check_plan, "fig3", lambda r: replace(r, plan=r.plan[1:]), "the plan has 12 steps, not 13"),
     (check_plan, "fig3", of("plan", 0, reason="nobody asked"), "step 0 of the plan is not"),
     (check_plan, "fig3", of("plan", 0, what="nothing"), "step 0 of the plan is not"),
-    (check_plan, "fig3", keeping("no-real-points"), "without a point in the window is left out, but the plan says"),
     (check_plan, "fig3", lambda r: with_plan(of("components", first(r, left_out=NO_POINT, kind=Kind.BOUNDARY),
                                                 left_out="")(r)), "is used, but it has no point in the window"),
-    (check_plan, "fig3", lambda r: keeping("infinity")(of("components", first(r, kind=Kind.INFINITY),
-                                                          left_out=HARMLESS)(r)), "is left out as harmless, but"),
     (check_plan, "fig3+no-areas", of("regions", 0, area=(Fraction(0), HALF)), "areas are known, but"),
-    (check_plan, "fig3", lambda r: keeping("axis-order")(replace(r, base=1)), "the base is not the first axis"),
-    (auxiliary, "fig3", kind_of(0, Kind.AUXILIARY), "auxiliary, but no saving was switched off"),
-    (auxiliary, "fig3+sign-curve+no-areas", kind_of(0, Kind.AUXILIARY), "auxiliary, but det H vanishes or has poles"),
-    (auxiliary, "fig3+sign-curve+no-areas", more_components(Component(LINE, Kind.AUXILIARY, NO_POINT)),
-     "is said to be auxiliary, but is no factor of the norm of H11"),
-    (auxiliary, "fig3", keeping("sign-curve"), "'sign-curve' was kept, but a factor of the norm of H11 is not stored"),
-    (auxiliary, "fig3", keeping("hermite-matrix"), "'hermite-matrix' was kept, but a factor of the Hermite matrix's"),
-    (auxiliary, "fig3+sign-curve+no-areas", more_components(Component(PlanePolynomial(()), Kind.AUXILIARY)),
-     "a function that defines curves vanishes at the random point"),
-    (auxiliary, "fig3+sign-curve+no-areas", with_values(**FOLD), "a function that defines curves vanishes"),
+    (check_plan, "fig3", lambda r: with_plan(kind_of(0, Kind.AUXILIARY)(r)), "is auxiliary, but no saving was"),
     (check_critical_values, "fig3", of("critical_values", 0, polynomial=(1, 2, 3)), "is no irreducible factor"),
     (check_critical_values, "fig3", lambda r: replace(r, critical_values=swapped(r.critical_values, 0, 1)),
      "is not above the one before it"),
@@ -446,23 +427,8 @@ def test_bounds_that_begin_with_the_area_itself_are_not_checked(above: Fraction)
     assert isinstance(check_areas(Claims(area(0, HALF, HALF + above)(diagonal()))), Unchecked)
 
 
-@pytest.mark.parametrize(
-    ("check", "name"),
-    [
-        (auxiliary, "fig3+hermite-matrix+no-areas"),
-        (auxiliary, "fig3+sign-curve+no-areas"),
-        (check_plan, "fig3+no-real-points+no-areas"),
-        (check_plan, "fig3+infinity+no-areas"),
-        (check_plan, "fig3+axis-order+no-areas"),
-        (check_plan, "7"),  # a random slice whose base is the second axis
-    ],
-)
-@pytest.mark.fast_cases("check1-fig3+sign-curve+no-areas", "check_plan-7")
-def test_what_was_kept_is_no_fault(check: Check, name: str) -> None:
-    """A curve of the Hermite matrix alone is auxiliary, curves without points are used, where that was asked for."""
-    r = the(name)
-    assert {*name.split("+")[1:]} - {"no-areas"} <= switched_off(r)
-    check(Claims(r))
+def test_a_base_that_is_the_second_axis_is_no_fault() -> None:
+    check_plan(Claims(the("7")))
 
 
 def test_the_diagonal_is_true_where_it_is_used() -> None:

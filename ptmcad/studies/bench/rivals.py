@@ -1,0 +1,181 @@
+"""The rivals that people write, on a grid: companion matrices of a sextic, or scipy's root finder from many starts.
+
+Guarantee: none for the counts, as with every such program; they are what floating point and a
+tolerance say. The same input and seed give the same counts.
+
+``companion`` takes eigenvalues of stacked companion matrices (numpy, hence LAPACK) of the sextic in
+tan(theta2/2), drops imaginary parts, takes two Newton steps on what is left, theta1 from the first
+equation, and stability from the Hessian's signs, all vectorised. ``multistart`` finds roots in
+(theta1, theta2) at each point and removes duplicates; an equilibrium that no start leads to is not
+counted. They run as ``python -m ptmcad.studies.bench.rivals METHOD QUESTION N RESULT SEED``, import
+no algebra, and share the derivatives of the potential, by hand, divided by L1 and L2:
+
+    (k2 rho + k3 rho + F3x) s1 - F3 c1 - k3 L2 s12,  (k1 rho + k3 rho - F4x) s2 - F4 c2 - k3 L1 s12.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptmcad.studies.sextic import sextic
+
+Array = NDArray[np.float64]
+MAX_IMAGINARY = 1e-7
+"""Relative size of imaginary parts that are taken for rounding; nearby values change little."""
+POLISHING = 2
+BATCH_POINTS = 40_000
+"""Points whose matrices are in memory together."""
+MIN_LEADING = 1e-14
+"""A leading coefficient that is relatively smaller everywhere is taken for zero."""
+STARTS = 5
+"""Along each angle: 25 starts a point."""
+RESIDUAL = 1e-9
+"""Of the equations, relative to the sizes of their terms."""
+SAME_SOLUTION = 1e-5
+"""Two solutions closer than this in both angles are one."""
+
+Values = Mapping[str, Any]
+
+
+def equations(p: Values, th1: Any, th2: Any) -> tuple[tuple[Any, Any], tuple[Any, Any, Any, Any]]:
+    """The derivatives of the potential by th1 and th2, divided by L1 and L2; and their derivatives.
+
+    Returns
+    -------
+    Both derivatives, and the derivatives of the first by th1 and th2, then those of the second.
+    """
+    b1 = (p["k2"] + p["k3"]) * p["rho"] + p["F3x"]
+    b2 = (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
+    (s1, s2, s12), (c1, c2, c12) = ([f(angle) for angle in (th1, th2, th1 + th2)] for f in (np.sin, np.cos))
+    pull, stretch = p["k3"] * p["L1"], p["k3"] * p["L2"]
+    first = b1 * s1 - p["F3"] * c1 - stretch * s12
+    second = b2 * s2 - p["F4"] * c2 - pull * s12
+    slopes = (
+        b1 * c1 + p["F3"] * s1 - stretch * c12,
+        -stretch * c12,
+        -pull * c12,
+        b2 * c2 + p["F4"] * s2 - pull * c12,
+    )
+    return (first, second), slopes
+
+
+def is_stable(slopes: tuple[Any, Any, Any, Any]) -> Any:
+    """Whether the Hessian, whose rows are these slopes times L1 and L2, is positive definite."""
+    h11, h12, h21, h22 = slopes
+    return (h11 > 0) & (h11 * h22 > h12 * h21)
+
+
+def grid_values(question: Mapping[str, Any], n: int) -> dict[str, Array]:
+    """The mechanism's parameters at the n x n pixel centres, of shape (n * n,), the second axis running fastest."""
+    x, y = (low + (high - low) * (np.arange(n) + 0.5) / n for low, high in question["window"])
+    first, second = (a.ravel() for a in np.meshgrid(x, y, indexing="ij"))
+
+    def evaluated(terms: list[list[float]]) -> Array:
+        return sum((c * first ** int(i) * second ** int(j) for i, j, c in terms), np.zeros(n * n))
+
+    return {name: evaluated(a) / evaluated(b) for name, (a, b) in question["parameters"].items()}
+
+
+def companion(p: Mapping[str, Array], seed: int = 0) -> NDArray[np.int8]:
+    """Stable and total counts at each point, of shape (2, points)."""
+    polynomials: Array = np.stack(sextic(p).coefficients[::-1], axis=1)
+    size = np.abs(polynomials).max(axis=1, keepdims=True)
+    polynomials = polynomials / np.where(size > 0, size, 1)
+    while polynomials.shape[1] > 2 and np.abs(polynomials[:, 0]).max() < MIN_LEADING:
+        polynomials = polynomials[:, 1:]
+    found = np.zeros((2, len(polynomials)), dtype=np.int8)
+    for start in range(0, len(polynomials), BATCH_POINTS):
+        part = slice(start, start + BATCH_POINTS)
+        values = {name: array[part, None] for name, array in p.items()}
+        found[:, part] = _from_sextic(polynomials[part], values)
+    return found
+
+
+def _from_sextic(polynomials: Array, p: Values) -> NDArray[np.int8]:
+    degree = polynomials.shape[1] - 1
+    leading = polynomials[:, :1]
+    matrices = np.zeros((len(polynomials), degree, degree))
+    with np.errstate(all="ignore"):
+        replaced = np.where(leading == 0, np.finfo(float).tiny ** 0.25, leading)
+        matrices[:, 0, :] = -polynomials[:, 1:] / replaced
+    matrices[:, np.arange(1, degree), np.arange(degree - 1)] = 1
+    roots = np.linalg.eigvals(matrices)
+    real = np.abs(roots.imag) < MAX_IMAGINARY * (1 + np.abs(roots.real))
+    th2 = 2 * np.arctan(_polished(polynomials, roots.real))
+    # b1 s1 - F3 c1 - k3 L2 s12 = along s1 + across c1, and th1 or th1 + pi fulfils the second, too
+    (across, _), _ = equations(p, np.zeros_like(th2), th2)
+    (along, _), _ = equations(p, np.full_like(th2, np.pi / 2), th2)
+    th1 = np.arctan2(-across, along)
+    misfit, other = (abs(equations(p, angle, th2)[0][1]) for angle in (th1, th1 + np.pi))
+    stable = real & is_stable(equations(p, np.where(misfit <= other, th1, th1 + np.pi), th2)[1])
+    return np.stack([stable.sum(axis=1), real.sum(axis=1)]).astype(np.int8)
+
+
+def _polished(polynomials: Array, t: Array) -> Array:
+    for _ in range(POLISHING):
+        value, slope = np.zeros_like(t), np.zeros_like(t)
+        for c in polynomials.T:
+            slope = slope * t + value
+            value = value * t + c[:, None]
+        with np.errstate(all="ignore"):
+            step = value / slope
+        good = np.isfinite(step) & (np.abs(step) < 1e-3 * (1 + np.abs(t)))
+        t = np.where(good, t - step, t)
+    return t
+
+
+def multistart(values: Mapping[str, Array], seed: int) -> NDArray[np.int8]:
+    """Stable and total counts at each point, of shape (2, points)."""
+    number = len(values["rho"])
+    generator = np.random.default_rng(seed)
+    found = np.zeros((2, number), dtype=np.int8)
+    places = (np.arange(STARTS) + 0.5) * (2 * np.pi / STARTS) - np.pi
+    starts = np.stack(np.meshgrid(places, places), axis=-1).reshape(-1, 2)
+    for k in range(number):
+        moved = starts + generator.uniform(-0.5, 0.5, starts.shape) * (2 * np.pi / STARTS)
+        found[:, k] = _from_starts({name: float(a[k]) for name, a in values.items()}, moved)
+    return found
+
+
+def _from_starts(p: dict[str, float], starts: Array) -> tuple[int, int]:
+    from scipy.optimize import root
+
+    scale = sum(map(abs, p.values()))
+
+    def gradient(angles: Array) -> tuple[Array, Array]:
+        value, slopes = equations(p, *angles)
+        return np.array(value), np.array(slopes).reshape(2, 2)
+
+    seen: list[Array] = []
+    stable = 0
+    for start in starts:
+        angles = root(gradient, start, jac=True, method="hybr").x
+        value, slopes = equations(p, *angles)
+        apart = [np.abs(np.remainder(angles - a + np.pi, 2 * np.pi) - np.pi).max() for a in seen]
+        if np.abs(value).max() < RESIDUAL * scale and min(apart, default=1.0) >= SAME_SOLUTION:
+            seen.append(angles)
+            stable += bool(is_stable(slopes))
+    return stable, len(seen)
+
+
+def main(method: str, question: str, n: str, result: str, seed: str) -> None:
+    """Count on N x N points, save the counts, of shape (2, N, N), and print the seconds."""
+    asked = json.loads(Path(question).read_text(encoding="utf-8"))
+    counts = companion if method == "companion" else multistart
+    start = perf_counter()
+    found = counts(grid_values(asked, int(n)), int(seed)).reshape(2, int(n), int(n))
+    seconds = perf_counter() - start
+    np.save(result, found)
+    print(json.dumps({"computing": seconds}))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,245 @@
+"""How cost grows: families of slices, each growing in one respect, as whole processes, with fitted exponents.
+
+Guarantee: the numbers of regions of the slices are known from how they are made, and a run that
+finds another number is a failure. The same measurements give the same fits.
+
+A parameter p becomes p + q(x, y) with a dense polynomial q that is small enough for the picture to
+stay, so that the degree of the curves grows alone; numbers get more digits; and Chebyshev polynomials
+fold the window: T_n maps each of the n intervals between neighbouring points cos(i pi / n) onto
+[-1, 1]. Without loads the stable count is 2 where |L2 - L1| < 2 rho < L2 + L1, and 1 elsewhere.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import random
+import tempfile
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from pathlib import Path
+from statistics import median
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ptmcad.errors import PtmcadError
+from ptmcad.show.render.printing import save
+from ptmcad.studies.bench.harness import PTMCAD, Job, Row
+from ptmcad.studies.bench.records import turns
+from ptmcad.studies.bench.truth import Floats
+from ptmcad.text.expressions import Expression, Term, axis, constant
+from ptmcad.text.terms import signed_terms
+
+SHIFT = Fraction(1, 100)
+"""What a bend's coefficients' moduli add up to at most: the window's edge meets the same curves in the same order."""
+MAX_COEFFICIENT, DIGITS = 9, 400
+PARTS = 400
+"""Fixed costs that are tried, parts of the smallest cost."""
+BEND, STRAIGHT, FLAT = 0.35, 0.9, 1.3
+"""The halves' slopes differ when their difference exceeds the first; R^2 from which a line is one; a quantity whose
+largest value is less than the third times its smallest does not grow."""
+
+Record = dict[str, Any]
+
+
+class Family(NamedTuple):
+    """One family: what grows, its sizes, and for a size and a seed the record and its number of regions, if known."""
+
+    title: str
+    sizes: tuple[int, ...]
+    record: Callable[[int, int], Record]
+    regions: Callable[[int], int | None]
+    options: Callable[[int], Sequence[str]] = lambda n: ()
+
+
+def _record(axes: dict[str, tuple[str, str]], **parameters: Any) -> Record:
+    values = {name: str(value) for name, value in parameters.items()}
+    windows = {name: list(ends) for name, ends in axes.items()}
+    return {"mechanism": "ptm", "parameters": {"L1": "1", "k": "100"} | values, "axes": windows}
+
+
+def written(e: Expression) -> str:
+    """A polynomial in the axes x and y as a record has it."""
+    return " ".join(signed_terms((((i, j), c) for i, j, c in e.numerator), "xy", number=str))
+
+
+def chebyshev(n: int, x: Expression) -> Expression:
+    """T_n(x), by its recurrence T_(n+1) = 2 x T_n - T_(n-1)."""
+    before, last = x, constant(1)  # T_(-1) = T_1
+    for _ in range(n):
+        before, last = last, 2 * x * last - before
+    return last
+
+
+def bend(n: int, seed: int) -> Expression:
+    """A dense polynomial of total degree n whose coefficients' moduli add up to at most `SHIFT`."""
+    source = random.Random(f"bend {n} {seed}")
+    powers = [(i, j) for i in range(n + 1) for j in range(n + 1 - i)]
+    scale = SHIFT / (MAX_COEFFICIENT * len(powers))
+    sizes = ((i, j, source.choice((-1, 1)) * source.randint(1, MAX_COEFFICIENT)) for i, j in powers)
+    terms: list[Term] = [(i, j, scale * c) for i, j, c in sizes]
+    return Expression(tuple(sorted(terms)))
+
+
+def unloaded(n: int, seed: int) -> Record:
+    """No loads, rho = 1 + x, L2 = 1 + y + q(x, y): three curves, dense, of total degree n each; four regions."""
+    ends = ("-9/10", "19/20")
+    return _record({"x": ends, "y": ends}, rho="1 + x", L2=written(1 + axis(1) + bend(n, seed)))
+
+
+def digits(n: int, seed: int) -> Record:
+    """Equal bars and loads as in the paper's figure 3, with numbers of about n digits for L, k and F/y."""
+    source = random.Random(f"digits {seed}")
+    length, stiffness, force = ("".join(source.choice("1379") for _ in range(DIGITS))[:n] for _ in range(3))
+    bar, load = f"1.00{length}", f"1.00{force}*F"
+    axes = {"rho": ("0", "2"), "F": ("-10", "0")}
+    return _record(axes, L1=bar, L2=bar, k=f"100.00{stiffness}", F3=load, F4=load)
+
+
+def fold(n: int, seed: int = 0) -> Record:
+    """rho = y and L2 = 1 + T_n(x)/2: n folds along x, over -1 < x < 1 and 0 < y < 2."""
+    return _record({"x": ("-1", "1"), "y": ("0", "2")}, rho="y", L2=written(1 + chebyshev(n, axis(0)) / 2))
+
+
+def grid(n: int, seed: int = 0) -> Record:
+    """L2 = 1 + T_n(x)/2 and rho = 1/2 + T_n(y)/3: n by n copies, mirrored in turn, of one square."""
+    rho, bar = Fraction(1, 2) + chebyshev(n, axis(1)) / 3, 1 + chebyshev(n, axis(0)) / 2
+    return _record({"x": ("-1", "1"), "y": ("-1", "1")}, rho=written(rho), L2=written(bar))
+
+
+def regions_of_grid(n: int) -> int:
+    """One region of two stable poses, and one around each corner of the copies but those where L2 and rho are largest.
+
+    In the square -1 < a, b < 1 with L2 = 1 + a/2, rho = 1/2 + b/3 the three lines cut off the corners (-1, 1), (1, -1)
+    and (-1, -1), each by a triangle; copies that share a corner are mirrored there, so their triangles join.
+    """
+    even = n // 2 + 1
+    return 1 + (n + 1) ** 2 - even**2
+
+
+def window(n: int, seed: int) -> Record:
+    """A part of the record free02 with several regions, away from rho = 0."""
+    axes = {"rho": ("1/2", "3/2"), "L2": ("11/10", "2")}
+    return _record(axes, l0="1/5", F3=-10, F4=-10)
+
+
+FAMILIES = {
+    "degree": Family("Degree of the curves: no loads", (2, 4, 6, 8, 12, 16), unloaded, lambda n: 4),
+    "digits": Family("Digits of each parameter", (5, 10, 25, 50, 100, 200), digits, lambda n: 3),
+    # below 2 rho = |T_n|/2 one region on either side of each of the n zeros; that of two; that above
+    "fold": Family("Folds along one axis", (2, 4, 8, 16, 32), fold, lambda n: n + 3),
+    "grid": Family("Folds along both axes", (2, 3, 4, 5, 6), grid, regions_of_grid),
+    "tolerance": Family(
+        "1 / tolerance of certified maps", (20, 100, 500, 2500), window, lambda n: None,
+        lambda n: ("--tolerance", f"1/{n}", "--jobs", "1"),
+    ),
+}  # fmt: skip
+
+
+def measure(options: argparse.Namespace) -> list[Row]:
+    """The families' rows: what each size takes, and the exponents that fit.
+
+    Raises
+    ------
+    PtmcadError
+        When there is no such family.
+    """
+    names = options.families or list(FAMILIES)
+    unknown = [name for name in names if name not in FAMILIES]
+    if unknown:
+        raise PtmcadError(f"no family {unknown[0]!r}; there are {', '.join(FAMILIES)}")
+    jobs: dict[tuple[str, int], Job] = {}
+    computing: dict[tuple[str, int], list[dict[str, float]]] = {}
+    with tempfile.TemporaryDirectory() as folder:
+        for name in names:
+            family = FAMILIES[name]
+            for n in family.sizes:
+                record = Path(folder, f"{name}-{n}.json")
+                record.write_text(json.dumps({"name": record.stem, **family.record(n, options.seed)}), encoding="utf-8")
+                target = Path(folder, f"out-{name}", f"{name}-{n}.json")
+                command = (*PTMCAD, "classify", str(record), *family.options(n), "--format", "json",
+                           "--out", str(target.parent))  # fmt: skip
+                seen = computing[name, n] = []
+
+                def check(_: Any, n: int = n, family: Family = family, target: Path = target, seen: Any = seen) -> str:
+                    found = json.loads(target.read_text(encoding="utf-8"))
+                    seen.append(found["timings"])
+                    number = len(found["regions"])
+                    return "" if family.regions(n) in (None, number) else f"{number} regions"
+
+                jobs[name, n] = Job(name, family.title, str(n), ((command, ""),), target, check)
+        turns(list(jobs.values()), options)
+    rows = []
+    for name in names:
+        points: dict[str, list[tuple[float, float]]] = {}
+        for n in FAMILIES[name].sizes:
+            row = jobs[name, n].row()
+            for stage in computing[name, n][0] if computing[name, n] else ():
+                seconds = [timings.get(stage, 0.0) for timings in computing[name, n]]
+                row[f"{stage} s"] = round(median(seconds), 5)
+                points.setdefault(stage, []).extend((n, y) for y in seconds)
+            rows.append(row)
+        for stage, measured in points.items():
+            if found := fit(measured):
+                rows.append({"subject": name, "what": FAMILIES[name].title, "setting": f"fit: {stage}", **found})
+    return rows
+
+
+def fit(points: Sequence[tuple[float, float]]) -> Row | None:
+    """The power law y = c x^p through points, those with the same x having their median.
+
+    Returns
+    -------
+    The exponent p by least squares in logarithms, the slopes over the lower and over the upper half
+    of the range, and whether they agree; and the fixed cost a and the exponent beyond it of
+    y = a + c x^p, where that halves the misfit. None when there are fewer than two different x, or
+    something is not positive.
+    """
+    places = sorted({x for x, _ in points})
+    x, y = np.array([(u, median(b for a, b in points if a == u)) for u in places]).reshape(-1, 2).T
+    if len(x) < 2 or min(x.min(), y.min()) <= 0:
+        return None
+    u, v = np.log(x), np.log(y)
+    slope, misfit = _law(x, y, 0.0)
+    # both halves hold the point next to the middle, so that they are joined
+    joint = min(range(1, len(u) - 1), key=lambda k: abs(2 * u[k] - u[0] - u[-1]), default=0)
+    lower = _law(x[: joint + 1], y[: joint + 1], 0.0)[0] if joint else slope
+    upper = _law(x[joint:], y[joint:], 0.0)[0]
+    found = {"exponent": slope, "lower": lower, "upper": upper}
+    if y.max() < FLAT * y.min():
+        verdict = "does not grow"
+    elif len(x) < 4:
+        verdict = "too few sizes to tell"
+    elif abs(upper - lower) > BEND:
+        verdict = f"the exponent {'rises' if upper > lower else 'falls'}"
+    else:
+        straight = misfit <= (1 - STRAIGHT) * ((v - v.mean()) ** 2).sum()
+        verdict = "power law" if straight else "scattered"
+    tried = {part: _law(x, y, float(y.min()) * part / PARTS) for part in range(PARTS)}
+    part = min(tried, key=lambda part: tried[part][1])
+    if len(x) > 3 and upper > lower and part and tried[part][1] < misfit / 2:
+        found |= {"fixed": float(y.min()) * part / PARTS, "beyond": tried[part][0]}
+    return {key: float(f"{value:.4g}") for key, value in found.items()} | {"verdict": verdict}
+
+
+def _law(x: Floats, y: Floats, fixed: float) -> tuple[float, float]:
+    """The exponent of y = fixed + c x^p by least squares in the logarithms of what is beyond, and the misfit of y's."""
+    slope, height = np.polyfit(np.log(x), np.log(y - fixed), 1)
+    misfit = (np.log(fixed + np.exp(height) * x**slope) - np.log(y)) ** 2
+    return float(slope), float(misfit.sum())
+
+
+def save_picture(rows: Sequence[Row], folder: Path) -> None:
+    """Draw the seconds of the computation along all families into scaling.svg."""
+    from ptmcad.studies.bench.picture import Curve, Labels, Spot, draw
+
+    found: dict[str, list[Spot]] = {}
+    for row in rows:
+        if row.get("total s"):
+            n, seconds = float(row["setting"]), row["total s"]
+            found.setdefault(row["what"], []).append(Spot((n, n, n), (seconds, seconds)))
+    if found:
+        labels = Labels("How cost grows", "size", "seconds of the computation, medians")
+        curves = [Curve(title, spots, style) for style, (title, spots) in enumerate(found.items())]
+        save(draw(labels, curves), folder / "scaling.svg")
