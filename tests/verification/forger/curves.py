@@ -68,8 +68,9 @@ def component_invented(r: RegionMap) -> Iterator[Alteration]:
 
     Its saving is said to be switched off where an auxiliary one needs that.
     """
+    known = {c.polynomial for c in r.components}
     for n, p in enumerate(_lines(r)):
-        for kind in Kind:
+        for kind in Kind if p not in known else ():
             new = Component(p, kind, "" if n < 2 else NO_POINT)
             without = switched_off(r)
             yield partial(decomposed, r, (*r.components, new), without)
