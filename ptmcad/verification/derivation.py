@@ -185,14 +185,14 @@ def _with_loops(configuration: Configuration, model: ClosedMechanism) -> Formula
         return _with_xjoints(moving, model)
     if model.multipliers:
         return _stationary(moving, model)
-    found = loops.conditions(
+    equations, stability = loops.conditions(
         model.mechanism,
         potential(moving, model.mechanism) + loops.constant(fmpq(0), size),
         moving.points(model.mechanism),
         moving.value,
         [m + loops.constant(fmpq(0), size) for m in _moments(moving, model.mechanism)],
     )
-    return Formulas(None, found.equations, (), (found.stability,))
+    return Formulas(None, equations, (), (stability,))
 
 
 def _stationary(moving: Configuration, model: ClosedMechanism) -> Formulas:
@@ -213,7 +213,7 @@ def _with_xjoints(first: Configuration, model: ClosedMechanism) -> Formulas:
     """Of a mechanism with X-joints, from the mechanism itself; the first bars' angles are known."""
     mechanism, joints = model.mechanism, model.mechanism.xjoints
     nothing = loops.constant(fmpq(0), len(model.unknowns))
-    found = xjoints.conditions(
+    equations, distances, stability = xjoints.conditions(
         [model.angles.index(joint.angle) for joint in joints],
         _in_units(first, mechanism),
         _powers(mechanism),
@@ -221,7 +221,7 @@ def _with_xjoints(first: Configuration, model: ClosedMechanism) -> Formulas:
         [first.circles[joint.angle] for joint in joints],
         [m + nothing for m in _moments(first, mechanism)],
     )
-    return Formulas(None, found.equations, found.distances, found.stability)
+    return Formulas(None, equations, distances, stability)
 
 
 def _in_units(first: Configuration, mechanism: Mechanism) -> xjoints.Units:

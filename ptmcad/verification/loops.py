@@ -9,7 +9,7 @@ the determinant of the gradients of g and E is positive.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from flint import fmpq
 
@@ -102,21 +102,14 @@ def line(number: int, value: Any, unknowns: int) -> Second:
     return Second(value, [fmpq(int(k == number)) for k in range(unknowns)], flat.bends)
 
 
-class Conditions(NamedTuple):
-    """Equations, each zero at an equilibrium, and what is positive at a stable one."""
-
-    equations: tuple[Any, ...]
-    stability: Any
-
-
 def conditions(
     mechanism: Mechanism,
     energy: Second,
     points: Mapping[str, tuple[Second, Second]],
     length: Callable[[Any], Any],
     moments: Sequence[Second],
-) -> Conditions:
-    """The conditions at a place.
+) -> tuple[tuple[Any, ...], Any]:
+    """Equations, each zero at an equilibrium, and what is positive at a stable one, at a place.
 
     Parameters
     ----------
@@ -134,7 +127,7 @@ def conditions(
         for n, g in enumerate(kept):
             total = total + determinant([*rows[:n], [g.bends[k, j] for k in count], *rows[n + 1 :], last])
         slopes.append(total)
-    return Conditions((*(g.value for g in kept), determinant([*rows, last])), determinant([*rows, slopes]))
+    return (*(g.value for g in kept), determinant([*rows, last])), determinant([*rows, slopes])
 
 
 def distances(mechanism: Mechanism, points: Mapping[str, tuple[Any, Any]], length: Callable[[Any], Any]) -> list[Any]:

@@ -17,9 +17,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations, islice, product
-from typing import NamedTuple
 
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat, ctx, fmpq_mpoly
 
 from ptmcad.answer.regionmap import Cell, Solution
 from ptmcad.mechanism import Model
@@ -109,7 +108,7 @@ def _is_alone(claims: Claims, cell: Cell, solution: Solution) -> bool:
         return True  # all real solutions count, and have as many boxes that do not meet
     with ctx.workprec(_precisions(solution)[0]):
         around = [ball_of(x) + arb(0, ball_of(solution.radius)) for x in solution.center]
-        if all(p > 0 for p in _Functions(fibre.point)(around).inequalities):
+        if all(p > 0 for p in _values(fibre.point.inequalities, around)):
             return True
     number, _ = fibre.within(solution.center, solution.radius, counted=False)
     if number > 1:
@@ -153,32 +152,14 @@ def check_disjoint(n: int, cell: Cell, model: Model) -> None:
             raise Violation(f"cell {n}: the boxes {j} and {k} of its solutions meet")
 
 
-class _Values(NamedTuple):
-    """The model's functions in balls.
-
-    Attributes
-    ----------
-    equations : of an energy its gradient less the moments.
-    jacobian : their derivatives; where solutions are critical points a Hessian.
-    """
-
-    equations: list[arb]
-    jacobian: list[list[arb]]
-    inequalities: list[arb]
-    stability: list[arb]
+def _values(polynomials: Sequence[fmpq_mpoly], x: Sequence[arb]) -> list[arb]:
+    """In balls at coordinates, which the ring has the other way round."""
+    return values_at(polynomials, list(reversed(x)))
 
 
-class _Functions:
-    """What solutions of a model satisfy at a point, in balls."""
-
-    def __init__(self, point: Polynomials):
-        self.point, self.model = point, point.ring.model
-
-    def __call__(self, x: Sequence[arb]) -> _Values:
-        p, at = self.point, list(reversed(x))  # the ring has the coordinates the other way round
-        entries, size = values_at([entry for row in p.jacobian for entry in row], at), len(p.jacobian)
-        rows = [entries[size * i : size * (i + 1)] for i in range(size)]
-        return _Values(values_at(p.equations, at), rows, values_at(p.inequalities, at), values_at(p.stability, at))
+def _jacobian(p: Polynomials, x: Sequence[arb]) -> list[list[arb]]:
+    """The derivatives of the equations; where solutions are critical points a Hessian."""
+    return [_values(row, x) for row in p.jacobian]
 
 
 def _signs(point: Polynomials, solution: Solution, bits: int, start: int) -> str | None:
@@ -188,12 +169,12 @@ def _signs(point: Polynomials, solution: Solution, bits: int, start: int) -> str
     left to `_check_zeros`.
     """
     with ctx.workprec(bits):
-        found = _proved(_Functions(point), solution, start)
-        if found is None or not all(p > 0 for p in found.inequalities):
+        found = _proved(point, solution, start)
+        if found is None or not all(p > 0 for p in _values(point.inequalities, found)):
             return None
         if point.has_index:
-            return _of_hessian(found.jacobian, BITS.index(bits))
-        return _of_conditions(found.stability, solution.signs)
+            return _of_hessian(_jacobian(point, found), BITS.index(bits))
+        return _of_conditions(_values(point.stability, found), solution.signs)
 
 
 def _of_hessian(hessian: list[list[arb]], attempt: int) -> str | None:
@@ -222,8 +203,8 @@ def _of_conditions(conditions: list[arb], stored: str) -> str | None:
     return signs
 
 
-def _proved(functions: _Functions, solution: Solution, start: int) -> _Values | None:
-    """The functions' values on a box within the stored one that is proved to contain a solution.
+def _proved(model: Polynomials, solution: Solution, start: int) -> list[arb] | None:
+    """A box within the stored one that is proved to contain a solution.
 
     Angles are moved along the circles: turned by an angle a, the point (c, s) that Newton's method has reached becomes
     (c cos a - s sin a, s cos a + c sin a), so that c^2 + s^2 = 1 holds by construction.
@@ -232,36 +213,34 @@ def _proved(functions: _Functions, solution: Solution, start: int) -> _Values | 
     ----------
     start : 0 at the box's center; other numbers half way to one of its sides.
     """
-    turning = 2 * len(functions.model.angles)
+    turning = 2 * len(model.ring.model.angles)
     center = _normal([ball_of(x) for x in solution.center], turning)
     # the Jacobian may be singular at the center itself, as at a cusp whose coordinates the box has
     step = arb(from_fraction(solution.radius) / (-2 if start % 2 else 2))
-    aside = [step if start and k == (start - 1) // 2 else arb(0) for k in range(len(functions.model.unknowns))]
-    reached = _iterated(functions, _normal(_moved(center, aside, turning), turning))
+    aside = [step if start and k == (start - 1) // 2 else arb(0) for k in range(len(model.ring.model.unknowns))]
+    reached = _iterated(model, _normal(_moved(center, aside, turning), turning))
     if reached is None:
         return None
     point, step = reached
     # the point now has exact circles up to rounding, which its balls contain
     # wide against rounding, narrow against the distance over which the Jacobian varies
     radius = (step * 8 + arb(2) ** (-2 * ctx.prec // 3)).mid()
-    around = _moved(point, [arb(0).union(radius).union(-radius)] * len(functions.model.unknowns), turning)
-    values = functions(around)
-    image = _solve(values.jacobian, functions(point).equations)
+    around = _moved(point, [arb(0).union(radius).union(-radius)] * len(model.ring.model.unknowns), turning)
+    image = _solve(_jacobian(model, around), _values(model.equations, point))
     if image is None or not all(abs(a) < radius for a in image):
         return None
     inside = all(
         abs(x - from_fraction(center)) <= from_fraction(solution.radius)
         for x, center in zip(around, solution.center, strict=True)
     )
-    return values if inside else None
+    return around if inside else None
 
 
-def _iterated(functions: _Functions, point: list[arb]) -> tuple[list[arb], arb] | None:
+def _iterated(model: Polynomials, point: list[arb]) -> tuple[list[arb], arb] | None:
     """The point that Newton's method reaches, and the length of its last step; None at a singular Jacobian."""
-    turning, step = 2 * len(functions.model.angles), arb(1)
+    turning, step = 2 * len(model.ring.model.angles), arb(1)
     for _ in range(_STEPS + ctx.prec.bit_length()):
-        values = functions(point)
-        step_by = _solve(values.jacobian, values.equations)
+        step_by = _solve(_jacobian(model, point), _values(model.equations, point))
         if step_by is None:
             return None
         point = [x.mid() for x in _moved(point, [-a.mid() for a in step_by], turning)]

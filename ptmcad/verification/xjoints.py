@@ -9,7 +9,7 @@ e = (L z - b)(L - b/z) and D = (L - b z)(L - b/z), and 1/w is the conjugate of t
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from flint import fmpq
 
@@ -68,14 +68,6 @@ def _product(one: _Complex, two: _Complex) -> _Complex:
     return a * c + -(b * d), a * d + b * c
 
 
-class Conditions(NamedTuple):
-    """Equations, each zero at an equilibrium; what is not zero there; and what is positive at a stable one."""
-
-    equations: tuple[Any, ...]
-    distances: tuple[Any, ...]
-    stability: tuple[Any, ...]
-
-
 def conditions(
     numbers: Sequence[int],
     energy: Units,
@@ -83,8 +75,8 @@ def conditions(
     lengths: Sequence[tuple[Second, Second]],
     turns: Sequence[tuple[Second, Second]],
     moments: Sequence[Second],
-) -> Conditions:
-    """The conditions at a place.
+) -> tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]]:
+    """Equations, each zero at an equilibrium, what is not zero there, and what is positive at a stable one.
 
     Parameters
     ----------
@@ -133,7 +125,7 @@ def conditions(
         rows.append(slopes)
     minors = tuple(determinant([row[:k] for row in rows[:k]]) for k in range(1, count + 1))
     distances = tuple(far.value for _, far in ways) if len(ways) > 1 else ()
-    return Conditions(tuple(equations), distances, minors)
+    return tuple(equations), distances, minors
 
 
 def _second_bar(base: Second, bars: Second, cosine: Second, sine: Second) -> tuple[_Complex, Second]:

@@ -16,7 +16,6 @@ Cramer's rule, exactly.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from flint import arb, arb_mat
 
@@ -29,44 +28,36 @@ _MIN_SIZE = 2.0**-60
 Row = Sequence[arb]
 
 
-@dataclass(frozen=True, slots=True)
-class Linear:
-    """Equations A s + b less the parts of springs, in balls.
+def bounds_of(matrix: Sequence[Row], rest: Row, springs: Sequence[tuple[arb, Row, Row]]) -> list[arb] | None:
+    """Of each length, exact numbers; None where no dominant diagonal is found.
 
-    Attributes
+    Parameters
     ----------
-    matrix : A, row by row.
-    rest : b.
+    matrix, rest : A, row by row, and b.
     springs : for each K, and the coordinates of the vector w_ci for each equation.
     """
+    n = range(len(rest))
+    try:
+        inverse = arb_mat([[arb(a.mid()) for a in row] for row in matrix]).inv()
+    except ZeroDivisionError:
+        return None
+    guess = [[arb(inverse[i, j].mid()) for j in n] for i in n]
+    columns = list(zip(*matrix, strict=True))
+    reach = [_reach(row, rest, springs) for row in guess]
+    off = [[(int(i == j) - _dot(guess[i], columns[j])).abs_upper() for j in n] for i in n]
+    shares = [_dot(off[i], reach).abs_upper() / reach[i] for i in n]
+    if not all(share < MAX_SHARE for share in shares):
+        return None
+    most = max(share.abs_upper() for share in shares)
+    return [(r / (1 - most)).abs_upper() for r in reach]
 
-    matrix: Sequence[Row]
-    rest: Row
-    springs: Sequence[tuple[arb, Row, Row]]
 
-    def bounds(self) -> list[arb] | None:
-        """Of each length, exact numbers; None where no dominant diagonal is found."""
-        n = range(len(self.rest))
-        try:
-            inverse = arb_mat([[arb(a.mid()) for a in row] for row in self.matrix]).inv()
-        except ZeroDivisionError:
-            return None
-        guess = [[arb(inverse[i, j].mid()) for j in n] for i in n]
-        columns = list(zip(*self.matrix, strict=True))
-        reach = [self._reach(row) for row in guess]
-        off = [[(int(i == j) - _dot(guess[i], columns[j])).abs_upper() for j in n] for i in n]
-        shares = [_dot(off[i], reach).abs_upper() / reach[i] for i in n]
-        if not all(share < MAX_SHARE for share in shares):
-            return None
-        most = max(share.abs_upper() for share in shares)
-        return [(r / (1 - most)).abs_upper() for r in reach]
-
-    def _reach(self, factors: Row) -> arb:
-        """A positive upper bound of the rest and the springs' parts, where the equations are summed up with factors."""
-        total = abs(_dot(factors, self.rest)) + _MIN_SIZE
-        for pull, across, up in self.springs:
-            total = total + pull * size(_dot(factors, across), _dot(factors, up))
-        return total.abs_upper()
+def _reach(factors: Row, rest: Row, springs: Sequence[tuple[arb, Row, Row]]) -> arb:
+    """A positive upper bound of the rest and the springs' parts, where the equations are summed up with factors."""
+    total = abs(_dot(factors, rest)) + _MIN_SIZE
+    for pull, across, up in springs:
+        total = total + pull * size(_dot(factors, across), _dot(factors, up))
+    return total.abs_upper()
 
 
 def _dot(a: Row, b: Row) -> arb:

@@ -23,7 +23,7 @@ from flint import arb
 
 from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.field import size
-from ptmcad.verification.certified.held import Linear
+from ptmcad.verification.certified.held import bounds_of
 from ptmcad.verification.certified.terms import ball, power
 from ptmcad.verification.certified.waves import Form, Key, Waves
 
@@ -41,6 +41,8 @@ Row = Mapping[Key, arb]
 """A polynomial by its waves."""
 Monomials = dict[tuple[int, ...], arb]
 """By the powers of what is not bounded."""
+_Linear = tuple[list[list[arb]], list[arb], list[tuple[arb, list[arb], list[arb]]]]
+"""Equations A s + b less the parts of springs, as `bounds_of` has them."""
 _ZERO, _ANY = arb(0), arb(0, 1)
 
 
@@ -185,7 +187,7 @@ class _Bounds:
             linear = self._linear(part, chosen)
             if linear is None:
                 return None
-            bounds = linear.bounds()
+            bounds = bounds_of(*linear)
             if bounds is not None:
                 most = list(map(max, most, bounds))
                 continue
@@ -195,7 +197,7 @@ class _Bounds:
             waiting += halves
         return {k: nextafter(float(bound), inf) for k, bound in zip(chosen, most, strict=True)}
 
-    def _linear(self, chart: _Chart, chosen: Sequence[int]) -> Linear | None:
+    def _linear(self, chart: _Chart, chosen: Sequence[int]) -> _Linear | None:
         """The equations of some unknowns; None where other unknowns without a bound, or squares of these, are in."""
         none = (0,) * (len(chart.factors) + 1)
         units = [tuple(int(j == k) for j in range(len(none))) for k in chosen]
@@ -212,7 +214,7 @@ class _Bounds:
             (pull, [vectors[c][0] for vectors in parts], [vectors[c][1] for vectors in parts])
             for c, (pull, _, _) in enumerate(self.equations[chosen[0]].springs)
         ]
-        return Linear(matrix, rest, springs)
+        return matrix, rest, springs
 
     def _faces(self, weights: Mapping[int, int]) -> Iterator[_Chart]:
         lead, everything = len(self.found), range(len(self.found))

@@ -19,7 +19,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import accumulate
+from itertools import accumulate, product
 from math import ceil, isqrt
 
 from ptmcad.cover.rectangles import Cover, Rectangle
@@ -59,15 +59,6 @@ class SampleBox:
     v: Fraction
     half: Fraction
     cell: int
-
-
-@dataclass(frozen=True, slots=True)
-class GridSquare:
-    """A square of the grid, in lattice steps: its lower left corner and its width."""
-
-    u: Fraction
-    v: Fraction
-    width: Fraction
 
 
 def check_boxes(
@@ -127,18 +118,14 @@ def _side(number: int) -> int:
     return isqrt(ceil(POINTS_PER_BOX * number) - 1) + 1
 
 
-def _parts(claims: CertifiedClaims, number: int) -> list[GridSquare]:
-    side = _side(number)
-    width = Fraction(claims.sweep.steps, side)
-    return [GridSquare(i * width, j * width, width) for i in range(side) for j in range(side)]
-
-
 def _by_area(claims: CertifiedClaims, rng: random.Random, number: int) -> tuple[list[SampleBox], int]:
     """A point in each square of the grid, in random order; and the number of squares in which none was met with."""
     found, without = [], 0
-    for part in _parts(claims, number):
+    side = _side(number)
+    width = Fraction(claims.sweep.steps, side)
+    for i, j in product(range(side), repeat=2):
         for _ in range(_MAX_TRIALS):
-            u, v = part.u + part.width * _uniform(rng), part.v + part.width * _uniform(rng)
+            u, v = (i + _uniform(rng)) * width, (j + _uniform(rng)) * width
             box = _free(claims, u, v)
             if box is not None:
                 found.append(box)

@@ -173,13 +173,6 @@ def halves_over(claims: CertifiedClaims, x: arb, y: arb) -> Floats:
     return half_widths(form, values)
 
 
-class _Excess(NamedTuple):
-    """By how much a spring is longer than its free length, and what is zero where it is not."""
-
-    value: int
-    zero: tuple[int, ...]
-
-
 class _Systems:
     """The systems of one map, and what they have in common."""
 
@@ -247,11 +240,9 @@ class _Systems:
                 yield self._system(f"boundary {k}", [c], [], [], unknowns=0)
             else:
                 yield self._system(f"boundary {k}", [*equations, c], others, [n for n in signs if n != c])
-        for k, excess in enumerate(self.excesses):
-            taut = [other.value for other in self.excesses if other is not excess]
-            yield self._system(
-                f"free length {k}", [*equations, *excess.zero], others, [*dict.fromkeys([*signs, *taut])]
-            )
+        for k, (_, as_long) in enumerate(self.excesses):
+            taut = [value for j, (value, _) in enumerate(self.excesses) if j != k]
+            yield self._system(f"free length {k}", [*equations, *as_long], others, [*dict.fromkeys([*signs, *taut])])
 
     def _minors(self, rows: Sequence[Sequence[int]]) -> list[int]:
         """The principal minors but the determinant; none is negative where the Hessian is positive semidefinite."""
@@ -299,13 +290,14 @@ class _Systems:
             return self._system(name, s.vector, [m.without(k)[i]], signs)
         return self._system(name, s.vector, m.balances(k), self.positive)
 
-    def _excesses(self) -> list[_Excess]:
-        """By how much the springs are longer than their free lengths, of those that are not always as long."""
-        m, f, found = self.model, self.model.list, []
+    def _excesses(self) -> list[tuple[int, tuple[int, ...]]]:
+        """By how much each spring is longer than its free length, and what is zero where it is not."""
+        m, f = self.model, self.model.list
+        found: list[tuple[int, tuple[int, ...]]] = []
         for excess in excesses_of(self.claims.model):
             free, vector = m.terms(excess.free), (m.waves(excess.vector[0]), m.waves(excess.vector[1]))
             value = f.subtract(f.length(*vector), free)
-            found.append(_Excess(value, vector if f.constant(free) == 0 else (value,)))
+            found.append((value, vector if f.constant(free) == 0 else (value,)))
         return found
 
     def _system(

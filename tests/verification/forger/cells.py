@@ -22,44 +22,62 @@ from forger.consistency import (
 )
 from ptmcad.answer.regionmap import Adjacency, Merge, NonAdjacency, Reason, RegionMap, Solution
 
-FAKE = tuple(
-    (Fraction(a, c), Fraction(b, c), Fraction(d, f), Fraction(e, f))
-    for a, b, c in ((3, 4, 5), (-5, 12, 13), (-8, -15, 17))
-    for d, e, f in ((7, 24, 25), (-20, 21, 29), (9, -40, 41))
-)
-"""Points of the torus that are no solutions but by an accident that did not happen."""
+CIRCLES = tuple((Fraction(a, c), Fraction(b, c)) for a, b, c in (
+    (3, 4, 5), (-5, 12, 13), (-8, -15, 17), (7, 24, 25), (-20, 21, 29), (9, -40, 41),
+))  # fmt: skip
 
 
-def _recounted(r: RegionMap, cells: tuple[int, ...], by: tuple[int, int, int], boxes: bool) -> RegionMap:
+def fake(r: RegionMap, k: int) -> tuple[Fraction, ...]:
+    """A configuration that is no solution but by an accident that did not happen, by a number."""
+    model = r.slice.model
+    turned = [x for i, _ in enumerate(model.angles) for x in CIRCLES[(k // (1 + 3 * i) + 3 * i) % len(CIRCLES)]]
+    return (*turned, *(Fraction(7 + k, 3) for _ in model.reals))
+
+
+def signs_of(size: int, negative: int) -> str:
+    """Of the eigenvalues of a Hessian, for an index of so many entries."""
+    return "+" * (size - 1 - negative) + "-" * negative
+
+
+def _recounted(r: RegionMap, cells: tuple[int, ...], by: tuple[int, ...], boxes: bool) -> RegionMap:
     """The cells with other indices, everything else following; with boxes to match where asked for."""
     found = list(r.cells)
     for n in cells:
         old = found[n].index
         assert old is not None
-        index = (old[0] + by[0], old[1] + by[1], old[2] + by[2])
+        index = tuple(a + b for a, b in zip(old, by, strict=True))
         solutions = found[n].solutions
-        if boxes:
-            for signs, more in zip(("++", "+-", "--"), by, strict=True):
-                for _ in range(max(0, more)):
-                    solutions = (*solutions, Solution(FAKE[len(solutions) % 9], Fraction(1, 2**60), signs))
-                for _ in range(max(0, -more)):
-                    k = max(k for k, s in enumerate(solutions) if s.signs == signs)
-                    solutions = drop(solutions, k)
+        for negative, more in enumerate(by) if boxes else ():
+            signs = signs_of(len(by), negative)
+            for _ in range(max(0, more)):
+                solutions = (*solutions, Solution(fake(r, len(solutions)), Fraction(1, 2**60), signs))
+            for _ in range(max(0, -more)):
+                k = max(k for k, s in enumerate(solutions) if s.signs == signs)
+                solutions = drop(solutions, k)
         found[n] = replace(found[n], index=index, total=sum(index), stable=index[0], solutions=solutions)
     return settled(replace(r, cells=tuple(found)))
 
 
-def _possible(r: RegionMap, cells: tuple[int, ...], by: tuple[int, int, int]) -> bool:
+def _possible(r: RegionMap, cells: tuple[int, ...], by: tuple[int, ...]) -> bool:
     return all(all(old + b >= 0 for old, b in zip(r.cells[n].index or (), by, strict=True)) for n in cells)
 
 
-CHANGES = ((1, 1, 0), (0, 1, 1), (-1, -1, 0), (0, -1, -1), (1, 0, -1), (-1, 0, 1), (1, 0, 0), (0, -1, 0), (2, 2, 0))
+PAIRS = ((1, 1, 0), (0, 1, 1), (-1, -1, 0), (0, -1, -1))
+CHANGES = (*PAIRS, (1, 0, -1), (-1, 0, 1), (1, 0, 0), (0, -1, 0), (2, 2, 0))
+
+
+def _fitting(r: RegionMap, changes: tuple[tuple[int, ...], ...]) -> list[tuple[int, ...]]:
+    """The changes of an index of the map's length; none where solutions have none."""
+    size = len(r.cells[0].index or ())
+    if not size:
+        return []
+    return [(*by, *(0 for _ in range(size - len(by)))) for by in dict.fromkeys(by[:size] for by in changes) if any(by)]
 
 
 def counts_of_a_cell(r: RegionMap) -> Iterator[Alteration]:
     """More, fewer or other equilibria, by pairs or not, without boxes."""
     for n in range(len(r.cells)):
-        for by in CHANGES:
+        for by in _fitting(r, CHANGES):
             if _possible(r, (n,), by):
                 yield partial(_recounted, r, (n,), by, False)
 
@@ -67,7 +85,7 @@ def counts_of_a_cell(r: RegionMap) -> Iterator[Alteration]:
 def counts_and_boxes_of_a_cell(r: RegionMap) -> Iterator[Alteration]:
     """The same with boxes invented and left out, so that their number and signs are right."""
     for n in range(len(r.cells)):
-        for by in CHANGES:
+        for by in _fitting(r, CHANGES):
             if _possible(r, (n,), by):
                 yield partial(_recounted, r, (n,), by, True)
 
@@ -75,24 +93,25 @@ def counts_and_boxes_of_a_cell(r: RegionMap) -> Iterator[Alteration]:
 def counts_of_a_region(r: RegionMap) -> Iterator[Alteration]:
     """All cells of a region are said to have another pair of equilibria."""
     for region in r.regions:
-        for by in ((1, 1, 0), (0, 1, 1), (-1, -1, 0), (0, -1, -1)):
+        for by in _fitting(r, PAIRS):
             if _possible(r, region.cells, by):
                 yield partial(_recounted, r, region.cells, by, True)
 
 
 def counts_of_the_whole_map(r: RegionMap) -> Iterator[Alteration]:
     """Every cell has two equilibria more."""
-    for by in ((1, 1, 0), (0, 1, 1)):
+    for by in _fitting(r, PAIRS[:2]):
         yield partial(_recounted, r, tuple(range(len(r.cells))), by, True)
 
 
 def one_count_alone(r: RegionMap) -> Iterator[Alteration]:
     """Total or stable contradict the index."""
     for n, cell in enumerate(r.cells):
-        for name in ("total", "stable"):
+        for name in (name for name in ("total", "stable") if getattr(cell, name) is not None):
             for by in (-1, 1, 2):
                 yield partial(changed, r, cells=put(r.cells, n, **{name: getattr(cell, name) + by}))
-        yield partial(changed, r, cells=put(r.cells, n, index=None))
+        if cell.index is not None:
+            yield partial(changed, r, cells=put(r.cells, n, index=None))
 
 
 def _with_solutions(r: RegionMap, n: int, solutions: tuple[Solution, ...]) -> RegionMap:
@@ -103,10 +122,10 @@ def box_moved(r: RegionMap) -> Iterator[Alteration]:
     """By three of its radii in one coordinate, or to a point that is no solution."""
     for n, cell in enumerate(r.cells):
         for k, s in enumerate(cell.solutions):
-            for axis in range(4):
+            for axis in range(len(s.center)):
                 center = tuple(x + 3 * s.radius if i == axis else x for i, x in enumerate(s.center))
                 yield partial(_with_solutions, r, n, put(cell.solutions, k, center=center))
-            yield partial(_with_solutions, r, n, put(cell.solutions, k, center=FAKE[k % len(FAKE)]))
+            yield partial(_with_solutions, r, n, put(cell.solutions, k, center=fake(r, k)))
 
 
 def box_beside_the_solution(r: RegionMap) -> Iterator[Alteration]:
@@ -141,7 +160,7 @@ def box_of_nothing(r: RegionMap) -> Iterator[Alteration]:
     for n, cell in enumerate(r.cells):
         for k, s in enumerate(cell.solutions):
             for changes in ({"radius": Fraction(0)}, {"radius": -s.radius}, {"radius": Fraction(3)},
-                            {"center": s.center[:2]}, {"center": tuple(3 + x for x in s.center)}):  # fmt: skip
+                            {"center": s.center[:-1]}, {"center": tuple(3 + x for x in s.center)}):  # fmt: skip
                 yield partial(_with_solutions, r, n, put(cell.solutions, k, **changes))
 
 
@@ -158,12 +177,16 @@ def sign_of_a_solution(r: RegionMap) -> Iterator[Alteration]:
     """With counts of the cell, and all else, to match; or alone."""
     for n, cell in enumerate(r.cells):
         for k, s in enumerate(cell.solutions):
-            for signs in ("++", "+-", "--", ""):
+            size = len(cell.index or ())
+            other = {"-": "+", "+": "-"}.get(s.signs[:1], "+") + s.signs[1:]
+            for signs in (*(signs_of(size, negative) for negative in range(size)), "") if size else (other,):
                 if signs == s.signs:
                     continue
                 solutions = put(cell.solutions, k, signs=signs)
                 yield partial(_with_solutions, r, n, solutions)
-                index = tuple(sum(x.signs == kind for x in solutions) for kind in ("++", "+-", "--"))
+                if not size:
+                    continue
+                index = tuple(sum(x.signs == signs_of(size, m) for x in solutions) for m in range(size))
                 new = put(r.cells, n, solutions=solutions, index=index, total=sum(index), stable=index[0])
                 yield partial(changed, r, cells=new)
 
@@ -171,7 +194,9 @@ def sign_of_a_solution(r: RegionMap) -> Iterator[Alteration]:
 def solutions_of_another_cell(r: RegionMap) -> Iterator[Alteration]:
     """With the same index, where they are other points."""
     for (n, c), (_, d) in permutations(enumerate(r.cells), 2):
-        if c.index == d.index and not all(any(_inside(b, a) for a in c.solutions) for b in d.solutions):
+        if (c.total, c.index) == (d.total, d.index) and not all(
+            any(_inside(b, a) for a in c.solutions) for b in d.solutions
+        ):
             yield partial(_with_solutions, r, n, d.solutions)
 
 

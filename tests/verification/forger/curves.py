@@ -62,8 +62,9 @@ def _lines(r: RegionMap) -> Iterator[PlanePolynomial]:
 
 def component_invented(r: RegionMap) -> Iterator[Alteration]:
     """A line or conic that separates nothing, of any kind; left out where it has no point in the window."""
+    known = {c.polynomial for c in r.components}
     for n, p in enumerate(_lines(r)):
-        for kind in Kind:
+        for kind in Kind if p not in known else ():
             new = Component(p, kind, "" if n < 2 else NO_POINT)
             yield partial(decomposed, r, (*r.components, new))
 

@@ -199,10 +199,12 @@ def relations_and_unknowns(r: RegionMap) -> Iterator[Alteration]:
     s = r.system
     for j, k in combinations(range(len(s.unknowns)), 2):
         yield partial(replace, r, system=replace(s, unknowns=swapped(s.unknowns, j, k)))
-    for relations in (s.relations[::-1], s.relations[:1], (s.relations[0] + " + 1", s.relations[1])):
-        yield partial(replace, r, system=replace(s, relations=relations))
-    yield partial(replace, r, system=replace(s, hessian=s.hessian[:1]))
-    yield partial(replace, r, system=replace(s, gradient=s.gradient[::-1]))
+    for first in s.relations[:1]:
+        for relations in (s.relations[::-1], s.relations[1:], (first + " + 1", *s.relations[1:])):
+            if relations != s.relations:
+                yield partial(replace, r, system=replace(s, relations=relations))
+    yield partial(replace, r, system=replace(s, hessian=s.hessian[1:]))
+    yield partial(replace, r, system=replace(s, gradient=(*s.gradient[1:], s.gradient[0] + " + 1")))
 
 
 def plan_step_dropped(r: RegionMap) -> Iterator[Alteration]:

@@ -16,35 +16,23 @@ from support.random_slices import NUMBERS
 from support.shipped_records import EXACT
 
 import ptmcad
-from forger import cells, certified, curves, frame, rearrangements
+from forger import cells, certified, rearrangements
 from forger.consistency import drop, put, settled, with_plan
-from forger.judge import Tally, judge, places_of, violation
+from forger.judge import FALSE, Tally, judged, places_of, violation
 from forger.maps import CONFIGS, named
 from ptmcad.answer.regionmap import NO_POINT, Component, Kind, RegionMap
 from ptmcad.options import Options
 from ptmcad.question.slice import Count
 from ptmcad.text.plane import PlanePolynomial
 
-FALSE = (*cells.KINDS, *curves.KINDS, *frame.KINDS)
 PLACES, RANDOM_PLACES = 12, 2
 KEPT = ("fig5-text+no-areas",)
 RANDOM = tuple(sorted(random.Random("forger").sample(list(NUMBERS), 100)))
 
-LIKELY = {
-    "adjacency": "adjacencies", "all_adjacencies": "no adjacency missing", "box": "solutions", "counts": "counts",
-    "component": "variety complete", "critical": "critical values", "sample": "walls and samples",
-    "wall": "walls and samples", "plan": "plan", "non_adjacency": "non-adjacencies", "area": "areas",
-    "region": "regions", "equations": "equations", "text": "parameters as written",
-}  # fmt: skip
-"""The check that is tried first, by how a kind's name begins: it makes the test faster, and no weaker."""
-
 
 def assert_judged(name: str, r: RegionMap, number: int | None, true: int | None = None) -> Tally:
     """Judge so many places of each kind, and of so many true kinds."""
-    tally = Tally(likely={k.__name__: check for k in FALSE for begin, check in LIKELY.items()
-                          if k.__name__.startswith(begin)})  # fmt: skip
-    judge(name, r, FALSE, True, number, tally)
-    judge(name, r, rearrangements.KINDS[:true], False, number, tally)
+    tally = judged(name, r, number, true)
     assert not tally.wrong, "\n".join(tally.wrong)
     return tally
 
