@@ -151,7 +151,9 @@ def interpolate(at: Callable[[int], fmpz], degree: int, check: Check = nothing) 
     return result
 
 
-def interpolate_rows(at: Callable[[int], fmpz_poly], degree: int, check: Check = nothing) -> dict[tuple[int, int], fmpz]:
+def interpolate_rows(
+    at: Callable[[int], fmpz_poly], degree: int, check: Check = nothing
+) -> dict[tuple[int, int], fmpz]:
     """The coefficients of u^i w^j of a polynomial in Z[u, w], of at most this degree in u, from its values at integers
     u."""
     first = -(max(degree, 0) // 2)
