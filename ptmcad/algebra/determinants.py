@@ -78,10 +78,10 @@ def _interpolated(matrix: Sequence[Sequence[Coefficient]]) -> Coefficient:
     """
     zero = constant_like(matrix[0][0], 0)
     costs = [[[None if e.is_zero() else -int(e.degrees()[k]) for e in row] for row in matrix] for k in (0, 1)]
-    least = [least_assignment(cost) for cost in costs]
-    if least[0] is None or least[1] is None:
+    bounds = [bound for cost in costs if (bound := least_assignment(cost)) is not None]
+    if len(bounds) < len(costs):
         return zero
-    across, up = (range(1 - bound) for bound in least)
+    across, up = (range(1 - bound) for bound in bounds)
     entries = [coefficients_in(entry, 1) for row in matrix for entry in row]
     values = []
     for x in across:
