@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 from flint import fmpz_mat, fmpz_poly, nmod_mat
 
@@ -29,6 +30,17 @@ MIN_INTERPOLATED = 12
 """Rows; of fewer the elimination is as fast."""
 MANY_TERMS = 15_000
 """Rows times terms, in two variables; with fewer, likewise."""
+
+
+def laplace(rows: Sequence[Sequence[Any]]) -> Any:
+    """The determinant of a small matrix over any commutative ring, along its first row."""
+    if len(rows) == 1:
+        return rows[0][0]
+    total = None
+    for k, entry in enumerate(rows[0]):
+        term = entry * laplace([[*row[:k], *row[k + 1 :]] for row in rows[1:]])
+        total = term if total is None else total - term if k % 2 else total + term
+    return total
 
 
 def determinant(rows: list[list[Ratio]]) -> Ratio:

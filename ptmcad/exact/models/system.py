@@ -8,10 +8,12 @@ from typing import Any, NamedTuple
 
 from flint import fmpq
 
+from ptmcad.algebra.determinants import laplace
 from ptmcad.algebra.polynomials import (
     PLANE,
     Coefficient,
     Ratio,
+    UnivariatePolynomial,
     UnknownPolynomial,
     add_ratios,
     common_factor,
@@ -239,24 +241,60 @@ def leading_minors(system: ParametricSystem, parameters: Mapping[str, Ratio]) ->
     Their signs, with that of the determinant, tell the index where none of them is zero (Jacobi).
     """
     rows = [list(row) for row in system.jacobian]
-    minors = (_leibniz([row[:k] for row in rows[:k]]) for k in range(1, system.dimension))
+    minors = (laplace([row[:k] for row in rows[:k]]) for k in range(1, system.dimension))
     one = _one(parameters)
     return [_without_denominators(_substitute(system, system.ring.reduce(m), parameters, one)) for m in minors]
 
 
+ALONG, OVER = "<along>", "<over>"
+"""The parameter and the further unknown of `with_root`; no unknown has such a name."""
+
+
+def with_root(
+    system: ParametricSystem, parameters: Mapping[str, Ratio], along: int, minimal: UnivariatePolynomial
+) -> ParametricSystem:
+    """The system on the lines of a slice at the roots of a polynomial, which are one more unknown, the last one.
+
+    Nothing is divided out: an equation that vanishes all over such a line stays zero there. Stability is a matter of
+    conditions, those of the potential's Hessian by its leading minors.
+
+    Parameters
+    ----------
+    parameters : each as a ratio of polynomials in Z[x, y], the slice's axes.
+    along : the number of the axis that varies on the lines, the system's one parameter.
+    """
+    ring = TrigonometricRing((ALONG,), system.ring.angles, (*system.ring.reals, OVER))
+    one = _one(parameters)
+
+    def lifted(p: TrigonometricPolynomial, is_condition: bool = False) -> TrigonometricPolynomial:
+        terms = _substitute(system, p, parameters, one)
+        scale = lcm(d for _, d in terms.values())
+        found: dict[tuple[int, ...], fmpq] = {}
+        for monomial, (numerator, denominator) in terms.items():
+            # times the denominator's square where the sign matters
+            cleared = numerator * (scale / denominator) * (scale if is_condition else one)
+            for powers, c in cleared.terms():
+                found[(int(powers[along]), *monomial, int(powers[1 - along]))] = fmpq(c)
+        return ring.context.from_dict(found)
+
+    stability = system.stability
+    if system.has_index:
+        rows = [list(row) for row in system.jacobian]
+        orders = range(1, system.dimension + 1)
+        stability = tuple(system.ring.reduce(laplace([row[:k] for row in rows[:k]])) for k in orders)
+    root = {(*(0,) * ring.width, k): fmpq(c) for k, c in enumerate(minimal.coeffs())}
+    return from_equations(
+        ring,
+        [*map(lifted, system.equations), ring.context.from_dict(root)],
+        inequalities=tuple(lifted(p, True) for p in system.inequalities),
+        stability=tuple(lifted(p, True) for p in stability),
+        definite=system.has_index or system.definite,
+    )
+
+
 def determinant(system: ParametricSystem) -> TrigonometricPolynomial:
     """The determinant of the Jacobian, in the system's ring."""
-    return system.ring.reduce(_leibniz([list(row) for row in system.jacobian]))
-
-
-def _leibniz(rows: list[list[TrigonometricPolynomial]]) -> TrigonometricPolynomial:
-    if len(rows) == 1:
-        return rows[0][0]
-    total = 0 * rows[0][0]
-    for k, entry in enumerate(rows[0]):
-        minor = _leibniz([row[:k] + row[k + 1 :] for row in rows[1:]])
-        total += entry * minor if k % 2 == 0 else -entry * minor
-    return total
+    return system.ring.reduce(laplace([list(row) for row in system.jacobian]))
 
 
 def _one(parameters: Mapping[str, Ratio]) -> Coefficient:

@@ -1,21 +1,59 @@
-"""The ranges of a count on any line of a slice: one at an algebraic value, or in the discriminant variety, too.
+"""The ranges of a count on any line of a slice: one in the discriminant variety, or at an algebraic value, too.
 
 Guarantee: exact. In the ranges that are certain the count is the wanted one at all but finitely many points; elsewhere,
-off those that are possible, it is another one. At an irrational value, and on a line in the variety, nothing is
-decided: none is certain and any is possible.
+off those that are possible, it is another one. The two differ where a degenerate solution may be stable, or where
+there are infinitely many complex solutions of a system of several unknowns.
+
+The value of the other axis is one more unknown, a root of its polynomial (`with_root`). Over Q(x), x being the axis
+along the line, the solutions may be multiple. Hermite's form still tells the different ones: while the lowest
+coefficient of its characteristic polynomial that is not zero identically has no zero, its rank, the number of different
+solutions, is constant, so that none of them meet; and while that of the multiplication by a condition has none, no
+condition changes its sign at a solution at which it is not zero all along.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from itertools import groupby
 from typing import NamedTuple
 
+from flint import fmpq
+
+from ptmcad.algebra.determinants import determinant
+from ptmcad.algebra.numbers import algebraic_number, as_interval, in_order
+from ptmcad.algebra.points import RealPoint, points, value_at
+from ptmcad.algebra.polynomials import (
+    ONE,
+    PLANE,
+    Ratio,
+    UnivariatePolynomial,
+    UnknownPolynomial,
+    add_ratios,
+    coefficients_in,
+    from_expression,
+    ratio,
+)
+from ptmcad.algebra.quotient import QuotientAlgebra, multiples, multiplication_denominator, trace_form
+from ptmcad.algebra.real_roots import isolate, simplest_between
 from ptmcad.answer.intervals import End, Span
 from ptmcad.errors import ConfigError, DegenerateSliceError, HypothesisError, InfiniteSolutionsError
-from ptmcad.exact.models import system_from
-from ptmcad.exact.ranges.line import intervals
+from ptmcad.exact.models import ParametricSystem, system_from
+from ptmcad.exact.models.system import ALONG, RationalPolynomial, SliceSystem, on_slice, saturated, with_root
+from ptmcad.exact.point_system import DegeneratePoint, point_system
+from ptmcad.exact.ranges.line import END_WIDTH, intervals
+from ptmcad.exact.statics import is_positive
+from ptmcad.exact.variety import algebra_of, lifted
+from ptmcad.mechanism import mechanism_in
 from ptmcad.question.line import line_of
-from ptmcad.question.slice import Slice
+from ptmcad.question.slice import Axis, Slice
+from ptmcad.text.enclosure import AlgebraicNumber
+from ptmcad.text.flint_numbers import from_fraction
+
+MAX_DIMENSION = 40
+"""Complex solutions, with multiplicity and at all conjugate values, up to which they are told apart."""
+_SAMPLES = 12
+"""Tried in a gap until one has as many solutions, with multiplicity, as points of the line have in general."""
 
 
 class LineRanges(NamedTuple):
@@ -23,6 +61,9 @@ class LineRanges(NamedTuple):
 
     certain: tuple[Span, ...]
     possible: tuple[Span, ...]
+
+
+NO_RANGES = LineRanges((), ())
 
 
 def ranges_on(slice: Slice, along: str, value: End, working: int) -> LineRanges:
@@ -35,16 +76,152 @@ def ranges_on(slice: Slice, along: str, value: End, working: int) -> LineRanges:
     working : the number of stable solutions, or of all where nothing says what is stable.
     """
     number = slice.axis_names.index(along)
-    axis = slice.axes[number]
     if isinstance(value, Fraction):
-        at = {slice.axis_names[1 - number]: value}
         try:
-            found = intervals(slice, along, at, working).operation
+            found = intervals(slice, along, {slice.axis_names[1 - number]: value}, working).operation
             return LineRanges(found, found)
         except (DegenerateSliceError, InfiniteSolutionsError):
-            on_line = line_of(slice, along, at).parameters
+            on_line = line_of(slice, along, {slice.axis_names[1 - number]: value}).parameters
             if not all(on_line[name].numerator for name in system_from(slice.model).positive):
-                return LineRanges((), ())
+                return NO_RANGES
         except (ConfigError, HypothesisError):
-            return LineRanges((), ())
-    return LineRanges((), (Span(axis.low, axis.high),))
+            return NO_RANGES
+    minimal = AlgebraicNumber.of(value)
+    axis = slice.axes[number]
+    parameters = {name: from_expression(e) for name, e in slice.parameters.items()}
+    known = system_from(slice.model)
+    system = with_root(known, parameters, number, UnivariatePolynomial(list(minimal.polynomial)))
+    whole = (Span(axis.low, axis.high),)
+    given = on_slice(system, {ALONG: (PLANE.gen(0), ONE)})
+    finite = _finite(given)
+    if finite is None:  # of one unknown infinitely many are all, on a part that conditions leave: a count of 0 or none
+        return LineRanges((), whole if known.dimension > 1 or not working else ())
+    equations, algebra = finite
+    if not algebra.dimension:
+        return LineRanges(whole, whole) if not working else NO_RANGES
+    if algebra.dimension > MAX_DIMENSION:
+        return LineRanges((), whole)
+    numbers = _critical(equations, algebra, axis)
+    flat = known.has_index or mechanism_in(slice.model) is not None
+    counting = _Counting(system, algebra.dimension, equations is not given, minimal, working, flat)
+    ends: list[End] = [axis.low, *numbers, axis.high]
+    lows, highs = [axis.low, *(n.high for n in numbers)], [*(n.low for n in numbers), axis.high]
+    here = [counting.between(*map(from_fraction, gap)) for gap in zip(lows, highs, strict=True)]
+    return LineRanges(
+        tuple(_spans(ends, [h is True for h in here])), tuple(_spans(ends, [h is not False for h in here]))
+    )
+
+
+def _finite(equations: SliceSystem) -> tuple[SliceSystem, QuotientAlgebra] | None:
+    """The equations of finitely many solutions, if need be without those that an inequality excludes."""
+    for _ in range(2):
+        try:
+            return equations, algebra_of(equations)
+        except InfiniteSolutionsError:
+            for condition in equations.inequalities:
+                equations = saturated(equations, lifted(condition, equations))
+    return None
+
+
+def _critical(equations: SliceSystem, algebra: QuotientAlgebra, axis: Axis) -> tuple[AlgebraicNumber, ...]:
+    """Where the solutions' number or the signs of conditions can change, in increasing order."""
+    conditions = (*equations.inequalities, *equations.stability)
+    found: list[UnivariatePolynomial] = [
+        coefficients_in(p, 1)[0]
+        for p in (
+            *equations.boundary,
+            multiplication_denominator(algebra),
+            *_lowest(trace_form(algebra)),
+            *(p for condition in conditions for p in _lowest(_matrix(algebra, lifted(condition, equations)))),
+        )
+    ]
+    factors = {tuple(map(int, factor.coeffs())): factor for p in found for factor, _ in p.factor()[1]}
+    low, high = from_fraction(axis.low), from_fraction(axis.high)
+    roots = [algebraic_number(root) for factor in factors.values() for root in isolate(factor, low, high)]
+    return in_order(roots, axis.low, axis.high, (axis.high - axis.low) * END_WIDTH)
+
+
+def _matrix(algebra: QuotientAlgebra, p: UnknownPolynomial) -> list[list[Ratio]]:
+    """Of multiplication by a polynomial; of none of its terms zero."""
+    if not p:
+        return [[(algebra.zero, algebra.one)] * algebra.dimension] * algebra.dimension
+    return [[ratio(c, denominator) for c in row] for row, denominator in multiples(algebra, p)]
+
+
+def _lowest(matrix: list[list[Ratio]]) -> Ratio:
+    """The lowest coefficient of the characteristic polynomial that is not zero, over Q(x); up to its sign."""
+    found = determinant(matrix)
+    if not found[0].is_zero():
+        return found
+    unknown: Ratio = (PLANE.gen(1), ONE)
+    shifted = [[add_ratios(c, unknown) if i == j else c for j, c in enumerate(row)] for i, row in enumerate(matrix)]
+    numerator, denominator = determinant(shifted)
+    lowest = min(int(powers[1]) for powers, _ in numerator.terms())
+    terms: dict[tuple[int, ...], int] = {(int(i), 0): int(c) for (i, j), c in numerator.terms() if j == lowest}
+    return PLANE.from_dict(terms), denominator
+
+
+class _Counting(NamedTuple):
+    """What is counted between critical values.
+
+    Attributes
+    ----------
+    dimension : the number of solutions in general, with multiplicity.
+    saturated : whether those at which an inequality's polynomial vanishes are left out.
+    value : of the other axis; solutions at its conjugates do not count.
+    may_be_stable : whether a solution of which a condition is zero may be stable, as a flat minimum is, or a flat loop;
+        of a system the conditions are what is called stable.
+    """
+
+    system: ParametricSystem
+    dimension: int
+    saturated: bool
+    value: AlgebraicNumber
+    working: int
+    may_be_stable: bool
+
+    def between(self, low: fmpq, high: fmpq) -> bool | None:
+        """Whether there is the wanted count between two neighbouring critical values; None where that is open."""
+        sample = low
+        for _ in range(_SAMPLES):
+            sample = simplest_between(sample, high)
+            found = self.at(sample)
+            if found is not None:
+                least, most = found
+                return (True if least == most else None) if least <= self.working <= most else False
+        return None
+
+    def at(self, sample: fmpq) -> tuple[int, int] | None:
+        """The least and the largest count that there may be; None where a point is an exception on its line."""
+        try:
+            point = point_system(self.system, {ALONG: sample}, self.saturated)
+        except DegeneratePoint:
+            return None
+        if point.algebra.dimension != self.dimension:
+            return None
+        required = [*point.inequalities]
+        if self.value.exact is None:
+            unit, one = (*(0,) * (self.system.ring.width - 1), 1), (0,) * self.system.ring.width
+            low, high = as_interval(self.value)
+            required += [{unit: fmpq(1), one: -low}, {unit: fmpq(-1), one: high}]
+        total = stable = open_ones = 0
+        for solution in points(point.algebra, None).real:
+            if all(_sign(solution, p) > 0 for p in required):
+                signs = [_sign(solution, p) for p in point.stability]
+                total += 1
+                stable += all(s > 0 for s in signs)
+                open_ones += self.may_be_stable and min(signs) == 0
+        return (stable, stable + open_ones) if self.system.tells_stability else (total, total)
+
+
+def _sign(solution: RealPoint, p: RationalPolynomial) -> int:
+    value = value_at(solution, {(*m, *(0,) * (len(solution.unknowns) - len(m))): c for m, c in p.items()})
+    return 0 if value.is_zero else 1 if is_positive(value) else -1
+
+
+def _spans(ends: Sequence[End], here: Sequence[bool]) -> Iterator[Span]:
+    """The longest runs of gaps in which something holds."""
+    for holds, group in groupby(range(len(here)), lambda k: here[k]):
+        numbers = list(group)
+        if holds:
+            yield Span(ends[numbers[0]], ends[numbers[-1] + 1])
