@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 from flint import fmpz_mat, fmpz_poly, nmod_mat
 
@@ -29,6 +30,17 @@ MIN_INTERPOLATED = 12
 """Rows; of fewer the elimination is as fast."""
 MANY_TERMS = 15_000
 """Rows times terms, in two variables; with fewer, likewise."""
+
+
+def laplace(rows: Sequence[Sequence[Any]]) -> Any:
+    """The determinant of a small matrix over any commutative ring, along its first row."""
+    if len(rows) == 1:
+        return rows[0][0]
+    total = None
+    for k, entry in enumerate(rows[0]):
+        term = entry * laplace([[*row[:k], *row[k + 1 :]] for row in rows[1:]])
+        total = term if total is None else total - term if k % 2 else total + term
+    return total
 
 
 def determinant(rows: list[list[Ratio]]) -> Ratio:
@@ -78,10 +90,10 @@ def _interpolated(matrix: Sequence[Sequence[Coefficient]]) -> Coefficient:
     """
     zero = constant_like(matrix[0][0], 0)
     costs = [[[None if e.is_zero() else -int(e.degrees()[k]) for e in row] for row in matrix] for k in (0, 1)]
-    least = [least_assignment(cost) for cost in costs]
-    if least[0] is None or least[1] is None:
+    bounds = [bound for cost in costs if (bound := least_assignment(cost)) is not None]
+    if len(bounds) < len(costs):
         return zero
-    across, up = (range(1 - bound) for bound in least)
+    across, up = (range(1 - bound) for bound in bounds)
     entries = [coefficients_in(entry, 1) for row in matrix for entry in row]
     values = []
     for x in across:

@@ -151,12 +151,14 @@ def interpolate(at: Callable[[int], fmpz], degree: int, check: Check = nothing) 
     return result
 
 
-def interpolate_rows(at: Callable[[int], fmpz_poly], degree: int, check: Check = nothing) -> dict[tuple[int, int], fmpz]:
+def interpolate_rows(
+    at: Callable[[int], fmpz_poly], degree: int, check: Check = nothing
+) -> dict[tuple[int, ...], fmpz]:
     """The coefficients of u^i w^j of a polynomial in Z[u, w], of at most this degree in u, from its values at integers
     u."""
     first = -(max(degree, 0) // 2)
     values = [at(first + k) for k in range(degree + 1)]
-    found: dict[tuple[int, int], fmpz] = {}
+    found: dict[tuple[int, ...], fmpz] = {}
     for j in range(max((len(value) for value in values), default=0)):
         column = [value[j] for value in values]
         row = interpolate(lambda k, column=column: column[k - first], degree, check)  # type: ignore[misc]

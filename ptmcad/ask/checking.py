@@ -1,9 +1,8 @@
 """What a record asks and what that will cost, before anything is computed.
 
 Guarantee: what an engine would refuse without computing is refused here, in the same words. The number of complex
-solutions is exact at the point that is named, and so at all points but those of some curves; the cost is a rough class,
-from that number. Where the degrees of the equations allow so many that counting them would itself take long, they are
-not counted.
+solutions is exact at the point that is named, and so at all points but those of some curves. Where the degrees of the
+equations allow so many that counting them would itself take long, they are not counted.
 """
 
 from __future__ import annotations
@@ -19,7 +18,6 @@ from ptmcad.algebra.bases import plan_text
 from ptmcad.algebra.fibre import Work
 from ptmcad.ask.classification import check_taken, flat_loops
 from ptmcad.ask.engines import is_certified
-from ptmcad.ask.estimate import cost
 from ptmcad.ask.forecast import QUICK, Forecast, curve_text, forecast, seconds_to_discriminant, way_text
 from ptmcad.ask.forecast import cost_text as in_figures
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, LimitReached, shown
@@ -61,6 +59,7 @@ MAX_COUNTED = 40
 MAX_BASIS = 100, 400, 4_000
 """Polynomials, terms of each and bits of a number in a basis of the equations at a point."""
 _UNCOUNTED = "not known: try single points first, by ptmcad solve"
+_UNSIZED = "not known: the critical curve's size is not told at once; try --timeout, or counts along lines"
 _LONG = 16
 """Complex solutions: with more of them the exact map takes so long that whoever asks for it is told."""
 _BY_INTERVALS = "; --engine certified encloses the map"
@@ -192,7 +191,7 @@ def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tu
     if not found:
         return Check(slice, sample, None, "exact", f"not known: at the sample {doubt}"), bound
     foretold = _foretold(problem, found) if not doubt and (sized or found > _LONG) else None
-    words = cost(found, problem.system, slice.parameters) if foretold is None else in_figures(foretold)
+    words = _UNSIZED if foretold is None else in_figures(foretold)
     far = found > _LONG if foretold is None else not foretold.reachable
     if far and foretold is not None:
         words += f"; {OUT_OF_REACH}"

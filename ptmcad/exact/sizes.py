@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 from flint import fmpq, nmod_mat
 
+from ptmcad.algebra.determinants import laplace
 from ptmcad.algebra.fibre import Fibre, Work
 from ptmcad.algebra.groebner import Monomial
 from ptmcad.algebra.ratios import LinePolynomial, Numerator, degree, numerator, restricted, weighted
@@ -184,18 +185,7 @@ def _norm(unknowns: Sequence[nmod_mat], jacobian: Sequence[Sequence[RationalPoly
             total = total + power(m) * (int(c.p) * pow(int(c.q), -1, prime) % prime)
         return total
 
-    return int(_determinant([[matrix_of(p) for p in row] for row in jacobian]).det())
-
-
-def _determinant(rows: list[list[nmod_mat]]) -> nmod_mat:
-    """Of a matrix of commuting matrices, by the first row."""
-    if len(rows) == 1:
-        return rows[0][0]
-    total = rows[0][0] * 0
-    for k, entry in enumerate(rows[0]):
-        product = entry * _determinant([row[:k] + row[k + 1 :] for row in rows[1:]])
-        total = total + product if k % 2 == 0 else total - product
-    return total
+    return int(laplace([[matrix_of(p) for p in row] for row in jacobian]).det())
 
 
 def _sizes_on(values: Iterator[_Value], known: Sequence[LinePolynomial], end: float) -> tuple[Numerator, int] | None:

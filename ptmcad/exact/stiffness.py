@@ -15,6 +15,7 @@ from typing import NamedTuple, TypeVar
 
 from flint import acb_mat, arb, fmpq, nmod
 
+from ptmcad.algebra.determinants import laplace
 from ptmcad.algebra.number_field import Element
 from ptmcad.algebra.rational_roots import rational_roots
 from ptmcad.text.balls import ball_of, enclosed
@@ -61,7 +62,7 @@ def stiffness_of(matrix: Matrix, symmetric: bool) -> Stiffness:
     """What algebra knows of a matrix's eigenvalues."""
     size = len(matrix)
     if not symmetric:
-        return Stiffness(matrix, int(_minor(matrix, range(size), range(size)).is_zero))
+        return Stiffness(matrix, int(laplace(matrix).is_zero))
     if size == 2:
         (h11, h12), (_, h22) = matrix
         trace, determinant = h11 + h22, h11 * h22 - h12 * h12
@@ -74,7 +75,9 @@ def stiffness_of(matrix: Matrix, symmetric: bool) -> Stiffness:
     # the characteristic polynomial's coefficients from the constant one on are sums of principal minors, but for signs
     sums = []
     for order in range(size, 0, -1):
-        minors = (_minor(matrix, chosen, chosen) for chosen in combinations(range(size), order))
+        minors = (
+            laplace([[matrix[i][j] for j in chosen] for i in chosen]) for chosen in combinations(range(size), order)
+        )
         total = next(minors)
         for minor in minors:
             total = total + minor
@@ -121,18 +124,6 @@ def square_root(square: Number) -> Number:
     numerator, denominator = isqrt(square.exact.numerator), isqrt(square.exact.denominator)
     root = Fraction(numerator, denominator)
     return Number(root if root * root == square.exact else None, ball_of(square.exact).sqrt())
-
-
-def _minor(matrix: Matrix, rows: Sequence[int], columns: Sequence[int]) -> Element:
-    if len(rows) == 1:
-        return matrix[rows[0]][columns[0]]
-    total: Element | None = None
-    for k, column in enumerate(columns):
-        rest = [c for c in columns if c != column]
-        term = (matrix[rows[0]][column] * _minor(matrix, rows[1:], rest)).times(fmpq(-1 if k % 2 else 1))
-        total = term if total is None else total + term
-    assert total is not None
-    return total
 
 
 def _rational_eigenvalue(trace_element: Element, determinant_element: Element) -> Fraction | None:

@@ -108,7 +108,8 @@ def discriminant_variety(
     suspects = [f for f in irreducible_factors(multiplication_denominator(algebra)) if to_plane(f) not in seen.found]
     hidden = [f for f in suspects if seen.outside(f)]
     visible = [f for f in suspects if f not in hidden]
-    proved = harmless(equations, rows, jacobian_norm, visible) if settles(equations) and "infinity" not in without else []
+    tried = visible if settles(equations) and "infinity" not in without else []
+    proved = harmless(equations, rows, jacobian_norm, tried)
     doubtful = [f for f in visible if f not in proved]
     for factors, why in ((hidden, NO_POINT), (proved, HARMLESS)):  # left out, so that none need be listed
         seen.adopt(poles(algebra, factors, equations.unbounded, _LISTED), Kind.INFINITY, why)

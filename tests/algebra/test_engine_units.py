@@ -12,6 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.examples import examples
 from support.maps import CONFIGS, shipped
+from support.poles import power_trace_denominators
 
 from ptmcad import load
 from ptmcad.algebra.determinants import MIN_INTERPOLATED, determinant
@@ -19,7 +20,7 @@ from ptmcad.algebra.fibre import evaluate as multiplication
 from ptmcad.algebra.fibre import fibre, signature
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
 from ptmcad.algebra.polynomials import PLANE, coefficients_in, evaluate, from_expression, irreducible_factors, to_plane
-from ptmcad.algebra.quotient import multiplication_denominator, poles, norm, quotient_algebra
+from ptmcad.algebra.quotient import multiplication_denominator, norm, poles, quotient_algebra
 from ptmcad.algebra.real_roots import (
     disjoint,
     has_root_between,
@@ -32,7 +33,6 @@ from ptmcad.algebra.real_roots import (
 from ptmcad.algebra.resultants import discriminant, interpolate, nothing, resultant
 from ptmcad.algebra.window import nowhere_zero
 from ptmcad.answer.regionmap import Kind
-from ptmcad.exact import variety
 from ptmcad.exact.cad.curves import curve
 from ptmcad.exact.cad.points import _discriminant
 from ptmcad.exact.models import system_of

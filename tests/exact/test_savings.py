@@ -6,7 +6,6 @@ import json
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -14,11 +13,11 @@ from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.few import few
+from support.poles import power_trace_denominators
 from support.random_slices import drawn
 from support.shipped_records import EXACT
 
 import ptmcad
-from ptmcad.algebra import quotient
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
 from ptmcad.algebra.polynomials import (
     ONE,

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from flint import fmpq
 
+from ptmcad.algebra.determinants import laplace
 from ptmcad.algebra.polynomials import (
     PLANE,
     Coefficient,
@@ -240,7 +241,7 @@ def leading_minors(system: ParametricSystem, parameters: Mapping[str, Ratio]) ->
     Their signs, with that of the determinant, tell the index where none of them is zero (Jacobi).
     """
     rows = [list(row) for row in system.jacobian]
-    minors = (_leibniz([row[:k] for row in rows[:k]]) for k in range(1, system.dimension))
+    minors = (laplace([row[:k] for row in rows[:k]]) for k in range(1, system.dimension))
     one = _one(parameters)
     return [_without_denominators(_substitute(system, system.ring.reduce(m), parameters, one)) for m in minors]
 
@@ -280,7 +281,7 @@ def with_root(
     if system.has_index:
         rows = [list(row) for row in system.jacobian]
         orders = range(1, system.dimension + 1)
-        stability = tuple(system.ring.reduce(_leibniz([row[:k] for row in rows[:k]])) for k in orders)
+        stability = tuple(system.ring.reduce(laplace([row[:k] for row in rows[:k]])) for k in orders)
     root = {(*(0,) * ring.width, k): fmpq(c) for k, c in enumerate(minimal.coeffs())}
     return from_equations(
         ring,
@@ -293,17 +294,7 @@ def with_root(
 
 def determinant(system: ParametricSystem) -> TrigonometricPolynomial:
     """The determinant of the Jacobian, in the system's ring."""
-    return system.ring.reduce(_leibniz([list(row) for row in system.jacobian]))
-
-
-def _leibniz(rows: list[list[TrigonometricPolynomial]]) -> TrigonometricPolynomial:
-    if len(rows) == 1:
-        return rows[0][0]
-    total = 0 * rows[0][0]
-    for k, entry in enumerate(rows[0]):
-        minor = _leibniz([row[:k] + row[k + 1 :] for row in rows[1:]])
-        total += entry * minor if k % 2 == 0 else -entry * minor
-    return total
+    return system.ring.reduce(laplace([list(row) for row in system.jacobian]))
 
 
 def _one(parameters: Mapping[str, Ratio]) -> Coefficient:
