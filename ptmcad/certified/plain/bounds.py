@@ -61,7 +61,8 @@ def known_ranges(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Range, ...]
     window = [(enclosing_floats(axis.low)[0], enclosing_floats(axis.high)[1]) for axis in axes]
     # the equations that are polynomials: with springs those that close loops
     rigid = problem.equations[: problem.closing] if problem.has_springs else problem.equations
-    return _Search(problem, window, [*rigid, *problem.multiples]).ranges()
+    known = [*rigid, *problem.multiples]
+    return _Search(problem, window, [*known, *eliminated(known)]).ranges()
 
 
 def refusal(problem: Problem, found: Sequence[Range]) -> ConfigError:
@@ -209,6 +210,22 @@ class _Search:
 
 _Found = dict[int, Range]
 """Ranges by the number of the unknown."""
+
+
+def eliminated(equations: Sequence[TrigonometricPolynomial]) -> list[TrigonometricPolynomial]:
+    """Sums of two equations, one times a factor, without one of their common terms, if that leaves no more terms.
+
+    What a reaction takes from one substance it often gives to another: the sum bounds unknowns that neither does.
+    """
+    found: list[TrigonometricPolynomial] = []
+    for f, g in combinations(equations, 2):
+        for key in f.terms.keys() & g.terms.keys():
+            (a, b), (c, d) = f.terms[key], g.terms[key]
+            if a.numerator and c.numerator and not (b * c - a * d).numerator:
+                combined = f.scaled(c) - g.scaled(a)
+                if 0 < len(combined.terms) <= max(len(f.terms), len(g.terms)) and combined not in found:
+                    found.append(combined)
+    return found
 
 
 def scaled_together(
