@@ -48,7 +48,7 @@ class Request:
 def request_codec() -> Codec[Request]:
     """A request as JSON's data, with which `answer` gives the same once more.
 
-    Earlier versions could be asked for critical free lengths instead (``critical``): now `ptmcad.studies.paper.critical`.
+    Earlier versions could be asked for critical free lengths instead (``critical``); now the paper's study finds them.
     """
     from ptmcad.show.document import codec
 
