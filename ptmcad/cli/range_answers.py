@@ -48,7 +48,7 @@ class Request:
 def request_codec() -> Codec[Request]:
     """A request as JSON's data, with which `answer` gives the same once more.
 
-    Earlier versions could be asked for critical free lengths too (``critical``): `ptmcad.studies.paper.critical`.
+    Earlier versions could be asked for critical free lengths instead (``critical``); now the paper's study finds them.
     """
     from ptmcad.show.document import codec
 
@@ -57,7 +57,7 @@ def request_codec() -> Codec[Request]:
         lambda critical, **asked: Request(**asked), along=text, at=codec.named(text), over=codec.TRUTH,
         rows=codec.NATURAL, start=codec.optional(codec.RATIONAL), pose=codec.COUNT, digits=codec.NATURAL,
         quantities=codec.listed(text),
-        critical=codec.Key(codec.TRUTH, lambda _: False, default=False),
+        critical=codec.Key(codec.TRUTH, lambda _: False),
     )  # fmt: skip
 
 

@@ -6,8 +6,9 @@ right one was shown to hold, and refuted only with a witness. What no computatio
 ``claims.yaml`` has for each claim a few words of the paper (quotation) and the claim in other words (statement). What
 is computed of it are statements of `ptmcad.studies.paper.statements` that hold if the claim does (printed), or if what
 is called right does (shown), and a check, a function of `ptmcad.studies.paper.maps` or `ptmcad.studies.paper.free` with
-what it is called with. The rest is what is said of it: evidence, the right statement, a witness, with names of computed
-values in braces. A claim that says the same as another is ``like`` it; one that no computation decides has a reason.
+what it is called with; ``needs`` names the optional group of packages that it takes. The rest is what is said of it:
+evidence, the right statement, a witness, with names of computed values in braces. A claim that says the same as
+another is ``like`` it; one that no computation decides has a reason.
 """
 
 from __future__ import annotations
@@ -124,8 +125,8 @@ def outcome(claim: Claim) -> Outcome:
 
 
 def _check(text: Mapping[str, Any]) -> Values:
-    if text.get("needs") == "certified" and find_spec("numba") is None:
-        return {"missing": f"the certified engine decides it: {Extra.certified.message}"}
+    if "needs" in text and find_spec((extra := Extra[text["needs"]]).package) is None:
+        return {"missing": f"it cannot be computed here: {extra.message}"}
     module, function = text["check"].split(".")
     found: Values = getattr(import_module(f"{_HERE}.{module}"), function)(**text.get("with", {}))
     return found

@@ -10,8 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cache
 
-from flint import fmpz_poly
-
 from ptmcad.algebra.msolve import program
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
@@ -26,8 +24,8 @@ from ptmcad.text.parsing import rational
 
 ELIMINATED: Design = ("7/10", "1", "3/2", "1/5", "-1/10", "-1/10")
 """At which the squared equations are eliminated."""
-ZEROS = {"l1 = 0": fmpz_poly([16, 0, 121]), "l3 = 0": fmpz_poly([-3, 0, 32])}
-"""For the design the t2 at which A4 is at A1, and at which it is as far from A1 as A3, so that the two may meet."""
+ZEROS = {"l1 = 0": [16, 0, 121], "l3 = 0": [-3, 0, 32]}
+"""Polynomials in t2: where A4 is at A1 at the design, and as far from A1 as A3, so that the two may meet."""
 PRINTED_ROOTS = (12, 30)
 
 MAPS: Mapping[str, tuple[Mapping[str, str], Mapping[str, tuple[str, str]]]] = {
@@ -72,7 +70,7 @@ def eliminated_degree() -> Values:
     degree, circle = system.eliminated.degree(), system.circle
     factors = tuple((p.degree(), e) for p, e in system.factors)
     simple, left = dict((e, d) for d, e in factors).get(1, 0), degree - 2 * circle
-    multiple = {name: sum(e for p, e in system.factors if p == zero) for name, zero in ZEROS.items()}
+    multiple = {name: sum(e for p, e in system.factors if p.coeffs() == zero) for name, zero in ZEROS.items()}
     return {
         "printed": (degree, circle, left) == (328, 56, 272),
         "corrected": (degree, circle, left) == (400, 48, 304) and simple == 256,

@@ -21,28 +21,7 @@ import sympy as sp
 from ptmcad.answer.poses import Poses
 from ptmcad.ask.solving import solve
 from ptmcad.studies.paper import symbolic
-from ptmcad.studies.paper.symbolic import (
-    CIRCLES,
-    F3,
-    F4,
-    HORIZONTAL,
-    L1,
-    L2,
-    Expr,
-    c1,
-    c2,
-    divided,
-    half_angles,
-    k,
-    l0,
-    rho,
-    s1,
-    s2,
-    t1,
-    t2,
-    vanishes,
-    without,
-)
+from ptmcad.studies.paper.symbolic import CIRCLES, F3, F4, HORIZONTAL, L1, L2, Expr, c1, c2, k, l0, rho, s1, s2, t1, t2
 
 OTHER = -(F4 * t2 + 2 * k * rho) / (F4 - 2 * k * rho * t2)
 COS1 = (4 * rho**2 + L1**2 - L2**2) / (4 * rho * L1)
@@ -55,7 +34,7 @@ def holds(statement: str) -> bool:
     """Whether a statement does."""
     text = statement.removeprefix("not ")
     left, _, right = text.partition(" = ")
-    shown = vanishes(expression(left) - expression(right)) if right else bool(expression(text))
+    shown = symbolic.vanishes(expression(left) - expression(right)) if right else bool(expression(text))
     return shown if text == statement else not shown
 
 
@@ -75,34 +54,23 @@ def names() -> dict[str, Any]:
     derived = dict(zip(("U", "g1", "g2", "H11", "H12", "H22"), (
         symbolic.potential(), *symbolic.gradient(), h11, h12, h22), strict=True))  # fmt: skip
     known |= {f"{name}_l": e for name, e in derived.items()}
-    derived = {name: without(e, l0) for name, e in derived.items()}
+    derived = {name: symbolic.without(e, l0) for name, e in derived.items()}
     derived["detH"] = sp.expand(derived["H11"] * derived["H22"] - derived["H12"] ** 2)
     derived |= dict(zip(("E1", "E2"), symbolic.half_angle_equations(), strict=True))
     for name, e in derived.items():
-        known |= {name: sp.expand(without(e, *HORIZONTAL)), f"{name}_h": e}
+        known |= {name: sp.expand(symbolic.without(e, *HORIZONTAL)), f"{name}_h": e}
     for suffix in ("", "_h"):
         pair = [sp.expand(known[f"{name}{suffix}"].subs(k, 1)) for name in ("E1", "E2")]
         found, a, b = symbolic.quadratic_elimination(pair)
-        known |= {f"resultant{suffix}": found, f"sextic{suffix}": divided(found), f"a{suffix}": a, f"b{suffix}": b}
+        known |= {
+            f"resultant{suffix}": found,
+            f"sextic{suffix}": symbolic.divided(found),
+            f"a{suffix}": a,
+            f"b{suffix}": b,
+        }
     known |= {f"q{n}": sp.factor(known["sextic"].coeff(t2, n)) for n in range(7)}
     known |= {"sin12": s1 * c2 + c1 * s2, "cos12": c1 * c2 - s1 * s2, "OTHER": OTHER, "COS1": COS1, "COS2": COS2}
-    functions: tuple[Callable[..., Any], ...] = (
-        at,
-        unloaded,
-        symmetric,
-        flat,
-        triangle,
-        same,
-        swapped,
-        unequal,
-        half,
-        numerator,
-        degree,
-        real_roots,
-    )
-    functions += (positive, terms, independent, total, stable, flat_stable, equal_angles, sp.diff, sp.factor)
-    functions += (eliminated_12, squared, parameters)
-    return known | {f.__name__: f for f in functions}
+    return known | {f.__name__: f for f in _FUNCTIONS}
 
 
 # --------------------------------------------------------------------------------- expressions in other circumstances
@@ -114,7 +82,7 @@ def at(e: Expr, **values: Expr) -> Expr:
 
 
 def unloaded(e: Expr) -> Expr:
-    return without(e, F3, F4)
+    return symbolic.without(e, F3, F4)
 
 
 def symmetric(e: Expr) -> Expr:
@@ -158,22 +126,18 @@ def swapped(e: Expr) -> Expr:
     return e.subs({t1: t2, t2: t1}, simultaneous=True)
 
 
-def half(e: Expr) -> Expr:
-    return half_angles(e)
-
-
 def numerator(e: Expr) -> Expr:
-    return sp.expand(sp.numer(sp.together(half_angles(e))))
+    return sp.expand(sp.numer(sp.together(symbolic.half_angles(e))))
 
 
 def unequal(e: Expr) -> Expr:
     """For equal rods and forces, by t2, where the angles differ."""
-    return sp.factor(sp.cancel(sp.together(half_angles(symmetric(e)).subs(t1, OTHER))))
+    return sp.factor(sp.cancel(sp.together(symbolic.half_angles(symmetric(e)).subs(t1, OTHER))))
 
 
 def eliminated_12() -> Expr:
     """The numerator that remains of (11) where the angles differ."""
-    return sp.expand(divided(numerator(symmetric(names()["E2"] * k).subs(t1, OTHER))))
+    return sp.expand(symbolic.divided(numerator(symmetric(names()["E2"] * k).subs(t1, OTHER))))
 
 
 # ------------------------------------------------------------------------------------------------------------ numbers
@@ -209,7 +173,7 @@ def independent() -> int:
     places = [x for place in symbolic.points().values() for x in place]
     derivatives = [[sp.diff(x, rho), symbolic.by_angle(x, 1), symbolic.by_angle(x, 2)] for x in places]
     pose = {L1: 1, L2: 2, t1: sp.Rational(1, 2), t2: sp.Rational(1, 3)}
-    return int(half_angles(sp.Matrix(derivatives)).subs(pose).rank())
+    return int(symbolic.half_angles(sp.Matrix(derivatives)).subs(pose).rank())
 
 
 @cache
@@ -235,3 +199,9 @@ def equal_angles(**values: Expr) -> int:
     """How many equilibria have equal angles; enclosures that meet are taken for equal."""
     pairs = (p.angles for p in equilibria(**values).equilibria)
     return sum(a.low <= b.high and b.low <= a.high for a, b in pairs)
+
+
+_FUNCTIONS: tuple[Callable[..., Any], ...] = (
+    at, unloaded, symmetric, flat, triangle, squared, same, swapped, unequal, eliminated_12, numerator, degree,
+    real_roots, positive, terms, parameters, independent, total, stable, flat_stable, equal_angles, sp.diff, sp.factor,
+)  # fmt: skip
