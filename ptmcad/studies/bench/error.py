@@ -82,12 +82,9 @@ def grid_error(truth: Truth, cells: np.ndarray, drawn: Counts) -> Figures:
     pieces = np.stack([column[run], column[run] + 1, row[run], row[run + 1]], axis=1) / n
     shown = picture[column[run], row[run]]
 
-    i, j = np.nonzero(picture[1:, :] != picture[:-1, :])
-    level = np.nonzero(picture[:, 1:] != picture[:, :-1])
-    sides = np.concatenate([
-        np.stack([i + 1, i + 1, j, j + 1], axis=1),
-        np.stack([level[0], level[0] + 1, level[1] + 1, level[1] + 1], axis=1),
-    ]) / n  # fmt: skip
+    upright = np.argwhere(picture[1:] != picture[:-1])[:, [0, 0, 1, 1]] + [1, 1, 0, 1]
+    level = np.argwhere(picture[:, 1:] != picture[:, :-1])[:, [0, 0, 1, 1]] + [0, 1, 1, 1]
+    sides = np.concatenate([upright, level]) / n
 
     counts = np.array(truth.counts)
     region = np.where(cells >= 0, np.array(truth.region_of)[cells], -1)

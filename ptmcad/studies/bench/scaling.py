@@ -27,15 +27,12 @@ from ptmcad.errors import PtmcadError
 from ptmcad.show.render.printing import save
 from ptmcad.studies.bench.harness import PTMCAD, Job, Row
 from ptmcad.studies.bench.records import turns
-from ptmcad.studies.bench.truth import Floats
 from ptmcad.text.expressions import Expression, Term, axis, constant
 from ptmcad.text.terms import signed_terms
 
 SHIFT = Fraction(1, 100)
 """What a bend's coefficients' moduli add up to at most: the window's edge meets the same curves in the same order."""
 MAX_COEFFICIENT, DIGITS = 9, 400
-PARTS = 400
-"""Fixed costs that are tried, parts of the smallest cost."""
 BEND, STRAIGHT, FLAT = 0.35, 0.9, 1.3
 """The halves' slopes differ when their difference exceeds the first; R^2 from which a line is one; a quantity whose
 largest value is less than the third times its smallest does not grow."""
@@ -192,42 +189,28 @@ def fit(points: Sequence[tuple[float, float]]) -> Row | None:
     Returns
     -------
     The exponent p by least squares in logarithms, the slopes over the lower and over the upper half
-    of the range, and whether they agree; and the fixed cost a and the exponent beyond it of
-    y = a + c x^p, where that halves the misfit. None when there are fewer than two different x, or
-    something is not positive.
+    of the range, of which the upper one predicts, and whether they agree. None when there are fewer
+    than two different x, or something is not positive.
     """
     places = sorted({x for x, _ in points})
-    x, y = np.array([(u, median(b for a, b in points if a == u)) for u in places]).reshape(-1, 2).T
-    if len(x) < 2 or min(x.min(), y.min()) <= 0:
+    heights = [median(y for x, y in points if x == place) for place in places]
+    if len(places) < 2 or min(*places, *heights) <= 0:
         return None
-    u, v = np.log(x), np.log(y)
-    slope, misfit = _law(x, y, 0.0)
+    u, v = np.log(places), np.log(heights)
     # both halves hold the point next to the middle, so that they are joined
-    joint = min(range(1, len(u) - 1), key=lambda k: abs(2 * u[k] - u[0] - u[-1]), default=0)
-    lower = _law(x[: joint + 1], y[: joint + 1], 0.0)[0] if joint else slope
-    upper = _law(x[joint:], y[joint:], 0.0)[0]
-    found = {"exponent": slope, "lower": lower, "upper": upper}
-    if y.max() < FLAT * y.min():
+    joint = min(range(1, len(u) - 1), key=lambda k: abs(2 * u[k] - u[0] - u[-1]), default=len(u) - 1)
+    parts = {"exponent": slice(None), "lower": slice(joint + 1), "upper": slice(joint % (len(u) - 1), None)}
+    found = {name: float(np.polyfit(u[part], v[part], 1)[0]) for name, part in parts.items()}
+    rise = found["upper"] - found["lower"]
+    if max(heights) < FLAT * min(heights):
         verdict = "does not grow"
-    elif len(x) < 4:
+    elif len(places) < 4:
         verdict = "too few sizes to tell"
-    elif abs(upper - lower) > BEND:
-        verdict = f"the exponent {'rises' if upper > lower else 'falls'}"
+    elif abs(rise) > BEND:
+        verdict = f"the exponent {'rises' if rise > 0 else 'falls'}"
     else:
-        straight = misfit <= (1 - STRAIGHT) * ((v - v.mean()) ** 2).sum()
-        verdict = "power law" if straight else "scattered"
-    tried = {part: _law(x, y, float(y.min()) * part / PARTS) for part in range(PARTS)}
-    part = min(tried, key=lambda part: tried[part][1])
-    if len(x) > 3 and upper > lower and part and tried[part][1] < misfit / 2:
-        found |= {"fixed": float(y.min()) * part / PARTS, "beyond": tried[part][0]}
-    return {key: float(f"{value:.4g}") for key, value in found.items()} | {"verdict": verdict}
-
-
-def _law(x: Floats, y: Floats, fixed: float) -> tuple[float, float]:
-    """The exponent of y = fixed + c x^p by least squares in the logarithms of what is beyond, and the misfit of y's."""
-    slope, height = np.polyfit(np.log(x), np.log(y - fixed), 1)
-    misfit = (np.log(fixed + np.exp(height) * x**slope) - np.log(y)) ** 2
-    return float(slope), float(misfit.sum())
+        verdict = "power law" if np.corrcoef(u, v)[0, 1] ** 2 >= STRAIGHT else "scattered"
+    return {name: float(f"{value:.4g}") for name, value in found.items()} | {"verdict": verdict}
 
 
 def save_picture(rows: Sequence[Row], folder: Path) -> None:
