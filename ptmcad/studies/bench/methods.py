@@ -64,7 +64,7 @@ RIVALS = {
         "grid of companion matrices", "N = {}", ("25", "50", "100", "200", "400", "800", "1600"), 4
     ),
     Method.MULTISTART: Rival("grid of scipy starts", "N = {}", ("12", "25"), 1, "scipy"),
-    Method.QEPCAD: Rival("QEPCAD", "{}", ("where 6, where 4", "where 2 stable", "cells of the curves"), 3),
+    Method.QEPCAD: Rival("QEPCAD", "{}", ("cells of the curves", "where 6, where 4", "where 2 stable"), 3),
     Method.SINGULAR: Rival("Singular, critical curve alone", "{}", ("critical curve",), 1),
     Method.MSOLVE: Rival("msolve, critical curve alone", "{}", ("critical curve",), 1),
     Method.GCAD: Rival("gcad on the finished curves, no counts", "{}", ("curves",), 1, "gcad"),
