@@ -181,8 +181,8 @@ def exchanged(record: Path, folder: Path) -> Path:
     """The record with its axes exchanged."""
     data: dict[str, Any] = yaml.safe_load(record.read_text(encoding="utf-8"))
     data["axes"] = dict(reversed(data["axes"].items()))
-    beside = record.resolve().parent / str(data.get("mechanism", ""))
-    if beside.is_file():
+    model = data.get("mechanism")
+    if isinstance(model, str) and (beside := record.resolve().parent / model).is_file():
         data["mechanism"] = str(beside)
     target = folder / f"exchanged-{record.name}"
     target.write_text(yaml.safe_dump(data, sort_keys=False), encoding="utf-8")
