@@ -120,7 +120,7 @@ def test_stored_studies_are_valid(path: Path) -> None:
 
 def test_the_methods_are_those_of_command_and_schema() -> None:
     methods = [method.value for method in Method]
-    kinds = SCHEMA["properties"]["measurements"]["items"]["properties"]["method"]["enum"]
+    kinds = SCHEMA["$defs"]["measurement"]["properties"]["method"]["enum"]
     assert methods == list(METHODS) == kinds == [method.value for method in RIVALS]
 
 
