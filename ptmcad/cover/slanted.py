@@ -342,15 +342,19 @@ def stepped(cover: Cover, halvings: int = HALVINGS, narrower: int = 1) -> Cover:
     return Cover(cover.steps, tuple(sorted({*cover.rectangles, *steps})))
 
 
-def shown(complement: Components) -> Components:
+def shown(complement: Components, narrower: int = _DRAWN) -> Components:
     """The same components with a subdivision in which rectangles cover the tubes, to draw them by.
 
     What these rectangles have of a component is in none of its leaves; a leaf's owner is still its component.
+
+    Parameters
+    ----------
+    narrower : rectangles are narrower than this part of the window.
     """
     if complement.frames is None:
         return complement
     cover = complement.cover
-    tree = subdivide(rectangle_array(stepped(cover, narrower=_DRAWN)), cover.steps)
+    tree = subdivide(rectangle_array(stepped(cover, narrower=narrower)), cover.steps)
     free = np.flatnonzero(tree.state == FREE)
     bounds = tree.bounds[free]
     there = complement.subdivision.leaves_right_above(bounds[:, 0], bounds[:, 2])

@@ -12,7 +12,7 @@ is not proved, or too large, are halved.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -150,7 +150,7 @@ def shut_in(wall: Branch, panel: Span, ends: Span, most: Fraction = FLAT) -> Fra
             if not 0 < at < 1:
                 found.append(min(max(at, Fraction(0)), Fraction(1)))
                 break
-            if _absent(wall.curve, _part(panel, wall.base), (from_share(at, wall.fibre), fmpq(0))):
+            if _absent(wall.curve, _part(panel, wall.base), from_share(at, wall.fibre)):
                 found.append(at)
                 break
             margin *= 4
@@ -159,43 +159,17 @@ def shut_in(wall: Branch, panel: Span, ends: Span, most: Fraction = FLAT) -> Fra
     return found[1] - found[0]
 
 
-def reaching(curve: Curve, span: Span, base: Interval, fibre: Interval, depth: int) -> Iterator[Span]:
-    """The parts of the fibre that the curve may reach over a part of the base, as shares from below.
+def _absent(curve: Curve, across: tuple[fmpq, fmpq], height: fmpq) -> bool:
+    """Whether the curve is proved to miss a closed level segment: p in the middle outweighs the rest of its Taylor sum.
 
     Parameters
     ----------
-    span : where, as shares of the base.
-    depth : how often the fibre is halved where the curve is not proved to be absent.
-    """
-    across = _part(span, base)
-    waiting = [(Fraction(0), Fraction(1), depth)]
-    while waiting:
-        low, high, left = waiting.pop()
-        if _absent(curve, across, _part((low, high), fibre)):
-            continue
-        if left == 0:
-            yield low, high
-        else:
-            between = (low + high) / 2
-            waiting += [(between, high, left - 1), (low, between, left - 1)]
-
-
-def _absent(curve: Curve, across: tuple[fmpq, fmpq], up: tuple[fmpq, fmpq]) -> bool:
-    """Whether the curve is proved not to meet a closed box: at its centre p outweighs the rest of its Taylor sum.
-
-    Parameters
-    ----------
-    across, up : the box's middle, and half its length, along the base and along the fibre.
+    across : the segment's middle, and half its length, along the base.
     """
     with ctx.workprec(_BITS):
-        rest, power = arb(0), arb(1)
-        # on a line across, no power of w is left but w^0
-        local = local_coefficients(curve.in_v, *across, up[0], None if up[1] else 1)
-        for row in local:
-            rest += sum((abs(c) for c in row.coeffs()), arb(0)) * power
-            power = power * arb(up[1])
-        value = local[0][0]
-        return bool(rest - abs(value) < abs(value))
+        (local,) = local_coefficients(curve.in_v, *across, height, 1)
+        total, value = sum((abs(c) for c in local.coeffs()), arb(0)), abs(local[0])
+        return bool(total - value < value)
 
 
 def to_share(value: fmpq, interval: Interval) -> Fraction:

@@ -4,7 +4,6 @@ Guarantee: times and memory are those of whole processes, start-up included; com
 that a slow minute of the machine hits all of them alike; errors are bounded and not sampled
 (`ptmcad.studies.bench.error`); and what could not be measured is reported with its reason.
 
-``ptmcad bench`` measures error against run time. ``python -m ptmcad.studies.bench`` measures time and memory of all
-records, ``python -m ptmcad.studies.bench.undetermined`` the certified engine's levels. ``make bench`` runs the first
-two.
+``ptmcad bench`` measures error against run time, and ``python -m ptmcad.studies.bench STUDY`` what whole records take,
+what each saving is worth, and how cost grows.
 """

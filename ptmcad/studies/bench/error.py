@@ -14,14 +14,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import zip_longest
 
 import numpy as np
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.cover import components, tubes
-from ptmcad.cover.complement import Components
-from ptmcad.cover.subdivision import FREE
+from ptmcad.cover import components, slanted
+from ptmcad.cover.subdivision import COVERED, FREE
 from ptmcad.studies.bench.truth import UNKNOWN, Counts, Floats, Truth, shown_count
 from ptmcad.text.numerals import decimal
 
@@ -30,8 +28,8 @@ DIGITS = 6
 DENSITY = 8
 """Points on the side of a pixel, and on the whole window's side for a certified map."""
 MAX_PIECE = 2.0**-11
-STRIPS = 2**11
-"""Of a frame with slanted pieces, in which these are between two heights."""
+NARROW = 2**15
+"""Slanted pieces of a cover are in rectangles that are narrower than this part of the window."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,12 +80,9 @@ def grid_error(truth: Truth, cells: np.ndarray, drawn: Counts) -> Figures:
     pieces = np.stack([column[run], column[run] + 1, row[run], row[run + 1]], axis=1) / n
     shown = picture[column[run], row[run]]
 
-    i, j = np.nonzero(picture[1:, :] != picture[:-1, :])
-    level = np.nonzero(picture[:, 1:] != picture[:, :-1])
-    sides = np.concatenate([
-        np.stack([i + 1, i + 1, j, j + 1], axis=1),
-        np.stack([level[0], level[0] + 1, level[1] + 1, level[1] + 1], axis=1),
-    ]) / n  # fmt: skip
+    upright = np.argwhere(picture[1:] != picture[:-1])[:, [0, 0, 1, 1]] + [1, 1, 0, 1]
+    level = np.argwhere(picture[:, 1:] != picture[:, :-1])[:, [0, 0, 1, 1]] + [0, 1, 1, 1]
+    sides = np.concatenate([upright, level]) / n
 
     counts = np.array(truth.counts)
     region = np.where(cells >= 0, np.array(truth.region_of)[cells], -1)
@@ -120,19 +115,17 @@ def cover_error(truth: Truth, result: RegionMap, count: str) -> Figures | None:
     if any(shown_count(cell.stable, cell.total, count) is None for cell in result.cells):
         return None
     parts = components(cover)
-    tree = parts.subdivision
     number = {}
     for cell in result.cells:
         at = zip(result.slice.axes, (cell.sample[0], cell.sample[1]), strict=True)
         place = ((x - axis.low) / (axis.high - axis.low) * cover.steps for axis, x in at)
         number[parts.locate(*place)] = int(shown_count(cell.stable, cell.total, count))
+    parts = slanted.shown(parts, NARROW)
+    tree = parts.subdivision
     leaves = np.flatnonzero((tree.state == FREE) & (parts.owner >= 0))
-    free, owner, covered = _strips(parts)
-    pieces = np.concatenate([tree.bounds[leaves], free]) / cover.steps
-    owners = np.concatenate([parts.owner[leaves], owner]).tolist()
-    shown = np.array([number.get(n, -1) for n in owners], dtype=np.int64)
-    rectangles = np.array(cover.rectangles, dtype=float).reshape(-1, 4)
-    drawn = np.concatenate([rectangles, covered]) / cover.steps
+    pieces = tree.bounds[leaves] / cover.steps
+    shown = np.array([number.get(n, -1) for n in parts.owner[leaves].tolist()], dtype=np.int64)
+    drawn = tree.bounds[tree.state == COVERED] / cover.steps
     undetermined = float(result.undetermined)
     loose = 1 - float(_areas(pieces).sum()) - undetermined
     base = truth.result.base
@@ -146,41 +139,6 @@ def cover_error(truth: Truth, result: RegionMap, count: str) -> Figures | None:
         _faintest(truth, by_region, max(loose, 0.0)),
         distance(truth, _turned(drawn, base), MAX_PIECE),
     )
-
-
-def _strips(parts: Components) -> tuple[Floats, np.ndarray, Floats]:
-    """Frames of slanted pieces in strips: what is free of tubes, its components, and rectangles around the tubes."""
-    free, owners, covered = [np.zeros((0, 4))], [np.zeros(0, dtype=np.int64)], [np.zeros((0, 4))]
-    patches = parts.cover.patches
-    for patch, own in zip(patches, () if parts.frames is None else parts.frames.owners, strict=True):
-        cuts = np.linspace(*tubes.ends(patch), STRIPS + 1)
-        bottom, top = tubes.heights(patch)
-        order = [0, 1, 2, 3] if patch.along == 0 else [2, 3, 0, 1]
-        below = np.full(STRIPS, float(bottom))
-        for tube, number in zip_longest(patch.tubes, own):
-            low, high = np.full(STRIPS, float(top)), below
-            if tube is not None:
-                hull = _halves(np.array([tube.controls], dtype=float))
-                low = (hull.min(axis=1) - tube.half).clip(below, top)
-                high = (hull.max(axis=1) + tube.half).clip(low, top)
-                covered.append(np.stack([cuts[:-1], cuts[1:], low, high], axis=1)[:, order])
-            free.append(np.stack([cuts[:-1], cuts[1:], below, low], axis=1)[:, order])
-            owners.append(np.full(STRIPS, number))
-            below = high
-    return np.concatenate(free), np.concatenate(owners), np.concatenate(covered)
-
-
-def _halves(controls: Floats) -> Floats:
-    """Bernstein coefficients of a polynomial over each of the strips, by halving, from left to right."""
-    while len(controls) < STRIPS:
-        left, right, row = [controls[:, 0]], [controls[:, -1]], controls
-        while row.shape[1] > 1:
-            row = (row[:, 1:] + row[:, :-1]) / 2
-            left.append(row[:, 0])
-            right.append(row[:, -1])
-        both = np.stack([np.stack(left, axis=1), np.stack(right[::-1], axis=1)], axis=1)
-        controls = both.reshape(-1, controls.shape[1])
-    return controls
 
 
 def _areas(rectangles: Floats) -> Floats:

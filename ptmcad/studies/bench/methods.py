@@ -9,21 +9,23 @@ from __future__ import annotations
 import json
 import shutil
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from functools import lru_cache, partial
 from importlib.util import find_spec
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import yaml
 
 from ptmcad.algebra import msolve
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.exact.slicevariety import slice_variety
+from ptmcad.question.config import load
 from ptmcad.question.slice import Slice
 from ptmcad.studies.bench import programs, qepcad
 from ptmcad.studies.bench.harness import PTMCAD, Job
 from ptmcad.studies.bench.process import run
-from ptmcad.text.expressions import Expression
 
 
 class Method(Enum):
@@ -64,7 +66,7 @@ RIVALS = {
         "grid of companion matrices", "N = {}", ("25", "50", "100", "200", "400", "800", "1600"), 4
     ),
     Method.MULTISTART: Rival("grid of scipy starts", "N = {}", ("12", "25"), 1, "scipy"),
-    Method.QEPCAD: Rival("QEPCAD", "{}", ("where 6, where 4", "where 2 stable", "cells of the curves"), 3),
+    Method.QEPCAD: Rival("QEPCAD", "{}", ("cells of the curves", "where 6, where 4", "where 2 stable"), 3),
     Method.SINGULAR: Rival("Singular, critical curve alone", "{}", ("critical curve",), 1),
     Method.MSOLVE: Rival("msolve, critical curve alone", "{}", ("critical curve",), 1),
     Method.GCAD: Rival("gcad on the finished curves, no counts", "{}", ("curves",), 1, "gcad"),
@@ -116,7 +118,7 @@ def jobs(method: Method, case: Case) -> list[Job] | str:
     for setting in rival.settings[: rival.quick if case.quick else None]:
         asking = _job(method, case, setting)
         if isinstance(asking, str):
-            reason = asking
+            reason = reason or asking
         else:
             asking.setting = rival.label.format(setting)
             found.append(asking)
@@ -163,7 +165,7 @@ def _job(method: Method, case: Case, setting: str) -> Job | str:
     there = qepcad.command()
     if there is None:
         return "qepcad is not installed"
-    ordered = exchanged(case.slice) if case.exact.base else case.slice
+    ordered = load(exchanged(case.record, folder)) if case.exact.base else case.slice
     session = slice_variety(ordered).text("qepcad") + programs.STUCK
     return Job(name, method.value, "", ((there, session),), None, partial(programs.incomplete, programs.QUIT))
 
@@ -175,14 +177,16 @@ def finest_count(slice: Slice) -> str:
     return "index" if slice.model.has_potential else "stable" if slice.model.tells_stability else "total"
 
 
-def exchanged(slice: Slice) -> Slice:
-    """The slice with its axes exchanged."""
-
-    def turned(e: Expression) -> Expression:
-        return Expression(*(tuple(sorted((j, i, c) for i, j, c in part)) for part in (e.numerator, e.denominator)))
-
-    parameters = {name: turned(e) for name, e in slice.parameters.items()}
-    return replace(slice, axes=slice.axes[::-1], parameters=parameters)
+def exchanged(record: Path, folder: Path) -> Path:
+    """The record with its axes exchanged."""
+    data: dict[str, Any] = yaml.safe_load(record.read_text(encoding="utf-8"))
+    data["axes"] = dict(reversed(data["axes"].items()))
+    model = data.get("mechanism")
+    if isinstance(model, str) and (beside := record.resolve().parent / model).is_file():
+        data["mechanism"] = str(beside)
+    target = folder / f"exchanged-{record.name}"
+    target.write_text(yaml.safe_dump(data, sort_keys=False), encoding="utf-8")
+    return target
 
 
 def _counts_by_qepcad(slice: Slice, setting: str) -> Job | str:

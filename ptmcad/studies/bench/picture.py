@@ -1,14 +1,14 @@
 """The picture of measurements: curves on logarithmic axes.
 
-Guarantee: every point that has an abscissa and an ordinate is drawn, none is moved. An ordinate of
-zero, which a logarithmic axis does not have, is in a band of its own at the bottom, marked so.
+Guarantee: every point that has an abscissa and an ordinate is drawn, none is moved. Below its least
+decade the axis is linear, so that it has a zero.
 """
 
 from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
-from math import ceil, floor, log10
+from math import floor, log10
 from typing import Any, NamedTuple
 
 from matplotlib.figure import Figure
@@ -17,14 +17,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from ptmcad.show.render.legend import INK
 from ptmcad.show.render.printing import settings
-from ptmcad.text.numerals import power_of_ten
 
 WIDE, TALL = 9.2, 6.4
 DPI = 110
-BAND = 0.3
-"""Height of the band of zeros, as a share of what is above it."""
-RIM = 0.06
-"""The same of the space above the largest ordinate, for its label."""
 _STYLES: tuple[tuple[str, str, str, Any], ...] = (
     ("#0b5394", "#0b5394", "o", "-"),
     ("#38761d", "#38761d", "s", "-"),
@@ -65,14 +60,8 @@ class Labels(NamedTuple):
 def draw(labels: Labels, curves: Sequence[Curve]) -> Figure:
     """The picture of at least one curve."""
     spots = [spot for curve in curves for spot in curve.spots]
-    positive = [y for spot in spots for y in spot.y if y > 0]
-    low, high = floor(log10(min(positive, default=1e-3))), ceil(log10(max(positive, default=1.0)))
-    high = max(high, low + 1)
-    zeros = [k for k, c in enumerate(curves) if any(s.y[1] <= 0 for s in c.spots)]
-    band = BAND * (high - low) if zeros else 0.0
-    bottom = 10.0 ** (low - band)
-    # each curve with its own height in the band, so that equal abscissae do not hide one another
-    zero = {k: 10.0 ** (low - band * (n + 1) / (len(zeros) + 1)) for n, k in enumerate(zeros)}
+    heights = [y for spot in spots for y in spot.y]
+    least = 10.0 ** floor(log10(min((y for y in heights if y > 0), default=1e-3)))
     notes = [line for sentence in labels.below for line in textwrap.wrap(sentence, 145)]
     tall = TALL + 0.2 * len(notes)
     with settings():
@@ -80,18 +69,10 @@ def draw(labels: Labels, curves: Sequence[Curve]) -> Figure:
         figure.set_label(f"{labels.title}\n{_words(curves)} {' '.join(labels.below)}")
         axes = figure.add_axes((0.09, (0.66 + 0.2 * len(notes)) / tall, 0.885, (TALL - 2.2) / tall))
         axes.set_xscale("log")
-        axes.set_yscale("log")
+        axes.set_yscale("symlog", linthresh=least, linscale=0.5)
         axes.set_xlim(0.75 * min(s.x[1] for s in spots), 1.6 * max(s.x[2] for s in spots))
-        axes.set_ylim(bottom, 10.0 ** (high + RIM * (high - low)))
-        if zeros:
-            axes.axhspan(bottom, 10.0**low, color="#eef3e6", zorder=0)
-            axes.axhline(10.0**low, color=INK, linewidth=0.8, zorder=1)
-            height = (band - 0.04 * (high - low)) / ((1 + RIM) * (high - low) + band)
-            axes.text(0.006, height, "none (0)", transform=axes.transAxes, ha="left", va="center", fontsize=9,
-                      color=INK)  # fmt: skip
-        axes.set_yticks([10.0**k for k in range(low, high + 1, max(1, (high - low) // 8))])
-        axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: power_of_ten(round(log10(y)))))
-        axes.yaxis.set_minor_locator(NullLocator())
+        axes.set_ylim(-0.2 * least if min(heights) <= 0 else least, 2 * max(least, *heights))
+        axes.axhspan(-least, least, color="#eef3e6", zorder=0)
         axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
         axes.xaxis.set_minor_locator(NullLocator())
@@ -99,7 +80,7 @@ def draw(labels: Labels, curves: Sequence[Curve]) -> Figure:
         axes.set_axisbelow(True)
         axes.set_xlabel(labels.x)
         axes.set_ylabel(labels.y)
-        entries = [_draw(axes, c, zero.get(k, bottom)) for k, c in enumerate(curves)]
+        entries = [_draw(axes, c) for c in curves]
         figure.text(0.02, 1 - 0.27 / tall, labels.title, fontsize=12, va="center")
         figure.legend(handles=entries, loc="upper left", bbox_to_anchor=(0.01, 1 - 0.44 / tall), ncol=2,
                       frameon=False, fontsize=9, labelcolor=INK)  # fmt: skip
@@ -108,10 +89,10 @@ def draw(labels: Labels, curves: Sequence[Curve]) -> Figure:
     return figure
 
 
-def _draw(axes: Any, curve: Curve, zero: float) -> Line2D:
+def _draw(axes: Any, curve: Curve) -> Line2D:
     colour, face, marker, dash = _STYLES[curve.style % len(_STYLES)]
     x = [s.x[0] for s in curve.spots]
-    y = [sum(s.y) / 2 if s.y[1] > 0 else zero for s in curve.spots]
+    y = [sum(s.y) / 2 for s in curve.spots]
     spread = [[s.x[0] - s.x[1] for s in curve.spots], [s.x[2] - s.x[0] for s in curve.spots]]
     axes.errorbar(x, y, xerr=spread, fmt="none", ecolor=colour, elinewidth=0.8, capsize=2, zorder=2)
     axes.plot(x, y, color=colour, linestyle=dash, linewidth=1.3, zorder=3)

@@ -12,9 +12,6 @@ import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
-
-import yaml
 
 from ptmcad.answer.regionmap import Merge, RegionMap
 from ptmcad.ask.checking import check
@@ -22,6 +19,7 @@ from ptmcad.errors import PtmcadError
 from ptmcad.question.config import load
 from ptmcad.question.savings import ALL, SAVINGS, Engine
 from ptmcad.studies.bench.harness import PTMCAD, Job, Row, progress, ratio, take_turns
+from ptmcad.studies.bench.methods import exchanged
 
 FLOOR = (sys.executable, "-c", "import flint, numpy, click, yaml")
 _SHORT, _LONG = ("rho=1/20:1/2", "L2=5/4:2"), ("rho=1:2", "L2=1:2")
@@ -97,7 +95,7 @@ def ablation(options: argparse.Namespace) -> list[Row]:
             exact = tuple(s.name for s in SAVINGS if s.engine is not Engine.CERTIFIED)
             parts: list[tuple[Path, Sequence[str], Sequence[str], str]] = [
                 (path, (*exact, ALL), (), slice.name),
-                (exchanged_record(path, folder), ("axis-order",), (), f"{slice.name}, axes exchanged"),
+                (exchanged(path, folder), ("axis-order",), (), f"{slice.name}, axes exchanged"),
             ]
             if slice.has_free_lengths:
                 names = tuple(s.name for s in SAVINGS if s.engine is Engine.CERTIFIED)
@@ -134,15 +132,6 @@ def _without(
         if results[0] is not None and result is not None:
             row["differs"] = difference(results[0], result)
         yield row
-
-
-def exchanged_record(record: Path, folder: Path) -> Path:
-    """The record with its axes exchanged."""
-    data: dict[str, Any] = yaml.safe_load(record.read_text(encoding="utf-8"))
-    data["axes"] = dict(reversed(data["axes"].items()))
-    target = folder / f"exchanged-{record.name}"
-    target.write_text(yaml.safe_dump(data, sort_keys=False), encoding="utf-8")
-    return target
 
 
 def difference(one: RegionMap, other: RegionMap) -> str:

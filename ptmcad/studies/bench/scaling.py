@@ -15,8 +15,9 @@ import argparse
 import json
 import random
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from statistics import median
 from typing import Any, NamedTuple
@@ -26,16 +27,14 @@ import numpy as np
 from ptmcad.errors import PtmcadError
 from ptmcad.show.render.printing import save
 from ptmcad.studies.bench.harness import PTMCAD, Job, Row
+from ptmcad.studies.bench.process import Usage
 from ptmcad.studies.bench.records import turns
-from ptmcad.studies.bench.truth import Floats
 from ptmcad.text.expressions import Expression, Term, axis, constant
 from ptmcad.text.terms import signed_terms
 
 SHIFT = Fraction(1, 100)
 """What a bend's coefficients' moduli add up to at most: the window's edge meets the same curves in the same order."""
 MAX_COEFFICIENT, DIGITS = 9, 400
-PARTS = 400
-"""Fixed costs that are tried, parts of the smallest cost."""
 BEND, STRAIGHT, FLAT = 0.35, 0.9, 1.3
 """The halves' slopes differ when their difference exceeds the first; R^2 from which a line is one; a quantity whose
 largest value is less than the third times its smallest does not grow."""
@@ -44,13 +43,12 @@ Record = dict[str, Any]
 
 
 class Family(NamedTuple):
-    """One family: what grows, its sizes, and for a size and a seed the record and its number of regions, if known."""
+    """One family: what grows, its sizes, the record for a size and a seed, and its number of regions."""
 
     title: str
     sizes: tuple[int, ...]
     record: Callable[[int, int], Record]
-    regions: Callable[[int], int | None]
-    options: Callable[[int], Sequence[str]] = lambda n: ()
+    regions: Callable[[int], int]
 
 
 def _record(axes: dict[str, tuple[str, str]], **parameters: Any) -> Record:
@@ -118,22 +116,12 @@ def regions_of_grid(n: int) -> int:
     return 1 + (n + 1) ** 2 - even**2
 
 
-def window(n: int, seed: int) -> Record:
-    """A part of the record free02 with several regions, away from rho = 0."""
-    axes = {"rho": ("1/2", "3/2"), "L2": ("11/10", "2")}
-    return _record(axes, l0="1/5", F3=-10, F4=-10)
-
-
 FAMILIES = {
     "degree": Family("Degree of the curves: no loads", (2, 4, 6, 8, 12, 16), unloaded, lambda n: 4),
     "digits": Family("Digits of each parameter", (5, 10, 25, 50, 100, 200), digits, lambda n: 3),
     # below 2 rho = |T_n|/2 one region on either side of each of the n zeros; that of two; that above
     "fold": Family("Folds along one axis", (2, 4, 8, 16, 32), fold, lambda n: n + 3),
     "grid": Family("Folds along both axes", (2, 3, 4, 5, 6), grid, regions_of_grid),
-    "tolerance": Family(
-        "1 / tolerance of certified maps", (20, 100, 500, 2500), window, lambda n: None,
-        lambda n: ("--tolerance", f"1/{n}", "--jobs", "1"),
-    ),
 }  # fmt: skip
 
 
@@ -149,41 +137,43 @@ def measure(options: argparse.Namespace) -> list[Row]:
     unknown = [name for name in names if name not in FAMILIES]
     if unknown:
         raise PtmcadError(f"no family {unknown[0]!r}; there are {', '.join(FAMILIES)}")
-    jobs: dict[tuple[str, int], Job] = {}
-    computing: dict[tuple[str, int], list[dict[str, float]]] = {}
+    measured: list[tuple[str, int, Job, list[Mapping[str, float]]]] = []
     with tempfile.TemporaryDirectory() as folder:
         for name in names:
             family = FAMILIES[name]
             for n in family.sizes:
                 record = Path(folder, f"{name}-{n}.json")
-                record.write_text(json.dumps({"name": record.stem, **family.record(n, options.seed)}), encoding="utf-8")
-                target = Path(folder, f"out-{name}", f"{name}-{n}.json")
-                command = (*PTMCAD, "classify", str(record), *family.options(n), "--format", "json",
-                           "--out", str(target.parent))  # fmt: skip
-                seen = computing[name, n] = []
-
-                def check(_: Any, n: int = n, family: Family = family, target: Path = target, seen: Any = seen) -> str:
-                    found = json.loads(target.read_text(encoding="utf-8"))
-                    seen.append(found["timings"])
-                    number = len(found["regions"])
-                    return "" if family.regions(n) in (None, number) else f"{number} regions"
-
-                jobs[name, n] = Job(name, family.title, str(n), ((command, ""),), target, check)
-        turns(list(jobs.values()), options)
-    rows = []
-    for name in names:
-        points: dict[str, list[tuple[float, float]]] = {}
-        for n in FAMILIES[name].sizes:
-            row = jobs[name, n].row()
-            for stage in computing[name, n][0] if computing[name, n] else ():
-                seconds = [timings.get(stage, 0.0) for timings in computing[name, n]]
-                row[f"{stage} s"] = round(median(seconds), 5)
-                points.setdefault(stage, []).extend((n, y) for y in seconds)
-            rows.append(row)
-        for stage, measured in points.items():
-            if found := fit(measured):
-                rows.append({"subject": name, "what": FAMILIES[name].title, "setting": f"fit: {stage}", **found})
+                data = {"name": record.stem, **family.record(n, options.seed)}
+                record.write_text(json.dumps(data), encoding="utf-8")
+                target = Path(folder, "out", record.name)
+                command = (*PTMCAD, "classify", str(record), "--format", "json", "--out", str(target.parent))
+                timings: list[Mapping[str, float]] = []
+                check = partial(_checked, target, family.regions(n), timings)
+                job = Job(name, family.title, str(n), ((command, ""),), target, check)
+                measured.append((name, n, job, timings))
+        turns([job for _, _, job, _ in measured], options)
+    rows: list[Row] = []
+    points: dict[tuple[str, str], list[tuple[float, float]]] = {}
+    for name, n, job, timings in measured:
+        row = job.row()
+        for stage in timings[0] if timings else ():
+            seconds = [run[stage] for run in timings]
+            row[f"{stage} s"] = round(median(seconds), 5)
+            points.setdefault((name, stage), []).extend((n, y) for y in seconds)
+        rows.append(row)
+    for (name, stage), found in points.items():
+        law = fit(found)
+        if law is not None:
+            rows.append({"subject": name, "what": FAMILIES[name].title, "setting": f"fit: {stage}", **law})
     return rows
+
+
+def _checked(target: Path, regions: int, timings: list[Mapping[str, float]], _: Usage) -> str:
+    """Note the seconds of a map's stages; what is wrong with its number of regions."""
+    found = json.loads(target.read_text(encoding="utf-8"))
+    timings.append(found["timings"])
+    number = len(found["regions"])
+    return "" if number == regions else f"{number} regions"
 
 
 def fit(points: Sequence[tuple[float, float]]) -> Row | None:
@@ -192,42 +182,28 @@ def fit(points: Sequence[tuple[float, float]]) -> Row | None:
     Returns
     -------
     The exponent p by least squares in logarithms, the slopes over the lower and over the upper half
-    of the range, and whether they agree; and the fixed cost a and the exponent beyond it of
-    y = a + c x^p, where that halves the misfit. None when there are fewer than two different x, or
-    something is not positive.
+    of the range, of which the upper one predicts, and whether they agree. None when there are fewer
+    than two different x, or something is not positive.
     """
     places = sorted({x for x, _ in points})
-    x, y = np.array([(u, median(b for a, b in points if a == u)) for u in places]).reshape(-1, 2).T
-    if len(x) < 2 or min(x.min(), y.min()) <= 0:
+    heights = [median(y for x, y in points if x == place) for place in places]
+    if len(places) < 2 or min(*places, *heights) <= 0:
         return None
-    u, v = np.log(x), np.log(y)
-    slope, misfit = _law(x, y, 0.0)
+    u, v = np.log(places), np.log(heights)
     # both halves hold the point next to the middle, so that they are joined
-    joint = min(range(1, len(u) - 1), key=lambda k: abs(2 * u[k] - u[0] - u[-1]), default=0)
-    lower = _law(x[: joint + 1], y[: joint + 1], 0.0)[0] if joint else slope
-    upper = _law(x[joint:], y[joint:], 0.0)[0]
-    found = {"exponent": slope, "lower": lower, "upper": upper}
-    if y.max() < FLAT * y.min():
+    joint = min(range(1, len(u) - 1), key=lambda k: abs(2 * u[k] - u[0] - u[-1]), default=len(u) - 1)
+    parts = {"exponent": slice(None), "lower": slice(joint + 1), "upper": slice(joint % (len(u) - 1), None)}
+    found = {name: float(np.polyfit(u[part], v[part], 1)[0]) for name, part in parts.items()}
+    rise = found["upper"] - found["lower"]
+    if max(heights) < FLAT * min(heights):
         verdict = "does not grow"
-    elif len(x) < 4:
+    elif len(places) < 4:
         verdict = "too few sizes to tell"
-    elif abs(upper - lower) > BEND:
-        verdict = f"the exponent {'rises' if upper > lower else 'falls'}"
+    elif abs(rise) > BEND:
+        verdict = f"the exponent {'rises' if rise > 0 else 'falls'}"
     else:
-        straight = misfit <= (1 - STRAIGHT) * ((v - v.mean()) ** 2).sum()
-        verdict = "power law" if straight else "scattered"
-    tried = {part: _law(x, y, float(y.min()) * part / PARTS) for part in range(PARTS)}
-    part = min(tried, key=lambda part: tried[part][1])
-    if len(x) > 3 and upper > lower and part and tried[part][1] < misfit / 2:
-        found |= {"fixed": float(y.min()) * part / PARTS, "beyond": tried[part][0]}
-    return {key: float(f"{value:.4g}") for key, value in found.items()} | {"verdict": verdict}
-
-
-def _law(x: Floats, y: Floats, fixed: float) -> tuple[float, float]:
-    """The exponent of y = fixed + c x^p by least squares in the logarithms of what is beyond, and the misfit of y's."""
-    slope, height = np.polyfit(np.log(x), np.log(y - fixed), 1)
-    misfit = (np.log(fixed + np.exp(height) * x**slope) - np.log(y)) ** 2
-    return float(slope), float(misfit.sum())
+        verdict = "power law" if np.corrcoef(u, v)[0, 1] ** 2 >= STRAIGHT else "scattered"
+    return {name: float(f"{value:.4g}") for name, value in found.items()} | {"verdict": verdict}
 
 
 def save_picture(rows: Sequence[Row], folder: Path) -> None:
