@@ -17,7 +17,8 @@ from ptmcad.question.config.model import Described, described_in
 from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.config.scalars import names_in_scalar, number_text
 from ptmcad.question.examples import A_DESIGN, A_SWEEP, AXES
-from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count, unstorable
+from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count
+from ptmcad.text.node import unstorable
 from ptmcad.text.syntax import NAME, did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
 

@@ -13,8 +13,8 @@ from html import escape
 from math import ceil, floor, log10
 from pathlib import Path
 
-from ptmcad.show.document.node import Node
 from ptmcad.show.report.sections import table
+from ptmcad.text.node import Node
 from ptmcad.text.numerals import power_of_ten
 from ptmcad.text.textfile import read_as
 

@@ -13,10 +13,10 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from ptmcad.show.document.codec import TEXT, TRUTH, Codec, Key, line, listed, named, optional, record
-from ptmcad.show.document.node import Node
 from ptmcad.studies.bench.harness import Times
 from ptmcad.studies.bench.study import FORMAT, Figures, Measurement, Study
+from ptmcad.text.codec import TEXT, TRUTH, Codec, Key, line, listed, named, optional, record
+from ptmcad.text.node import Node
 from ptmcad.text.textfile import read_as
 
 MAX_BYTES = 10_000_000
