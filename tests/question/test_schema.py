@@ -21,7 +21,7 @@ from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.mechanism import Kind, Support, ptm
 from ptmcad.mechanism.bodies import BODY_KEYS
 from ptmcad.mechanism.description import UnknownKind
-from ptmcad.mechanism.reading import MAX_BODIES, MAX_ENTRIES, MAX_UNKNOWNS, PARAMETER_KEYS
+from ptmcad.mechanism.reading import MAX_BODIES, MAX_UNKNOWNS, PARAMETER_KEYS
 from ptmcad.mechanism.record import KEYS, NAMED_RESTS, SPRING_KEYS, TORSION_KEYS
 from ptmcad.mechanism.systems import SYSTEM_KEYS
 from ptmcad.question.config import RECORD_KEYS, slice_from_mapping
@@ -29,6 +29,7 @@ from ptmcad.question.config.starters import NAMES, starter_mechanism, starter_te
 from ptmcad.question.slice import Count
 from ptmcad.show.document.regionmap import FORMAT
 from ptmcad.show.schemas import schemas, with_prose
+from ptmcad.text.entry import MAX_ENTRIES
 
 SCHEMA = json.loads(files("ptmcad").joinpath("record.schema.json").read_text(encoding="utf-8"))
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)  # `jsonschema.validate` would check the schema each time
