@@ -34,7 +34,7 @@ from ptmcad.mechanism.reading import (
 from ptmcad.mechanism.sizes import check_sizes
 from ptmcad.mechanism.work import split_moments
 from ptmcad.mechanism.xjoint import XJoint
-from ptmcad.text.entry import Entry, as_written
+from ptmcad.text.entry import Entry, Place, as_written
 from ptmcad.text.syntax import did_you_mean, parse
 from ptmcad.text.tree import Name, Negative, Number, Tree
 
@@ -84,7 +84,7 @@ def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
 
 def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = False) -> Mechanism:
     """As `described`, but what is wrong is noted, and left out or replaced."""
-    whole = Entry(record, "", faults).fields(KEYS)
+    whole = Entry(record, Place(), faults).fields(KEYS)
     name = whole.read("name", name_of, DEFAULT_NAME)
     title = whole.read("title", lambda entry: title_of(entry.value), "")
     parameters: dict[str, Parameter] = {}

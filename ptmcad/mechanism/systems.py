@@ -23,7 +23,7 @@ from ptmcad.mechanism.reading import (
     unknowns_of,
 )
 from ptmcad.mechanism.sizes import check_sizes
-from ptmcad.text.entry import MAX_ENTRIES, Entry
+from ptmcad.text.entry import MAX_ENTRIES, Entry, Place
 from ptmcad.text.tree import Tree, names_of
 
 SYSTEM_KEYS = ("name", "title", "parameters", "unknowns", "equations", "potential", "positive", "stable")
@@ -53,7 +53,7 @@ def described_system(record: Mapping[str, Any]) -> System:
 
 def read_system(record: Mapping[str, Any], faults: Faults) -> System:
     """As `described_system`, but what is wrong is noted, and left out or replaced."""
-    whole = Entry(record, "", faults).fields(SYSTEM_KEYS)
+    whole = Entry(record, Place(), faults).fields(SYSTEM_KEYS)
     name = whole.read("name", name_of, DEFAULT_NAME)
     title = whole.read("title", lambda entry: title_of(entry.value), "")
     parameters: dict[str, Parameter] = {}

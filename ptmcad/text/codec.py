@@ -156,7 +156,7 @@ class Key(NamedTuple):
     beside: tuple[str, ...] = ()
 
 
-def told(get: Callable[[Any], Any], codec: Codec[Any] = TEXT, default: object = ...) -> Key:
+def derived(get: Callable[[Any], Any], codec: Codec[Any] = TEXT, default: object = ...) -> Key:
     """A key that says for people what others say exactly; a document in which they differ is refused."""
     return Key(codec, get, default, always=True, made=False, checked=True)
 
@@ -194,8 +194,8 @@ def record(make: Callable[..., T], **keys: Codec[Any] | Key) -> Codec[T]:
         found = node.made(make, **values)
         if all(name in given for name, key in entries.items() if key.checked):
             for name, get, codec, key in parts:
-                if key.checked and given[name].value != (known := codec.write(get(found))):
-                    raise given[name].fault(f"is not {str(known)[:60]!r}, as the rest says")
+                if key.checked and given[name].value != (other := codec.write(get(found))):
+                    raise given[name].fault(f"is not {str(other)[:60]!r}, as the rest says")
         return found
 
     return Codec(write, read, _schema_of(entries))

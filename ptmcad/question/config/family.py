@@ -19,10 +19,10 @@ from ptmcad.question.config.record import MAX_MEMBERS, Record, Window, check_mem
 from ptmcad.question.config.resolution import axis_of, note_values, slice_of, unread_names, written_in
 from ptmcad.question.config.scalars import number_of
 from ptmcad.question.slice import Axis, Slice
+from ptmcad.text.entry import Node, Scalar, Sequence, Tree
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import names_in, parse
-from ptmcad.text.yamltree import Node, Scalar, Sequence, Tree
 
 MEMBERS = 9
 """Where nothing is stated: so many values, evenly spaced."""

@@ -25,9 +25,10 @@ from ptmcad.mechanism import (
 )
 from ptmcad.mechanism.parts import check_numbers
 from ptmcad.question.config.starters import NAMES, starter_mechanism
+from ptmcad.text.entry import Node, Place, Scalar, Tree, plain_data
+from ptmcad.text.entry import Sequence as Listed
 from ptmcad.text.syntax import NAME, did_you_mean, names_in
-from ptmcad.text.yamltree import Node, Place, Scalar, Tree, plain_data, read_file
-from ptmcad.text.yamltree import Sequence as Listed
+from ptmcad.text.yamltree import read_file
 
 _EXPRESSIONS = ("equations", "potential", "positive", "stable")
 """The keys of a system that hold them."""

@@ -22,11 +22,11 @@ from ptmcad.question.domain import MAX_DEGREE, fault, fault_of_part, unproved
 from ptmcad.question.examples import AXES
 from ptmcad.question.positivity import READING_WORK
 from ptmcad.question.slice import NOTHING_ADMISSIBLE, Axis, Count, Slice, have_free_lengths
+from ptmcad.text.entry import Place, Tree
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.parsing import names_in
 from ptmcad.text.syntax import did_you_mean, parse
 from ptmcad.text.tree import names_of
-from ptmcad.text.yamltree import Place, Tree
 
 
 def checked_slice(tree: Tree) -> Slice:

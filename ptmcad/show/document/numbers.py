@@ -24,13 +24,13 @@ from ptmcad.text.codec import (
     by_name,
     choice,
     converted,
+    derived,
     either,
     line,
     listed,
     optional,
     record,
     record_of,
-    told,
 )
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 
@@ -72,13 +72,13 @@ AXIS = record_of(Axis, name=LINE)
 
 def with_decimal(text: Callable[[Any], str | None], codec: Codec[Any] = TEXT) -> Codec[Any]:
     """The window's edge, or an algebraic number, beside its decimal, which a function makes."""
-    edge: Codec[Fraction] = record(lambda window: window, window=Key(RATIONAL, _itself), decimal=told(text, codec))
+    edge: Codec[Fraction] = record(lambda window: window, window=Key(RATIONAL, _itself), decimal=derived(text, codec))
     return either("window", lambda end: isinstance(end, Fraction), edge, algebraic_with_decimal(text))
 
 
 def algebraic_with_decimal(text: Callable[[Any], str | None]) -> Codec[AlgebraicNumber]:
     """An algebraic number beside its decimal."""
-    return record_of(AlgebraicNumber, {}, _algebraic, decimal=told(text), polynomial=_POLYNOMIAL)
+    return record_of(AlgebraicNumber, {}, _algebraic, decimal=derived(text), polynomial=_POLYNOMIAL)
 
 
 def maximum(over: str, digits: int) -> Codec[Maximum]:
@@ -103,12 +103,12 @@ def maximum(over: str, digits: int) -> Codec[Maximum]:
         algebraic_with_decimal(text), AlgebraicNumber.of, lambda n: n if n.exact is None else n.exact
     )
     enclosed: Codec[Enclosure] = record(
-        lambda enclosure: enclosure, decimal=told(decimal), enclosure=Key(INTERVAL, _itself)
+        lambda enclosure: enclosure, decimal=derived(decimal), enclosure=Key(INTERVAL, _itself)
     )
     return record_of(
         Maximum, {Enclosure: enclosed}, made, place=choice(Place, by_name), attained=None,
         attainment=Key(choice(Attainment), default=Attainment.UNDECIDED, always=True, checked=True),
-        text=told(lambda found: found.words(over, digits)), critical=optional(ALGEBRAIC),
+        text=derived(lambda found: found.words(over, digits)), critical=optional(ALGEBRAIC),
         ends=optional(listed(with_decimal(text), 2)),
         **{"except": Key(listed(number), default=(), field="exceptions", always=True)},
         undecided=Key(listed(number), default=(), field="doubtful", always=True),

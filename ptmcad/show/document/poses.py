@@ -27,6 +27,7 @@ from ptmcad.text.codec import (
     Codec,
     Known,
     choice,
+    derived,
     either,
     line,
     listed,
@@ -35,7 +36,6 @@ from ptmcad.text.codec import (
     optional,
     record,
     record_of,
-    told,
     unless_default,
 )
 from ptmcad.text.enclosure import Enclosure, exact_text
@@ -93,7 +93,7 @@ def poses_codec(digits: int) -> Codec[Poses]:
     exact: Codec[Fraction] = Codec(exact_text, Node.fraction, RATIONAL.schema)
     number: Codec[Enclosure] = record(
         lambda center, radius: Enclosure(center - radius, center + radius),
-        text=told(lambda x: x.text(digits), _DECIMAL), center=exact, radius=exact._replace(read=Node.size),
+        text=derived(lambda x: x.text(digits), _DECIMAL), center=exact, radius=exact._replace(read=Node.size),
     )  # fmt: skip
     known: Known = {Fraction: exact, Enclosure: number}
     bare, free = (_pose(known, free) for free in (False, True))

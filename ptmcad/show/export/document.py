@@ -12,7 +12,7 @@ from ptmcad.answer.regionmap import Component
 from ptmcad.answer.slicevariety import EliminationSystem, SliceVariety
 from ptmcad.question.slice import Slice
 from ptmcad.show.document.slice import polynomial_over, slice_over
-from ptmcad.text.codec import NATURAL, POSITIVE, TEXT, Codec, document_text, listed, named, record_of, told
+from ptmcad.text.codec import NATURAL, POSITIVE, TEXT, Codec, derived, document_text, listed, named, record_of
 from ptmcad.text.plane import PlanePolynomial
 
 FORMAT = "ptmcad-variety/1"
@@ -27,13 +27,14 @@ def variety_codec(names: tuple[str, str]) -> Codec[SliceVariety]:
     """The codec of a variety over axes of these names."""
     whole: dict[Any, Codec[Any]] = {PlanePolynomial: polynomial_over(names)}
     whole[Component] = record_of(
-        Component, whole, separates=None, continuum=None, degree=told(attrgetter("polynomial.total_degree"), POSITIVE),
-        degrees=told(lambda c: dict(zip(names, c.polynomial.degrees, strict=True)), named(NATURAL)),
-        terms=told(lambda c: len(c.polynomial.terms), POSITIVE),
+        Component, whole, separates=None, continuum=None,
+        degree=derived(attrgetter("polynomial.total_degree"), POSITIVE),
+        degrees=derived(lambda c: dict(zip(names, c.polynomial.degrees, strict=True)), named(NATURAL)),
+        terms=derived(lambda c: len(c.polynomial.terms), POSITIVE),
     )  # fmt: skip
     whole[EliminationSystem] = record_of(
-        EliminationSystem, axes=None, polynomials=told(lambda system: system.texts(), listed(TEXT))
+        EliminationSystem, axes=None, polynomials=derived(lambda system: system.texts(), listed(TEXT))
     )
     left_out = dict.fromkeys(("title", "text", "count", "reference", "units", "model"))
-    whole[Slice] = slice_over(names, **left_out, mechanism=told(attrgetter("mechanism")))
+    whole[Slice] = slice_over(names, **left_out, mechanism=derived(attrgetter("mechanism")))
     return record_of(SliceVariety, whole)

@@ -44,13 +44,13 @@ from ptmcad.text.codec import (
     Known,
     by_name,
     choice,
+    derived,
     in_words,
     listed,
     named,
     optional,
     record,
     record_of,
-    told,
     unless_default,
 )
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
@@ -69,7 +69,7 @@ _AXIS = record_of(
 def _places(digits: int) -> dict[Any, Codec[Any]]:
     """The codecs of ends of intervals, with as many digits as are asked for and known."""
     exact = with_decimal(partial(end_text, digits=digits))
-    enclosed = record_of(Enclosure, decimal=told(partial(settled, digits=digits), optional(TEXT)))
+    enclosed = record_of(Enclosure, decimal=derived(partial(settled, digits=digits), optional(TEXT)))
     return {
         Axis: _AXIS,
         Enclosure: enclosed,
@@ -88,7 +88,7 @@ def _counted(digits: int) -> dict[Any, Codec[Any]]:
     places = _places(digits)
     interval = record_of(
         CountInterval, places, counts=None, total=NATURAL, stable=COUNT, index=INDEX,
-        width=told(partial(width_text, digits=digits)),
+        width=derived(partial(width_text, digits=digits)),
     )  # fmt: skip
     return {**places, CountInterval: interval}
 
@@ -110,14 +110,14 @@ def line_codec(digits: int) -> Codec[CountIntervals]:
     known = _counted(digits)
     known[Change] = record_of(
         Change, {**known, Counts: _COUNTS}, **unless_default(Change, "continuum"),
-        event=told(attrgetter("event"), choice(Event, by_name)), text=told(attrgetter("text")),
+        event=derived(attrgetter("event"), choice(Event, by_name)), text=derived(attrgetter("text")),
     )  # fmt: skip
     return record_of(
         CountIntervals, known, name=None, model=None, working=None,
         parameters=Key(
             named(TEXT), lambda found: {n: e.to_text((found.along.name, "_")) for n, e in found.parameters.items()}
         ),
-        operation=told(
+        operation=derived(
             lambda found: [n for n, i in enumerate(found.intervals) if i.counts.working == found.working],
             listed(NATURAL),
         ),
@@ -139,7 +139,11 @@ def critical_codec(digits: int) -> Codec[tuple[CriticalFreeLength, ...]]:
     )
     return listed(
         record_of(
-            CriticalFreeLength, _places(digits), signs=signs, at=Key(field="free"), fold=told(attrgetter("fold"), TRUTH)
+            CriticalFreeLength,
+            _places(digits),
+            signs=signs,
+            at=Key(field="free"),
+            fold=derived(attrgetter("fold"), TRUTH),
         )
     )
 
@@ -162,7 +166,7 @@ def bands_codec(digits: int) -> Codec[CertifiedWidths]:
     """The codec of the operation ranges over the other axis with free lengths."""
     return record_of(
         CertifiedWidths, _places(digits), name=None, model=None, stable=Key(NATURAL, field="working"),
-        attainment=told(lambda _: Attainment.UNDECIDED, _UNDECIDED, default=Attainment.UNDECIDED),
+        attainment=derived(lambda _: Attainment.UNDECIDED, _UNDECIDED, default=Attainment.UNDECIDED),
     )  # fmt: skip
 
 
@@ -173,7 +177,7 @@ _POINTS: Known = {
 }
 _ENERGY: Codec[Any] = in_words(lambda energy: energy and settled(energy, PATH_DIGITS), optional(TEXT))
 _PATH_END = record_of(
-    PathEnd, {**_POINTS, **_places(PATH_DIGITS)}, fate=choice(Fate, by_name), text=told(attrgetter("fate.value")),
+    PathEnd, {**_POINTS, **_places(PATH_DIGITS)}, fate=choice(Fate, by_name), text=derived(attrgetter("fate.value")),
     energy=_ENERGY, target_energy=_ENERGY, **unless_default(PathEnd, "among"),
 )  # fmt: skip
 PATHS = record_of(
