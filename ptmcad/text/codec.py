@@ -103,11 +103,13 @@ def listed(codec: Codec[T], length: int | None = None, most: int = MAX_ITEMS) ->
     return Codec(write, lambda node: node.each(codec.read, length, most), schema)
 
 
-def named(codec: Codec[T], name: Callable[[Node, str], str] = lambda _, key: key) -> Codec[Mapping[str, T]]:
-    """Several of the same by names; ``name`` reads one, and may refuse it."""
+def named(
+    codec: Codec[T], name: Callable[[Node, str], str] = lambda _, key: key, most: int = MAX_ITEMS
+) -> Codec[Mapping[str, T]]:
+    """Several of the same by at most so many names; ``name`` reads one, and may refuse it."""
     return Codec(
         lambda values: {name: codec.write(v) for name, v in values.items()},
-        lambda node: {name(place, key): codec.read(place) for key, place in node.mapping().items()},
+        lambda node: {name(place, key): codec.read(place) for key, place in node.mapping(most).items()},
         {"type": "object", "additionalProperties": codec.schema},
     )
 

@@ -55,11 +55,11 @@ class Node(NamedTuple):
                 raise self.fault(f"has the unknown key {key[:40]!r}")
         return values
 
-    def mapping(self) -> dict[str, Node]:
+    def mapping(self, most: int = MAX_ITEMS) -> dict[str, Node]:
         if not isinstance(self.value, dict):
             raise self.fault("is not an object")
-        if len(self.value) > MAX_ITEMS:
-            raise self.fault(f"has more than {MAX_ITEMS} keys")
+        if len(self.value) > most:
+            raise self.fault(f"has more than {most} keys")
         for key in self.value:
             if not key.isprintable():
                 raise self.fault(f"has the key {key[:40]!r} with a character that is not printable")
