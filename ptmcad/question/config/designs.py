@@ -10,12 +10,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import ConfigError, ExpressionError, Faults
+from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.objects import plain, tree_of
 from ptmcad.question.config.options import ranges_of
-from ptmcad.question.config.record import Record, Window, check_axis_name, read_record, window_of
+from ptmcad.question.config.record import Record, Window, check_axis_name, described_record, window_of
 from ptmcad.question.config.resolution import axis_of, note_values, unread_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
 from ptmcad.question.design import Condition, condition_of, named
@@ -99,10 +99,7 @@ def checked_design(tree: Tree, given: Mapping[str, Node] | None = None) -> Desig
     ConfigError
         That knows all faults of the record.
     """
-    faults = Faults()
-    record = read_record(tree, faults)
-    if record.described is None:
-        faults.check()  # without it nothing can be said of the rest
+    record, faults = described_record(tree)
     node = record.design
     place = tree.place.below("design") if node is None else node.place
     entries = {**_entries(node), **_merged(_entries(node), given or {})}

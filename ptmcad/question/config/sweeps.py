@@ -16,7 +16,7 @@ from ptmcad.errors import Faults
 from ptmcad.mechanism import Model
 from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.objects import tree_of
-from ptmcad.question.config.record import Record, check_axis_name, read_record, swept_names
+from ptmcad.question.config.record import Record, check_axis_name, described_record, swept_names
 from ptmcad.question.config.resolution import check_number, note_values, slice_of, unread_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
 from ptmcad.question.examples import A_SWEEP, FIRST
@@ -94,10 +94,7 @@ def checked_sweep(tree: Tree) -> Sweeping:
     ConfigError
         That knows all faults of the record; of the members the first is looked at, and every value's sign.
     """
-    faults = Faults()
-    record = read_record(tree, faults)
-    if record.described is None:
-        faults.check()  # without it nothing can be said of the values
+    record, faults = described_record(tree)
     sweep = None
     if record.sweep is not None:
         sweep = _read(Entry.of(record.sweep, tree.place, faults), record)
