@@ -81,7 +81,7 @@ def tree_of(question: object, key: str = "question", expected: str = A_RECORD) -
 
 
 def plain(value: object) -> object:
-    """A value as `ptmcad.text.yamltree.from_python` takes it: models as their descriptions, SymPy's objects as text.
+    """A value as `ptmcad.text.entry.from_python` takes it: models as their descriptions, SymPy's objects as text.
 
     Raises
     ------
