@@ -8,14 +8,14 @@ place.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Hashable, Iterator, Mapping
 from dataclasses import MISSING, Field, fields
 from enum import Enum
 from fractions import Fraction
-from functools import reduce
+from functools import cache, reduce
 from operator import attrgetter, or_
 from types import MappingProxyType, NoneType
-from typing import Any, Generic, NamedTuple, TypeVar, get_args, get_origin, get_type_hints
+from typing import Any, Generic, NamedTuple, TypeVar, cast, get_args, get_origin, get_type_hints
 
 from ptmcad.text.node import MAX_ITEMS, Node
 from ptmcad.text.numerals import integer_text, shortest_text, text_of
@@ -171,32 +171,37 @@ def record(make: Callable[..., T], **keys: Codec[Any] | Key) -> Codec[T]:
     make : of the keys' values, by their names; what it refuses is wrong with the object.
     """
     entries = {name: key if isinstance(key, Key) else Key(key) for name, key in keys.items()}
-    parts = [(name, key.get or attrgetter(key.field or name), _codec(key), key) for name, key in entries.items()]
-    expected = []
+    expected: list[str] = []
+    writers, readers, checked = [], [], []
     for name, key in entries.items():
+        codec, get = _codec(key), key.get or attrgetter(key.field or name)
         expected += [f"{other}?" for other in key.beside] or [name if key.default is ... else f"{name}?"]
+        writers.append((name, get, codec.write, ... if key.always else key.default, bool(key.beside)))
+        if key.made:
+            readers.append((name, key.field or name, codec.read, key.default, bool(key.beside)))
+        if key.checked:
+            checked.append((name, get, codec.write))
 
     def write(value: T) -> dict[str, Any]:
         found = {}
-        for name, get, (convert, *_), key in parts:
+        for name, get, convert, default, beside in writers:
             part = get(value)
-            if key.beside:
+            if beside:
                 found.update(convert(part))
-            elif key.default is ... or key.always or part != key.default:
+            elif default is ... or part != default:
                 found[name] = part if convert is _itself else convert(part)
         return found
 
     def read(node: Node) -> T:
         given = node.record(*expected)
         values = {}
-        for name, _, codec, key in parts:
-            if key.made:
-                place = node if key.beside else given.get(name)
-                values[key.field or name] = key.default if place is None else codec.read(place)
+        for name, argument, read_part, default, beside in readers:
+            place = node if beside else given.get(name)
+            values[argument] = default if place is None else read_part(place)
         found = node.made(make, **values)
-        if all(name in given for name, key in entries.items() if key.checked):
-            for name, get, codec, key in parts:
-                if key.checked and given[name].value != (other := codec.write(get(found))):
+        if checked and all(name in given for name, *_ in checked):
+            for name, get, convert in checked:
+                if given[name].value != (other := convert(get(found))):
                     raise given[name].fault(f"is not {str(other)[:60]!r}, as the rest says")
         return found
 
@@ -264,7 +269,7 @@ def record_of(
     own = {renamed.get(field.name, field.name): Key(field=field.name) for field in _fields(kind)}
     found = {**own, **keys}
     bare = {n: key for n, key in found.items() if isinstance(key, Key) and key.codec is None}
-    hints = _hints(kind, [key.field or name for name, key in bare.items()])
+    hints = _hints(cast(Hashable, kind), tuple(key.field or name for name, key in bare.items()))
     for name, key in bare.items():
         found[name] = key._replace(codec=codec_of(hints[key.field or name], known))
     made = record(make or kind, **{name: key for name, key in found.items() if key is not None})
@@ -273,10 +278,10 @@ def record_of(
 
 def unless_default(kind: type, *names: str, known: Known = _ALIKE) -> dict[str, Key]:
     """Keys of fields that are left out where a field has its default."""
-    keys = {}
+    keys, hints = {}, _hints(kind, names)
     for field in _fields(kind):
         if field.name in names:
-            hint = _hints(kind, names)[field.name]
+            hint = hints[field.name]
             default = field.default if field.default_factory is MISSING else field.default_factory()
             given = [part for part in get_args(hint) if part is not NoneType] if default is None else [hint]
             keys[field.name] = Key(codec_of(given[0], known), default=default)
@@ -287,7 +292,8 @@ def _fields(kind: Any) -> tuple[Field[Any], ...]:
     return fields(kind)
 
 
-def _hints(kind: type, names: Iterable[str]) -> dict[str, Any]:
+@cache
+def _hints(kind: Any, names: tuple[str, ...]) -> dict[str, Any]:
     """The types of some fields: of others a module need not have the names while it runs."""
     written = {field.name: field.type for field in _fields(kind)}
     some = type(kind.__name__, (), {"__annotations__": {n: written[n] for n in names}, "__module__": kind.__module__})
