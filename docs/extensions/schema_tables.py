@@ -83,11 +83,19 @@ def _object(path: str, heading: str, schema: Schema) -> Iterator[str]:
 
 def _inner(schema: Schema, path: str) -> Iterator[str]:
     for key, value in schema.get("properties", {}).items():
-        place, part = f"{path}.{key}" if path else key, value
-        while part.get("type") == "array" and isinstance(part.get("items"), Mapping):
-            place, part = f"{place}[]", part["items"]
-        if "properties" in part:
-            yield from _object(place, f"`{place}`", part)
+        yield from _below(f"{path}.{key}" if path else key, value)
+
+
+def _below(place: str, schema: Schema) -> Iterator[str]:
+    """The objects in a value: in the entries of a list or mapping, or in one of several shapes that it may have."""
+    if "properties" in schema:
+        yield from _object(place, f"`{place}`", schema)
+        return
+    for keyword, end in (("items", "[]"), ("additionalProperties", ".*")):
+        if isinstance(schema.get(keyword), Mapping):
+            yield from _below(place + end, schema[keyword])
+    for part in (*schema.get("anyOf", ()), *schema.get("oneOf", ())):
+        yield from _below(place, part)
 
 
 def _table(schema: Schema) -> Iterator[str]:

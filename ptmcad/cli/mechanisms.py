@@ -13,8 +13,9 @@ from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config.model import model_of
 from ptmcad.question.config.starters import NAMES, starter_text
 from ptmcad.question.shipped import shipped_records
+from ptmcad.text.entry import plain_data
 from ptmcad.text.syntax import did_you_mean
-from ptmcad.text.yamltree import plain_data, read_file, read_text
+from ptmcad.text.yamltree import read_file, read_text
 
 
 def starter_model(name: str) -> Model:

@@ -245,7 +245,7 @@ def _save(slice: Slice, request: Request, found: Answer, stem: str, output: Outp
         for name in (f"{stem}{part}.{suffix}" for suffix in output.pictures)
     }
     if "json" in output.formats:
-        from ptmcad.show.document.parts import SLICE
+        from ptmcad.show.document.slice import SLICE
         from ptmcad.show.ranges.document import document
 
         asked = {"slice": SLICE.write(slice), "request": request_codec().write(request)}

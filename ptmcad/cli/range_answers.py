@@ -18,7 +18,7 @@ from ptmcad.question.slice import Slice
 
 if TYPE_CHECKING:
     from ptmcad.ask.branches import SolutionsOnLine
-    from ptmcad.show.document.codec import Codec
+    from ptmcad.text.codec import Codec
 
 MAX_TEXT = 10_000
 
@@ -50,15 +50,12 @@ def request_codec() -> Codec[Request]:
 
     Earlier versions could be asked for critical free lengths instead (``critical``); now the paper's study finds them.
     """
-    from ptmcad.show.document import codec
+    from ptmcad.text.codec import TRUTH, Key, line, record_of
 
-    text = codec.line(MAX_TEXT)
-    return codec.record(
-        lambda critical, **asked: Request(**asked), along=text, at=codec.named(text), over=codec.TRUTH,
-        rows=codec.NATURAL, start=codec.optional(codec.RATIONAL), pose=codec.COUNT, digits=codec.NATURAL,
-        quantities=codec.listed(text),
-        critical=codec.Key(codec.TRUTH, lambda _: False),
-    )  # fmt: skip
+    def made(critical: bool, **asked: Any) -> Request:
+        return Request(**asked)
+
+    return record_of(Request, {str: line(MAX_TEXT)}, made, critical=Key(TRUTH, lambda _: False))
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,17 +85,17 @@ def answer(slice: Slice, request: Request) -> Answer:
         return _with_poses(known, slice, request)
     if request.over:
         refuse_free_lengths(slice)  # before the line is asked for, whose refusal would not say what to leave out
-    texts, parts = [question_of(slice)], {}
+    texts, parts = [question_of(slice)], dict[str, Any]()
     pictures: dict[str, Callable[[Path], None]] = {}
     if request.at:
         found = ranges.intervals(slice, request.along, request.at)
         texts.append(table.table(found, request.digits))
-        parts["line"] = document.line_data(found, request.digits)
+        parts |= document.part(found, request.digits)
         pictures[""] = partial(_picture, "line", slice, found)
     if request.over:
         widths = ranges.operation_widths(slice, request.along, request.rows)
         texts.append(table.width_table(widths, request.digits))
-        parts["over"] = document.over_data(widths, request.digits)
+        parts |= document.part(widths, request.digits)
         pictures["-over"] = partial(_picture, "over", slice, widths)
     return _with_poses(Answer("\n\n".join(texts), parts, pictures), slice, request)
 
@@ -121,7 +118,7 @@ def _with_bands(found: Answer, slice: Slice, request: Request) -> Answer:
         widths = certified_widths(slice, request.along, request.rows, request.digits, progress)
     return Answer(
         f"{found.text}\n\n{certified.width_table(widths, request.digits)}",
-        {**found.parts, "bands": document.bands_data(widths, request.digits)},
+        {**found.parts, **document.part(widths, request.digits)},
         {**found.pictures, "-over": partial(_picture, "over", slice, widths)},
     )
 
@@ -149,7 +146,7 @@ def _with_paths(found: Answer, slice: Slice, request: Request, line: Callable[[]
         paths = pose_paths(slice, request.along, request.at, request.start, request.pose, progress)
     return Answer(
         f"{found.text}\n\n{table.path_table(paths, min(request.digits, 10))}",
-        {**found.parts, "path": document.path_data(paths)},
+        {**found.parts, **document.part(paths, request.digits)},
         {**found.pictures, "-path": partial(_picture, "path", slice, paths, line=line)},
     )
 
@@ -159,13 +156,13 @@ def _with_branches(found: Answer, slice: Slice, request: Request, line: Callable
     if not request.quantities:
         return found
     from ptmcad.ask.branches import branch_diagram
-    from ptmcad.show.ranges import branches
+    from ptmcad.show.ranges import branches, document
 
     with ProgressBar() as progress:
         diagram = branch_diagram(slice, request.along, request.at, request.quantities, progress, line())
     return Answer(
         f"{found.text}\n\n{branches.table(diagram)}",
-        {**found.parts, "branches": branches.branches_data(diagram)},
+        {**found.parts, **document.part(diagram, request.digits)},
         {**found.pictures, "-branches": partial(_picture, "branches", slice, diagram)},
     )
 
@@ -177,7 +174,7 @@ def _enclosed(slice: Slice, request: Request) -> Answer:
 
     line = certified_intervals(slice, request.along, request.at, request.digits)
     text = f"{question_of(slice)}\n\n{certified.table(line, request.digits)}"
-    return Answer(text, {"enclosed": document.enclosed_data(line, request.digits)}, {})
+    return Answer(text, document.part(line, request.digits), {})
 
 
 def _picture(

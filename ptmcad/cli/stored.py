@@ -15,9 +15,9 @@ from typing import Any, TypeVar
 from ptmcad.answer.consistency import check_numbers
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown
-from ptmcad.show.document.node import NEWER, is_newer
-from ptmcad.show.document.writing import FORMAT
+from ptmcad.show.document.regionmap import FORMAT
 from ptmcad.show.style import Style
+from ptmcad.text.node import NEWER, is_newer
 from ptmcad.text.textfile import format_named, json_data, read_text
 
 MAX_BYTES = 60_000_000

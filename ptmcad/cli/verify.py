@@ -31,7 +31,7 @@ from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import Options, Progress
 from ptmcad.question.config import member_like
-from ptmcad.show.document.node import opened
+from ptmcad.text.node import opened
 from ptmcad.text.numerals import fraction_of, text_of
 
 if TYPE_CHECKING:
@@ -164,8 +164,7 @@ def _reports(path: Path, seed: int | None, boxes: int | None, effort: int | None
 
 
 def _range_in(text: str) -> dict[str, Any]:
-    found: dict[str, Any] = opened(text, "ptmcad-range/1", MAX_BYTES, "ptmcad range").value
-    return found
+    return {"format": "ptmcad-range/1", **opened(text, "ptmcad-range/1", MAX_BYTES, "ptmcad range").value}
 
 
 def _meet(one: Bounds | None, other: Bounds | None) -> bool:
@@ -235,7 +234,7 @@ def _verified_design(found: BestDesign, seed: int | None, progress: Progress) ->
     """The best design, and where ranges are longest by exact critical values."""
     from ptmcad.ask.designing.proof import exact_maximum
     from ptmcad.question.config.designs import design_from
-    from ptmcad.show.document.design import extremes_data
+    from ptmcad.show.document.design import extremes_codec
     from ptmcad.verification import VerifyReport, check_anew, verify_design
 
     report = verify_design(found, seed, progress)
@@ -248,7 +247,7 @@ def _verified_design(found: BestDesign, seed: int | None, progress: Progress) ->
     over = {axis.name: axes[axis.name] for axis in found.over}
     asked = design_from(question, maximise="range", along=data["along"]["name"], over=over,
                         where={"stable": found.working})  # fmt: skip
-    anew = extremes_data(exact_maximum(asked) or (), found.over[0].name)
+    anew = extremes_codec(found.over[0].name).write(exact_maximum(asked) or ())
     compared = check_anew({"extremes": data["extremes"]}, {"extremes": anew})
     return VerifyReport((*report.checks, replace(compared, name="all of the extremes")))
 
@@ -270,10 +269,10 @@ def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> Ver
     from ptmcad.ask.classification import load_certified
     from ptmcad.cli.range_answers import answer, is_enclosed, request_codec
     from ptmcad.options import DEFAULTS
-    from ptmcad.show.document.extremes import maximum_from
-    from ptmcad.show.document.node import Node
-    from ptmcad.show.document.parts import SLICE
+    from ptmcad.show.document.numbers import maximum
+    from ptmcad.show.document.slice import SLICE
     from ptmcad.show.ranges.document import document
+    from ptmcad.text.node import Node
     from ptmcad.verification import Check, VerifyReport, check_anew, verify_range
 
     if "slice" not in data or "request" not in data:
@@ -281,8 +280,8 @@ def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> Ver
     try:
         slice = SLICE.read(Node(data["slice"], "slice"))
         request = request_codec().read(Node(data["request"], "request"))
-        over = data.get("over", {"maxima": ()})
-        maxima = [maximum_from(entry, over["over"]["name"], request.digits) for entry in over["maxima"]]
+        over = Node(data.get("over", {"maxima": []}), "over")
+        maxima = over.entry("maxima").each(lambda node: maximum(over.value["over"]["name"], request.digits).read(node))
         report = verify_range(data, slice, progress, maxima)
     except (ValueError, KeyError, TypeError, AttributeError, IndexError) as error:
         raise ConfigError(f"is damaged or not a ptmcad-range/1 file: {error}", file=str(path)) from error
@@ -300,7 +299,7 @@ def _verified_family(family: FamilyMap, seed: int | None, progress: Progress) ->
     from ptmcad.ask.changes import changes_of
     from ptmcad.ask.classification import region_map
     from ptmcad.ask.members import Restored, in_common
-    from ptmcad.show.document.changes import written_changes
+    from ptmcad.show.document.family import changes_codec
     from ptmcad.verification import VerifyReport, check_anew, verify_changes, verify_surfaces
 
     over_the_first = Options(engine="exact", areas=False, without=frozenset(("axis-order",)))
@@ -319,7 +318,8 @@ def _verified_family(family: FamilyMap, seed: int | None, progress: Progress) ->
     common = in_common(Restored(family), options)
     stored, anew = {"surfaces": family.surfaces}, {"surfaces": common.surfaces}
     if found is not None and all(c.passed is not False for c in checks):
-        stored |= written_changes(found)
-        anew |= written_changes(changes_of(common, found.tolerance, options))
+        codec = changes_codec(family.free)
+        stored |= codec.write(found)
+        anew |= codec.write(changes_of(common, found.tolerance, options))
     checks.append(check_anew(stored, anew))
     return VerifyReport(tuple(checks))

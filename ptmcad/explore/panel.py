@@ -21,9 +21,9 @@ from ptmcad.question.config.record import Record
 from ptmcad.question.config.resolution import slice_of, written_in
 from ptmcad.question.config.scalars import number_of
 from ptmcad.question.slice import Slice
+from ptmcad.text.entry import Place, Scalar, Sequence
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import names_in, rational
-from ptmcad.text.yamltree import Place, Scalar, Sequence
 
 POSITIONS = 400
 """A slider has at most about so many, at round decimals."""

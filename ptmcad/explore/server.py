@@ -25,6 +25,8 @@ from ptmcad.explore.crew import Worker
 from ptmcad.explore.guard import Guard
 from ptmcad.explore.page import ASSETS, asset, page, refusal
 from ptmcad.explore.panel import Panel
+from ptmcad.text.codec import TRUTH, Codec, line, listed, named, record
+from ptmcad.text.node import Node
 
 MAX_BODY = 1 << 14
 MAX_CONNECTIONS = 64
@@ -156,35 +158,20 @@ def job_of(kind: str, body: bytes) -> dict[str, Any]:
         For anything that the page would not send.
     """
     try:
-        data = json.loads(body.decode("utf-8"))
+        question = Node(json.loads(body.decode("utf-8")), "")
     except (UnicodeDecodeError, ValueError, RecursionError) as error:
         raise ValueError("a question is JSON, and this is none") from error
-    names = ("tab", "values", *KINDS[kind])
-    if not isinstance(data, dict) or set(data) != set(names):
-        raise ValueError(f"a question has {', '.join(names)}")
-    for name in names:
-        if not _FITS[name](data[name]):
-            raise ValueError(f"{name} is not what it should be")
-    return {"kind": kind, **data}
+    found: dict[str, Any] = record(dict, **{name: _PARTS[name] for name in ("tab", "values", *KINDS[kind])}).read(
+        question
+    )
+    return {"kind": kind, **found}
 
 
-def _is_text(value: object) -> bool:
-    return isinstance(value, str) and len(value) <= MAX_TEXT and value.isprintable()
-
-
-def _are_texts(value: object) -> bool:
-    return isinstance(value, dict) and len(value) <= MAX_ENTRIES and all(map(_is_text, (*value, *value.values())))
-
-
-_FITS: dict[str, Callable[[Any], bool]] = {
-    "tab": _is_text,
-    "values": _are_texts,
-    "at": _are_texts,
-    "fine": lambda value: isinstance(value, bool),
-    "framed": lambda value: isinstance(value, bool),
-    "name": _is_text,
-    "formats": lambda value: isinstance(value, list) and len(value) <= 9 and all(map(_is_text, value)),
-}
+_TEXT = line(MAX_TEXT)
+_PARTS: dict[str, Codec[Any]] = {
+    "tab": _TEXT, "values": named(_TEXT, most=MAX_ENTRIES), "at": named(_TEXT, most=MAX_ENTRIES), "fine": TRUTH,
+    "framed": TRUTH, "name": _TEXT, "formats": listed(_TEXT, most=9),
+}  # fmt: skip
 
 
 def _refused(status: int, reason: str) -> web.Response:

@@ -8,60 +8,45 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ptmcad.errors import ConfigError, Faults
 from ptmcad.mechanism.angles import cosine_and_sine
-from ptmcad.mechanism.reading import Reader, check_keys, mapping, new_name, point_name
+from ptmcad.mechanism.reading import MAX_BODIES, Reader, new_name, point_name
+from ptmcad.text.entry import Entry
 from ptmcad.text.tree import Chain, Step, Tree
 
 BODY_KEYS = ("at", "angle", "points")
 Place = tuple[Tree, Tree]
 
 
-def add_bodies(
-    entries: Mapping[str, Any], reader: Reader, points: dict[str, Place], faults: Faults
-) -> dict[str, tuple[str, ...]]:
+def add_bodies(bodies: Entry, reader: Reader, points: dict[str, Place]) -> dict[str, tuple[str, ...]]:
     """Add the bodies' points to the others; bodies to the names of their points.
 
     A body may be at a point of a body above it.
     """
-    bodies: dict[str, tuple[str, ...]] = {}
-    for name, entry in entries.items():
-        key = f"bodies.{name}"
+    found: dict[str, tuple[str, ...]] = {}
+    faults = bodies.faults
+    for name, entry in bodies.entries(most=MAX_BODIES).items():
         with faults:
-            new_name(name, key, {})
-            fields = mapping(entry, key, like="{at: P, angle: phi, points: {Q: [1, 0]}}")
-            check_keys(fields, BODY_KEYS, key, faults)
-            for needed in BODY_KEYS:
-                with faults:
-                    if needed not in fields:
-                        raise ConfigError("is missing", key=f"{key}.{needed}")
-            local = mapping(fields.get("points", {}), f"{key}.points", like="{Q: [1, 0]}")
-            held = fields.get("at")
-            bodies[name] = (*((held,) if isinstance(held, str) else ()), *local)
-            at, turned = _frame(fields, key, reader, points, faults)
+            new_name(name, entry.key, {})
+            fields = entry.fields(BODY_KEYS, BODY_KEYS, "{at: P, angle: phi, points: {Q: [1, 0]}}")
+            local = fields.at("points", {}).entries("{Q: [1, 0]}")
+            held = fields.at("at").value
+            found[name] = (*((held,) if isinstance(held, str) else ()), *local)
+            nothing = reader.tree(entry._replace(value=0))
+            at = fields.read("at", lambda part: _frame(part, reader, points), (nothing, nothing))
+            turned = fields.read("angle", lambda part: cosine_and_sine(*reader.angle(part)), (nothing, nothing))
             for point, pair in local.items():
                 with faults:
-                    new_name(point, f"{key}.points.{point}", points)
+                    new_name(point, pair.key, points)
                     points[point] = at  # known, whatever is wrong with it
-                    points[point] = _placed(at, turned, reader.pair(pair, f"{key}.points.{point}"))
-    return bodies
+                    points[point] = _placed(at, turned, reader.pair(pair))
+    return found
 
 
-def _frame(
-    fields: Mapping[str, Any], key: str, reader: Reader, points: Mapping[str, Place], faults: Faults
-) -> tuple[Place, Place]:
-    """Where a body is, and the cosine and sine of how it is turned; zeros for what is faulty."""
-    nothing = reader.tree(0, key)
-    at = turned = (nothing, nothing)
-    with faults:
-        if isinstance(fields.get("at"), str):
-            at = points[point_name(fields["at"], f"{key}.at", points)]
-        elif "at" in fields:
-            at = reader.pair(fields["at"], f"{key}.at", moving=True)
-    with faults:
-        if "angle" in fields:
-            turned = cosine_and_sine(*reader.angle(fields["angle"], f"{key}.angle"))
-    return at, turned
+def _frame(entry: Entry, reader: Reader, points: Mapping[str, Place]) -> Place:
+    """Where a body is: at a point, or at coordinates."""
+    if isinstance(entry.value, str):
+        return points[point_name(entry.value, entry.key, points)]
+    return reader.pair(entry, moving=True)
 
 
 def _placed(at: Place, turned: Place, local: Place) -> Place:

@@ -8,13 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from enum import Enum
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults, excerpt, quoted
 from ptmcad.mechanism.angles import PI, split_angle, without_quarter_turns
 from ptmcad.mechanism.description import Kind, Parameter, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate, value_at
 from ptmcad.mechanism.sizes import size_of
+from ptmcad.text.entry import Entry, as_written
 from ptmcad.text.numerals import FINITE
 from ptmcad.text.syntax import NAME, NOT_NUMBERS, did_you_mean, parse
 from ptmcad.text.tree import FUNCTIONS, Call, Negative, Number, Tree, names_of
@@ -27,8 +28,6 @@ MAX_DEGREE = 64
 MAX_UNKNOWNS = 12
 MAX_BODIES = 100
 """One may be at a point of another, whose coordinates then stand in its own."""
-MAX_ENTRIES = 400
-"""Of any list or mapping in a description, so that what is read is read, and proved, in a fraction of a second."""
 PARAMETER_KEYS = ("kind", "default", "range", "alias")
 _EXPRESSIONS = ": what depends on other parameters is written under the record's 'parameters:'"
 _UNSET = frozenset({Kind.FREE_LENGTH, Kind.FORCE, Kind.ANGLE})
@@ -37,68 +36,20 @@ _Member = TypeVar("_Member", bound=Enum)
 _T = TypeVar("_T")
 
 
-# ------------------------------------------------------------------------------------------------------------ shapes
-
-
-def mapping(value: object, key: str, most: int = MAX_ENTRIES, like: str = "") -> Mapping[str, Any]:
-    """A mapping of at most so many entries.
-
-    Parameters
-    ----------
-    like : an example for the message.
-    """
-    if not isinstance(value, Mapping):
-        raise ConfigError(f"expected a mapping{like and f', such as {like}'}", key=key)
-    _check_size(len(value), key, most)
-    return value
-
-
-def listed(value: object, key: str, like: str = "") -> Sequence[Any]:
-    """A list of at most `MAX_ENTRIES` entries; ``like`` is an example for the message."""
-    if not isinstance(value, list | tuple):
-        raise ConfigError(f"expected a list{like and f', such as {like}'}", key=key)
-    _check_size(len(value), key, MAX_ENTRIES)
-    return value
-
-
-def as_written(value: object) -> str:
-    """What a value is, for messages: a text in quotation marks, or the kind of what is none."""
-    if value is None:
-        return "an empty value"
-    if isinstance(value, bool):
-        return f"the yes-or-no value '{str(value).lower()}'"
-    if isinstance(value, list | tuple):
-        return "a list"
-    return "a mapping" if isinstance(value, Mapping) else quoted(value) if isinstance(value, str) else f"{value!r:.60}"
-
-
-def _check_size(size: int, key: str, most: int) -> None:
-    if size > most:
-        raise ConfigError(f"{size} entries, more than the {most} that can be computed with", key=key)
-
-
-def check_keys(entries: Mapping[str, Any], known: Sequence[str], key: str, faults: Faults) -> None:
-    """Note every key that is not known."""
-    for found in entries:
-        if found not in known:
-            hint = did_you_mean(str(found), known) or f"; the keys are {', '.join(known)}"
-            with faults:
-                raise ConfigError(f"unknown key{hint}", key=f"{key}.{found}" if key else str(found))
-
-
 def faulty_entries(faults: Faults, part: str) -> frozenset[str]:
     """The entries of a part of a description of which something is noted."""
     keys = ((fault.key or "").split(".") for fault in faults.found)
     return frozenset(steps[1] for steps in keys if len(steps) > 1 and steps[0] == part)
 
 
-def member(kinds: type[_Member], word: object, key: str) -> _Member:
+def member(kinds: type[_Member], entry: Entry) -> _Member:
     """The member of an enumeration that a word stands for."""
     for kind in kinds:
-        if kind.value == word:
+        if kind.value == entry.value:
             return kind
-    known = ", ".join(str(kind.value) for kind in kinds)
-    raise ConfigError(f"{as_written(word)} is none of {known}{did_you_mean(str(word), known.split(', '))}", key=key)
+    words = [str(kind.value) for kind in kinds]
+    hint = did_you_mean(str(entry.value), words)
+    raise entry.error(f"{as_written(entry.value)} is none of {', '.join(words)}{hint}")
 
 
 # ------------------------------------------------------------------------------------------------------------- names
@@ -116,6 +67,11 @@ def new_name(name: object, key: str, taken: Mapping[str, object]) -> str:
     if name in taken:
         raise ConfigError(f"the name '{name}' is given twice: choose another one", key=key)
     return name
+
+
+def name_of(entry: Entry) -> str:
+    """The name of what is described."""
+    return new_name(entry.value, entry.key, {})
 
 
 def title_of(title: object) -> str:
@@ -160,68 +116,64 @@ def point_name(name: object, key: str, points: Mapping[str, object]) -> str:
     return name
 
 
-def ends(value: object, key: str, points: Mapping[str, object]) -> tuple[str, str]:
+def ends(entry: Entry, points: Mapping[str, object]) -> tuple[str, str]:
     """The names of two different points."""
-    pair = listed(value, key, "[A1, A3]")
-    if len(pair) != 2:
-        raise ConfigError("expected two points, such as [A1, A3]", key=key)
-    start, end = (point_name(name, key, points) for name in pair)
+    start, end = (point_name(part.value, entry.key, points) for part in entry.pair("two points,", "[A1, A3]"))
     if start == end:
-        raise ConfigError(f"both ends are {start}", key=key)
+        raise entry.error(f"both ends are {start}")
     return start, end
 
 
 # ------------------------------------------------------------------------------------------- parameters and unknowns
 
 
-def parameters_of(entries: Mapping[str, Any], faults: Faults) -> dict[str, Parameter]:
+def parameters_of(record: Entry) -> dict[str, Parameter]:
     """The parameters of a record; one that is faulty is there as a number."""
     found: dict[str, Parameter] = {}
+    entries = record.at("parameters", {}).entries()
     for name, entry in entries.items():
-        key = f"parameters.{name}"
-        with faults:
-            new_name(name, key, found)
+        with record.faults:
+            new_name(name, entry.key, found)
             found[name] = Parameter(name, Kind.NUMBER, "", None)
-            fields = mapping(entry, key, like="{kind: length, default: 1}, or {} for a number")
-            check_keys(fields, PARAMETER_KEYS, key, faults)
-            kind = member(Kind, fields.get("kind", Kind.NUMBER.value), f"{key}.kind")
-            default = "0" if kind in _UNSET else ""
-            if "default" in fields:
-                default = constant(fields["default"], f"{key}.default", _EXPRESSIONS)
-            found[name] = Parameter(name, kind, default, _window(fields, f"{key}.range"))
-            for n, alias in enumerate(listed(fields.get("alias", ()), f"{key}.alias", "[k1, k2]"), 1):
-                with faults:
-                    new_name(alias, f"{key}.alias.{n}", {})
-                    if alias in entries:
-                        raise ConfigError(f"'{alias}' is a parameter of its own: leave one out", key=f"{key}.alias.{n}")
-                    new_name(alias, f"{key}.alias.{n}", found)
-                    found[alias] = Parameter(alias, kind, name, found[name].window, name)
+            entry.entries(like="{kind: length, default: 1}, or {} for a number")
+            fields = entry.fields(PARAMETER_KEYS)
+            kind = member(Kind, fields.at("kind", Kind.NUMBER.value))
+            default = constant(fields.at("default"), _EXPRESSIONS) if fields.has("default") else ""
+            if not default and kind in _UNSET:
+                default = "0"
+            found[name] = Parameter(name, kind, default, _window(fields.at("range")) if fields.has("range") else None)
+            for alias in fields.at("alias", ()).items("[k1, k2]"):
+                with record.faults:
+                    new_name(alias.value, alias.key, {})
+                    if alias.value in entries:
+                        raise alias.error(f"'{alias.value}' is a parameter of its own: leave one out")
+                    new_name(alias.value, alias.key, found)
+                    found[alias.value] = Parameter(alias.value, kind, name, found[name].window, name)
     return {name: p for last in (False, True) for name, p in found.items() if (p.kind is Kind.FREE_LENGTH) is last}
 
 
-def _window(fields: Mapping[str, Any], key: str) -> tuple[str, str] | None:
-    if "range" not in fields:
-        return None
-    window = listed(fields["range"], key, "[0, 2]")
-    if len(window) != 2:
-        raise ConfigError("expected a range such as [0, 2]", key=key)
-    low, high = (constant(end, f"{key}.{n}") for n, end in enumerate(window, 1))
+def _window(entry: Entry) -> tuple[str, str]:
+    low, high = (constant(end) for end in entry.pair("a range", "[0, 2]"))
     if value_at(parse(low), {}) >= value_at(parse(high), {}):
-        raise ConfigError(f"the range is reversed or empty: {low} to {high}", key=key)
+        raise entry.error(f"the range is reversed or empty: {low} to {high}")
     return low, high
 
 
-def unknowns_of(value: object, taken: Mapping[str, object], faults: Faults) -> dict[str, UnknownKind]:
+def unknowns_of(record: Entry, taken: Mapping[str, object]) -> dict[str, UnknownKind]:
     """The unknowns of a record."""
     found: dict[str, UnknownKind] = {}
-    entries = mapping(value, "unknowns", MAX_UNKNOWNS, "{th: angle, x: real}")
-    if not entries:
-        raise ConfigError("there is none", key="unknowns")
-    for name, kind in entries.items():
-        with faults:
-            new_name(name, f"unknowns.{name}", taken)
-            found[name] = UnknownKind.ANGLE  # known, whatever is wrong with it
-            found[name] = member(UnknownKind, kind, f"unknowns.{name}")
+    unknowns = record.at("unknowns")
+    with record.faults:
+        if not record.has("unknowns"):
+            raise unknowns.error("is missing")
+        entries = unknowns.entries("{th: angle, x: real}", MAX_UNKNOWNS)
+        if not entries:
+            raise unknowns.error("there is none")
+        for name, entry in entries.items():
+            with record.faults:
+                new_name(name, entry.key, taken)
+                found[name] = UnknownKind.ANGLE  # known, whatever is wrong with it
+                found[name] = member(UnknownKind, entry)
     return found
 
 
@@ -252,10 +204,10 @@ class Reader:
         self.moving = _Names((*parameters, *lengths), (*angles, *second), (), doubtful)
         self.names = dict.fromkeys((*parameters, *unknowns))
 
-    def tree(self, value: object, key: str, *, moving: bool = False) -> Tree:
+    def tree(self, entry: Entry, *, moving: bool = False) -> Tree:
         """An expression in the parameters, and in the unknowns where it may move."""
-        tree = parsed(value, key)
-        return located(lambda: self._without_offsets(tree, self.moving if moving else self.fixed), value, key)
+        tree = parsed(entry)
+        return located(lambda: self._without_offsets(tree, self.moving if moving else self.fixed), entry)
 
     @staticmethod
     def _without_offsets(tree: Tree, names: _Names) -> Tree:
@@ -266,33 +218,31 @@ class Reader:
         return turned
 
     def pair(
-        self, value: object, key: str, *, moving: bool = False, what: str = "coordinates", like: str = "[rho, 0]"
+        self, entry: Entry, *, moving: bool = False, what: str = "coordinates", like: str = "[rho, 0]"
     ) -> tuple[Tree, Tree]:
         """Two coordinates or components; what they are, and an example, are for messages."""
-        pair = listed(value, key, like)
-        if len(pair) != 2:
-            raise ConfigError(f"expected two {what}, such as {like}", key=key)
-        return self.tree(pair[0], f"{key}.1", moving=moving), self.tree(pair[1], f"{key}.2", moving=moving)
+        first, second = (self.tree(part, moving=moving) for part in entry.pair(f"two {what},", like))
+        return first, second
 
-    def angle(self, value: object, key: str) -> tuple[Tree, int]:
+    def angle(self, entry: Entry) -> tuple[Tree, int]:
         """A sum of whole multiples of unknown angles, and the quarter turns that are added to it."""
-        tree = parsed(value, key)
+        tree = parsed(entry)
 
         def read() -> tuple[Tree, int]:
             angle, turns = split_angle(tree)
             evaluate(Call("cos", angle), self.moving)
             return angle, turns
 
-        return located(read, value, key)
+        return located(read, entry)
 
-    def symmetry(self, value: object, key: str) -> dict[str, Tree]:
+    def symmetry(self, entry: Entry) -> dict[str, Tree]:
         """A substitution; angles stand in it as they are."""
         trees = {}
-        for name, image in mapping(value, key).items():
-            tree = parsed(image, f"{key}.{name}")
+        for name, image in entry.entries().items():
+            tree = parsed(image)
             for used in (name, *names_of(tree)):
                 if used not in self.names:
-                    raise ConfigError(f"unknown name '{used}'{did_you_mean(used, self.names)}", key=f"{key}.{name}")
+                    raise image.error(f"unknown name '{used}'{did_you_mean(used, self.names)}")
             trees[name] = tree
         return trees
 
@@ -369,30 +319,31 @@ class _Degree:
         return _Degree(self.bound + other.bound)
 
 
-def parsed(value: object, key: str) -> Tree:
+def parsed(entry: Entry) -> Tree:
     """A text or an exact number as a tree."""
+    value = entry.value
     if isinstance(value, str):
-        return located(lambda: parse(value), value, key)
+        return located(lambda: parse(value), entry)
     if isinstance(value, bool) or not isinstance(value, int | Fraction):
-        raise ConfigError(f"{as_written(value)} is neither an exact number nor an expression as text", key=key)
+        raise entry.error(f"{as_written(value)} is neither an exact number nor an expression as text")
     number = Number(abs(Fraction(value)), int(value < 0))  # where it stands in the number's text, which is read alike
     return Negative(number) if value < 0 else number
 
 
-def located(work: Callable[[], _T], text: object, key: str) -> _T:
-    """What the work returns; its `ExpressionError` as one that names the key."""
+def located(work: Callable[[], _T], entry: Entry) -> _T:
+    """What the work returns; its `ExpressionError` as one that names the entry."""
     try:
         return work()
     except ExpressionError as error:
         at = error.position
-        where = "" if at is None else f" (character {at + 1} of {excerpt(str(text), at)})"
-        raise ConfigError(f"{error.message}{where}", key=key) from None
+        where = "" if at is None else f" (character {at + 1} of {excerpt(str(entry.value), at)})"
+        raise entry.error(f"{error.message}{where}") from None
 
 
-def constant(value: object, key: str, instead: str = "") -> str:
+def constant(entry: Entry, instead: str = "") -> str:
     """A number as text; ``instead`` says where expressions are written."""
-    tree = parsed(value, key)
-    if names_of(tree):
-        raise ConfigError(f"expected a number, not an expression in {names_of(tree)[0]}{instead}", key=key)
-    located(lambda: value_at(tree, {}), value, key)
+    tree = parsed(entry)
+    if names := names_of(tree):
+        raise entry.error(f"expected a number, not an expression in {names[0]}{instead}")
+    located(lambda: value_at(tree, {}), entry)
     return text_of(tree)

@@ -6,29 +6,25 @@ consistent, see `description`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeVar
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
 from ptmcad.mechanism.angles import angle_name
 from ptmcad.mechanism.bodies import add_bodies
-from ptmcad.mechanism.description import Closing, Load, Mechanism, Moment, Spring, Support, TorsionSpring
+from ptmcad.mechanism.description import Closing, Load, Mechanism, Moment, Parameter, Spring, Support, TorsionSpring
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.parts import check_numbers
 from ptmcad.mechanism.proofs import check_bars, check_springs, check_symmetries, check_unknowns
 from ptmcad.mechanism.reading import (
-    MAX_BODIES,
     Reader,
     Unread,
-    as_written,
-    check_keys,
     constant,
     ends,
     faulty_entries,
-    listed,
-    mapping,
     member,
+    name_of,
     new_name,
     parameters_of,
     point_name,
@@ -38,6 +34,7 @@ from ptmcad.mechanism.reading import (
 from ptmcad.mechanism.sizes import check_sizes
 from ptmcad.mechanism.work import split_moments
 from ptmcad.mechanism.xjoint import XJoint
+from ptmcad.text.entry import Entry, Place, as_written
 from ptmcad.text.syntax import did_you_mean, parse
 from ptmcad.text.tree import Name, Negative, Number, Tree
 
@@ -59,6 +56,7 @@ _LIKE = {
     "closing": "[{between: [B, D], length: L}]",
 }  # fmt: skip
 """Examples for messages."""
+T = TypeVar("T")
 _ZERO: Tree = Number(Fraction(0))
 _ONE: Tree = Number(Fraction(1))
 
@@ -86,34 +84,30 @@ def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
 
 def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = False) -> Mechanism:
     """As `described`, but what is wrong is noted, and left out or replaced."""
-    check_keys(record, KEYS, "", faults)
-    name, title, parameters, unknowns = DEFAULT_NAME, "", {}, {}
+    whole = Entry(record, Place(), faults).fields(KEYS)
+    name = whole.read("name", name_of, DEFAULT_NAME)
+    title = whole.read("title", lambda entry: title_of(entry.value), "")
+    parameters: dict[str, Parameter] = {}
     with faults:
-        name = new_name(record.get("name", DEFAULT_NAME), "name", {})
+        parameters = parameters_of(whole)
+    unknowns = unknowns_of(whole, parameters)
     with faults:
-        title = title_of(record.get("title", ""))
-    with faults:
-        parameters = parameters_of(mapping(record.get("parameters", {}), "parameters"), faults)
-    for key in ("unknowns", "points"):
-        with faults:
-            if key not in record:
-                raise ConfigError("is missing", key=key)
-    with faults:
-        unknowns = unknowns_of(record["unknowns"], parameters, faults) if "unknowns" in record else {}
+        if not whole.has("points"):
+            raise whole.at("points").error("is missing")
     second: tuple[str, ...] = ()
     if "x-joint" in record:
         from ptmcad.mechanism.xjoints import add_xjoints, second_angles
 
         second = second_angles(record["x-joint"])
-    parts = _Parts(record, Reader(parameters, unknowns, faulty_entries(faults, "unknowns"), second), faults)
+    parts = _Parts(whole, Reader(parameters, unknowns, faulty_entries(faults, "unknowns"), second))
     points = parts.points()
     xjoints: tuple[XJoint, ...] = ()
     if "x-joint" in record:
         with faults:
-            xjoints = add_xjoints(record["x-joint"], parts.reader, points, {**parameters, **unknowns}, faults)
+            xjoints = add_xjoints(whole.at("x-joint"), parts.reader, points, {**parameters, **unknowns})
     bodies = {}
     with faults:
-        bodies = add_bodies(mapping(record.get("bodies", {}), "bodies", MAX_BODIES), parts.reader, points, faults)
+        bodies = add_bodies(whole.at("bodies", {}), parts.reader, points)
     bars, supports, loads = parts.bars(points), parts.supports(points), parts.loads(points)
     moments, torsion = parts.moments(unknowns), parts.torsion(points)
     found = Mechanism(
@@ -180,181 +174,130 @@ def check_moments(mechanism: Mechanism, faults: Faults) -> None:
 class _Parts:
     """The parts of a record, each read with its faults noted."""
 
-    def __init__(self, record: Mapping[str, Any], reader: Reader, faults: Faults):
+    def __init__(self, record: Entry, reader: Reader):
         self.record = record
         self.reader = reader
-        self.faults = faults
+        self.faults = record.faults
 
-    def _list(self, key: str) -> Sequence[Any]:
-        with self.faults:
-            return listed(self.record.get(key, ()), key, _LIKE.get(key, ""))
-        return ()
+    def _items(self, key: str, read: Callable[[Entry], T]) -> tuple[T, ...]:
+        return self.record.at(key, ()).each_item(read, _LIKE[key])
 
-    def _mapping(self, key: str) -> Mapping[str, Any]:
-        with self.faults:
-            return mapping(self.record.get(key, {}), key, like=_LIKE.get(key, ""))
-        return {}
+    def _entries(self, key: str, read: Callable[[Entry], T]) -> tuple[T, ...]:
+        return self.record.at(key, {}).each_entry(read, _LIKE[key])
 
     def points(self) -> dict[str, tuple[Tree, Tree]]:
-        entries = self._mapping("points")
-        unread = any(fault.key == "points" for fault in self.faults.found)
-        found: dict[str, tuple[Tree, Tree]] = Unread() if unread else {}
-        for name, pair in entries.items():
-            with self.faults:
-                found[name] = (_ZERO, _ZERO)  # known, whatever is wrong with it
-                new_name(name, f"points.{name}", {})
-                found[name] = self.reader.pair(pair, f"points.{name}", moving=True)
-        return found
+        found: dict[str, tuple[Tree, Tree]] = {}
+
+        def read(entry: Entry) -> None:
+            found[entry.name] = (_ZERO, _ZERO)  # known, whatever is wrong with it
+            new_name(entry.name, entry.key, {})
+            found[entry.name] = self.reader.pair(entry, moving=True)
+
+        self._entries("points", read)
+        return Unread(found) if any(fault.key == "points" for fault in self.faults.found) else found
 
     def bars(self, points: Mapping[str, object]) -> tuple[tuple[str, str], ...]:
-        found = []
-        for n, bar in enumerate(self._list("bars"), 1):
-            with self.faults:
-                found.append(ends(bar, f"bars.{n}", points))
-        return tuple(found)
+        return self._items("bars", lambda entry: ends(entry, points))
 
     def supports(self, points: Mapping[str, object]) -> dict[str, Support]:
-        found = {}
-        for name, kind in self._mapping("supports").items():
-            with self.faults:
-                point_name(name, f"supports.{name}", points)
-                found[name] = member(Support, kind, f"supports.{name}")
-        return found
+        def read(entry: Entry) -> tuple[str, Support]:
+            return point_name(entry.name, entry.key, points), member(Support, entry)
+
+        return dict(self._entries("supports", read))
 
     def springs(self, points: Mapping[str, object]) -> tuple[Spring, ...]:
         springs: dict[str, Spring] = {}
-        for n, entry in enumerate(self._list("springs"), 1):
-            with self.faults:
-                spring = self._spring(entry, f"springs.{n}", points)
-                stiffness, between = spring.stiffness, f"{spring.start}{spring.end}"
-                names = (*([stiffness.name] if isinstance(stiffness, Name) else []), between, f"{between}_{n}")
-                name = next(name for name in names if name not in springs)
-                springs[name] = spring._replace(name=name)
-        return tuple(springs.values())
 
-    def _spring(self, entry: object, key: str, points: Mapping[str, object]) -> Spring:
-        fields = mapping(entry, key, like="{between: [A, B], k: 1}")
-        check_keys(fields, SPRING_KEYS, key, self.faults)
-        for needed in ("between", "k"):
-            with self.faults:
-                if needed not in fields:
-                    raise ConfigError("is missing", key=f"{key}.{needed}")
-        start = end = ""
-        stiffness, free = _ONE, _ZERO
-        with self.faults:
-            if "between" in fields:
-                start, end = ends(fields["between"], f"{key}.between", points)
-        with self.faults:
-            if "k" in fields:
-                stiffness = self.reader.tree(fields["k"], f"{key}.k")
-        with self.faults:
-            free = self.reader.tree(fields.get("free", 0), f"{key}.free")
-        return Spring("", start, end, stiffness, free)
+        def read(entry: Entry) -> None:
+            fields = entry.fields(SPRING_KEYS, ("between", "k"), "{between: [A, B], k: 1}")
+            start, end = fields.read("between", lambda part: ends(part, points), ("", ""))
+            stiffness, free = fields.read("k", self.reader.tree, _ONE), fields.read("free", self.reader.tree, _ZERO)
+            between = f"{start}{end}"
+            names = (*([stiffness.name] if isinstance(stiffness, Name) else []), between, f"{between}_{entry.name}")
+            name = next(name for name in names if name not in springs)
+            springs[name] = Spring(name, start, end, stiffness, free)
+
+        self._items("springs", read)
+        return tuple(springs.values())
 
     def torsion(self, points: Mapping[str, object]) -> tuple[TorsionSpring, ...]:
         found: dict[str, TorsionSpring] = {}
-        for n, entry in enumerate(self._list("torsion"), 1):
-            with self.faults:
-                spring = self._torsion_spring(entry, f"torsion.{n}", points)
-                of_angle = angle_name(spring.angle)
-                name = of_angle if of_angle and of_angle not in found else f"{of_angle}#{n}"
-                found[name] = spring._replace(name=name)
-        return tuple(found.values())
 
-    def _torsion_spring(self, entry: object, key: str, points: Mapping[str, object]) -> TorsionSpring:
-        fields = mapping(entry, key)
-        check_keys(fields, TORSION_KEYS, key, self.faults)
-        for needed in ("angle", "k"):
-            with self.faults:
-                if needed not in fields:
-                    raise ConfigError("is missing", key=f"{key}.{needed}")
-        angle, turns, stiffness, rest, at = _ZERO, 0, _ONE, (Fraction(1), Fraction(0)), ""
-        with self.faults:
-            if "angle" in fields:
-                angle, turns = self.reader.angle(fields["angle"], f"{key}.angle")
-        with self.faults:
-            if "k" in fields:
-                stiffness = self.reader.tree(fields["k"], f"{key}.k")
-        with self.faults:
-            rest = _rest(fields.get("rest", 0), f"{key}.rest")
-        with self.faults:
-            if "at" in fields:
-                at = point_name(fields["at"], f"{key}.at", points)
-        for _ in range(turns):  # what is added to the angle is taken from the rest
-            rest = (rest[1], -rest[0])
-        return TorsionSpring(angle, stiffness, rest, at=at)
+        def read(entry: Entry) -> None:
+            fields = entry.fields(TORSION_KEYS, ("angle", "k"))
+            angle, turns = fields.read("angle", self.reader.angle, (_ZERO, 0))
+            stiffness = fields.read("k", self.reader.tree, _ONE)
+            rest = fields.read("rest", _rest, (Fraction(1), Fraction(0)))
+            at = fields.read("at", lambda part: point_name(part.value, part.key, points), "")
+            for _ in range(turns):  # what is added to the angle is taken from the rest
+                rest = (rest[1], -rest[0])
+            of_angle = angle_name(angle)
+            name = of_angle if of_angle and of_angle not in found else f"{of_angle}#{entry.name}"
+            found[name] = TorsionSpring(angle, stiffness, rest, name, at)
+
+        self._items("torsion", read)
+        return tuple(found.values())
 
     def closing(self, points: Mapping[str, object]) -> tuple[Closing, ...]:
         found = []
-        for n, entry in enumerate(self._list("closing"), 1):
-            key = f"closing.{n}"
-            with self.faults:
-                fields = mapping(entry, key, like="{between: [B, D], length: L}")
-                check_keys(fields, CLOSING_KEYS, key, self.faults)
-                for needed in CLOSING_KEYS:
-                    with self.faults:
-                        if needed not in fields:
-                            raise ConfigError("is missing", key=f"{key}.{needed}")
-                if all(needed in fields for needed in CLOSING_KEYS):
-                    between = ends(fields["between"], f"{key}.between", points)
-                    found.append(Closing(*between, self.reader.tree(fields["length"], f"{key}.length")))
+
+        def read(entry: Entry) -> None:
+            fields = entry.fields(CLOSING_KEYS, CLOSING_KEYS, "{between: [B, D], length: L}")
+            if fields.has(*CLOSING_KEYS):
+                between = ends(fields.at("between"), points)
+                found.append(Closing(*between, self.reader.tree(fields.at("length"))))
+
+        self._items("closing", read)
         return tuple(found)
 
     def loads(self, points: Mapping[str, object]) -> tuple[Load, ...]:
         found = []
-        for name, force in self._mapping("loads").items():
-            key = f"loads.{name}"
-            with self.faults:
-                point_name(name, key, points)
-                if isinstance(force, Mapping):
-                    check_keys(force, ("weight",), key, self.faults)
-                    if not force:
-                        raise ConfigError("expected two components, such as [0, -W], or {weight: W}", key=key)
-                    if "weight" not in force:
-                        continue  # its key is a fault already
-                    weight = self.reader.tree(force["weight"], f"{key}.weight")
-                    found.append(Load(name, _ZERO, Negative(weight)))
-                else:
-                    like = "[0, -W], or {weight: W}"
-                    found.append(Load(name, *self.reader.pair(force, key, what="components", like=like)))
+
+        def read(entry: Entry) -> None:
+            point_name(entry.name, entry.key, points)
+            if not isinstance(entry.value, Mapping):
+                like = "[0, -W], or {weight: W}"
+                found.append(Load(entry.name, *self.reader.pair(entry, what="components", like=like)))
+                return
+            fields = entry.fields(("weight",))
+            if not entry.value:
+                raise entry.error("expected two components, such as [0, -W], or {weight: W}")
+            if fields.has("weight"):  # or its key is a fault already
+                found.append(Load(entry.name, _ZERO, Negative(self.reader.tree(fields.at("weight")))))
+
+        self._entries("loads", read)
         return tuple(found)
 
     def moments(self, unknowns: Mapping[str, object]) -> tuple[Moment, ...]:
-        found = []
-        for name, value in self._mapping("moments").items():
-            key = f"moments.{name}"
-            with self.faults:
-                if name not in unknowns:
-                    hint = did_you_mean(str(name), unknowns) or f"; they are {', '.join(unknowns)}"
-                    raise ConfigError(f"there is no unknown {quoted(name)}{hint}", key=key)
-                found.append(Moment(name, self.reader.tree(value, key, moving=True)))
-        return tuple(found)
+        def read(entry: Entry) -> Moment:
+            if entry.name not in unknowns:
+                hint = did_you_mean(str(entry.name), unknowns) or f"; they are {', '.join(unknowns)}"
+                raise entry.error(f"there is no unknown {quoted(entry.name)}{hint}")
+            return Moment(entry.name, self.reader.tree(entry, moving=True))
+
+        return self._entries("moments", read)
 
     def symmetries(self) -> tuple[Mapping[str, Tree], ...]:
-        found = []
-        for n, entry in enumerate(self._list("symmetries"), 1):
-            with self.faults:
-                found.append(self.reader.symmetry(entry, f"symmetries.{n}"))
-        return tuple(found)
+        return self._items("symmetries", self.reader.symmetry)
 
 
-def _rest(value: object, key: str) -> tuple[Fraction, Fraction]:
+def _rest(entry: Entry) -> tuple[Fraction, Fraction]:
     """The cosine and sine of the angle at which a torsion spring is relaxed."""
+    value = entry.value
     if isinstance(value, Mapping):
         faults = Faults()
-        check_keys(value, ("cos", "sin"), key, faults)
+        fields = entry._replace(faults=faults).fields(("cos", "sin"))
         faults.check()
         if set(value) != {"cos", "sin"}:
-            raise ConfigError("expected both, such as {cos: 3/5, sin: 4/5}", key=key)
-        c, s = (value_at(parse(constant(value[part], f"{key}.{part}")), {}) for part in ("cos", "sin"))
+            raise entry.error("expected both, such as {cos: 3/5, sin: 4/5}")
+        c, s = (value_at(parse(constant(fields.at(part))), {}) for part in ("cos", "sin"))
         if c * c + s * s != 1:
-            raise ConfigError(f"cos^2 + sin^2 is {c * c + s * s}, not 1: no angle has these", key=key)
+            raise entry.error(f"cos^2 + sin^2 is {c * c + s * s}, not 1: no angle has these")
         return c, s
     named = NAMED_RESTS.get(str(value).replace(" ", "") if isinstance(value, str | int) else "")
     if named is None:
-        raise ConfigError(
+        raise entry.error(
             f"{as_written(value)} is none of {', '.join(NAMED_RESTS)}: of other angles give the cosine and sine, such "
-            "as {cos: 3/5, sin: 4/5}",
-            key=key,
+            "as {cos: 3/5, sin: 4/5}"
         )
     return Fraction(named[0]), Fraction(named[1])

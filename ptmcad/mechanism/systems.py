@@ -13,12 +13,9 @@ from ptmcad.mechanism.angles import PI
 from ptmcad.mechanism.description import Kind, Parameter, System, UnknownKind
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.reading import (
-    MAX_ENTRIES,
     Reader,
-    check_keys,
     faulty_entries,
-    listed,
-    mapping,
+    name_of,
     new_name,
     parameters_of,
     parsed,
@@ -26,6 +23,7 @@ from ptmcad.mechanism.reading import (
     unknowns_of,
 )
 from ptmcad.mechanism.sizes import check_sizes
+from ptmcad.text.entry import MAX_ENTRIES, Entry, Place
 from ptmcad.text.tree import Tree, names_of
 
 SYSTEM_KEYS = ("name", "title", "parameters", "unknowns", "equations", "potential", "positive", "stable")
@@ -55,28 +53,23 @@ def described_system(record: Mapping[str, Any]) -> System:
 
 def read_system(record: Mapping[str, Any], faults: Faults) -> System:
     """As `described_system`, but what is wrong is noted, and left out or replaced."""
-    check_keys(record, SYSTEM_KEYS, "", faults)
-    name = DEFAULT_NAME
-    with faults:
-        name = new_name(record.get("name", DEFAULT_NAME), "name", {})
-    title = ""
-    with faults:
-        title = title_of(record.get("title", ""))
+    whole = Entry(record, Place(), faults).fields(SYSTEM_KEYS)
+    name = whole.read("name", name_of, DEFAULT_NAME)
+    title = whole.read("title", lambda entry: title_of(entry.value), "")
     parameters: dict[str, Parameter] = {}
     with faults:
-        parameters = parameters_of(mapping(record.get("parameters", {}), "parameters"), faults)
-    unknowns: dict[str, UnknownKind] = {}
-    with faults:
-        if "unknowns" not in record:
-            raise ConfigError("is missing", key="unknowns")
-        unknowns = unknowns_of(record["unknowns"], parameters, faults)
+        parameters = parameters_of(whole)
+    unknowns = unknowns_of(whole, parameters)
     # a key that nobody knows has been told, and may be meant for one of these
     misspelt = not {"equations", "potential"} & record.keys() and any(key not in SYSTEM_KEYS for key in record)
     with faults:
         if ("equations" in record) is ("potential" in record) and not misspelt:
             raise ConfigError("give either equations or a potential", key="equations")
-    texts = _texts(record, faults)
-    trees = {key: tree for key, text in texts.items() if (tree := _tree(text, key, faults)) is not None}
+    texts = _texts(whole)
+    trees: dict[str, Tree] = {}
+    for key, entry in texts.items():
+        with faults:
+            trees[key] = parsed(entry)
     for key, tree in trees.items():
         _add_names(tree, key, parameters, unknowns, faults)
     with faults:
@@ -85,7 +78,7 @@ def read_system(record: Mapping[str, Any], faults: Faults) -> System:
     reader = Reader(parameters, unknowns, faulty_entries(faults, "unknowns"))
     for key in trees:
         with faults:
-            trees[key] = tree = reader.tree(texts[key], key, moving=True)
+            trees[key] = tree = reader.tree(texts[key], moving=True)
             if key.startswith("positive.") and not names_of(tree) and value_at(tree, {}) <= 0:
                 raise ConfigError("is never positive: no solution would be counted", key=key)
     equations, positive, stable = (
@@ -121,21 +114,12 @@ def _add_names(
                 parameters[new_name(name, key, {})] = Parameter(name, Kind.NUMBER, "", None)
 
 
-def _texts(record: Mapping[str, Any], faults: Faults) -> dict[str, object]:
-    """Keys to the expressions as written."""
-    texts: dict[str, object] = {}
-    for key in _LISTS:
-        with faults:
-            texts |= {f"{key}.{n}": text for n, text in enumerate(listed(record.get(key, ()), key, _LIKE[key]), 1)}
-    if "potential" in record:
-        texts["potential"] = record["potential"]
-    return texts
-
-
-def _tree(text: object, key: str, faults: Faults) -> Tree | None:
-    with faults:
-        return parsed(text, key)
-    return None
+def _texts(record: Entry) -> dict[str, Entry]:
+    """The expressions as written, by their keys."""
+    found = [entry for key in _LISTS for entry in record.at(key, ()).each_item(lambda entry: entry, _LIKE[key])]
+    if record.has("potential"):
+        found.append(record.at("potential"))
+    return {entry.key: entry for entry in found}
 
 
 def _check_unknowns(system: System, faults: Faults) -> None:

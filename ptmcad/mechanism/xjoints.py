@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any
 
-from ptmcad.errors import ConfigError, Faults
+from ptmcad.errors import ConfigError
 from ptmcad.mechanism.derivative import negative, product, total
-from ptmcad.mechanism.reading import MAX_UNKNOWNS, Reader, as_written, check_keys, ends, mapping, new_name
+from ptmcad.mechanism.reading import MAX_UNKNOWNS, Reader, ends, new_name
 from ptmcad.mechanism.xjoint import LEVEL, XJoint
+from ptmcad.text.entry import Entry, as_written
 from ptmcad.text.tree import Number, Tree, names_of
 
 XJOINT_KEYS = ("base", "bars", "angles", "top")
@@ -29,7 +29,7 @@ def second_angles(value: object) -> tuple[str, ...]:
 
 
 def add_xjoints(
-    value: object, reader: Reader, points: dict[str, Place], taken: Mapping[str, object], faults: Faults
+    xjoints: Entry, reader: Reader, points: dict[str, Place], taken: Mapping[str, object]
 ) -> tuple[XJoint, ...]:
     """Add the joints' tops to the points.
 
@@ -38,17 +38,11 @@ def add_xjoints(
     taken : parameters and unknowns.
     """
     found: dict[str, XJoint] = {}
-    for name, entry in mapping(value, "x-joint", MAX_UNKNOWNS, LIKE).items():
-        key = f"x-joint.{name}"
-        with faults:
-            new_name(name, key, {})
-            fields = mapping(entry, key, like="{base: [A, B], bars: L, angles: [th, psi], top: [C, D]}")
-            check_keys(fields, XJOINT_KEYS, key, faults)
-            missing = [needed for needed in XJOINT_KEYS if needed not in fields]
-            for needed in missing:
-                with faults:
-                    raise ConfigError("is missing", key=f"{key}.{needed}")
-            if not missing:
+    for name, entry in xjoints.entries(LIKE, MAX_UNKNOWNS).items():
+        with xjoints.faults:
+            new_name(name, entry.key, {})
+            fields = entry.fields(XJOINT_KEYS, XJOINT_KEYS, "{base: [A, B], bars: L, angles: [th, psi], top: [C, D]}")
+            if fields.has(*XJOINT_KEYS):
                 joint = _joint(name, fields, reader, points, {**taken, **{j.other: j for j in found.values()}}, found)
                 for point, angle, (x, y) in zip(
                     joint.top, (joint.other, joint.angle), (points[p] for p in joint.base[::-1]), strict=True
@@ -57,7 +51,7 @@ def add_xjoints(
                     points[point] = total(x, product(joint.bars, c)), total(y, product(joint.bars, s))
                 found[name] = joint
         if name not in found:  # what refers to the points of its top is not to blame for it
-            for point in _named(entry, "top"):
+            for point in _named(entry.value, "top"):
                 points.setdefault(point, (_ZERO, _ZERO))
     return tuple(found.values())
 
@@ -70,17 +64,15 @@ def _named(entry: object, key: str) -> tuple[str, ...]:
 
 def _joint(
     name: str,
-    fields: Mapping[str, Any],
+    fields: Entry,
     reader: Reader,
     points: Mapping[str, Place],
     taken: Mapping[str, object],
     below: Mapping[str, XJoint],
 ) -> XJoint:
-    key = f"x-joint.{name}"
-    base = ends(fields["base"], f"{key}.base", points)
-    angles, top = (
-        _two_names(fields[k], f"{key}.{k}", like) for k, like in (("angles", "[th, psi]"), ("top", "[C, D]"))
-    )
+    key = fields.key
+    base = ends(fields.at("base"), points)
+    angles, top = (_two_names(fields.at(k), like) for k, like in (("angles", "[th, psi]"), ("top", "[C, D]")))
     new_name(angles[1], f"{key}.angles.2", taken)
     if angles[0] not in reader.moving.angles or angles[0] in reader.second:
         raise ConfigError(f"{as_written(angles[0])} is no unknown angle", key=f"{key}.angles.1")
@@ -88,7 +80,7 @@ def _joint(
         raise ConfigError(f"{angles[0]} is the angle of another x-joint", key=f"{key}.angles.1")
     for n, point in enumerate(top, 1):
         new_name(point, f"{key}.top.{n}", {**points, **({top[0]: None} if n == 2 else {})})
-    bars = reader.tree(fields["bars"], f"{key}.bars")
+    bars = reader.tree(fields.at("bars"))
     under = next((joint for joint in below.values() if joint.top == base), None)
     if under is not None:
         return XJoint(name, base, top, *angles, under.length, bars, *under.upper)
@@ -103,7 +95,8 @@ def _joint(
     return XJoint(name, base, top, *angles, total(x1, negative(x)), bars, LEVEL, 0)
 
 
-def _two_names(value: object, key: str, like: str) -> tuple[str, str]:
+def _two_names(entry: Entry, like: str) -> tuple[str, str]:
+    value = entry.value
     if not (isinstance(value, list | tuple) and len(value) == 2 and all(isinstance(name, str) for name in value)):
-        raise ConfigError(f"expected two names, such as {like}", key=key)
+        raise entry.error(f"expected two names, such as {like}")
     return value[0], value[1]

@@ -9,8 +9,9 @@ import os
 from pathlib import Path
 
 from ptmcad.errors import ConfigError
+from ptmcad.text.entry import Tree
 from ptmcad.text.syntax import did_you_mean
-from ptmcad.text.yamltree import Tree, read_file
+from ptmcad.text.yamltree import read_file
 
 
 def shipped_records() -> dict[str, Path]:

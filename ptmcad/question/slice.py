@@ -6,7 +6,7 @@ rational function of the two axes), its window is a nonempty rectangle, and no n
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from fractions import Fraction
@@ -17,26 +17,6 @@ from ptmcad.mechanism import Mechanism, Model, mechanism_in
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.work import split_moments
 from ptmcad.text.expressions import Expression, constant
-
-
-def _is_control(c: str) -> bool:
-    """Whether a character is of Unicode's categories Cc or Cs; a line break or a tab is allowed."""
-    return (c < " " and c not in "\n\r\t") or "\x7f" <= c <= "\x9f" or "\ud800" <= c <= "\udfff"
-
-
-def unstorable(data: Any) -> str | None:
-    """A character that a result has no place for, in the texts and keys of a reference; None when there is none.
-
-    Those are control characters, but for line breaks and tabs, and halves of surrogate pairs, which are not in UTF-8.
-    """
-    if isinstance(data, str):
-        return next(filter(_is_control, data), None)
-    if isinstance(data, Mapping):
-        parts: Iterable[Any] = (part for entry in data.items() for part in entry)
-    else:
-        parts = data if isinstance(data, list | tuple) else ()
-    return next((found for part in parts if (found := unstorable(part)) is not None), None)
-
 
 NOTHING_ADMISSIBLE = "admissible asks that every spring is longer than its free length, and none has a free length here"
 """What is wrong with that count then."""

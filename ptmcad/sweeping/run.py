@@ -178,7 +178,7 @@ def _values_data(values: Any) -> Iterator[str]:
 
 def _slice_data(slice: Slice) -> Any:
     """All of a slice as data that JSON writes."""
-    from ptmcad.show.document.parts import SLICE
+    from ptmcad.show.document.slice import SLICE
 
     return SLICE.write(slice)
 

@@ -8,16 +8,15 @@ that reading ends in a fraction of a second and bounded memory. Every refusal is
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
-from decimal import Decimal
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import yaml
 
 from ptmcad.errors import ConfigError, shown
 from ptmcad.text import textfile
-from ptmcad.text.numerals import exactly, text_of
+from ptmcad.text.entry import Node, Place, Scalar, Sequence, Tree
 
 MAX_BYTES = 200_000
 MAX_DEPTH = 20
@@ -26,58 +25,6 @@ MAX_KEY = 100
 """Longer keys make no sense; every place in a tree holds the path of keys to it."""
 _DIRECTIVE = re.compile(r"^%", re.MULTILINE)
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-_NULLS = frozenset({"", "~", "null", "Null", "NULL"})
-_BOOLEANS = frozenset({"true", "false", "yes", "no", "on", "off", "y", "n"})
-
-
-class Place(NamedTuple):
-    """Where something stands: file, line (from 1) and dotted key path; each may be unknown."""
-
-    key: str | None = None
-    file: str | None = None
-    line: int | None = None
-
-    def error(self, message: str) -> ConfigError:
-        """A `ConfigError` that names this place."""
-        return ConfigError(message, key=self.key, file=self.file, line=self.line)
-
-    def below(self, key: str, line: int | None = None) -> Place:
-        """The place of an entry under this one."""
-        path = key if self.key is None else f"{self.key}.{key}"
-        return Place(path, self.file, self.line if line is None else line)
-
-
-class Scalar(NamedTuple):
-    """A scalar as written; `plain` when it was not quoted."""
-
-    text: str
-    place: Place
-    plain: bool = True
-
-    @property
-    def is_null(self) -> bool:
-        return self.plain and self.text in _NULLS
-
-    @property
-    def is_boolean(self) -> bool:
-        return self.plain and self.text.lower() in _BOOLEANS
-
-
-class Sequence(NamedTuple):
-    """A list."""
-
-    items: tuple[Node, ...]
-    place: Place
-
-
-class Tree(NamedTuple):
-    """A mapping, in the order in which it was written."""
-
-    entries: Mapping[str, Node]
-    place: Place
-
-
-Node = Scalar | Sequence | Tree
 
 
 def read_file(path: str | Path) -> Tree:
@@ -134,49 +81,6 @@ def _cannot_start(text: str, mark: Any) -> str:
         if (character.isprintable() and character)
         else ""
     )
-
-
-def from_python(value: object, place: Place) -> Node:
-    """The same tree from Python data: mappings, lists, tuples, str, bool, None, and numbers, as `exactly` takes them.
-
-    Raises
-    ------
-    ConfigError
-        For any other type, and for a float that is no number.
-    """
-    if isinstance(value, Mapping):
-        for key in value:
-            if not isinstance(key, str):
-                raise place.error(f"the key {key!r} is not text")
-        return Tree({key: from_python(entry, place.below(key)) for key, entry in value.items()}, place)
-    if isinstance(value, list | tuple):
-        return Sequence(tuple(from_python(item, place) for item in value), place)
-    if value is None or isinstance(value, bool):
-        return Scalar({None: "null", True: "true", False: "false"}[value], place)
-    if isinstance(value, str):
-        return Scalar(value, place, plain=False)
-    if isinstance(value, Decimal):
-        return Scalar(str(value), place)
-    try:
-        return Scalar(text_of(exactly(value)), place)
-    except (TypeError, ValueError) as error:
-        raise place.error(str(error)) from error
-
-
-def plain_data(node: Node) -> Any:
-    """The tree as Python data: dict, list, int for plain integers, bool, None; every other scalar stays text."""
-    if isinstance(node, Tree):
-        return {key: plain_data(entry) for key, entry in node.entries.items()}
-    if isinstance(node, Sequence):
-        return [plain_data(item) for item in node.items]
-    if node.is_null:
-        return None
-    if node.plain and node.text.lower() in ("true", "false"):
-        return node.text.lower() == "true"
-    digits = node.text.removeprefix("-")
-    if node.plain and digits.isascii() and digits.isdecimal() and len(digits) < 100:
-        return int(node.text)
-    return node.text
 
 
 def _document(events: Iterator[Any], root: Place) -> Node:

@@ -106,7 +106,7 @@ def test_a_member_has_ranges(folder: Path, capsys: pytest.CaptureFixture[str]) -
         (lambda data: data | {"members": data["members"][::-1]}, "do not increase"),
         (lambda data: data | {"members": [{"value": "1", "file": "../loads-F-10.json"}]}, "a file beside it"),
         (lambda data: data | {"members": [{"value": "-1", "file": "none.json"}]}, "none.json"),
-        (lambda data: data | {"free": {"name": "F"}}, "missing"),
+        (lambda data: data | {"free": {"name": "F"}}, "free lacks the key 'low'"),
         (lambda data: {k: v for k, v in data.items() if k != "title"}, "lacks the key 'title'"),
     ],
 )
@@ -151,13 +151,13 @@ def test_a_member_between_the_changes_and_the_changes_in_the_file(disc: Path) ->
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda found: found | {"complete": "yes"}, "neither true nor false"),
+        (lambda found: found | {"complete": "yes"}, "changes.complete is not true or false"),
         (lambda found: found | {"between": found["between"][1:]}, "do not lie between"),
         (lambda found: found | {"between": [found["between"][0]] * 4}, "do not lie between"),
         (lambda found: found | {"found": [{"value": {"low": "0", "high": "1/10"}, "words": []}]}, "not exact"),
-        (lambda found: found | {"others": [{"low": "1", "high": "0"}]}, "exchanged"),
-        (lambda found: found | {"at_ends": [[], [3]]}, "sentences"),
-        (lambda found: {k: v for k, v in found.items() if k != "between"}, "missing"),
+        (lambda found: found | {"others": [{"low": "1", "high": "0"}]}, "lacks the key 'polynomial'"),
+        (lambda found: found | {"at_ends": [[], [3]]}, "is not a text"),
+        (lambda found: {k: v for k, v in found.items() if k != "between"}, "lacks the key 'between'"),
     ],
 )
 def test_damaged_changes_are_refused(disc: Path, change: object, message: str) -> None:

@@ -27,7 +27,7 @@ from ptmcad.exact.ranges.tracking import BITS, Reached, at_value, bridge, enclos
 from ptmcad.mechanism import ptm
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Slice
-from ptmcad.show.ranges.document import document, path_data
+from ptmcad.show.ranges.document import document, part
 from ptmcad.show.ranges.table import path_table
 from ptmcad.text.parsing import parse
 
@@ -299,7 +299,7 @@ def test_text_and_document() -> None:
     fold = "fold: the stable pose merges with a saddle and both vanish; the mechanism snaps to th1 = -47.524364"
     assert f"up: rho = 1.041432630: {fold}" in text
     assert "(reverse: y3 < 0, y4 < 0)" in text
-    data = json.loads(document("x", "ptm", {"path": path_data(found)}))
+    data = json.loads(document("x", "ptm", part(found, 12)))
     jsonschema.validate(data, schema, cls=jsonschema.Draft202012Validator)
     assert data["path"]["paths"][0]["high"]["fate"] == "snap"
 
@@ -340,7 +340,7 @@ def test_solutions_of_equations_are_followed_to_their_fold() -> None:
     shown = path_table(found)
     assert "fold: the solution merges with a solution and both vanish" in shown and "x = 1" in shown
     jsonschema.validate(
-        json.loads(document("s", "s", {"path": path_data(found)})),
+        json.loads(document("s", "s", part(found, 12))),
         json.loads((ROOT / "docs" / "range.schema.json").read_text(encoding="utf-8")),
         cls=jsonschema.Draft202012Validator,
     )
@@ -443,7 +443,7 @@ def test_solutions_that_may_meet_in_several_ways_are_not_told_apart() -> None:
     assert "the stable solution meets one or more of a saddle, a saddle and a maximum and vanishes;" in path_table(
         found
     )
-    data = json.loads(document("x", "x", {"path": path_data(found)}))
+    data = json.loads(document("x", "x", part(found, 12)))
     schema = json.loads((ROOT / "docs" / "range.schema.json").read_text(encoding="utf-8"))
     jsonschema.validate(data, schema, cls=jsonschema.Draft202012Validator)
     assert data["path"]["paths"][0]["low"]["among"] is True and "among" not in data["path"]["paths"][0]["high"]

@@ -21,7 +21,7 @@ from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.exact.ranges.strips import Branch, Strip, strips
 from ptmcad.exact.ranges.width import largest
 from ptmcad.question.config import slice_from_options
-from ptmcad.show.ranges.document import document, over_data
+from ptmcad.show.ranges.document import document, part
 from ptmcad.show.ranges.table import width_table
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -159,7 +159,7 @@ def test_table_and_document() -> None:
     found = operation_widths(slice, "rho", 3)
     text = width_table(found)
     assert "0.5  0.25                  0.75  0.5" in text and "* the edge of the window of rho" in text
-    data = json.loads(document("x", "ptm", {"over": over_data(found, 8)}))
+    data = json.loads(document("x", "ptm", part(found, 8)))
     jsonschema.validate(data, schema, cls=jsonschema.Draft202012Validator)
     assert [row["value"] for row in data["over"]["rows"]] == ["1/2", "1", "3/2"]
 

@@ -23,7 +23,7 @@ from ptmcad.answer.intervals import lower, upper
 from ptmcad.ask.ranges import CountIntervals, Event, intervals
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, InfiniteSolutionsError
 from ptmcad.question.slice import Count, Slice
-from ptmcad.show.ranges.document import document, line_data
+from ptmcad.show.ranges.document import document, part
 from ptmcad.show.ranges.numbers import end_text, width_text
 from ptmcad.show.ranges.table import table
 from ptmcad.text.enclosure import AlgebraicNumber
@@ -259,10 +259,10 @@ def test_texts_round_to_nearest() -> None:
 def test_the_document_follows_its_schema_and_repeats() -> None:
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
     found = intervals(record("fig3"), "rho", {"F": -10})
-    text = document("fig3", "ptm", {"line": line_data(found, 10)})
+    text = document("fig3", "ptm", part(found, 10))
     jsonschema.validate(json.loads(text), SCHEMA, cls=jsonschema.Draft202012Validator)
     again = intervals(record("fig3"), "rho", {"F": -10})
-    assert document("fig3", "ptm", {"line": line_data(again, 10)}) == text
+    assert document("fig3", "ptm", part(again, 10)) == text
     high = json.loads(text)["line"]["intervals"][0]["high"]
     p = fmpz_poly([int(c) for c in high["polynomial"]])
     values = [Fraction(high[k]) for k in ("low", "high")]

@@ -17,7 +17,8 @@ from ptmcad.options import Options
 from ptmcad.process import extras
 from ptmcad.question.config import load, record_from_options, slice_from_mapping
 from ptmcad.question.config.options import Typed
-from ptmcad.text.yamltree import plain_data, read_text
+from ptmcad.text.entry import plain_data
+from ptmcad.text.yamltree import read_text
 
 
 def panel(name: str, ranges: tuple[str, ...] = ()) -> Panel:

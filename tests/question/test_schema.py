@@ -21,13 +21,15 @@ from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.mechanism import Kind, Support, ptm
 from ptmcad.mechanism.bodies import BODY_KEYS
 from ptmcad.mechanism.description import UnknownKind
-from ptmcad.mechanism.reading import MAX_BODIES, MAX_ENTRIES, MAX_UNKNOWNS, PARAMETER_KEYS
+from ptmcad.mechanism.reading import MAX_BODIES, MAX_UNKNOWNS, PARAMETER_KEYS
 from ptmcad.mechanism.record import KEYS, NAMED_RESTS, SPRING_KEYS, TORSION_KEYS
 from ptmcad.mechanism.systems import SYSTEM_KEYS
 from ptmcad.question.config import RECORD_KEYS, slice_from_mapping
 from ptmcad.question.config.starters import NAMES, starter_mechanism, starter_text
 from ptmcad.question.slice import Count
-from ptmcad.show.document.writing import FORMAT
+from ptmcad.show.document.regionmap import FORMAT
+from ptmcad.show.schemas import schemas, with_prose
+from ptmcad.text.entry import MAX_ENTRIES
 
 SCHEMA = json.loads(files("ptmcad").joinpath("record.schema.json").read_text(encoding="utf-8"))
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)  # `jsonschema.validate` would check the schema each time
@@ -232,3 +234,22 @@ def test_one_is_not_true_to_either(shipped: Callable[..., RegionMap]) -> None:
     assert not jsonschema.Draft202012Validator(RESULT).is_valid(data)
     with pytest.raises(ValueError, match="is not true or false"):
         RegionMap.from_json(json.dumps(data))
+
+
+@pytest.mark.parametrize("name", ["region-map", "poses", "design", "range", "variety"])
+def test_published_schemas_are_those_of_the_codecs(name: str) -> None:
+    """``scripts/schemas`` writes them anew."""
+    published = json.loads((DOCS / f"{name}.schema.json").read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator.check_schema(published)
+    assert with_prose(schemas()[name], published) == published
+
+
+EARLIER = Path(__file__).resolve().parents[1] / "data" / "written-by-0.1.0"
+
+
+@pytest.mark.parametrize("path", sorted(EARLIER.rglob("*.json")), ids=lambda path: path.stem)
+def test_earlier_documents_validate(path: Path) -> None:
+    document = json.loads(path.read_text(encoding="utf-8"))
+    kind = document["format"].removeprefix("ptmcad-").partition("/")[0]
+    if kind in schemas():
+        jsonschema.Draft202012Validator(schemas()[kind]).validate(document)

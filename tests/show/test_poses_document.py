@@ -170,10 +170,10 @@ def test_schema_and_reader_agree_on_the_keys() -> None:
 @pytest.mark.parametrize(
     ("place", "value", "fault"),
     [
-        (("energy", "text"), "112.500000001", "energy is not its enclosure rounded to 12 digits"),
-        (("energy", "center"), "112.6", "is not its enclosure rounded"),
+        (("energy", "text"), "112.500000001", "energy.text is not '112.5', as the rest says"),
+        (("energy", "center"), "112.6", "is not '112.6', as the rest says"),
         (("energy", "radius"), "-1", "is negative"),
-        (("energy", "radius"), "1", "is not its enclosure rounded"),
+        (("energy", "radius"), "1", "is not '112 ± 2', as the rest says"),
         (("energy", "center"), "1/0", "zero denominator"),
         (("angles", 0), {}, "lacks the key"),
         (("angles",), [], "has 0 entries, not 2"),

@@ -13,7 +13,7 @@ from ptmcad.ask.ranges import intervals, operation_widths
 from ptmcad.ask.solving import poses_at
 from ptmcad.question.config import point_from_mapping
 from ptmcad.question.slice import Slice
-from ptmcad.show.ranges.document import line_data, over_data
+from ptmcad.show.ranges.document import part
 from ptmcad.show.ranges.table import table, width_table
 from ptmcad.show.render.landscape import draw_landscape
 from ptmcad.text.expressions import axis
@@ -47,7 +47,7 @@ def test_neighbours_with_as_many_stable_solutions_are_one_range() -> None:
     assert [i.total for i in range_.parts] == [5, 3]
     assert (range_.low, range_.high) == (-1, 2)
     assert "range with two stable solutions: -1 to 2, width 3 (the whole window)" in table(found).splitlines()
-    assert line_data(found, 6)["operation"] == [0, 1]
+    assert part(found, 6)["line"]["operation"] == [0, 1]
 
 
 def test_a_system_has_no_operation_range(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -57,7 +57,7 @@ def test_a_system_has_no_operation_range(monkeypatch: pytest.MonkeyPatch) -> Non
     text = table(intervals(slice, "b", {"a": "1/3"})) + width_table(widths)
     assert "operation" not in text
     assert "widest range with three stable solutions: " in text
-    assert [len(row["operation"]) for row in over_data(widths, 6)["rows"]] == [len(r.operation) for r in widths.rows]
+    assert [len(row["operation"]) for row in part(widths, 6)["over"]["rows"]] == [len(r.operation) for r in widths.rows]
 
 
 @pytest.mark.parametrize(

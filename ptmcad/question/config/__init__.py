@@ -20,7 +20,7 @@ from ptmcad.mechanism import Kind, Parameter, ptm
 from ptmcad.question.config.binding import bound, member_name, released_names, settled
 from ptmcad.question.config.family import Family, checked_family, family_of, fault_of_member, member_like
 from ptmcad.question.config.model import named_model
-from ptmcad.question.config.objects import make_mechanism, make_system, plain
+from ptmcad.question.config.objects import make_mechanism, make_system, tree_of
 from ptmcad.question.config.options import Typed, ranges_of, settings_of, with_axes
 from ptmcad.question.config.points import point_from, point_from_mapping, point_from_options, units_of
 from ptmcad.question.config.record import (
@@ -40,8 +40,8 @@ from ptmcad.question.domain import MAX_DEGREE
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Count, Slice
+from ptmcad.text.entry import Node, Place, Scalar, Sequence
 from ptmcad.text.syntax import did_you_mean
-from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_python
 
 __all__ = [
     "MAX_DEGREE",
@@ -94,22 +94,15 @@ def slice_from_mapping(mapping: Mapping[str, Any]) -> Slice:
     >>> slice_from_mapping({"axes": {"rho": [0, 2], "L2": ["0", "2"]}, "parameters": {"F3": "-0.1"}}).axis_names
     ('rho', 'L2')
     """
-    return checked_slice(_tree_of(mapping))
-
-
-def _tree_of(mapping: Mapping[str, Any]) -> Tree:
     expect(mapping, Mapping, "mapping", "a mapping like a record")
-    node = from_python(plain(mapping), Place())
-    assert isinstance(node, Tree)
-    return node
+    return checked_slice(tree_of(mapping))
 
 
 def slice_from(question: str | Path | Mapping[str, Any] | Slice) -> Slice:
     """The slice that is meant by a record's file, by a mapping like a record, or by itself."""
     if isinstance(question, Slice):
         return question
-    expect(question, (str, Path, Mapping), "slice", f"{A_SLICE}, {A_RECORD}")
-    return slice_from_mapping(question) if isinstance(question, Mapping) else load(question)
+    return checked_slice(tree_of(question, "slice", f"{A_SLICE}, {A_RECORD}"))
 
 
 def family_from(question: str | Path | Mapping[str, Any] | Family) -> Family:
@@ -122,8 +115,7 @@ def family_from(question: str | Path | Mapping[str, Any] | Family) -> Family:
     """
     if isinstance(question, Family):
         return question
-    expect(question, (str, Path, Mapping), "question", A_RECORD)
-    return checked_family(_tree_of(question) if isinstance(question, Mapping) else record_tree(question))
+    return checked_family(tree_of(question))
 
 
 def slice_from_options(

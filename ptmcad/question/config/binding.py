@@ -11,11 +11,11 @@ from fractions import Fraction
 from ptmcad.errors import ExpressionError
 from ptmcad.question.config.record import Record, swept_names
 from ptmcad.question.config.scalars import number_of
+from ptmcad.text.entry import Place, Scalar
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import rational
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Number, Tree, names_of, replaced, to_text
-from ptmcad.text.yamltree import Place, Scalar
 
 
 def with_numbers(record: Record, numbers: Mapping[str, Fraction], places: Mapping[str, Place]) -> Record:

@@ -18,8 +18,8 @@ from ptmcad.question.config.record import Record, Window
 from ptmcad.question.config.resolution import axis_of, point_of, slice_of
 from ptmcad.question.design import Bounds, Condition, named
 from ptmcad.question.slice import Axis, Slice
+from ptmcad.text.entry import Place, Scalar
 from ptmcad.text.expressions import Expression, constant
-from ptmcad.text.yamltree import Place, Scalar
 
 
 class Aim(Enum):

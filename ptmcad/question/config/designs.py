@@ -5,26 +5,25 @@ Guarantee: whatever is wrong is a `ConfigError` with file, line and key.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from fractions import Fraction
+from collections.abc import Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import A_RECORD, ConfigError, ExpressionError, Faults, expect
-from ptmcad.mechanism import Mechanism
+from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.mechanism import Mechanism, Model
 from ptmcad.question.config.designed import Aim, Design
-from ptmcad.question.config.objects import plain
+from ptmcad.question.config.objects import plain, tree_of
 from ptmcad.question.config.options import ranges_of
-from ptmcad.question.config.record import Record, Window, check_axis_name, read_record
+from ptmcad.question.config.record import Record, Window, check_axis_name, described_record, window_of
 from ptmcad.question.config.resolution import axis_of, note_values, unread_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
 from ptmcad.question.design import Condition, condition_of, named
 from ptmcad.question.examples import A_DESIGN, FIRST, SECOND
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Axis
+from ptmcad.text.entry import Entry, Node, Place, Scalar, Sequence, Tree, from_python
 from ptmcad.text.syntax import did_you_mean
-from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_python
 
 KEYS = ("maximise", "along", "over", "where", "pose")
 WHERE_KEYS = ("stable", "tension", "conditions")
@@ -48,14 +47,8 @@ def design_from(question: str | Path | Mapping[str, Any] | Design, **changes: An
         if given:
             raise ConfigError("a design that was read is complete: give the record instead", key=given[0])
         return question
-    expect(question, (str, Path, Mapping), "question", A_RECORD)
-    if isinstance(question, Mapping):
-        tree = from_python(plain(question), Place())
-        assert isinstance(tree, Tree)  # of a mapping
-    else:
-        tree = record_tree(question)
     return checked_design(
-        tree, {n: from_python(plain(v), Place(f"design.{n}")) for n, v in changes.items() if v is not None}
+        tree_of(question), {n: from_python(plain(v), Place(f"design.{n}")) for n, v in changes.items() if v is not None}
     )
 
 
@@ -106,10 +99,7 @@ def checked_design(tree: Tree, given: Mapping[str, Node] | None = None) -> Desig
     ConfigError
         That knows all faults of the record.
     """
-    faults = Faults()
-    record = read_record(tree, faults)
-    if record.described is None:
-        faults.check()  # without it nothing can be said of the rest
+    record, faults = described_record(tree)
     node = record.design
     place = tree.place.below("design") if node is None else node.place
     entries = {**_entries(node), **_merged(_entries(node), given or {})}
@@ -124,7 +114,7 @@ def checked_design(tree: Tree, given: Mapping[str, Node] | None = None) -> Desig
     if faults.found and (not entries or len(record.axes) != 2):
         note_values(record._replace(unread=unread), faults)
     record = record._replace(design=None, unread=unread if faults.found else frozenset())
-    return _Reader(record, entries, place, faults).design()
+    return _design(record, Entry(entries, place, faults))
 
 
 def _merged(old: Mapping[str, Node], new: Mapping[str, Node]) -> dict[str, Node]:
@@ -135,157 +125,109 @@ def _merged(old: Mapping[str, Node], new: Mapping[str, Node]) -> dict[str, Node]
     return found
 
 
-@dataclass(frozen=True, slots=True)
-class _Reader:
-    """The entries of ``design``, read one by one; what is wrong is noted."""
+def _design(record: Record, asked: Entry) -> Design:
+    """What the entries of ``design`` ask of a record; what is wrong is noted, and raised."""
+    faults = asked.faults
+    asked.fields(KEYS)
+    maximise, along, pose = asked.read("maximise", _text, "range"), "", asked.read("pose", _text, "stable:1")
+    if maximise == Aim.RANGE.value:
+        along = asked.read("along", partial(_along, tuple(record.axes)), next(iter(record.axes)))
+    elif asked.has("along"):
+        with faults:
+            raise asked.at("along").error("is for a range: leave it out")
+    over = _over(record, asked, () if maximise == Aim.AREA.value else tuple(n for n in record.axes if n != along))
+    conditions = "expected conditions such as {stable: 2}"
+    where = asked.read("where", lambda entry: entry.fields(WHERE_KEYS, expected=conditions), asked.below("where", {}))
+    found = Design(
+        record, maximise, along, over, where.read("stable", _whole, 2),
+        where.read("conditions", partial(_conditions, record, over), ()),
+        where.read("tension", partial(_flag, record.model), False), pose,
+    )  # fmt: skip
+    if faults.found:
+        unread = _entries(asked.value.get("over")).keys()
+        note_values(record._replace(unread=record.unread | unread), faults)
+    # read in the middle of the bounds, so that what no design can be asked is said at once
+    middle = {axis.name: (axis.low + axis.high) / 2 for axis in over}
+    _ = found.slice(middle) if found.aim in (Aim.RANGE, Aim.AREA) else found.point(middle)
+    return found
 
-    record: Record
-    entries: Mapping[str, Node]
-    place: Place
-    faults: Faults
 
-    def design(self) -> Design:
-        self._check_keys(self.entries, KEYS)
-        maximise, along, pose = self._text("maximise", "range"), "", self._text("pose", "stable:1")
-        if maximise == Aim.RANGE.value:
-            along = self._along()
-        elif "along" in self.entries:
-            with self.faults:
-                raise self.entries["along"].place.error("is for a range: leave it out")
-        over = self._over(maximise, along)
-        where = self.entries.get("where")
-        if where is not None and not isinstance(where, Tree):
-            with self.faults:
-                raise where.place.error("expected conditions such as {stable: 2}")
-        parts = _entries(where)
-        self._check_keys(parts, WHERE_KEYS)
-        working = self._whole(parts["stable"]) if "stable" in parts else 2
-        tension = self._flag(parts["tension"]) if "tension" in parts else False
-        conditions = self._conditions(parts["conditions"], over) if "conditions" in parts else ()
-        if self.faults.found:
-            unread = _entries(self.entries.get("over")).keys()
-            note_values(self.record._replace(unread=self.record.unread | unread), self.faults)
-        found = Design(self.record, maximise, along, over, working, conditions, tension, pose)
-        self._check_slice(found)
-        return found
+def _text(entry: Entry) -> str:
+    return number_text(entry).text.strip()
 
-    def _check_keys(self, entries: Mapping[str, Node], known: tuple[str, ...]) -> None:
-        for key, node in entries.items():
-            with self.faults:
-                if key not in known:
-                    hint = did_you_mean(key, known) or f"; the keys are {', '.join(known)}"
-                    raise node.place.error(f"unknown key{hint}")
 
-    def _text(self, key: str, default: str) -> str:
-        if key not in self.entries:
-            return default
-        text = default
-        with self.faults:
-            text = number_text(self.entries[key]).text.strip()
-        return text
+def _along(axes: tuple[str, ...], entry: Entry) -> str:
+    along = _text(entry)
+    if along not in axes:
+        hint = did_you_mean(along, axes) or f": choose {' or '.join(axes)}"
+        raise entry.error(f"{along[:40]!r} is not an axis{hint}")
+    return along
 
-    def _along(self) -> str:
-        axes = tuple(self.record.axes)
-        node = self.entries.get("along")
-        along = self._text("along", axes[0])
-        if along not in axes and node is not None:
-            with self.faults:
-                hint = did_you_mean(along, axes) or f": choose {' or '.join(axes)}"
-                raise node.place.error(f"{along[:40]!r} is not an axis{hint}")
-            return axes[0]
-        return along
 
-    def _over(self, maximise: str, along: str) -> tuple[Axis, ...]:
-        """The design parameters; without a word those axes that have to be among them."""
-        axes = self.record.axes
-        if maximise == Aim.AREA.value:
-            needed: tuple[str, ...] = ()
-        else:
-            needed = tuple(name for name in axes if name != along)
-        node = self.entries.get("over")
-        if node is None:
-            if not needed:
-                with self.faults:
-                    raise self.place.below("over").error("is missing: of an area say over which parameters it changes")
-            return self._sorted({name: axes[name] for name in needed}, needed)
-        windows: dict[str, Window] = {}
-        if not isinstance(node, Tree) or not 1 <= len(node.entries) <= MAX_PARAMETERS:
-            with self.faults:
-                raise node.place.error(f"expected design parameters with their bounds, such as {{{FIRST}: [1/2, 2]}}")
-            return ()
-        for name, entry in node.entries.items():
-            with self.faults:
-                windows[name] = self._bounds(name, entry, needed)
-        missing = [name for name in needed if name not in node.entries]
-        if missing:
-            with self.faults:
-                raise node.place.error(
-                    f"{' and '.join(missing)} {'is an axis' if len(missing) == 1 else 'are axes'} that a design fixes: "
-                    "give bounds here too"
-                )
-        return self._sorted(windows, needed)
+def _over(record: Record, asked: Entry, needed: tuple[str, ...]) -> tuple[Axis, ...]:
+    """The design parameters; without a word those axes that have to be among them."""
+    entry = asked.at("over")
+    windows = {name: record.axes[name] for name in needed}
+    with asked.faults:
+        if asked.has("over"):
+            expected = f"expected design parameters with their bounds, such as {{{FIRST}: [1/2, 2]}}"
+            entries = entry.entries(expected=expected)
+            if not 1 <= len(entries) <= MAX_PARAMETERS:
+                raise entry.error(expected)
+            found = dict(entry.each_entry(lambda part: (part.name, _bounds(record, part, needed))))
+            windows = {name: found[name] for name in (*needed, *found) if name in found}
+            if missing := [name for name in needed if name not in entries]:
+                are = "is an axis" if len(missing) == 1 else "are axes"
+                raise entry.error(f"{' and '.join(missing)} {are} that a design fixes: give bounds here too")
+        elif not needed:
+            raise entry.error("is missing: of an area say over which parameters it changes")
+    axes = []
+    for name, window in windows.items():
+        with asked.faults:
+            axes.append(axis_of(name, window, record.model))
+    return tuple(axes)
 
-    def _bounds(self, name: str, node: Node, needed: tuple[str, ...]) -> Window:
-        check_axis_name(name, node.place)
-        record = self.record
-        if name in record.axes and name not in needed:
-            raise node.place.error(f"{name} varies over its whole window in every design: it is no design parameter")
-        used = any(name in names_in_scalar(scalar) for scalar in record.values.values())
-        if name not in record.axes and name not in record.model.parameters and not used:
-            hint = did_you_mean(name, record.model.parameters) or ": use it in an expression under 'parameters'"
-            raise node.place.error(f"no parameter is called {name[:40]}{hint}")
-        if not isinstance(node, Sequence) or len(node.items) != 2:
-            raise node.place.error("expected bounds such as [1/2, 2]")
-        low, high = (number_text(item) for item in node.items)
-        return Window(low, high, node.place)
 
-    def _sorted(self, windows: Mapping[str, Window], first: tuple[str, ...]) -> tuple[Axis, ...]:
-        names = [*(n for n in first if n in windows), *(n for n in windows if n not in first)]
-        found = []
-        for name in names:
-            with self.faults:
-                found.append(axis_of(name, windows[name], self.record.model))
-        return tuple(found)
+def _bounds(record: Record, entry: Entry, needed: tuple[str, ...]) -> Window:
+    name = entry.name
+    check_axis_name(name, entry.place)
+    if name in record.axes and name not in needed:
+        raise entry.error(f"{name} varies over its whole window in every design: it is no design parameter")
+    used = any(name in names_in_scalar(scalar) for scalar in record.values.values())
+    if name not in record.axes and name not in record.model.parameters and not used:
+        hint = did_you_mean(name, record.model.parameters) or ": use it in an expression under 'parameters'"
+        raise entry.error(f"no parameter is called {name[:40]}{hint}")
+    return window_of(entry, "bounds", "[1/2, 2]")
 
-    def _whole(self, node: Node) -> int:
-        found = Fraction(2)
-        with self.faults:
-            found = number_of(number_text(node), "the number of stable poses")
-            if found.denominator != 1 or not 0 <= found <= 1000:
-                raise node.place.error(f"the number of stable poses is a whole one, not {found}")
-        return int(found)
 
-    def _flag(self, node: Node) -> bool:
-        with self.faults:
-            if not isinstance(node, Scalar) or node.text.lower() not in ("true", "false"):
-                raise node.place.error("write true or false")
-            model = self.record.model
-            if not isinstance(model, Mechanism):
-                raise node.place.error("a system has no springs that would be in tension")
-            return node.text.lower() == "true"
-        return False
+def _whole(entry: Entry) -> int:
+    found = number_of(number_text(entry), "the number of stable poses")
+    if found.denominator != 1 or not 0 <= found <= 1000:
+        raise entry.error(f"the number of stable poses is a whole one, not {found}")
+    return int(found)
 
-    def _conditions(self, node: Node, over: tuple[Axis, ...]) -> tuple[Condition, ...]:
-        found = []
-        known = {axis.name: (axis.low, axis.high) for axis in over}
-        fixed = {n: s.text for n, s in self.record.values.items() if n not in self.record.axes}
-        for item in node.items if isinstance(node, Sequence) else (node,):
-            with self.faults:
-                if not isinstance(item, Scalar):
-                    raise item.place.error(f"expected an inequality such as {FIRST} + {SECOND} <= 3")
-                try:
-                    condition = condition_of(item.text)
-                    for name in condition.names:
-                        named(known, fixed)(name)
-                except (ExpressionError, RecursionError) as error:
-                    raise item.place.error(str(error)) from error
-                found.append(condition)
-        return tuple(found)
 
-    def _check_slice(self, found: Design) -> None:
-        """Read the design in the middle of the bounds, so that what no design can be asked is said at once."""
-        middle = {axis.name: (axis.low + axis.high) / 2 for axis in found.over}
-        check: Callable[[Mapping[str, Fraction]], object] = (
-            found.slice if found.aim in (Aim.RANGE, Aim.AREA) else found.point
-        )
-        check(middle)
+def _flag(model: Model, entry: Entry) -> bool:
+    if not isinstance(entry.value, Scalar) or entry.value.text.lower() not in ("true", "false"):
+        raise entry.error("write true or false")
+    if not isinstance(model, Mechanism):
+        raise entry.error("a system has no springs that would be in tension")
+    return entry.value.text.lower() == "true"
+
+
+def _conditions(record: Record, over: tuple[Axis, ...], entry: Entry) -> tuple[Condition, ...]:
+    known = {axis.name: (axis.low, axis.high) for axis in over}
+    fixed = {n: s.text for n, s in record.values.items() if n not in record.axes}
+
+    def read(item: Entry) -> Condition:
+        if not isinstance(item.value, Scalar):
+            raise item.error(f"expected an inequality such as {FIRST} + {SECOND} <= 3")
+        try:
+            condition = condition_of(item.value.text)
+            for name in condition.names:
+                named(known, fixed)(name)
+        except (ExpressionError, RecursionError) as error:
+            raise item.error(str(error)) from error
+        return condition
+
+    return (read(entry),) if isinstance(entry.value, Scalar | Mapping) else entry.each_item(read)

@@ -15,14 +15,14 @@ from typing import NamedTuple
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism import Model
 from ptmcad.question.config.binding import bound, member_name
-from ptmcad.question.config.record import MAX_MEMBERS, Record, Window, check_members, read_record
+from ptmcad.question.config.record import MAX_MEMBERS, Record, Window, check_members, described_record
 from ptmcad.question.config.resolution import axis_of, note_values, slice_of, unread_names, written_in
 from ptmcad.question.config.scalars import number_of
 from ptmcad.question.slice import Axis, Slice
+from ptmcad.text.entry import Entry, Node, Scalar, Tree
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import names_in, parse
-from ptmcad.text.yamltree import Node, Scalar, Sequence, Tree
 
 MEMBERS = 9
 """Where nothing is stated: so many values, evenly spaced."""
@@ -117,10 +117,7 @@ def checked_family(tree: Tree) -> Family:
     ConfigError
         For anything wrong in it, with file, line and key; its ``faults`` are all there are.
     """
-    faults = Faults()
-    record = read_record(tree, faults)
-    if record.described is None:
-        faults.check()
+    record, faults = described_record(tree)
     if record.free is None:
         with faults:
             if "free" not in tree.entries:
@@ -220,24 +217,22 @@ def _values(free: Axis, members: Node | None, faults: Faults) -> tuple[Fraction,
         if number.denominator != 1 or not 2 <= number <= MAX_MEMBERS:
             raise members.place.error(f"write how many members there are, 2 to {MAX_MEMBERS}, or a list of values")
         return _spaced(free, int(number))
-    assert isinstance(members, Sequence)
-    return _listed(free, members, faults)
-
-
-def _listed(free: Axis, members: Sequence, faults: Faults) -> tuple[Fraction, ...]:
-    if not 1 <= len(members.items) <= MAX_MEMBERS:
-        raise members.place.error(f"{len(members.items)} values are given: a family has 1 to {MAX_MEMBERS} members")
+    entry = Entry.of(members, members.place, faults)
+    if not 1 <= len(entry.value) <= MAX_MEMBERS:
+        raise entry.error(f"{len(entry.value)} values are given: a family has 1 to {MAX_MEMBERS} members")
     values: set[Fraction] = set()
-    for item in members.items:
-        with faults:
-            if not isinstance(item, Scalar):
-                raise item.place.error("expected a number")
-            value = number_of(item, "the value of a member")
-            if not free.low <= value <= free.high:
-                raise item.place.error(f"{text_of(value)} is outside of the range of {free.name}")
-            if value in values:
-                raise item.place.error(f"{text_of(value)} is given twice: leave one out")
-            values.add(value)
+
+    def read(item: Entry) -> None:
+        if not isinstance(item.value, Scalar):
+            raise item.error("expected a number")
+        value = number_of(item.value, "the value of a member")
+        if not free.low <= value <= free.high:
+            raise item.error(f"{text_of(value)} is outside of the range of {free.name}")
+        if value in values:
+            raise item.error(f"{text_of(value)} is given twice: leave one out")
+        values.add(value)
+
+    entry.each_item(read)
     return tuple(sorted(values))
 
 

@@ -6,7 +6,8 @@ record's folder, or in folders below, are read.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -25,12 +26,15 @@ from ptmcad.mechanism import (
 )
 from ptmcad.mechanism.parts import check_numbers
 from ptmcad.question.config.starters import NAMES, starter_mechanism
+from ptmcad.text.entry import Node, Place, Scalar, Tree, plain_data
+from ptmcad.text.entry import Sequence as Listed
 from ptmcad.text.syntax import NAME, did_you_mean, names_in
-from ptmcad.text.yamltree import Node, Place, Scalar, Tree, plain_data, read_file
-from ptmcad.text.yamltree import Sequence as Listed
+from ptmcad.text.yamltree import read_file
 
 _EXPRESSIONS = ("equations", "potential", "positive", "stable")
 """The keys of a system that hold them."""
+_NOTHING: Mapping[str, tuple[Node, Place]] = {}
+"""A plain mapping, as records go to other processes."""
 
 
 class Described(NamedTuple):
@@ -38,34 +42,34 @@ class Described(NamedTuple):
 
     Attributes
     ----------
-    node : the description; None where nobody has written one.
+    parts : the description's parts by their keys, such as ``springs.2.k``, itself under the empty one; none where
+        nobody has written it.
     doubtful : parameters of which nothing can be said, because what describes them is faulty.
     """
 
     model: Model
-    node: Tree | None = None
+    parts: Mapping[str, tuple[Node, Place]] = _NOTHING
     doubtful: frozenset[str] = frozenset()
 
     def place_of(self, parameter: str) -> Place | None:
         """Where a parameter has its default, or else where it is declared or first used; None where nothing says it."""
-        if self.node is None:
-            return None
         found = self.model.parameters[parameter]
         declared = f"parameters.{found.alias_of or parameter}"
-        entry = _entry(self.node, declared)
         if found.alias_of:
-            return _place(self.node, f"{declared}.alias")
-        if isinstance(entry, Tree):
-            return _place(self.node, f"{declared}.default" if "default" in entry.entries else declared)
-        return next((place for place, text in _texts(self.node) if parameter in NAME.findall(text)), None)
+            return self.place_of_part(f"{declared}.alias")
+        if declared in self.parts and isinstance(self.parts[declared][0], Tree):
+            default = f"{declared}.default"
+            return self.place_of_part(default if default in self.parts else declared)
+        texts = ((place, node.text) for node, place in self.parts.values() if isinstance(node, Scalar))
+        return next((place for place, text in texts if parameter in NAME.findall(text)), None)
 
     def place_of_part(self, key: str) -> Place | None:
         """Where a key of the description stands; None where nobody has written it."""
-        return None if self.node is None else _place(self.node, key)
+        return _place(self.parts, key) if self.parts else None
 
     def has_part(self, key: str) -> bool:
         """Whether the description has a key."""
-        return self.node is not None and _entry(self.node, key) is not None
+        return key in self.parts
 
 
 def model_of(record: Tree) -> Model:
@@ -180,7 +184,9 @@ def _read(node: Tree, faults: Faults, used: Iterable[str] = (), is_system: bool 
     used : names in the record's own expressions.
     """
     is_system = is_system or "equations" in node.entries or "potential" in node.entries
-    empty = tuple(_empty(node, ""))
+    parts = {key: (part, place) for key, part, place in _parts(node, "", node.place)}
+    # of a whole parameter its reader says what could be there
+    empty = tuple(key for key, (part, _) in parts.items() if _is_empty(part) and not _PARAMETER.fullmatch(key))
     data = plain_data(node)
     found = Faults()
     model: Model | None = None
@@ -198,14 +204,14 @@ def _read(node: Tree, faults: Faults, used: Iterable[str] = (), is_system: bool 
         model = None
     # what is said of an empty value, or of a list because of one in it, says no more
     inner = [fault for fault in found.found if not any(_is_below(key, fault.key or "") for key in empty)]
-    placed = [_place(node, key).error("has no value: write one, or leave the key out") for key in empty]
-    placed += [_place(node, fault.key or "").error(fault.message) for fault in inner]
+    placed = [_place(parts, key).error("has no value: write one, or leave the key out") for key in empty]
+    placed += [_place(parts, fault.key or "").error(fault.message) for fault in inner]
     if model is None:
         raise ConfigError.of(placed)
     for error in placed:
         with faults:
             raise error
-    return Described(model, node, _doubtful(model, (*(fault.key or "" for fault in found.found), *empty)))
+    return Described(model, parts, _doubtful(model, (*(fault.key or "" for fault in found.found), *empty)))
 
 
 _WITHOUT_PARAMETERS = frozenset({"name", "title", "bars", "supports", "unknowns"})
@@ -266,47 +272,28 @@ def _hidden(model: System, faulty: Sequence[list[str]]) -> set[str]:
     return undeclared & (hidden - right)
 
 
-def _empty(node: Node, key: str) -> Iterator[str]:
-    """The keys of what has no value in a description, which has no meaning for it."""
-    if isinstance(node, Scalar) and node.is_null and not (key.startswith("parameters.") and key.count(".") == 1):
-        yield key  # of a whole parameter its reader says what could be there
-    entries = enumerate(node.items, 1) if isinstance(node, Listed) else ()
-    for step, entry in node.entries.items() if isinstance(node, Tree) else entries:
-        yield from _empty(entry, f"{key}.{step}" if key else str(step))
+_PARAMETER = re.compile(r"parameters\.[^.]*")
+
+
+def _is_empty(node: Node) -> bool:
+    return isinstance(node, Scalar) and node.is_null
 
 
 def _is_below(key: str, above: str) -> bool:
     return key == above or key.startswith(f"{above}.")
 
 
-def _texts(node: Node, place: Place | None = None) -> Iterator[tuple[Place, str]]:
-    """The texts in a description, each with its place."""
-    place = place or node.place
-    if isinstance(node, Scalar):
-        yield place, node.text
+def _parts(node: Node, key: str, place: Place) -> Iterator[tuple[str, Node, Place]]:
+    """Every part of a description with its key and its place."""
+    yield key, node, place
     entries = enumerate(node.items, 1) if isinstance(node, Listed) else ()
-    for step, entry in node.entries.items() if isinstance(node, Tree) else entries:
-        yield from _texts(entry, place.below(str(step), entry.place.line))
+    for step, part in node.entries.items() if isinstance(node, Tree) else entries:
+        yield from _parts(part, f"{key}.{step}" if key else str(step), place.below(str(step), part.place.line))
 
 
-def _entry(node: Node, key: str) -> Node | None:
-    """What a key of a description holds."""
-    found: Node | None = node
-    for step in key.split(".") if key else ():
-        if isinstance(found, Tree):
-            found = found.entries.get(step)
-        elif isinstance(found, Listed) and step.isdecimal() and 1 <= int(step) <= len(found.items):
-            found = found.items[int(step) - 1]
-        else:
-            return None
-    return found
-
-
-def _place(node: Node, key: str) -> Place:
+def _place(parts: Mapping[str, tuple[Node, Place]], key: str) -> Place:
     """Where a key of a description stands: the line of the nearest entry above it that is there."""
-    place = node.place
-    steps = key.split(".") if key else []
-    for n, step in enumerate(steps, 1):
-        entry = _entry(node, ".".join(steps[:n]))
-        place = place.below(step, entry.place.line if entry is not None else None)
-    return place
+    if key in parts:
+        return parts[key][1]
+    above, _, step = key.rpartition(".")
+    return _place(parts, above).below(step)

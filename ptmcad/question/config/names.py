@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from ptmcad.errors import ConfigError
 from ptmcad.question.config.record import Record
 from ptmcad.question.config.scalars import names_in_scalar, parsed
+from ptmcad.text.entry import Scalar
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.syntax import did_you_mean
-from ptmcad.text.yamltree import Scalar
 
 
 class Resolution:

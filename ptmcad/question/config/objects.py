@@ -7,12 +7,15 @@ numbers as they are, an equation of it as its left side minus its right side, an
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import ConfigError
+from ptmcad.errors import A_RECORD, ConfigError, expect
 from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, System, built_in
 from ptmcad.question.config.model import model_of
-from ptmcad.text.yamltree import MAX_DEPTH, Place, Tree, from_python
+from ptmcad.question.shipped import record_tree
+from ptmcad.text.entry import Place, Tree, from_python
+from ptmcad.text.yamltree import MAX_DEPTH
 
 
 def make_mechanism(description: Mapping[Any, Any] | None = None, /, **entries: Any) -> Mechanism | ClosedMechanism:
@@ -56,8 +59,29 @@ def make_system(description: Mapping[Any, Any] | None = None, /, **entries: Any)
     return found
 
 
+def tree_of(question: object, key: str = "question", expected: str = A_RECORD) -> Tree:
+    """The tree of a record's file, or of a mapping like a record.
+
+    Parameters
+    ----------
+    key, expected : the argument's name and what it may be, for the message.
+
+    Raises
+    ------
+    ConfigError
+        For anything else, and for what cannot be read.
+    """
+    expect(question, (str, Path, Mapping), key, expected)
+    if not isinstance(question, Mapping):
+        assert isinstance(question, str | Path)
+        return record_tree(question)
+    node = from_python(plain(question), Place())
+    assert isinstance(node, Tree)
+    return node
+
+
 def plain(value: object) -> object:
-    """A value as `ptmcad.text.yamltree.from_python` takes it: models as their descriptions, SymPy's objects as text.
+    """A value as `ptmcad.text.entry.from_python` takes it: models as their descriptions, SymPy's objects as text.
 
     Raises
     ------

@@ -13,8 +13,8 @@ from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.config.record import Record, Window, check_axis_name
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Count
+from ptmcad.text.entry import Place, Scalar
 from ptmcad.text.syntax import did_you_mean
-from ptmcad.text.yamltree import Place, Scalar
 
 
 class Typed(NamedTuple):

@@ -7,10 +7,10 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, expect
+from ptmcad.errors import A_RECORD, A_SLICE, ConfigError
 from ptmcad.mechanism import Model, ptm
 from ptmcad.question.config.binding import bound, released_names, settled
-from ptmcad.question.config.objects import plain
+from ptmcad.question.config.objects import plain, tree_of
 from ptmcad.question.config.options import settings_of
 from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.config.record import Record, record_of, swept_names
@@ -18,8 +18,10 @@ from ptmcad.question.config.resolution import point_of, without_shorthands
 from ptmcad.question.config.scalars import number_of, number_text
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Slice
+from ptmcad.text.entry import Place, Scalar, from_python
 from ptmcad.text.expressions import Expression, constant
-from ptmcad.text.yamltree import Place, Scalar, Tree, from_python
+
+_EXPECTED = f"{A_SLICE}, {A_RECORD}"
 
 
 def point_from_mapping(values: Mapping[str, object], model: Model | None = None) -> dict[str, Fraction]:
@@ -90,7 +92,7 @@ def point_from(
     """
     given = {name: number_text(from_python(plain(value), Place(name))) for name, value in values.items()}
     if not isinstance(question, Slice):
-        return _at_point(record_of(_tree_of(question)), given, (), None)
+        return _at_point(record_of(tree_of(question, expected=_EXPECTED)), given, (), None)
     names = question.axis_names
     if further := [name for name in given if name not in names]:
         raise ConfigError("is no axis of the slice, which has values for all else: give its record", key=further[0])
@@ -109,14 +111,7 @@ def units_of(question: str | Path | Mapping[str, Any] | Slice) -> Mapping[str, s
     ConfigError
         For anything wrong in a record, with file, line and key.
     """
-    return question.units if isinstance(question, Slice) else record_of(_tree_of(question)).units
-
-
-def _tree_of(question: str | Path | Mapping[str, Any]) -> Tree:
-    expect(question, (str, Path, Mapping), "question", f"{A_SLICE}, {A_RECORD}")
-    tree = from_python(plain(question), Place()) if isinstance(question, Mapping) else record_tree(question)
-    assert isinstance(tree, Tree)  # of a mapping, or checked where it was read
-    return tree
+    return question.units if isinstance(question, Slice) else record_of(tree_of(question, expected=_EXPECTED)).units
 
 
 def _at_point(

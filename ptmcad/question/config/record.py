@@ -17,15 +17,18 @@ from ptmcad.question.config.model import Described, described_in
 from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.config.scalars import names_in_scalar, number_text
 from ptmcad.question.examples import A_DESIGN, A_SWEEP, AXES
-from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count, unstorable
+from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count
+from ptmcad.text.entry import Entry, Node, Place, Scalar, Sequence, Tree, plain_data
+from ptmcad.text.node import unstorable
 from ptmcad.text.syntax import NAME, did_you_mean
-from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
 
 RECORD_KEYS = ("name", "title", "notes", "mechanism", "system", "parameters", "axes", "free", "members", "sweep",
                "design", "count", "units", "reference")  # fmt: skip
 MAX_MEMBERS = 400
 """Of a family."""
 _MAX_NAME = 100
+MAX_VALUES = 10_000
+"""Of a record: more than a file may have."""
 _FIELDS = {"parameters": "values", "count": "counting"}
 """Of a `Record`, where it is not named like its key."""
 _PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")
@@ -106,6 +109,21 @@ def record_of(tree: Tree) -> Record:
     return record
 
 
+def described_record(tree: Tree) -> tuple[Record, Faults]:
+    """A record as `read_record` has it, and what is wrong with it, where there is a model.
+
+    Raises
+    ------
+    ConfigError
+        Without one: then nothing can be said of the values.
+    """
+    faults = Faults()
+    record = read_record(tree, faults)
+    if record.described is None:
+        faults.check()
+    return record, faults
+
+
 def read_record(tree: Tree, faults: Faults) -> Record:
     """A record as far as its keys and shapes are right; what is not is noted, and left out or replaced by 1.
 
@@ -120,41 +138,38 @@ def read_record(tree: Tree, faults: Faults) -> Record:
             f"this is a {shown(kind.text, 40)} file, a result, not a problem record: `ptmcad plot`, `report`, "
             "`verify`, `locate` and `map` take results"
         )
-    for key, node in tree.entries.items():
-        with faults:
-            if key not in RECORD_KEYS:
-                hint = did_you_mean(key, RECORD_KEYS) or f"; the keys are {', '.join(RECORD_KEYS)}"
-                raise _node_place(node, key, tree).error(f"unknown key{hint}")
+    whole = Entry.of(tree, tree.place, faults).fields(RECORD_KEYS)
     read: dict[str, Any] = {"place": tree.place}
     for part, key in (("values_place", "parameters"), ("count_place", "count")):
-        read[part] = tree.entries[key].place if key in tree.entries else tree.place.below(key)
+        read[part] = whole.at(key, Scalar("", tree.place.below(key))).place
     model = None
     with faults:
         read["described"] = described_in(tree, faults)
         model = read["model"] = read["described"].model
-    readers: dict[str, Callable[[Node], Any]] = {
+    readers: dict[str, Callable[[Entry], Any]] = {
         "name": _file_name,
         "title": _title,
-        "parameters": lambda node: _values(node, model, faults),
-        "axes": lambda node: _axes(node, faults),
+        "parameters": lambda entry: _values(entry, model),
+        "axes": _axes,
         "free": _free,
-        "members": _members,
-        "sweep": _sweep,
-        "design": _design,
-        "count": count_of,
-        "units": lambda node: _units(node, faults),
-        "reference": _reference,
+        "members": lambda entry: check_members(tree.entries["members"]),
+        "sweep": lambda entry: _sweep(tree.entries["sweep"]),
+        "design": lambda entry: _design(tree.entries["design"]),
+        "count": lambda entry: count_of(tree.entries["count"]),
+        "units": _units,
+        "reference": lambda entry: _reference(tree.entries["reference"]),
     }
     for key, reader in readers.items():
         with faults:
-            if key in tree.entries:
-                read[_FIELDS.get(key, key)] = reader(tree.entries[key])
+            if whole.has(key):
+                read[_FIELDS.get(key, key)] = reader(whole.at(key))
             elif key == "name":
                 read[key] = _name_of_file(tree.place.file)
     if "members" in tree.entries and "free" not in tree.entries:
         with faults:
-            place = _node_place(tree.entries["members"], "members", tree)
-            raise place.error("there are members where a parameter is free: add one, such as free: {F: [-20, 0]}")
+            raise whole.at("members").error(
+                "there are members where a parameter is free: add one, such as free: {F: [-20, 0]}"
+            )
     if model is None:  # of which nothing is known: the rest is read as if it were of the built-in one
         read["model"] = ptm()
     return Record(**read)
@@ -195,24 +210,19 @@ def _place_of_fault(error: HypothesisError, record: Record) -> Place | None:
     return Place("axes", axes.place.file, axes.place.line)
 
 
-def _node_place(node: Node, key: str, tree: Tree) -> Place:
-    """The place of an entry: its own, which already has the key."""
-    return node.place if node.place.key else tree.place.below(key)
+def _text(entry: Entry, limit: int) -> str:
+    if not isinstance(entry.value, Scalar) or entry.value.is_null:
+        raise entry.error("expected a text")
+    if len(entry.value.text) > limit:
+        raise entry.error(f"the text is longer than {limit} characters")
+    return entry.value.text
 
 
-def _text(node: Node, limit: int) -> str:
-    if not isinstance(node, Scalar) or node.is_null:
-        raise node.place.error("expected a text")
-    if len(node.text) > limit:
-        raise node.place.error(f"the text is longer than {limit} characters")
-    return node.text
-
-
-def _title(node: Node) -> str:
+def _title(entry: Entry) -> str:
     try:
-        return title_of(_text(node, MAX_TITLE))
+        return title_of(_text(entry, MAX_TITLE))
     except ConfigError as error:
-        raise node.place.error(error.message) from error
+        raise entry.error(error.message) from error
 
 
 def file_name(name: str, option: str) -> str:
@@ -223,17 +233,18 @@ def file_name(name: str, option: str) -> str:
     ConfigError
         When it is not safe as the start of a file's name.
     """
-    return _file_name(Scalar(name, Place(option)))
+    place = Place(option)
+    return _file_name(Entry(Scalar(name, place), place, Faults()))
 
 
-def _file_name(node: Node) -> str:
+def _file_name(entry: Entry) -> str:
     """A name that is safe as the start of a file's name."""
-    name = _text(node, _MAX_NAME)
+    name = _text(entry, _MAX_NAME)
     if not name or not name[0].isalnum() or not all(c.isalnum() or c in "._-" for c in name) or name.endswith("."):
-        raise node.place.error(
+        raise entry.error(
             f"{name!r} cannot name a file: use letters, digits, '.', '_' and '-', starting with a letter or digit"
         )
-    return _portable(name, node.place)
+    return _portable(name, entry.place)
 
 
 def portable_file(file: str, option: str) -> str:
@@ -269,19 +280,18 @@ def _name_of_file(file: str | None) -> str:
     return _portable(name, Place("name", file))
 
 
-def _values(node: Node, model: Model | None, faults: Faults) -> dict[str, Scalar]:
+def _values(parameters: Entry, model: Model | None) -> dict[str, Scalar]:
     """The values that are given; without a model any name is taken."""
-    if isinstance(node, Scalar) and node.is_null:
+    if isinstance(parameters.value, Scalar) and parameters.value.is_null:
         return {}
-    if not isinstance(node, Tree):
-        raise node.place.error(f"expected a mapping such as {{{_example(model or ptm())}}}")
     values = {}
-    for name, value in node.entries.items():
-        with faults:
+    expected = f"expected a mapping such as {{{_example(model or ptm())}}}"
+    for name, entry in parameters.entries(most=MAX_VALUES, expected=expected).items():
+        with parameters.faults:
             if model is not None and name not in model.parameters:
-                raise value.place.error(unknown_parameter(name, model))
-            values[name] = Scalar("1", value.place)  # known, whatever is wrong with it
-            values[name] = number_text(value)
+                raise entry.error(unknown_parameter(name, model))
+            values[name] = Scalar("1", entry.place)  # known, whatever is wrong with it
+            values[name] = number_text(entry)
     return values
 
 
@@ -289,39 +299,32 @@ def _example(model: Model) -> str:
     return ", ".join(f"{name}: {parameter.default or 1}" for name, parameter in list(model.parameters.items())[:2])
 
 
-def _axes(node: Node, faults: Faults) -> dict[str, Window]:
-    if not isinstance(node, Tree):
-        raise node.place.error(f"expected two axes with their ranges, such as {AXES}")
-    if len(node.entries) != 2:
-        with faults:
-            raise node.place.error(f"{len(node.entries)} axes are given: a slice has two, the horizontal one first")
-    axes = {}
-    for name, entry in node.entries.items():
-        with faults:
-            axes[name] = _window(name, entry)
-    return axes
+def _axes(entry: Entry) -> dict[str, Window]:
+    axes = entry.entries(most=MAX_VALUES, expected=f"expected two axes with their ranges, such as {AXES}")
+    if len(axes) != 2:
+        with entry.faults:
+            raise entry.error(f"{len(axes)} axes are given: a slice has two, the horizontal one first")
+    return dict(entry.each_entry(lambda axis: (axis.name, _window(axis))))
 
 
-def _free(node: Node) -> tuple[str, Window]:
+def _free(entry: Entry) -> tuple[str, Window]:
     """The third parameter of a family with its range."""
-    if not isinstance(node, Tree) or len(node.entries) != 1:
-        raise node.place.error("expected one parameter with its range, such as {F: [-20, 0]}")
-    ((name, entry),) = node.entries.items()
-    return name, _window(name, entry)
+    expected = "expected one parameter with its range, such as {F: [-20, 0]}"
+    free = [*entry.entries(expected=expected).values()]
+    if len(free) != 1:
+        raise entry.error(expected)
+    return free[0].name, _window(free[0])
 
 
-def _window(name: str, node: Node) -> Window:
-    check_axis_name(name, node.place)
-    if not isinstance(node, Sequence) or len(node.items) != 2:
-        raise node.place.error("expected a range such as [0, 2]")
-    low, high = (number_text(item) for item in node.items)
-    return Window(low, high, node.place)
+def _window(entry: Entry) -> Window:
+    check_axis_name(entry.name, entry.place)
+    return window_of(entry, "a range", "[0, 2]")
 
 
-def _members(node: Node) -> Node:
-    """The members of a family as they are written; of values only that they are some is known."""
-    check_members(node)
-    return node
+def window_of(entry: Entry, what: str, like: str) -> Window:
+    """The range that a list of two ends is; what it is, and an example, are for messages."""
+    low, high = entry.pair(what, like, f"expected {what} such as {like}")
+    return Window(number_text(low), number_text(high), entry.place)
 
 
 def _sweep(node: Node) -> Node:
@@ -346,8 +349,8 @@ def _design(node: Node) -> Node:
     return node
 
 
-def check_members(node: Node) -> None:
-    """Refuse what can neither be a list of values nor a number of members."""
+def check_members(node: Node) -> Node:
+    """The members of a family as written; refuses what can neither be a list of values nor a number of members."""
     if isinstance(node, Tree):
         raise node.place.error("expected a list of values such as [-20, -10, 0], or how many, such as 9")
     if isinstance(node, Scalar) and (names := names_in_scalar(number_text(node))):
@@ -355,6 +358,7 @@ def check_members(node: Node) -> None:
             f"{names[0][:40]} is neither how many members there are, 2 to {MAX_MEMBERS}, nor a list of values such as "
             "-20,-10,0, nor 'between', which --changes finds"
         )
+    return node
 
 
 def check_axis_name(name: str, place: Place) -> None:
@@ -372,21 +376,20 @@ def count_of(node: Node) -> Count:
     return Count(node.text)
 
 
-def _units(node: Node, faults: Faults) -> dict[str, str]:
+def _units(units: Entry) -> dict[str, str]:
     """Units of quantities, which pictures and tables name."""
-    if not isinstance(node, Tree):
-        raise node.place.error(f"expected a mapping such as length: mm of {' and '.join(QUANTITIES)}")
-    units = {}
-    for key, unit in node.entries.items():
-        with faults:
-            if key not in QUANTITIES:
-                hint = did_you_mean(key, QUANTITIES) or f"; units are those of {' and '.join(QUANTITIES)}"
-                raise _node_place(unit, key, node).error(f"unknown quantity{hint}")
-            text = _text(unit, MAX_UNIT).strip()
-            if not text.isprintable() or re.fullmatch(r"[-+.\d]*", text):  # empty, or a number
-                raise unit.place.error("a unit is a short text such as mm")
-            units[key] = text
-    return units
+
+    def read(entry: Entry) -> tuple[str, str]:
+        if entry.name not in QUANTITIES:
+            hint = did_you_mean(entry.name, QUANTITIES) or f"; units are those of {' and '.join(QUANTITIES)}"
+            raise entry.error(f"unknown quantity{hint}")
+        text = _text(entry, MAX_UNIT).strip()
+        if not text.isprintable() or re.fullmatch(r"[-+.\d]*", text):  # empty, or a number
+            raise entry.error("a unit is a short text such as mm")
+        return entry.name, text
+
+    units.entries(expected=f"expected a mapping such as length: mm of {' and '.join(QUANTITIES)}")
+    return dict(units.each_entry(read))
 
 
 def _reference(node: Node) -> dict[str, Any]:

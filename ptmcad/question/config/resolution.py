@@ -16,17 +16,17 @@ from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.moments import foreign
 from ptmcad.mechanism.parts import fault_of_number, parts
 from ptmcad.question.config.names import Resolution
-from ptmcad.question.config.record import Record, Window, read_record, swept_names
+from ptmcad.question.config.record import Record, Window, described_record, swept_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of
 from ptmcad.question.domain import MAX_DEGREE, fault, fault_of_part, unproved
 from ptmcad.question.examples import AXES
 from ptmcad.question.positivity import READING_WORK
 from ptmcad.question.slice import NOTHING_ADMISSIBLE, Axis, Count, Slice, have_free_lengths
+from ptmcad.text.entry import Place, Tree
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.parsing import names_in
 from ptmcad.text.syntax import did_you_mean, parse
 from ptmcad.text.tree import names_of
-from ptmcad.text.yamltree import Place, Tree
 
 
 def checked_slice(tree: Tree) -> Slice:
@@ -37,10 +37,7 @@ def checked_slice(tree: Tree) -> Slice:
     ConfigError
         That knows all faults of the record, those of keys and shapes and those of what is written there.
     """
-    faults = Faults()
-    record = read_record(tree, faults)
-    if record.described is None:
-        faults.check()  # without it nothing can be said of the values
+    record, faults = described_record(tree)
     return slice_of(record._replace(unread=unread_names(record, tree, faults)), faults)
 
 

@@ -6,21 +6,22 @@ from collections.abc import Mapping
 from fractions import Fraction
 
 from ptmcad.errors import ConfigError, ExpressionError, excerpt
+from ptmcad.text.entry import Entry, Node, Scalar
 from ptmcad.text.expressions import Expression
 from ptmcad.text.parsing import names_in, parse
 from ptmcad.text.syntax import did_you_mean
-from ptmcad.text.yamltree import Node, Scalar
 
 
-def number_text(node: Node) -> Scalar:
+def number_text(entry: Entry | Node) -> Scalar:
     """A scalar that may hold a number or an expression."""
-    if not isinstance(node, Scalar):
-        raise node.place.error("expected a number or an expression, not a list or a mapping")
-    if node.is_null:
-        raise node.place.error("has no value: write a number or an expression, or leave the key out")
-    if node.is_boolean:
-        raise node.place.error(f"'{node.text}' is a yes-or-no value: write a number or an expression")
-    return node
+    scalar = entry.value if isinstance(entry, Entry) else entry
+    if not isinstance(scalar, Scalar):
+        raise entry.place.error("expected a number or an expression, not a list or a mapping")
+    if scalar.is_null:
+        raise scalar.place.error("has no value: write a number or an expression, or leave the key out")
+    if scalar.is_boolean:
+        raise scalar.place.error(f"'{scalar.text}' is a yes-or-no value: write a number or an expression")
+    return scalar
 
 
 def number_of(scalar: Scalar, what: str = "the end of a range") -> Fraction:

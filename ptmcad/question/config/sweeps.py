@@ -12,19 +12,19 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import A_RECORD, Faults, expect
+from ptmcad.errors import Faults
 from ptmcad.mechanism import Model
 from ptmcad.question.config.binding import with_numbers
-from ptmcad.question.config.objects import plain
-from ptmcad.question.config.record import Record, check_axis_name, read_record, swept_names
+from ptmcad.question.config.objects import tree_of
+from ptmcad.question.config.record import Record, check_axis_name, described_record, swept_names
 from ptmcad.question.config.resolution import check_number, note_values, slice_of, unread_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
 from ptmcad.question.examples import A_SWEEP, FIRST
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Slice
 from ptmcad.question.sweep import Listed, Product, Spaced, Sweep, Values
+from ptmcad.text.entry import Entry, Place, Tree
 from ptmcad.text.syntax import did_you_mean
-from ptmcad.text.yamltree import Node, Place, Sequence, Tree, from_python
 
 MAX_MEMBERS = 1_000_000
 """Of a sweep; more would rather be asked in parts."""
@@ -83,12 +83,7 @@ def sweep_from(question: str | Path | Mapping[str, Any] | Sweeping) -> Sweeping:
     """
     if isinstance(question, Sweeping):
         return question
-    expect(question, (str, Path, Mapping), "question", A_RECORD)
-    if not isinstance(question, Mapping):
-        return load_sweep(question)
-    node = from_python(plain(question), Place())
-    assert isinstance(node, Tree)  # of a mapping
-    return checked_sweep(node)
+    return checked_sweep(tree_of(question))
 
 
 def checked_sweep(tree: Tree) -> Sweeping:
@@ -99,13 +94,10 @@ def checked_sweep(tree: Tree) -> Sweeping:
     ConfigError
         That knows all faults of the record; of the members the first is looked at, and every value's sign.
     """
-    faults = Faults()
-    record = read_record(tree, faults)
-    if record.described is None:
-        faults.check()  # without it nothing can be said of the values
+    record, faults = described_record(tree)
     sweep = None
     if record.sweep is not None:
-        sweep = _read(record.sweep, record, faults)
+        sweep = _read(Entry.of(record.sweep, tree.place, faults), record)
     elif "sweep" not in tree.entries:
         with faults:
             raise tree.place.below("sweep").error(f"is missing: say what is swept, such as {A_SWEEP}")
@@ -117,55 +109,55 @@ def checked_sweep(tree: Tree) -> Sweeping:
     return Sweeping(record, sweep)
 
 
-def _read(node: Node, record: Record, faults: Faults) -> Sweep | None:
+def _read(sweep: Entry, record: Record) -> Sweep | None:
     """The sweep of a record; None where there is nothing to go on with."""
-    products = []
-    first: tuple[str, ...] = ()
-    parts = node.items if isinstance(node, Sequence) else (node,)
-    for part in parts:
-        with faults:
-            if not isinstance(part, Tree) or not part.entries:
-                raise part.place.error(f"expected parameters with their values, such as {A_SWEEP}")
-            first = first or tuple(part.entries)
-            if set(part.entries) != set(first):
-                raise part.place.error(f"each mapping of the list sweeps the same parameters: {', '.join(first)}")
-            products.append(_product(part, record, faults))
+    expected = f"expected parameters with their values, such as {A_SWEEP}"
+    parts = sweep.items(most=MAX_MEMBERS) if isinstance(sweep.value, tuple) else [sweep]
     if not parts:
-        with faults:
-            raise node.place.error(f"expected parameters with their values, such as {A_SWEEP}")
+        with sweep.faults:
+            raise sweep.error(expected)
+    first: list[str] = []
+
+    def product(part: Entry) -> Product:
+        names = [*part.entries(expected=expected)]
+        if not names:
+            raise part.error(expected)
+        first.extend(names if not first else ())
+        if {*names} != {*first}:
+            raise part.error(f"each mapping of the list sweeps the same parameters: {', '.join(first)}")
+        return Product(dict(part.each_entry(lambda entry: (entry.name, _swept(entry, record)))))
+
+    products = []
+    for part in parts:
+        with sweep.faults:
+            products.append(product(part))
     if len(products) < max(len(parts), 1) or not all(product.values for product in products):
         return None
-    sweep = Sweep(tuple(products))
-    with faults:
-        if len(sweep) > MAX_MEMBERS:
-            raise node.place.error(f"has {len(sweep)} members, more than {MAX_MEMBERS}: ask for a part of them")
-    return sweep
+    found = Sweep(tuple(products))
+    with sweep.faults:
+        if len(found) > MAX_MEMBERS:
+            raise sweep.error(f"has {len(found)} members, more than {MAX_MEMBERS}: ask for a part of them")
+    return found
 
 
-def _product(node: Tree, record: Record, faults: Faults) -> Product:
-    found: dict[str, Values] = {}
-    for name, entry in node.entries.items():
-        with faults:
-            _check_name(name, entry.place, record)
-            found[name] = _values(entry)
-            if name in record.model.parameters:
-                for value in found[name].extremes:
-                    check_number(name, record.model.kind(name), value, entry.place)
-    return Product(found)
-
-
-def _check_name(name: str, place: Place, record: Record) -> None:
-    """Refuse a name that cannot be swept."""
-    check_axis_name(name, place)
+def _swept(entry: Entry, record: Record) -> Values:
+    """The values of a parameter that can be swept."""
+    name = entry.name
+    check_axis_name(name, entry.place)
     if name in record.axes:
-        raise place.error(f"{name} is an axis and cannot be swept too: remove it here or from the axes")
+        raise entry.error(f"{name} is an axis and cannot be swept too: remove it here or from the axes")
     if name in record.values:
-        raise place.error(f"{name} has a value under 'parameters' and cannot be swept too: leave one out")
+        raise entry.error(f"{name} has a value under 'parameters' and cannot be swept too: leave one out")
     if name not in record.model.parameters and not _used(name, record):
         hint = did_you_mean(name, record.model.parameters) or ";"
-        raise place.error(
+        raise entry.error(
             f"no parameter is called {name[:40]}{hint} or use it in an expression, {_example(record.model, name)}"
         )
+    found = _values(entry)
+    if name in record.model.parameters:
+        for value in found.extremes:
+            check_number(name, record.model.kind(name), value, entry.place)
+    return found
 
 
 def _example(model: Model, name: str) -> str:
@@ -177,40 +169,38 @@ def _used(name: str, record: Record) -> bool:
     return any(name in names_in_scalar(scalar) for scalar in record.values.values())
 
 
-def _values(node: Node) -> Values:
+def _values(entry: Entry) -> Values:
     """The values of one parameter: a list, or a range."""
-    if isinstance(node, Sequence):
-        if not node.items:
-            raise node.place.error("the list is empty: give the values, such as [-10, -20]")
-        return Listed(tuple(number_of(number_text(item), "a value") for item in node.items))
-    if isinstance(node, Tree):
-        return _range(node)
-    raise node.place.error("expected a list such as [-10, -20], or a range such as {from: -40, to: 0, step: 5}")
+    if isinstance(entry.value, Mapping):
+        return _range(entry)
+    expected = "expected a list such as [-10, -20], or a range such as {from: -40, to: 0, step: 5}"
+    items = entry.items(expected=expected, most=MAX_MEMBERS)
+    if not items:
+        raise entry.error("the list is empty: give the values, such as [-10, -20]")
+    return Listed(tuple(number_of(number_text(item), "a value") for item in items))
 
 
-def _range(node: Tree) -> Spaced:
+def _range(entry: Entry) -> Spaced:
     """The values of a range with its ends and the step between two values, or the number of values."""
-    for key, entry in node.entries.items():
-        if key not in RANGE_KEYS:
-            hint = did_you_mean(key, RANGE_KEYS) or f"; the keys are {', '.join(RANGE_KEYS)}"
-            raise entry.place.error(f"unknown key{hint}")
-    missing = [key for key in ("from", "to") if key not in node.entries]
-    if missing:
-        raise node.place.error(f"{' and '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing")
-    if ("step" in node.entries) == ("steps" in node.entries):
-        raise node.place.error("give either step, the distance of two values, or steps, the number of values")
-    low, high = (_number(node, key) for key in ("from", "to"))
+    faults = Faults()
+    entry._replace(faults=faults).fields(RANGE_KEYS)
+    faults.check()
+    if missing := [key for key in ("from", "to") if not entry.has(key)]:
+        raise entry.error(f"{' and '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing")
+    if entry.has("step") == entry.has("steps"):
+        raise entry.error("give either step, the distance of two values, or steps, the number of values")
+    low, high = (_number(entry, key) for key in ("from", "to"))
     if low == high:
-        raise node.place.error(f"the range is empty: {low} to {high}; a list gives a single value")
-    return _by_step(node, low, high) if "step" in node.entries else _by_number(node, low, high)
+        raise entry.error(f"the range is empty: {low} to {high}; a list gives a single value")
+    return _by_step(entry, low, high) if entry.has("step") else _by_number(entry, low, high)
 
 
-def _number(node: Tree, key: str) -> Fraction:
-    return number_of(number_text(node.entries[key]), f"'{key}'")
+def _number(entry: Entry, key: str) -> Fraction:
+    return number_of(number_text(entry.at(key)), f"'{key}'")
 
 
-def _by_step(node: Tree, low: Fraction, high: Fraction) -> Spaced:
-    step, place = _number(node, "step"), node.entries["step"].place
+def _by_step(entry: Entry, low: Fraction, high: Fraction) -> Spaced:
+    step, place = _number(entry, "step"), entry.at("step").place
     if step <= 0:
         raise place.error(f"a step is positive, not {step}; a range may go down: from 0 to -40")
     signed = step if high > low else -step
@@ -220,8 +210,8 @@ def _by_step(node: Tree, low: Fraction, high: Fraction) -> Spaced:
     return _bounded(Spaced(low, signed, int(number) + 1), place)
 
 
-def _by_number(node: Tree, low: Fraction, high: Fraction) -> Spaced:
-    steps, place = _number(node, "steps"), node.entries["steps"].place
+def _by_number(entry: Entry, low: Fraction, high: Fraction) -> Spaced:
+    steps, place = _number(entry, "steps"), entry.at("steps").place
     if steps.denominator != 1 or steps < 2:
         raise place.error(f"the number of values, both ends among them, is a whole number from 2 on, not {steps}")
     return _bounded(Spaced(low, (high - low) / (int(steps) - 1), int(steps)), place)

@@ -1,16 +1,19 @@
-"""Reading the cover of a certified map from its JSON document.
+"""The cover of a certified map as a part of its JSON document.
 
-Guarantee: what is returned keeps what `Cover` promises: steps are a power of two, the rectangles lie in the window, and
-are sorted and distinct, and so are the patches, each of which is one.
+Guarantee: reading what was written gives an equal cover. What is read keeps what `Cover` promises: steps are a power of
+two, the rectangles lie in the window, and are sorted and distinct, and so are the patches, each of which is one.
 """
 
 from __future__ import annotations
 
+import json
 from itertools import pairwise
+from typing import Any
 
 from ptmcad.cover.rectangles import MAX_STEPS, Cover, Patch, Tube
 from ptmcad.cover.tubes import flaw
-from ptmcad.show.document.node import Node
+from ptmcad.text.codec import Codec
+from ptmcad.text.node import Node
 
 MAX_RECTANGLES = 1_000_000
 MAX_PATCHES = 200_000
@@ -20,7 +23,7 @@ MAX_CONTROL = 2**60
 _FIRST_TUBE = 5
 
 
-def read_cover(node: Node) -> Cover:
+def _cover(node: Node) -> Cover:
     """The cover: its rectangles are one list of integers, four for each.
 
     Raises
@@ -75,3 +78,33 @@ def _patches(node: Node, steps: int) -> tuple[Patch, ...]:
 
 def _is_short(value: object) -> bool:
     return type(value) is int and abs(value) <= MAX_CONTROL
+
+
+def cover_line(cover: Cover) -> str:
+    """The cover with a line for each rectangle and nothing more: there may be a million of them."""
+    rectangles = ",\n".join(f"{left},{right},{low},{high}" for left, right, low, high in cover.rectangles)
+    slanted = ",\n".join(json.dumps(_patch(patch), separators=(",", ":")) for patch in cover.patches)
+    patches = f', "patches": [\n{slanted}\n]' if cover.patches else ""
+    return f'  "cover": {{"steps": {cover.steps}, "rectangles": [\n{rectangles}\n]{patches}}}'
+
+
+def _patch(patch: Patch) -> list[Any]:
+    """Its frame and its axis, then for each tube the half width and the controls."""
+    return [*patch.frame, patch.along, *([tube.half, *tube.controls] for tube in patch.tubes)]
+
+
+_INTEGERS = {"type": "array", "items": {"type": "integer", "minimum": 0}}
+COVER: Codec[Cover] = Codec(
+    lambda cover: json.loads("{" + cover_line(cover) + "}")["cover"],
+    _cover,
+    {
+        "type": "object",
+        "properties": {
+            "steps": {"type": "integer", "minimum": 1, "maximum": MAX_STEPS},
+            "rectangles": _INTEGERS,
+            "patches": {"type": "array", "items": {"type": "array", "minItems": _FIRST_TUBE + 1}},
+        },
+        "required": ["steps", "rectangles"],
+        "additionalProperties": False,
+    },
+)

@@ -1,42 +1,64 @@
-"""A family as a JSON document: its free parameter, its surfaces, and the files of its members' maps.
+"""A family as a JSON document: its free parameter, its surfaces, its changes, and the files of its members' maps.
 
-Guarantee: numbers are exact; the maps themselves are documents of their own, in files beside this one.
+Guarantee: numbers are exact; reading gives what was written, and refuses what contradicts itself. The maps themselves
+are documents of their own, in files beside this one.
 """
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from operator import itemgetter
 from pathlib import PurePath
-from typing import Any, NamedTuple
+from typing import Any
 
-from ptmcad.answer.changes import Changes
+from ptmcad.answer.arrangement import SIDES, Arrangement
+from ptmcad.answer.changes import TOLERANCE, Changes
 from ptmcad.answer.family import FamilyMap, SpaceTerms
 from ptmcad.question.slice import Axis
-from ptmcad.show.document.changes import changes_from, written_changes
-from ptmcad.show.document.node import opened, placed
-from ptmcad.text.numerals import fraction_of, text_of
+from ptmcad.show.document.numbers import ALGEBRAIC, AXIS, LINE, NUMBER
+from ptmcad.text.codec import (
+    NATURAL,
+    RATIONAL,
+    Codec,
+    Key,
+    converted,
+    document_text,
+    line,
+    listed,
+    named,
+    record,
+    record_of,
+)
+from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+from ptmcad.text.node import Node, opened
 
 FORMAT = "ptmcad-family/1"
 MAX_DOCUMENT = 60_000_000
 MAX_MEMBERS = 10_000
-MAX_TEXT = 10_000
-"""Characters of a parameter."""
 
 
-class StoredFamily(NamedTuple):
-    """What a document says; ``files`` are the members', beside it."""
+@dataclass(frozen=True, slots=True)
+class StoredFamily:
+    """What a document says; of each member the value and the name of the file beside it."""
 
     name: str
     title: str
     free: Axis
-    values: tuple[Fraction, ...]
-    files: tuple[str, ...]
-    surfaces: tuple[SpaceTerms, ...]
     text: Mapping[str, str]
+    surfaces: tuple[SpaceTerms, ...]
+    members: tuple[tuple[Fraction, str], ...]
     changes: Changes | None = None
+
+    @property
+    def values(self) -> tuple[Fraction, ...]:
+        return tuple(value for value, _ in self.members)
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        return tuple(file for _, file in self.members)
 
 
 def write_family(family: FamilyMap, files: Sequence[str]) -> str:
@@ -46,19 +68,9 @@ def write_family(family: FamilyMap, files: Sequence[str]) -> str:
     ----------
     files : names of the members' files.
     """
-    data = {
-        "format": FORMAT,
-        "name": family.name,
-        "title": family.title,
-        "free": {"name": family.free.name, "low": text_of(family.free.low), "high": text_of(family.free.high)},
-        "parameters": dict(family.text),
-        "surfaces": [[[*powers, str(c)] for powers, c in terms] for terms in family.surfaces],
-        "members": [{"value": text_of(value), "file": file} for value, file in zip(family.values, files, strict=True)],
-    }
-    if family.changes is not None:
-        data["changes"] = written_changes(family.changes)
-    lines = [f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}" for key, value in data.items()]
-    return "{\n" + ",\n".join(lines) + "\n}\n"
+    members = tuple(zip(family.values, files, strict=True))
+    stored = StoredFamily(family.name, family.title, family.free, family.text, family.surfaces, members, family.changes)
+    return document_text(FORMAT, _codec(family.free).write(stored))
 
 
 def read_family(text: str) -> StoredFamily:
@@ -70,39 +82,102 @@ def read_family(text: str) -> StoredFamily:
         When the text is not such a document.
     """
     document = opened(text, FORMAT, MAX_DOCUMENT, "ptmcad classify")
-    document.record("format", "name", "title", "free", "parameters", "surfaces", "members", "changes?")
-    with placed(document) as data:
-        name, title = _text(data["name"]), _text(data["title"])
-        free = data["free"]
-        axis = Axis(_text(free["name"]), fraction_of(free["low"]), fraction_of(free["high"]))
-        members = data["members"]
-        values = tuple(fraction_of(member["value"]) for member in members)
-        files = tuple(_file(member["file"]) for member in members)
-        surfaces = tuple(
-            tuple(((int(i), int(j), int(k)), int(c)) for i, j, k, c in terms) for terms in data["surfaces"]
-        )
-        if not all(surfaces):
-            raise ValueError("a surface has no terms")
-        changes = changes_from(data["changes"], axis) if "changes" in data else None
-        parameters = {_text(name): _text(written, MAX_TEXT) for name, written in data["parameters"].items()}
-        if parameters.get(axis.name, axis.name) != axis.name:
-            raise ValueError(f"the free parameter {axis.name} is another one")
-    if not 1 <= len(values) <= MAX_MEMBERS or any(a >= b for a, b in pairwise(values)):
-        raise ValueError("the members' values do not increase")
-    if values[0] < axis.low or values[-1] > axis.high or len({*surfaces}) < len(surfaces):
-        raise ValueError("a member is outside of the range, or a surface is listed twice")
-    return StoredFamily(name, title, axis, values, files, surfaces, parameters, changes)
+    return _codec(AXIS.read(document.entry("free"))).read(document)
 
 
-def _text(value: Any, most: int = 300) -> str:
-    if not isinstance(value, str) or not value.isprintable() or len(value) > most:
-        raise ValueError("expected a short text")
-    return value
+def _codec(free: Axis) -> Codec[StoredFamily]:
+    """The codec of a family with this free parameter."""
+    name = line(300)
+    member: Codec[tuple[Fraction, str]] = record(
+        lambda value, file: (value, file), value=Key(RATIONAL, itemgetter(0)),
+        file=Key(converted(name, str, _file), itemgetter(1)),
+    )  # fmt: skip
+    return record_of(
+        StoredFamily, {Axis: AXIS, SpaceTerms: listed(_TERM)}, _family, name=name, title=name,
+        parameters=Key(named(LINE), field="text"), members=listed(member),
+        changes=Key(changes_codec(free), default=None),
+    )  # fmt: skip
 
 
-def _file(value: Any) -> str:
+def _file(name: str) -> str:
     """A name of a file beside the document, none elsewhere."""
-    name = _text(value)
     if PurePath(name).name != name or not name.endswith(".json"):
         raise ValueError("expected the name of a file beside it")
     return name
+
+
+def _family(**entries: Any) -> StoredFamily:
+    found = StoredFamily(**entries)
+    free, values = found.free, found.values
+    if not all(found.surfaces):
+        raise ValueError("a surface has no terms")
+    if found.text.get(free.name, free.name) != free.name:
+        raise ValueError(f"the free parameter {free.name} is another one")
+    if not 1 <= len(values) <= MAX_MEMBERS or any(a >= b for a, b in pairwise(values)):
+        raise ValueError("the members' values do not increase")
+    if values[0] < free.low or values[-1] > free.high or len({*found.surfaces}) < len(found.surfaces):
+        raise ValueError("a member is outside of the range, or a surface is listed twice")
+    return found
+
+
+def _term(node: Node) -> tuple[tuple[int, ...], int]:
+    *powers, coefficient = node.items(4)
+    return tuple(power.natural() for power in powers), coefficient.integer()
+
+
+_TERM: Codec[Any] = Codec(lambda term: [*term[0], str(term[1])], _term, {"type": "array"})
+
+
+# --------------------------------------------------------------------------------------------------------- changes
+
+
+def changes_codec(free: Axis) -> Codec[Changes]:
+    """The codec of the changes over a free parameter."""
+
+    def made(changes: Any, between: Any, **entries: Any) -> Changes:
+        if entries["complete"] and not all(change.is_exact for change in changes):
+            raise ValueError("a value that is not exact stands where one has to be")
+        ends = [free.low, *(end for change in changes for end in (change.value.low, change.value.high)), free.high]
+        if len(between) != len(changes) + 1 or any(
+            not low <= value <= high for low, (value, _), high in zip(ends[::2], between, ends[1::2], strict=True)
+        ):
+            raise ValueError("the values between the changes do not lie between them")
+        values, arrangements = zip(*between, strict=True)
+        return Changes(free, changes, between=values, arrangements=arrangements, **entries)
+
+    member = record(
+        lambda value, arrangement: (value, arrangement), value=Key(RATIONAL, itemgetter(0)),
+        arrangement=Key(_ARRANGEMENT, itemgetter(1)),
+    )  # fmt: skip
+    return record_of(
+        Changes, {AlgebraicNumber | Enclosure: NUMBER, AlgebraicNumber: ALGEBRAIC}, made, free=None,
+        found=Key(field="changes"), arrangements=None, tolerance=Key(default=TOLERANCE, always=True),
+        between=Key(listed(member), lambda found: tuple(zip(found.between, found.arrangements, strict=True))),
+    )  # fmt: skip
+
+
+def _pairs(pairs: tuple[tuple[int, int], ...]) -> frozenset[tuple[int, int]]:
+    if len(found := frozenset(pairs)) < len(pairs):
+        raise ValueError("an arrangement names two neighbours twice")
+    return found
+
+
+def _sides(sides: Mapping[str, tuple[int, ...]]) -> tuple[tuple[int, ...], ...]:
+    if set(sides) != set(SIDES):
+        raise ValueError(f"an arrangement has the sides {', '.join(SIDES)}")
+    return tuple(sides[name] for name in SIDES)
+
+
+def _arrangement(**entries: Any) -> Arrangement:
+    found = Arrangement(**entries)
+    numbers = {n for group in (*found.neighbours, *found.sides) for n in group}
+    if any(n >= len(found.keys) for n in numbers) or any(a >= b for a, b in found.neighbours):
+        raise ValueError("an arrangement names a region that there is not")
+    return found
+
+
+_ARRANGEMENT = record_of(
+    Arrangement, {}, _arrangement, counts=Key(field="keys"),
+    neighbours=converted(listed(listed(NATURAL, 2)), lambda pairs: tuple(sorted(pairs)), _pairs),
+    sides=converted(named(listed(NATURAL)), lambda sides: dict(zip(SIDES, sides, strict=True)), _sides),
+)  # fmt: skip

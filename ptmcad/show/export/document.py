@@ -5,41 +5,36 @@ Guarantee: every number is exact; the same slice gives the same text.
 
 from __future__ import annotations
 
-import json
+from operator import attrgetter
+from typing import Any
 
-from ptmcad.answer.slicevariety import SliceVariety
-from ptmcad.text.numerals import text_of
+from ptmcad.answer.regionmap import Component
+from ptmcad.answer.slicevariety import EliminationSystem, SliceVariety
+from ptmcad.question.slice import Slice
+from ptmcad.show.document.slice import polynomial_over, slice_over
+from ptmcad.text.codec import NATURAL, POSITIVE, TEXT, Codec, derived, document_text, listed, named, record_of
+from ptmcad.text.plane import PlanePolynomial
 
 FORMAT = "ptmcad-variety/1"
 
 
 def document(variety: SliceVariety) -> str:
     """The variety as JSON text, one component a line."""
-    names = variety.slice.axis_names
-    components = [
-        {
-            "kind": c.kind.value,
-            "left_out": c.left_out,
-            "degree": c.polynomial.total_degree,
-            "degrees": dict(zip(names, c.polynomial.degrees, strict=True)),
-            "terms": len(c.polynomial.terms),
-            "polynomial": c.polynomial.text(names),
-        }
-        for c in variety.components
-    ]
-    entries = {
-        "format": FORMAT,
-        "slice": {
-            "name": variety.slice.name,
-            "mechanism": variety.slice.mechanism,
-            "axes": {a.name: [text_of(a.low), text_of(a.high)] for a in variety.slice.axes},
-            "parameters": {n: e.to_text(names) for n, e in variety.slice.parameters.items()},
-        },
-        "complex_solutions": variety.complex_solutions,
-        "system": {"unknowns": variety.system.unknowns, "polynomials": variety.system.texts()},
-        "versions": dict(variety.versions),
-    }
-    lines = [f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}" for key, value in entries.items()]
-    rows = ",\n".join("    " + json.dumps(row, ensure_ascii=False) for row in components)
-    lines.insert(3, f'  "components": [\n{rows}\n  ]')
-    return "{\n" + ",\n".join(lines) + "\n}\n"
+    return document_text(FORMAT, variety_codec(variety.slice.axis_names).write(variety))
+
+
+def variety_codec(names: tuple[str, str]) -> Codec[SliceVariety]:
+    """The codec of a variety over axes of these names."""
+    whole: dict[Any, Codec[Any]] = {PlanePolynomial: polynomial_over(names)}
+    whole[Component] = record_of(
+        Component, whole, separates=None, continuum=None,
+        degree=derived(attrgetter("polynomial.total_degree"), POSITIVE),
+        degrees=derived(lambda c: dict(zip(names, c.polynomial.degrees, strict=True)), named(NATURAL)),
+        terms=derived(lambda c: len(c.polynomial.terms), POSITIVE),
+    )  # fmt: skip
+    whole[EliminationSystem] = record_of(
+        EliminationSystem, axes=None, polynomials=derived(lambda system: system.texts(), listed(TEXT))
+    )
+    left_out = dict.fromkeys(("title", "text", "count", "reference", "units", "model"))
+    whole[Slice] = slice_over(names, **left_out, mechanism=derived(attrgetter("mechanism")))
+    return record_of(SliceVariety, whole)

@@ -1,11 +1,9 @@
-"""Branches of solutions along a line as text and as JSON data.
+"""Branches of solutions along a line as text.
 
 Guarantee: every digit that is shown is right.
 """
 
 from __future__ import annotations
-
-from typing import Any
 
 from ptmcad.answer.branches import Branch, Branches, BranchPoint
 from ptmcad.answer.words import kind_name, noun
@@ -14,7 +12,7 @@ from ptmcad.show.ranges.numbers import known
 from ptmcad.show.ranges.table import aligned
 from ptmcad.show.units import with_unit
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.numerals import shortest_text, text_of
+from ptmcad.text.numerals import shortest_text
 
 DIGITS = 6
 
@@ -51,25 +49,3 @@ def _short(point: BranchPoint) -> str:
 
 def _text(number: Enclosure | None) -> str:
     return "-" if number is None else known(number, DIGITS)
-
-
-def branches_data(found: Branches) -> dict[str, Any]:
-    """The branches as JSON data."""
-    return {
-        "along": found.along.name,
-        "at": {name: text_of(value) for name, value in found.at.items()},
-        "quantities": list(found.quantities),
-        "units": list(found.units),
-        "undecided": [text_of(value) for value in found.undecided],
-        "branches": [
-            {
-                "stable": branch.stable,
-                "index": branch.index,
-                "points": [
-                    {"value": text_of(p.value), "numbers": [None if n is None else known(n, DIGITS) for n in p.numbers]}
-                    for p in branch.points
-                ],
-            }
-            for branch in found.branches
-        ],
-    }

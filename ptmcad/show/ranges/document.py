@@ -1,4 +1,4 @@
-"""Ranges, widths and paths as a JSON document, docs/range.schema.json.
+"""Ranges, widths, paths and branches as a JSON document, docs/range.schema.json.
 
 Guarantee: parameters, ends and samples are written exactly; every digit of a decimal is right; the same answer gives
 the same text.
@@ -7,189 +7,202 @@ the same text.
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Mapping
+from functools import partial
+from operator import attrgetter
 from typing import Any
 
+from ptmcad.answer.branches import Branches
 from ptmcad.answer.counts import Counts
-from ptmcad.answer.intervals import CertifiedIntervals, CountInterval, CountIntervals
-from ptmcad.answer.paths import PathEnd, PathPoint, PosePaths, Target
-from ptmcad.answer.widths import Attainment, CertifiedWidths, OperationWidths
-from ptmcad.question.slice import Axis
-from ptmcad.show.document.extremes import maximum_data
-from ptmcad.show.ranges.numbers import (
-    end_data,
-    narrowly_known,
-    place_data,
-    settled,
-    width_text,
+from ptmcad.answer.intervals import (
+    CertifiedChange,
+    CertifiedInterval,
+    CertifiedIntervals,
+    Change,
+    CountInterval,
+    CountIntervals,
+    End,
+    Event,
 )
-from ptmcad.text.numerals import text_of
+from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
+from ptmcad.answer.widths import Attainment, CertifiedWidths, OperationWidths, WidthRow
+from ptmcad.question.slice import Axis
+from ptmcad.show.document.design import VERSIONS
+from ptmcad.show.document.numbers import INDEX, maximum, with_decimal
+from ptmcad.show.ranges.numbers import end_text, known, narrowly_known, settled, width_text
+from ptmcad.text.codec import (
+    COUNT,
+    DATA,
+    NATURAL,
+    POSITIVE,
+    RATIONAL,
+    TEXT,
+    Codec,
+    Key,
+    Known,
+    by_name,
+    choice,
+    derived,
+    in_words,
+    listed,
+    named,
+    optional,
+    record,
+    record_of,
+    unless_default,
+)
+from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.version import __version__
 
 FORMAT = "ptmcad-range/1"
+PATH_DIGITS = 12
+BRANCH_DIGITS = 6
+_UNDECIDED = choice(Attainment).narrowed(enum=[Attainment.UNDECIDED.value])
+_AXIS = record_of(
+    Axis, {}, lambda name, window: Axis(name, *window), low=None, high=None,
+    window=Key(listed(RATIONAL, 2), attrgetter("low", "high")),
+)  # fmt: skip
 
 
-def line_data(found: CountIntervals, digits: int) -> dict[str, Any]:
-    """The intervals of a line as JSON data."""
+def _places(digits: int) -> dict[Any, Codec[Any]]:
+    """The codecs of ends of intervals, with as many digits as are asked for and known."""
+    exact = with_decimal(partial(end_text, digits=digits))
+    enclosed = record_of(Enclosure, decimal=derived(partial(settled, digits=digits), optional(TEXT)))
     return {
-        "along": _axis(found.along),
-        "at": {name: text_of(value) for name, value in found.at.items()},
-        "parameters": {n: e.to_text((found.along.name, "_")) for n, e in found.parameters.items()},
-        "intervals": [_interval(i, digits) for i in found.intervals],
-        "changes": [
-            {
-                "at": end_data(c.at, digits),
-                "kind": c.kind.value,
-                "before": _counts(c.before),
-                "after": _counts(c.after),
-                "event": c.event.name.lower(),
-                **({} if c.continuum is None else {"continuum": c.continuum.value}),
-                "text": c.text,
-            }
-            for c in found.changes
-        ],
-        "operation": [n for n, i in enumerate(found.intervals) if i.counts.working == found.working],
+        Axis: _AXIS,
+        Enclosure: enclosed,
+        AlgebraicNumber: exact,
+        End: exact,
+        End | Enclosure: Codec(
+            lambda end: (enclosed if isinstance(end, Enclosure) else exact).write(end),
+            lambda node: (enclosed if node.mapping().keys() == {"low", "high", "decimal"} else exact).read(node),
+            {"anyOf": [exact.schema, enclosed.schema]},
+        ),
     }
 
 
-def enclosed_data(found: CertifiedIntervals, digits: int) -> dict[str, Any]:
-    """The intervals of a line on which springs have free lengths as JSON data."""
-    return {
-        "along": _axis(found.along),
-        "at": {name: text_of(value) for name, value in found.at.items()},
-        "intervals": [
-            {
-                "low": place_data(i.low, digits),
-                "high": place_data(i.high, digits),
-                "total": i.total,
-                "stable": i.stable,
-                "index": None if i.index is None else list(i.index),
-                "peaks": i.cones,
-                "sample": text_of(i.sample),
-            }
-            for i in found.intervals
-        ],
-        "changes": [{"at": place_data(c.at, digits), "met": list(c.names), "proved": c.proved} for c in found.changes],
-    }
-
-
-def _axis(axis: Axis) -> dict[str, Any]:
-    return {"name": axis.name, "window": [text_of(axis.low), text_of(axis.high)]}
-
-
-def _interval(interval: CountInterval, digits: int) -> dict[str, Any]:
-    return {
-        "low": end_data(interval.low, digits),
-        "high": end_data(interval.high, digits),
-        "total": interval.total,
-        "stable": interval.stable,
-        "index": None if interval.index is None else list(interval.index),
-        "sample": text_of(interval.sample),
-        "width": width_text(interval, digits),
-    }
+def _counted(digits: int) -> dict[Any, Codec[Any]]:
+    """The same with the intervals of constant count."""
+    places = _places(digits)
+    interval = record_of(
+        CountInterval, places, counts=None, total=NATURAL, stable=COUNT, index=INDEX,
+        width=derived(partial(width_text, digits=digits)),
+    )  # fmt: skip
+    return {**places, CountInterval: interval}
 
 
 def _counts(counts: Counts) -> list[int] | dict[str, int | None]:
     """Numbers by index, or without an index in all and of stable ones."""
-    if counts.index is not None:
-        return list(counts.index)
-    return {"total": counts.total, "stable": counts.stable}
+    return {"total": counts.total, "stable": counts.stable} if counts.index is None else list(counts.index)
 
 
-def over_data(found: OperationWidths, digits: int) -> dict[str, Any]:
-    """The widths over the other axis as JSON data."""
-    return {
-        "along": _axis(found.along),
-        "over": _axis(found.over),
-        "stable": found.working,
-        "rows": [
-            {
-                "value": text_of(row.value),
-                "operation": [_interval(i, digits) for span in row.operation for i in span.parts],
-                "remark": row.remark,
-            }
-            for row in found.rows
-        ],
-        "maxima": [maximum_data(m, found.over.name, digits) for m in found.maxima],
-    }
+_COUNTS: Codec[Any] = Codec(
+    _counts,
+    lambda node: node.value,
+    {"anyOf": [INDEX.schema["anyOf"][1], record(Counts, total=NATURAL, stable=COUNT).schema]},
+)
 
 
-def bands_data(found: CertifiedWidths, digits: int) -> dict[str, Any]:
-    """The operation ranges over the other axis with free lengths as JSON data."""
-    return {
-        "along": _axis(found.along),
-        "over": _axis(found.over),
-        "stable": found.working,
-        "attainment": Attainment.UNDECIDED.value,
-        "rows": [
-            {
-                "value": text_of(row.value),
-                "operation": [
-                    {"low": place_data(i.low, digits), "high": place_data(i.high, digits)} for i in row.operation
-                ],
-                "undecided": row.undecided,
-                "remark": row.remark,
-            }
-            for row in found.rows
-        ],
-    }
+def line_codec(digits: int) -> Codec[CountIntervals]:
+    """The codec of the intervals of a line."""
+    known = _counted(digits)
+    known[Change] = record_of(
+        Change, {**known, Counts: _COUNTS}, **unless_default(Change, "continuum"),
+        event=derived(attrgetter("event"), choice(Event, by_name)), text=derived(attrgetter("text")),
+    )  # fmt: skip
+    return record_of(
+        CountIntervals, known, name=None, model=None, working=None,
+        parameters=Key(
+            named(TEXT), lambda found: {n: e.to_text((found.along.name, "_")) for n, e in found.parameters.items()}
+        ),
+        operation=derived(
+            lambda found: [n for n, i in enumerate(found.intervals) if i.counts.working == found.working],
+            listed(NATURAL),
+        ),
+    )  # fmt: skip
 
 
-def path_data(found: PosePaths) -> dict[str, Any]:
-    """The paths of stable poses as JSON data."""
-    return {
-        "along": _axis(found.along),
-        "at": {name: text_of(value) for name, value in found.at.items()},
-        "start": text_of(found.start),
-        **({"joined": True} if found.joined else {}),
-        "paths": [
-            {
-                "number": path.number,
-                "upright": path.upright,
-                "reverse": path.reverse,
-                "low": _path_end(path.low),
-                "high": _path_end(path.high),
-                "points": [_point(p) for p in path.points],
-            }
-            for path in found.paths
-        ],
-    }
+def enclosed_codec(digits: int) -> Codec[CertifiedIntervals]:
+    """The codec of the intervals of a line on which springs have free lengths."""
+    known = _places(digits)
+    interval = record_of(CertifiedInterval, known, index=INDEX, cones=None, peaks=Key(field="cones"))
+    change = record_of(CertifiedChange, known, names=None, met=Key(field="names"))
+    return record_of(CertifiedIntervals, {**known, CertifiedInterval: interval, CertifiedChange: change})
 
 
-def _path_end(end: PathEnd) -> dict[str, Any]:
-    return {
-        "fate": end.fate.name.lower(),
-        "text": end.fate.value,
-        "at": end_data(end.at, DIGITS),
-        "last": _point(end.last),
-        "meeting": list(end.meeting),
-        "leaving": list(end.leaving),
-        **({"among": True} if end.among else {}),
-        "energy": None if end.energy is None else settled(end.energy, DIGITS),
-        "target": None if end.target is None else _place(end.target),
-        "target_energy": None if end.target_energy is None else settled(end.target_energy, DIGITS),
-    }
-
-
-DIGITS = 12
-
-
-def _point(point: PathPoint) -> dict[str, Any]:
-    return {"value": text_of(point.value), **_place(point)}
-
-
-def _place(point: PathPoint | Target) -> dict[str, Any]:
-    return {"angles": [narrowly_known(a, DIGITS) for a in point.angles]} | (
-        {"reals": [narrowly_known(x, DIGITS) for x in point.reals]} if point.reals else {}
+def over_codec(over: str, digits: int) -> Codec[OperationWidths]:
+    """The codec of the widths over the other axis, which has this name."""
+    known = _counted(digits)
+    parts = listed(known[CountInterval])
+    row = record_of(
+        WidthRow, known, operation=Key(parts, lambda row: [i for span in row.operation for i in span.parts])
     )
+    return record_of(
+        OperationWidths, {**known, WidthRow: row}, name=None, model=None,
+        stable=Key(NATURAL, default=2, field="working", always=True),
+        maxima=listed(maximum(over, digits)),
+    )  # fmt: skip
 
 
-def document(name: str, mechanism: str, parts: dict[str, Any]) -> str:
+def bands_codec(digits: int) -> Codec[CertifiedWidths]:
+    """The codec of the operation ranges over the other axis with free lengths."""
+    return record_of(
+        CertifiedWidths, _places(digits), name=None, model=None, stable=Key(NATURAL, field="working"),
+        attainment=derived(lambda _: Attainment.UNDECIDED, _UNDECIDED, default=Attainment.UNDECIDED),
+    )  # fmt: skip
+
+
+_NARROW: Codec[Enclosure] = in_words(partial(narrowly_known, digits=PATH_DIGITS), optional(TEXT))
+_POINTS: Known = {
+    kind: record_of(kind, {Enclosure: _NARROW}, sides=None, **unless_default(kind, "reals", known={Enclosure: _NARROW}))
+    for kind in (PathPoint, Target)
+}
+_ENERGY: Codec[Any] = in_words(lambda energy: energy and settled(energy, PATH_DIGITS), optional(TEXT))
+_PATH_END = record_of(
+    PathEnd, {**_POINTS, **_places(PATH_DIGITS)}, fate=choice(Fate, by_name), text=derived(attrgetter("fate.value")),
+    energy=_ENERGY, target_energy=_ENERGY, **unless_default(PathEnd, "among"),
+)  # fmt: skip
+PATHS = record_of(
+    PosePaths,
+    {Axis: _AXIS, PosePath: record_of(PosePath, {**_POINTS, PathEnd: _PATH_END}, start=None, number=POSITIVE)},
+    name=None, model=None, moved=None, **unless_default(PosePaths, "joined"),
+)  # fmt: skip
+"""The codec of the paths of stable poses."""
+BRANCHES = record_of(
+    Branches,
+    {Axis: TEXT, Enclosure: in_words(partial(known, digits=BRANCH_DIGITS))},
+    name=None, model=None, along=Key(TEXT, attrgetter("along.name")),
+)  # fmt: skip
+"""The codec of branches of solutions."""
+
+
+_PARTS: Mapping[type, tuple[str, Callable[[Any, int], Codec[Any]]]] = {
+    CountIntervals: ("line", lambda _, digits: line_codec(digits)),
+    CertifiedIntervals: ("enclosed", lambda _, digits: enclosed_codec(digits)),
+    OperationWidths: ("over", lambda found, digits: over_codec(found.over.name, digits)),
+    CertifiedWidths: ("bands", lambda _, digits: bands_codec(digits)),
+    PosePaths: ("path", lambda _, digits: PATHS),
+    Branches: ("branches", lambda _, digits: BRANCHES),
+}
+
+
+def part(found: Any, digits: int) -> dict[str, Any]:
+    """An answer as a part of a document, under its key."""
+    key, codec = _PARTS[type(found)]
+    return {key: codec(found, digits).write(found)}
+
+
+def schema() -> Mapping[str, Any]:
+    """The schema of a document with any parts."""
+    parts: dict[str, Codec[Any]] = {
+        "line": line_codec(1), "enclosed": enclosed_codec(1), "over": over_codec("x", 1),
+        "path": PATHS, "branches": BRANCHES, "bands": bands_codec(1), "slice": DATA, "request": DATA,
+    }  # fmt: skip
+    keys = {key: Key(codec, default=None) for key, codec in parts.items()}
+    return record(dict, name=TEXT, mechanism=TEXT, versions=VERSIONS, **keys).schema
+
+
+def document(name: str, mechanism: str, parts: Mapping[str, Any]) -> str:
     """The JSON text of an answer; ``parts`` has some of the entries line, enclosed, over and path."""
-    data = {
-        "format": FORMAT,
-        "name": name,
-        "mechanism": mechanism,
-        **parts,
-        "versions": {"ptmcad": __version__},
-    }
+    data = {"format": FORMAT, "name": name, "mechanism": mechanism, **parts, "versions": {"ptmcad": __version__}}
     return json.dumps(data, ensure_ascii=False, indent=1) + "\n"

@@ -6,13 +6,11 @@ Guarantee: a text is the number rounded to nearest; it is refined as far as that
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
 
 from ptmcad.algebra.numbers import refined
 from ptmcad.answer.intervals import End, Span
-from ptmcad.show.document.changes import number_data
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.numerals import magnitude, text_of
+from ptmcad.text.numerals import magnitude
 
 MAX_DIGITS = 1000
 """That may be asked for."""
@@ -72,26 +70,6 @@ def width_text(interval: Span, digits: int) -> str:
         if bits > 4 * MAX_DIGITS:
             return settled(found, digits) or "0"
         bits *= 2
-
-
-def end_data(end: End | Enclosure, digits: int) -> dict[str, Any]:
-    """An end for JSON: the window's edge, or the algebraic number or the enclosure with its decimal."""
-    if isinstance(end, Enclosure):
-        return place_data(end, digits)
-    if isinstance(end, Fraction):
-        return {"window": text_of(end), "decimal": end_text(end, digits)}
-    return {"decimal": end_text(end, digits), **number_data(end)}
-
-
-def place_data(enclosure: Enclosure, digits: int) -> dict[str, str | None]:
-    """An enclosure for JSON, with as much of a decimal as it settles."""
-    low, high = enclosure_data(enclosure)
-    return {"low": low, "high": high, "decimal": settled(enclosure, digits)}
-
-
-def enclosure_data(enclosure: Enclosure) -> list[str]:
-    """An enclosure for JSON."""
-    return [text_of(enclosure.low), text_of(enclosure.high)]
 
 
 def finer(interval: Span, width: Fraction) -> Span:

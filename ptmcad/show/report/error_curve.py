@@ -6,15 +6,16 @@ given in the table.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from html import escape
 from math import ceil, floor, log10
 from pathlib import Path
+from typing import TypeVar
 
-from ptmcad.show.document.node import Node
 from ptmcad.show.report.sections import table
+from ptmcad.text.codec import Codec, line, listed, record_of
+from ptmcad.text.node import Node, opened
 from ptmcad.text.numerals import power_of_ten
 from ptmcad.text.textfile import read_as
 
@@ -23,6 +24,9 @@ MAX_BYTES = 1_000_000
 _MAX_SERIES, _MAX_POINTS = 8, 1000
 _WIDTH, _HEIGHT, _LEFT, _BOTTOM = 600, 360, 110, 100
 _MARKS = ("M-6 0a6 6 0 1 0 12 0a6 6 0 1 0 -12 0", "M-6 -6H6V6H-6Z", "M0 -7L7 6H-7Z", "M0 -8L8 0L0 8L-8 0Z")
+
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,35 +53,29 @@ def read_error_curve(path: Path) -> ErrorCurve:
     ConfigError
         When the file is missing or is no such measurement.
     """
-    return read_as(path, MAX_BYTES, FORMAT, lambda text: _decode(json.loads(text)))
+    return read_as(path, MAX_BYTES, FORMAT, lambda text: _CURVE.read(opened(text, FORMAT, MAX_BYTES, "ptmcad bench")))
 
 
-def _decode(data: object) -> ErrorCurve:
-    document = Node(data, "").record("format", "error", "series")
-    if document["format"].text() != FORMAT:
-        raise document["format"].fault(f"is not {FORMAT!r}")
+def _positive(node: Node) -> float:
+    value = node.number()
+    if value < 1e-300:
+        raise node.fault("is not positive")
+    return value
 
-    def positive(node: Node) -> float:
-        value = node.number()
-        if value < 1e-300:
-            raise node.fault("is not positive")
-        return value
 
-    def pair(node: Node) -> tuple[float, float]:
-        seconds, error = node.each(positive, 2)
-        return seconds, error
+def _some(codec: Codec[T], most: int) -> Codec[tuple[T, ...]]:
+    """A list of at most so many entries, and one at least."""
 
-    def series(node: Node) -> Series:
-        s = node.record("name", "points")
-        points = s["points"].each(pair)
-        if not 0 < len(points) <= _MAX_POINTS:
-            raise s["points"].fault(f"has not 1 to {_MAX_POINTS} entries")
-        return Series(s["name"].line(60), points)
+    def read(node: Node) -> tuple[T, ...]:
+        if not (found := node.each(codec.read, most=most)):
+            raise node.fault("is empty")
+        return found
 
-    found = document["series"].each(series)
-    if not 0 < len(found) <= _MAX_SERIES:
-        raise document["series"].fault(f"has not 1 to {_MAX_SERIES} entries")
-    return ErrorCurve(document["error"].line(200), found)
+    return Codec(list, read)
+
+
+_SERIES = record_of(Series, name=line(60), points=_some(listed(Codec[float](float, _positive), 2), _MAX_POINTS))
+_CURVE = record_of(ErrorCurve, error=line(200), series=_some(_SERIES, _MAX_SERIES))
 
 
 def error_section(curve: ErrorCurve) -> str:

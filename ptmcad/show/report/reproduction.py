@@ -15,8 +15,9 @@ from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Kind, built_in, mechanism_of
 from ptmcad.question.config import slice_from_mapping, slice_from_options
 from ptmcad.question.slice import Count, Slice
+from ptmcad.text.entry import plain_data
 from ptmcad.text.numerals import text_of
-from ptmcad.text.yamltree import plain_data, read_text
+from ptmcad.text.yamltree import read_text
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,8 @@ mechanism as the starter of that name.
 
 from __future__ import annotations
 
-from ptmcad.text.yamltree import Node, read_text
+from ptmcad.text.entry import Node
+from ptmcad.text.yamltree import read_text
 
 NAMES = ("ptm", "pendulum", "chain", "platform", "cusp")
 

@@ -6,14 +6,12 @@ the place of the fault, such as ``cells[3].sample``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from enum import Enum
 from fractions import Fraction
 from typing import Any, NamedTuple, TypeVar
 
-from ptmcad.errors import ConfigError
-from ptmcad.question.slice import unstorable
+from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.text.numerals import fraction_of
 from ptmcad.text.textfile import json_data
 
@@ -37,6 +35,13 @@ class Node(NamedTuple):
     def fault(self, problem: str) -> ValueError:
         return ValueError(f"{self.place or 'the document'} {problem}")
 
+    def made(self, make: Callable[..., Item], *values: Any, **entries: Any) -> Item:
+        """What a function makes of values that were read here; what it refuses is wrong with this part."""
+        try:
+            return make(*values, **entries)
+        except (ValueError, ConfigError, ExpressionError) as error:
+            raise self.fault(f"is wrong: {error}") from error
+
     def record(self, *keys: str) -> dict[str, Node]:
         """An object with exactly these keys; those that end in ``?`` may be missing."""
         required = [key for key in keys if not key.endswith("?")]
@@ -50,28 +55,35 @@ class Node(NamedTuple):
                 raise self.fault(f"has the unknown key {key[:40]!r}")
         return values
 
-    def mapping(self) -> dict[str, Node]:
+    def mapping(self, most: int = MAX_ITEMS) -> dict[str, Node]:
         if not isinstance(self.value, dict):
             raise self.fault("is not an object")
-        if len(self.value) > MAX_ITEMS:
-            raise self.fault(f"has more than {MAX_ITEMS} keys")
+        if len(self.value) > most:
+            raise self.fault(f"has more than {most} keys")
         for key in self.value:
             if not key.isprintable():
                 raise self.fault(f"has the key {key[:40]!r} with a character that is not printable")
         start = f"{self.place}." if self.place else ""
         return {key: Node(value, start + key[:40]) for key, value in self.value.items()}
 
-    def items(self, length: int | None = None) -> Iterator[Node]:
+    def entry(self, key: str) -> Node:
+        """What an object has under a key."""
+        values = self.mapping()
+        if key not in values:
+            raise self.fault(f"lacks the key {key!r}")
+        return values[key]
+
+    def items(self, length: int | None = None, most: int = MAX_ITEMS) -> Iterator[Node]:
         if not isinstance(self.value, list):
             raise self.fault("is not a list")
-        if len(self.value) > MAX_ITEMS:
-            raise self.fault(f"has more than {MAX_ITEMS} entries")
+        if len(self.value) > most:
+            raise self.fault(f"has more than {most} entries")
         if length is not None and len(self.value) != length:
             raise self.fault(f"has {len(self.value)} entries, not {length}")
         return (Node(value, f"{self.place}[{k}]") for k, value in enumerate(self.value))
 
-    def each(self, read: Callable[[Node], Item], length: int | None = None) -> tuple[Item, ...]:
-        return tuple(read(item) for item in self.items(length))
+    def each(self, read: Callable[[Node], Item], length: int | None = None, most: int = MAX_ITEMS) -> tuple[Item, ...]:
+        return tuple(read(item) for item in self.items(length, most))
 
     def text(self) -> str:
         """A text that can be shown as it is, on a terminal or in a page; in an expression, tabs are blanks."""
@@ -82,7 +94,7 @@ class Node(NamedTuple):
         return self.value
 
     def data(self) -> dict[str, Any]:
-        """An object of any shape, whose texts and keys can be stored (`ptmcad.question.slice.unstorable`)."""
+        """An object of any shape, whose texts and keys can be stored (`unstorable`)."""
         if not isinstance(self.value, dict):
             raise self.fault("is not an object")
         if (found := unstorable(self.value)) is not None:
@@ -101,11 +113,11 @@ class Node(NamedTuple):
             raise self.fault("is not true or false")
         return self.value
 
-    def natural(self) -> int:
+    def natural(self, most: int | None = MAX_NUMBER) -> int:
         if not isinstance(self.value, int) or isinstance(self.value, bool):
             raise self.fault("is not an integer")
-        if not 0 <= self.value <= MAX_NUMBER:
-            raise self.fault(f"is not between 0 and {MAX_NUMBER}")
+        if self.value < 0 or (most is not None and self.value > most):
+            raise self.fault("is negative" if most is None else f"is not between 0 and {most}")
         return self.value
 
     def number(self) -> float:
@@ -126,10 +138,14 @@ class Node(NamedTuple):
         return self.coefficient()
 
     def coefficient(self) -> Fraction:
-        try:
-            return fraction_of(self.text())
-        except ValueError as error:
-            raise self.fault(f"is wrong: {error}") from error
+        return self.made(fraction_of, self.text())
+
+    def integer(self) -> int:
+        """A coefficient that is one, as text of any length."""
+        value = self.coefficient()
+        if value.denominator != 1:
+            raise self.fault("is not an integer")
+        return value.numerator
 
     def size(self) -> Fraction:
         """A number that is not negative."""
@@ -138,15 +154,15 @@ class Node(NamedTuple):
             raise self.fault("is negative")
         return value
 
-    def choice(self, kind: type[Choice]) -> Choice:
+    def choice(self, members: Mapping[str, Choice]) -> Choice:
         text = self.text()
-        if text not in {member.value for member in kind}:
-            raise self.fault(f"is {text[:40]!r}, not one of {', '.join(str(member.value) for member in kind)}")
-        return kind(text)
+        if text not in members:
+            raise self.fault(f"is {text[:40]!r}, not one of {', '.join(members)}")
+        return members[text]
 
 
 def opened(text: str, expected: str, longest: int, command: str) -> Node:
-    """The root of a JSON document of the expected format; ``command`` is what makes such a document anew.
+    """The root of a JSON document of the expected format, without it; ``command`` makes such a document anew.
 
     Raises
     ------
@@ -160,7 +176,7 @@ def opened(text: str, expected: str, longest: int, command: str) -> Node:
     if found != expected:
         way = NEWER if is_newer(found, expected) else f"make it anew with {command}"
         raise ValueError(f"its format is {str(found)[:40]!r}, not {expected!r}; {way}")
-    return Node(data, "")
+    return Node({key: value for key, value in data.items() if key != "format"}, "")
 
 
 NEWER = "it needs a newer ptmcad"
@@ -176,64 +192,6 @@ def is_newer(found: Any, expected: str) -> bool:
     return kind == own and version.isdecimal() and int(version) > int(current)
 
 
-@contextmanager
-def placed(node: Node) -> Iterator[Any]:
-    """A part's data for a reader that knows no places: what it raises names the part that was asked for last.
-
-    Raises
-    ------
-    ValueError
-        For a ValueError, and for what comes of a key that is missing or a value of another type.
-    """
-    trail = [node.place]
-    try:
-        yield _traced(node.value, node.place, trail)
-    except (KeyError, TypeError, AttributeError, IndexError) as error:
-        raise ValueError(f"{trail[0] or 'the document'} is missing or of another kind") from error
-    except (ValueError, ConfigError) as error:
-        raise ValueError(f"{trail[0]} is wrong: {error}" if trail[0] else str(error)) from error
-
-
-def _traced(value: Any, place: str, trail: list[str]) -> Any:
-    """The same, but that lists and objects write down in ``trail`` which part of them is asked for."""
-    trail[0] = place
-    kind = _Object if isinstance(value, dict) else _Items if isinstance(value, list) else None
-    if kind is None:
-        return value
-    found = kind(value)
-    found.place, found.trail = place, trail
-    return found
-
-
-class _Object(dict[str, Any]):
-    place: str
-    trail: list[str]
-
-    def __getitem__(self, key: str) -> Any:
-        place = f"{self.place}.{key[:40]}" if self.place else key[:40]
-        self.trail[0] = place
-        return _traced(super().__getitem__(key), place, self.trail)
-
-    def get(self, key: str, default: Any = None) -> Any:
-        if key not in self:
-            return default
-        return self[key]
-
-    def items(self) -> Any:
-        return [(key, self[key]) for key in self]
-
-
-class _Items(list[Any]):
-    place: str
-    trail: list[str]
-
-    def __getitem__(self, k: Any) -> Any:
-        return _traced(super().__getitem__(k), f"{self.place}[{k}]", self.trail)
-
-    def __iter__(self) -> Iterator[Any]:
-        return (self[k] for k in range(len(self)))
-
-
 def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(pairs)
     if len(found) != len(pairs):
@@ -244,3 +202,22 @@ def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 def _refused(text: str) -> Any:
     raise ValueError(f"{text} is not a number of JSON")
+
+
+def _is_control(c: str) -> bool:
+    """Whether a character is of Unicode's categories Cc or Cs; a line break or a tab is allowed."""
+    return (c < " " and c not in "\n\r\t") or "\x7f" <= c <= "\x9f" or "\ud800" <= c <= "\udfff"
+
+
+def unstorable(data: Any) -> str | None:
+    """A character that a result has no place for, in the texts and keys of a reference; None when there is none.
+
+    Those are control characters, but for line breaks and tabs, and halves of surrogate pairs, which are not in UTF-8.
+    """
+    if isinstance(data, str):
+        return next(filter(_is_control, data), None)
+    if isinstance(data, Mapping):
+        parts: Iterable[Any] = (part for entry in data.items() for part in entry)
+    else:
+        parts = data if isinstance(data, list | tuple) else ()
+    return next((found for part in parts if (found := unstorable(part)) is not None), None)

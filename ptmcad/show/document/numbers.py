@@ -1,0 +1,115 @@
+"""Algebraic numbers, enclosures, axes and largest widths as parts of JSON documents.
+
+Guarantee: numbers are exact; reading what was written gives an equal value, and words and decimals that are not those
+of the numbers are refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from operator import attrgetter
+from typing import Any
+
+from ptmcad.answer.intervals import End
+from ptmcad.answer.widths import Attainment, Maximum, Place
+from ptmcad.question.slice import Axis
+from ptmcad.text.codec import (
+    INTEGER,
+    NATURAL,
+    RATIONAL,
+    TEXT,
+    Codec,
+    Key,
+    by_name,
+    choice,
+    converted,
+    derived,
+    either,
+    line,
+    listed,
+    optional,
+    record,
+    record_of,
+)
+from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+
+MAX_TEXT = 10_000
+"""Characters of a text that a person wrote."""
+LINE = line(MAX_TEXT)
+INDEX = optional(listed(NATURAL).narrowed(minItems=2))
+"""Numbers of solutions by their number of negative eigenvalues, where they are known."""
+
+
+def _itself(value: Any) -> Any:
+    return value
+
+
+def _enclosure(low: Fraction, high: Fraction) -> Enclosure:
+    if low > high:
+        raise ValueError("the ends of an interval are exchanged")
+    return Enclosure(low, high)
+
+
+def _algebraic(polynomial: tuple[int, ...], low: Fraction, high: Fraction) -> AlgebraicNumber:
+    if len(polynomial) < 2 or polynomial[-1] <= 0:
+        raise ValueError("a number's polynomial has no degree")
+    _enclosure(low, high)
+    return AlgebraicNumber(polynomial, low, high)
+
+
+INTERVAL: Codec[Enclosure] = converted(
+    listed(RATIONAL, 2), attrgetter("low", "high"), lambda ends: _enclosure(ends[0], ends[1])
+)
+"""An enclosure by its two ends."""
+_POLYNOMIAL = listed(INTEGER).narrowed(minItems=2)
+ALGEBRAIC = record_of(AlgebraicNumber, {}, _algebraic, polynomial=_POLYNOMIAL)
+NUMBER: Codec[AlgebraicNumber | Enclosure] = either(
+    "polynomial", lambda value: isinstance(value, AlgebraicNumber), ALGEBRAIC, record_of(Enclosure, {}, _enclosure)
+)
+AXIS = record_of(Axis, name=LINE)
+
+
+def with_decimal(text: Callable[[Any], str | None], codec: Codec[Any] = TEXT) -> Codec[Any]:
+    """The window's edge, or an algebraic number, beside its decimal, which a function makes."""
+    edge: Codec[Fraction] = record(lambda window: window, window=Key(RATIONAL, _itself), decimal=derived(text, codec))
+    return either("window", lambda end: isinstance(end, Fraction), edge, algebraic_with_decimal(text))
+
+
+def algebraic_with_decimal(text: Callable[[Any], str | None]) -> Codec[AlgebraicNumber]:
+    """An algebraic number beside its decimal."""
+    return record_of(AlgebraicNumber, {}, _algebraic, decimal=derived(text), polynomial=_POLYNOMIAL)
+
+
+def maximum(over: str, digits: int) -> Codec[Maximum]:
+    """The codec of a largest width; attainment is not decided where it is not told, as in older documents.
+
+    Parameters
+    ----------
+    over : the name of the other axis.
+    """
+
+    def text(value: End) -> str:
+        return AlgebraicNumber.of(value).text(digits)
+
+    def decimal(value: Enclosure) -> str:
+        return next((value.text(n) for n in range(digits, 0, -1) if value.settles(n)), "")
+
+    def made(attainment: Attainment, **entries: Any) -> Maximum:
+        decided = attainment is not Attainment.UNDECIDED
+        return Maximum(attained=attainment is not Attainment.APPROACHED if decided else None, **entries)
+
+    number: Codec[End] = converted(
+        algebraic_with_decimal(text), AlgebraicNumber.of, lambda n: n if n.exact is None else n.exact
+    )
+    enclosed: Codec[Enclosure] = record(
+        lambda enclosure: enclosure, decimal=derived(decimal), enclosure=Key(INTERVAL, _itself)
+    )
+    return record_of(
+        Maximum, {Enclosure: enclosed}, made, place=choice(Place, by_name), attained=None,
+        attainment=Key(choice(Attainment), default=Attainment.UNDECIDED, always=True, checked=True),
+        text=derived(lambda found: found.words(over, digits)), critical=optional(ALGEBRAIC),
+        ends=optional(listed(with_decimal(text), 2)),
+        **{"except": Key(listed(number), default=(), field="exceptions", always=True)},
+        undecided=Key(listed(number), default=(), field="doubtful", always=True),
+    )  # fmt: skip

@@ -1,0 +1,173 @@
+"""A region map as a JSON document, docs/region-map.schema.json, and back: the stored result with its certificate.
+
+Guarantee: reading what was written gives an equal map; numbers are written exactly, areas of an exact map as decimals
+of 18 digits rounded outwards; the same map gives the same text, timings apart. A document that is not one is refused
+with the place of the first fault: every key must be known and present, every value of its type and within limits, and
+no key may occur twice. Whether what it claims is true is not asked here; `ptmcad.verify` does that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+from operator import attrgetter
+from typing import Any
+
+from ptmcad.answer.regionmap import (
+    Adjacency,
+    Cell,
+    Component,
+    CriticalValue,
+    PlanStep,
+    Region,
+    RegionMap,
+    Solution,
+    Status,
+    System,
+    Wall,
+)
+from ptmcad.question.slice import Count, Point, Slice
+from ptmcad.show.document.cover import COVER, cover_line
+from ptmcad.show.document.numbers import INDEX
+from ptmcad.show.document.slice import SLICE, polynomial_over
+from ptmcad.text.codec import (
+    COUNT,
+    INTEGER,
+    NATURAL,
+    RATIONAL,
+    SECONDS,
+    SHARE,
+    SHORT_DECIMAL,
+    TEXT,
+    Codec,
+    Key,
+    choice,
+    converted,
+    document_text,
+    listed,
+    merged,
+    named,
+    record_of,
+    unless_default,
+)
+from ptmcad.text.node import Node, opened
+from ptmcad.text.numerals import decimal
+from ptmcad.text.plane import PlanePolynomial
+
+FORMAT = "ptmcad-region-map/2"
+MAX_TEXT = 60_000_000
+MAX_COMPONENTS = 1_000
+_EXACT_ONLY = ("components", "critical_values", "stacks", "adjacencies", "non_adjacencies")
+"""What a certified map does not have."""
+
+
+def write(result: RegionMap, timings: bool = True) -> str:
+    """The map as JSON text."""
+    cover = result.cover
+    codec = _codec(result.slice.axis_names, cover is not None)
+    kept = {name: round(seconds, 6) for name, seconds in result.timings.items()} if timings else {}
+    data = codec.write(replace(result, timings=kept, cover=None))
+    return document_text(FORMAT, data, () if cover is None else (cover_line(cover),))
+
+
+def read(text: str) -> RegionMap:
+    """The map in a JSON document.
+
+    Raises
+    ------
+    ValueError
+        With the place of the first fault.
+    """
+    document = opened(text, FORMAT, MAX_TEXT, "ptmcad classify")
+    slice = SLICE.read(document.entry("slice"))
+    certified = "cover" in document.value
+    status = _STATUS.read(document.entry("status"))
+    if not certified and (status is Status.CERTIFIED or slice.count is Count.ADMISSIBLE):
+        raise document.fault("lacks the key 'cover', which a certified map has")
+    if certified and status not in (Status.CERTIFIED, Status.PARTIAL):
+        raise document.entry("status").fault("is not that of a map with a cover")
+    for key in _EXACT_ONLY if certified else ():
+        if (place := document.entry(key)).value != []:
+            raise place.fault("is not empty, as it is in a map with a cover")
+    return _codec(slice.axis_names, certified, slice).read(document)
+
+
+_STATUS = choice(Status).narrowed(enum=["exact", "certified", "partial", "undecided"])
+
+
+def _codec(names: tuple[str, str], certified: bool, slice: Slice | None = None) -> Codec[RegionMap]:
+    """The codec of a map over axes of these names.
+
+    Parameters
+    ----------
+    slice : that of the map, where it has been read.
+    """
+    point: Codec[Point] = Codec(
+        lambda at: {name: RATIONAL.write(at[name]) for name in names},
+        lambda node: _point(node, names),
+        named(RATIONAL).narrowed(minProperties=2, maxProperties=2).schema,
+    )
+    base: Codec[int] = Codec(lambda k: names[k], lambda node: _axis(node, names), TEXT.schema)
+    known: dict[Any, Codec[Any]] = {
+        Slice: SLICE if slice is None else SLICE._replace(read=lambda _: slice),
+        Point: point,
+        PlanePolynomial: polynomial_over(names),
+        System: record_of(System, **unless_default(System, "inequalities", "stability", "moments")),
+        CriticalValue: record_of(CriticalValue, polynomial=listed(INTEGER)),
+        Solution: record_of(Solution, {Fraction: SHORT_DECIMAL}, signs=TEXT.narrowed(pattern="^[-+0]*$")),
+        Wall: converted(listed(NATURAL, 2), attrgetter("component", "root"), lambda pair: Wall(*pair)),
+        Adjacency: record_of(
+            Adjacency, {}, lambda cells, **rest: Adjacency(cells[0], cells[1], **rest), first=None, second=None,
+            cells=Key(listed(NATURAL, 2), attrgetter("first", "second")),
+        ),
+        PlanStep: record_of(PlanStep, **unless_default(PlanStep, "saving")),
+    }  # fmt: skip
+    # an area that a checker is to confirm needs no more digits; one that is a sum of rectangles is exact as it is
+    area: Codec[Any] = (
+        listed(SHARE, 2) if certified else Codec(_outwards, listed(SHARE, 2).read, listed(SHARE, 2).schema)
+    )
+    admissible = COUNT if certified else None
+    known[Status] = _STATUS
+    known[Component] = record_of(Component, known, **unless_default(Component, "continuum"))
+    known[Region] = record_of(Region, known, area=area, index=INDEX, admissible=admissible)
+    known[Cell] = record_of(Cell, known, index=INDEX, stack=_NO_STACK if certified else NATURAL, admissible=admissible)
+    return record_of(
+        RegionMap, known, base=base, undetermined=Codec(RATIONAL.write, _share, SHARE.schema),
+        components=listed(known[Component], most=MAX_COMPONENTS),
+        timings=Key(named(SECONDS), default={}), cover=Key(COVER, default=None),
+    )  # fmt: skip
+
+
+def _point(node: Node, names: tuple[str, str]) -> Point:
+    values = node.record(*names)
+    return Point(names, values[names[0]].fraction(), values[names[1]].fraction())
+
+
+def _axis(node: Node, names: tuple[str, str]) -> int:
+    if (name := node.text()) not in names:
+        raise node.fault(f"is {name[:40]!r}, which is not an axis")
+    return names.index(name)
+
+
+def _share(node: Node) -> Fraction:
+    if (share := node.size()) > 1:
+        raise node.fault("is more than the whole window")
+    return share
+
+
+def _null(node: Node) -> None:
+    if node.value is not None:
+        raise node.fault("is not null, as it is in a map with a cover")
+
+
+_NO_STACK: Codec[None] = Codec(lambda stack: stack, _null, {"type": "null"})
+
+
+def _outwards(area: tuple[Fraction, Fraction]) -> list[str]:
+    return [decimal(area[0], up=False), decimal(area[1], up=True)]
+
+
+def schema() -> Mapping[str, Any]:
+    """Of an exact map and of a certified one."""
+    return merged(*(_codec(("x", "y"), certified).schema for certified in (False, True)))

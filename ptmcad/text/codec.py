@@ -1,0 +1,378 @@
+"""Codecs: how a value is written into a JSON document, how it is read, and the JSON Schema of what is written.
+
+Guarantee: all three come of one description, which is the class's annotations where nothing else is said. What a codec
+reads from what it has written is equal to what was written; every fault of a document is a ValueError that names its
+place.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Collection, Hashable, Iterator, Mapping
+from dataclasses import MISSING, Field, fields
+from enum import Enum
+from fractions import Fraction
+from functools import cache, reduce
+from operator import attrgetter, or_
+from types import MappingProxyType, NoneType
+from typing import Any, Generic, NamedTuple, TypeVar, cast, get_args, get_origin, get_type_hints
+
+from ptmcad.text.node import MAX_ITEMS, Node
+from ptmcad.text.numerals import integer_text, shortest_text, text_of
+
+T = TypeVar("T")
+S = TypeVar("S")
+Choice = TypeVar("Choice", bound=Enum)
+Schema = Mapping[str, Any]
+
+
+class Codec(NamedTuple, Generic[T]):
+    """From a value to what `json` writes, from a place in a document to the value, and the schema of what is there."""
+
+    write: Callable[[T], Any]
+    read: Callable[[Node], T]
+    schema: Schema = MappingProxyType({})
+
+    def narrowed(self, **keywords: Any) -> Codec[T]:
+        """The same with further keywords of the schema: of what is written, where a reader need not ask for it."""
+        return self._replace(schema={**self.schema, **keywords})
+
+
+Known = Mapping[Any, Codec[Any]]
+"""Codecs of types."""
+_ALIKE: Known = MappingProxyType({})
+
+
+def _itself(value: Any) -> Any:
+    return value
+
+
+RATIONAL_SCHEMA = {"type": "string", "pattern": r"^-?[0-9]+(/[0-9]+|(\.[0-9]+)?(e-?[0-9]{1,6})?)$"}
+_RATIONAL = {"$ref": "#/$defs/rational"}
+
+TEXT: Codec[str] = Codec(_itself, Node.text, {"type": "string"})
+TRUTH: Codec[bool] = Codec(_itself, Node.truth, {"type": "boolean"})
+NATURAL: Codec[int] = Codec(_itself, Node.natural, {"type": "integer", "minimum": 0})
+POSITIVE = NATURAL.narrowed(minimum=1)
+WHOLE: Codec[int] = Codec(_itself, lambda node: node.natural(most=None), NATURAL.schema)
+"""Of any size, such as a seed."""
+INTEGER: Codec[int] = Codec(integer_text, Node.integer, {"type": "string", "pattern": "^-?[0-9]+$"})
+"""Of any length, as text."""
+RATIONAL: Codec[Fraction] = Codec(text_of, Node.fraction, _RATIONAL)
+SHARE: Codec[Fraction] = Codec(text_of, Node.size, _RATIONAL)
+"""A number that is not negative."""
+SHORT_DECIMAL: Codec[Fraction] = Codec(shortest_text, Node.fraction, _RATIONAL)
+"""As a decimal where one is exact."""
+SECONDS: Codec[float] = Codec(_itself, Node.number, {"type": "number", "minimum": 0})
+DATA: Codec[Mapping[str, Any]] = Codec(dict, Node.data, {"type": "object"})
+"""An object of any shape."""
+
+
+def line(most: int) -> Codec[str]:
+    """A short text that a terminal shows as it is."""
+    return Codec(_itself, lambda node: node.line(most), {"type": "string", "maxLength": most})
+
+
+def choice(kind: type[Choice], word: Callable[[Choice], str] = attrgetter("value")) -> Codec[Choice]:
+    """A member of an enumeration, by its value or by another word."""
+    members = {word(member): member for member in kind}
+    return Codec(word, lambda node: node.choice(members), {"enum": [*members]})
+
+
+def by_name(member: Enum) -> str:
+    """The word of a member whose value is a sentence."""
+    return member.name.lower()
+
+
+def optional(codec: Codec[T]) -> Codec[T | None]:
+    """The same or None."""
+    convert = codec.write
+    write = _itself if convert is _itself else lambda value: None if value is None else convert(value)
+    return Codec(write, lambda node: node.optional(codec.read), {"anyOf": [{"type": "null"}, codec.schema]})
+
+
+COUNT = optional(NATURAL)
+
+
+def listed(codec: Codec[T], length: int | None = None, most: int = MAX_ITEMS) -> Codec[tuple[T, ...]]:
+    """Several of the same, so many or at most so many."""
+    convert = codec.write
+    write = _itself if convert is _itself else lambda values: [convert(v) for v in values]
+    size = {} if length is None else {"minItems": length, "maxItems": length}
+    schema = {"type": "array", "items": codec.schema, **size}
+    return Codec(write, lambda node: node.each(codec.read, length, most), schema)
+
+
+def named(
+    codec: Codec[T], name: Callable[[Node, str], str] = lambda _, key: key, most: int = MAX_ITEMS
+) -> Codec[Mapping[str, T]]:
+    """Several of the same by at most so many names; ``name`` reads one, and may refuse it."""
+    return Codec(
+        lambda values: {name: codec.write(v) for name, v in values.items()},
+        lambda node: {name(place, key): codec.read(place) for key, place in node.mapping(most).items()},
+        {"type": "object", "additionalProperties": codec.schema},
+    )
+
+
+def either(key: str, is_first: Callable[[T], bool], first: Codec[Any], other: Codec[Any]) -> Codec[T]:
+    """One of two records, of which only the first has this key."""
+    return Codec(
+        lambda value: (first if is_first(value) else other).write(value),
+        lambda node: (first if key in node.mapping() else other).read(node),
+        {"anyOf": [first.schema, other.schema]},
+    )
+
+
+def in_words(text: Callable[[Any], str | None], codec: Codec[Any] = TEXT) -> Codec[Any]:
+    """A value as a text from which it is not read back."""
+    return codec._replace(write=text)
+
+
+def converted(codec: Codec[S], get: Callable[[T], S], make: Callable[[S], T]) -> Codec[T]:
+    """What is written as another value; what ``make`` refuses is wrong with that place."""
+    return Codec(lambda value: codec.write(get(value)), lambda node: node.made(make, codec.read(node)), codec.schema)
+
+
+class Key(NamedTuple):
+    """One key of a record.
+
+    Attributes
+    ----------
+    codec : that of the field's annotation when None (`record_of`).
+    field : the attribute that is written, and the argument that is read; named like the key when empty.
+    get : what is written, of the record's object; the attribute when None.
+    default : is read where the key is missing; it is written only ``always``.
+    made : whether what is read is handed to what makes the object.
+    checked : whether what is read has to be what the object, once it is made, gives; not in a document that lacks one
+        of the keys that are checked, as an earlier version wrote it.
+    beside : where it is not empty, the codec writes an object with some of these keys, which stand beside the others.
+    """
+
+    codec: Codec[Any] | None = None
+    get: Callable[[Any], Any] | None = None
+    default: object = ...
+    field: str = ""
+    always: bool = False
+    made: bool = True
+    checked: bool = False
+    beside: tuple[str, ...] = ()
+
+
+def derived(get: Callable[[Any], Any], codec: Codec[Any] = TEXT, default: object = ...) -> Key:
+    """A key that says for people what others say exactly; a document in which they differ is refused."""
+    return Key(codec, get, default, always=True, made=False, checked=True)
+
+
+def record(make: Callable[..., T], **keys: Codec[Any] | Key) -> Codec[T]:
+    """An object with these keys, in this order.
+
+    Parameters
+    ----------
+    make : of the keys' values, by their names; what it refuses is wrong with the object.
+    """
+    entries = {name: key if isinstance(key, Key) else Key(key) for name, key in keys.items()}
+    expected: list[str] = []
+    writers, readers, checked = [], [], []
+    for name, key in entries.items():
+        codec, get = _codec(key), key.get or attrgetter(key.field or name)
+        expected += [f"{other}?" for other in key.beside] or [name if key.default is ... else f"{name}?"]
+        writers.append((name, get, codec.write, ... if key.always else key.default, bool(key.beside)))
+        if key.made:
+            readers.append((name, key.field or name, codec.read, key.default, bool(key.beside)))
+        if key.checked:
+            checked.append((name, get, codec.write))
+
+    def write(value: T) -> dict[str, Any]:
+        found = {}
+        for name, get, convert, default, beside in writers:
+            part = get(value)
+            if beside:
+                found.update(convert(part))
+            elif default is ... or part != default:
+                found[name] = part if convert is _itself else convert(part)
+        return found
+
+    def read(node: Node) -> T:
+        given = node.record(*expected)
+        values = {}
+        for name, argument, read_part, default, beside in readers:
+            place = node if beside else given.get(name)
+            values[argument] = default if place is None else read_part(place)
+        found = node.made(make, **values)
+        if checked and all(name in given for name, *_ in checked):
+            for name, get, convert in checked:
+                if given[name].value != (other := convert(get(found))):
+                    raise given[name].fault(f"is not {str(other)[:60]!r}, as the rest says")
+        return found
+
+    return Codec(write, read, _schema_of(entries))
+
+
+def _codec(key: Key) -> Codec[Any]:
+    assert key.codec is not None
+    return key.codec
+
+
+def _schema_of(entries: Mapping[str, Key]) -> Schema:
+    properties: dict[str, Any] = {}
+    alternatives: dict[str, Any] = {}
+    for name, key in entries.items():
+        flag = key.default is False and not key.always
+        schema: Schema = {"const": True} if flag else _codec(key).schema
+        properties |= schema["properties"] if key.beside else {name: schema}
+        alternatives |= {"oneOf": schema["oneOf"]} if key.beside else {}
+    needed = [name for name, key in entries.items() if key.default is ... and not key.beside]
+    return {
+        "type": "object", "properties": properties, "required": needed, "additionalProperties": False, **alternatives,
+    }  # fmt: skip
+
+
+# ---------------------------------------------------------------------------------------------- read off annotations
+
+_KNOWN: Known = {str: TEXT, bool: TRUTH, int: NATURAL, float: SECONDS, Fraction: RATIONAL}
+
+
+def codec_of(hint: Any, known: Known = _ALIKE) -> Codec[Any]:
+    """The codec of a type: of text, numbers, enumerations, tuples, mappings, and of classes of such fields.
+
+    Parameters
+    ----------
+    known : codecs of types that are written in another way, wherever they occur.
+    """
+    if (found := known.get(hint, _KNOWN.get(hint))) is not None:
+        return found
+    kind, parts = get_origin(hint), get_args(hint)
+    if NoneType in parts:
+        return optional(codec_of(reduce(or_, (part for part in parts if part is not NoneType)), known))
+    if kind is tuple:
+        return listed(codec_of(parts[0], known), None if parts[-1] is ... else len(parts))
+    if kind is Mapping:
+        return named(codec_of(parts[1], known))
+    if issubclass(hint, Enum):
+        return choice(hint)
+    return record_of(hint, known)
+
+
+def record_of(
+    kind: type[T], known: Known = _ALIKE, make: Callable[..., T] | None = None, /,
+    **keys: Codec[Any] | Key | None,
+) -> Codec[T]:  # fmt: skip
+    """An object with a key for each field of a dataclass, by its annotation, and further ones.
+
+    Parameters
+    ----------
+    known : as of `codec_of`.
+    make : of the keys' values; the class itself when None.
+    keys : in place of those of fields, or further ones; None for a field that is not written.
+    """
+    renamed = {key.field: name for name, key in keys.items() if isinstance(key, Key) and key.field}
+    own = {renamed.get(field.name, field.name): Key(field=field.name) for field in _fields(kind)}
+    found = {**own, **keys}
+    bare = {n: key for n, key in found.items() if isinstance(key, Key) and key.codec is None}
+    hints = _hints(cast(Hashable, kind), tuple(key.field or name for name, key in bare.items()))
+    for name, key in bare.items():
+        found[name] = key._replace(codec=codec_of(hints[key.field or name], known))
+    made = record(make or kind, **{name: key for name, key in found.items() if key is not None})
+    return made.narrowed(**{_CLASS: kind.__name__})
+
+
+def unless_default(kind: type, *names: str, known: Known = _ALIKE) -> dict[str, Key]:
+    """Keys of fields that are left out where a field has its default."""
+    keys, hints = {}, _hints(kind, names)
+    for field in _fields(kind):
+        if field.name in names:
+            hint = hints[field.name]
+            default = field.default if field.default_factory is MISSING else field.default_factory()
+            given = [part for part in get_args(hint) if part is not NoneType] if default is None else [hint]
+            keys[field.name] = Key(codec_of(given[0], known), default=default)
+    return keys
+
+
+def _fields(kind: Any) -> tuple[Field[Any], ...]:
+    return fields(kind)
+
+
+@cache
+def _hints(kind: Any, names: tuple[str, ...]) -> dict[str, Any]:
+    """The types of some fields: of others a module need not have the names while it runs."""
+    written = {field.name: field.type for field in _fields(kind)}
+    some = type(kind.__name__, (), {"__annotations__": {n: written[n] for n in names}, "__module__": kind.__module__})
+    return get_type_hints(some)
+
+
+# ---------------------------------------------------------------------------------------------------------- documents
+
+
+def document_text(format: str, data: Mapping[str, Any], further: tuple[str, ...] = ()) -> str:
+    """A document as JSON text: a key a line, and of lists of objects each on a line, so that differences stay small.
+
+    Parameters
+    ----------
+    further : lines of keys that are written already.
+    """
+    lines = [f'  "format": {json.dumps(format)}']
+    for key, value in data.items():
+        text = json.dumps(value, ensure_ascii=False)
+        if isinstance(value, list) and value and isinstance(value[0], dict):
+            items = ",\n".join("    " + json.dumps(item, ensure_ascii=False) for item in value)
+            text = f"[\n{items}\n  ]"
+        lines.append(f"  {json.dumps(key)}: {text}")
+    return "{\n" + ",\n".join((*lines, *further)) + "\n}\n"
+
+
+_CLASS = "$class"
+"""Which class a schema is of, until it is complete."""
+
+
+def document_schema(format: str, schema: Schema) -> dict[str, Any]:
+    """The JSON Schema of a document, without its prose; what a class has in several places is defined apart."""
+    forms: dict[str, list[Schema]] = {}
+    for found in _of_classes(schema):
+        forms.setdefault(found[_CLASS], []).append(found)
+    shared = {name for name, found in forms.items() if len(found) > 1 and all(form == found[0] for form in found)}
+    whole = _without(schema, shared)
+    definitions = {name: _without({**forms[name][0], _CLASS: ""}, shared) for name in sorted(shared)}
+    return {
+        **whole,
+        "properties": {"format": {"const": format}, **whole["properties"]},
+        "required": ["format", *whole["required"]],
+        "$defs": {"rational": RATIONAL_SCHEMA, **definitions},
+    }
+
+
+def _of_classes(schema: Any) -> Iterator[Schema]:
+    """The parts of a schema that are those of classes."""
+    if isinstance(schema, Mapping):
+        if _CLASS in schema:
+            yield schema
+        schema = schema.values()
+    for part in schema if not isinstance(schema, str | int) else ():
+        yield from _of_classes(part)
+
+
+def _without(schema: Any, shared: Collection[str]) -> Any:
+    """A schema with references in place of the classes that are defined apart."""
+    if isinstance(schema, list):
+        return [_without(part, shared) for part in schema]
+    if not isinstance(schema, Mapping):
+        return schema
+    if (name := schema.get(_CLASS)) in shared:
+        return {"$ref": f"#/$defs/{name}"}
+    return {key: _without(part, shared) for key, part in schema.items() if key != _CLASS}
+
+
+def merged(one: Schema, other: Schema) -> Schema:
+    """The schema of what has one of two shapes, which differ in few keys."""
+    if one == other:
+        return one
+    if one.get("type") == other.get("type") == "array":
+        return {**one, "items": merged(one["items"], other["items"])}
+    if "properties" not in one or "properties" not in other:
+        return {"anyOf": [one, other]}
+    both = {**one["properties"], **other["properties"]}
+    shared = one["properties"].keys() & other["properties"].keys()
+    properties = {
+        n: merged(one["properties"][n], other["properties"][n]) if n in shared else s for n, s in both.items()
+    }
+    needed = [name for name in one["required"] if name in other["required"]]
+    return {**one, "properties": properties, "required": needed}
