@@ -115,7 +115,7 @@ def outcome(claim: Claim) -> Outcome:
             facts = {statement: holds(statement) for statement in text[key]}
             values |= facts
             values[name] = bool(values.get(name, True)) and all(facts.values())
-    told = partial(_told, text, values)
+    told = partial(_named, text, values)
     if reason := values.get("missing") or text.get("reason", ""):
         evidence = told("evidence") if values.get("corrected") else ()
         return Outcome(Verdict.NOT_CHECKED, tuple(evidence), {}, reason=reason)
@@ -132,7 +132,7 @@ def _check(text: Mapping[str, Any]) -> Values:
     return found
 
 
-def _told(text: Mapping[str, Any], values: Values, key: str) -> Iterable[str]:
+def _named(text: Mapping[str, Any], values: Values, key: str) -> Iterable[str]:
     """The sentences under a key; one that is nothing but the name of several sentences is these."""
     told = text.get(key, ())
     for sentence in (told,) if isinstance(told, str) else told:
