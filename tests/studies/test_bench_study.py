@@ -305,6 +305,12 @@ def test_a_zero_is_drawn_below_the_logarithms() -> None:
     zeros = [y for line in marks if line.get_linestyle() == "None" for y in line.get_ydata() if y == 0]
     assert len(zeros) == 2 + 1  # the exact engine's two and QEPCAD's one
     assert axes.get_ylim()[0] < 0
+    assert (
+        len(
+            {line.get_color() + line.get_marker() + str(line.get_linestyle()) for line in figure.legends[0].get_lines()}
+        )
+        == 4
+    )
     assert "0.3: 0, 0.4: 0." in figure.get_label()
 
 

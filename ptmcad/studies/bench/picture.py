@@ -17,6 +17,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from ptmcad.show.render.legend import INK
 from ptmcad.show.render.printing import settings
+from ptmcad.text.numerals import power_of_ten
 
 WIDE, TALL = 9.2, 6.4
 DPI = 110
@@ -27,6 +28,8 @@ _STYLES: tuple[tuple[str, str, str, Any], ...] = (
     ("#b45f06", "#b45f06", "^", "-"),
     ("#555555", "#555555", "P", "-"),
     ("#8a7d00", "#8a7d00", "X", "-"),
+    ("#009e73", "#009e73", "v", "-"),
+    ("#c00000", "#c00000", "*", "-"),
     ("#0b5394", "white", "o", (0, (2, 2))),
 )
 """Line, face, mark and dashes."""
@@ -71,8 +74,9 @@ def draw(labels: Labels, curves: Sequence[Curve]) -> Figure:
         axes.set_xscale("log")
         axes.set_yscale("symlog", linthresh=least, linscale=0.5)
         axes.set_xlim(0.75 * min(s.x[1] for s in spots), 1.6 * max(s.x[2] for s in spots))
-        axes.set_ylim(-0.2 * least if min(heights) <= 0 else least, 2 * max(least, *heights))
+        axes.set_ylim(-0.4 * least if min(heights) <= 0 else least, 4 * max(least, *heights))
         axes.axhspan(-least, least, color="#eef3e6", zorder=0)
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: power_of_ten(round(log10(y))) if y > 0 else "0"))
         axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
         axes.xaxis.set_minor_locator(NullLocator())

@@ -45,31 +45,33 @@ SAME_SOLUTION = 1e-5
 Values = Mapping[str, Any]
 
 
-def equations(p: Values, th1: Any, th2: Any) -> tuple[tuple[Any, Any], tuple[Any, Any, Any, Any]]:
+def equations(p: Values, c1: Any, s1: Any, c2: Any, s2: Any) -> tuple[Any, Any, Any, Any, Any, Any]:
     """The derivatives of the potential by th1 and th2, divided by L1 and L2; and their derivatives.
+
+    Parameters
+    ----------
+    c1, s1, c2, s2 : cosines and sines of the angles.
 
     Returns
     -------
-    Both derivatives, and the derivatives of the first by th1 and th2, then those of the second.
+    Both derivatives, then the derivatives of the first by th1 and th2, then those of the second.
     """
     b1 = (p["k2"] + p["k3"]) * p["rho"] + p["F3x"]
     b2 = (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
-    (s1, s2, s12), (c1, c2, c12) = ([f(angle) for angle in (th1, th2, th1 + th2)] for f in (np.sin, np.cos))
+    s12, c12 = s1 * c2 + c1 * s2, c1 * c2 - s1 * s2
     pull, stretch = p["k3"] * p["L1"], p["k3"] * p["L2"]
-    first = b1 * s1 - p["F3"] * c1 - stretch * s12
-    second = b2 * s2 - p["F4"] * c2 - pull * s12
-    slopes = (
+    return (
+        b1 * s1 - p["F3"] * c1 - stretch * s12,
+        b2 * s2 - p["F4"] * c2 - pull * s12,
         b1 * c1 + p["F3"] * s1 - stretch * c12,
         -stretch * c12,
         -pull * c12,
         b2 * c2 + p["F4"] * s2 - pull * c12,
     )
-    return (first, second), slopes
 
 
-def is_stable(slopes: tuple[Any, Any, Any, Any]) -> Any:
+def is_stable(h11: Any, h12: Any, h21: Any, h22: Any) -> Any:
     """Whether the Hessian, whose rows are these slopes times L1 and L2, is positive definite."""
-    h11, h12, h21, h22 = slopes
     return (h11 > 0) & (h11 * h22 > h12 * h21)
 
 
@@ -109,13 +111,16 @@ def _from_sextic(polynomials: Array, p: Values) -> NDArray[np.int8]:
     matrices[:, np.arange(1, degree), np.arange(degree - 1)] = 1
     roots = np.linalg.eigvals(matrices)
     real = np.abs(roots.imag) < MAX_IMAGINARY * (1 + np.abs(roots.real))
-    th2 = 2 * np.arctan(_polished(polynomials, roots.real))
-    # b1 s1 - F3 c1 - k3 L2 s12 = along s1 + across c1, and th1 or th1 + pi fulfils the second, too
-    (across, _), _ = equations(p, np.zeros_like(th2), th2)
-    (along, _), _ = equations(p, np.full_like(th2, np.pi / 2), th2)
-    th1 = np.arctan2(-across, along)
-    misfit, other = (abs(equations(p, angle, th2)[0][1]) for angle in (th1, th1 + np.pi))
-    stable = real & is_stable(equations(p, np.where(misfit <= other, th1, th1 + np.pi), th2)[1])
+    t = _polished(polynomials, roots.real)
+    with np.errstate(all="ignore"):
+        c2, s2 = (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
+        along, across = equations(p, 0, 1, c2, s2)[0], equations(p, 1, 0, c2, s2)[0]
+        # the first equation is along s1 + across c1 = 0; of its two solutions one fulfils the second
+        norm = np.hypot(along, across)
+        c1, s1 = along / norm, -across / norm
+        fulfilled, rest = equations(p, c1, s1, c2, s2)[1], equations(p, 0, 0, c2, s2)[1]
+        sign = np.where(abs(fulfilled) <= abs(2 * rest - fulfilled), 1.0, -1.0)
+        stable = real & is_stable(*equations(p, sign * c1, sign * s1, c2, s2)[2:])
     return np.stack([stable.sum(axis=1), real.sum(axis=1)]).astype(np.int8)
 
 
@@ -151,18 +156,19 @@ def _from_starts(p: dict[str, float], starts: Array) -> tuple[int, int]:
     scale = sum(map(abs, p.values()))
 
     def gradient(angles: Array) -> tuple[Array, Array]:
-        value, slopes = equations(p, *angles)
-        return np.array(value), np.array(slopes).reshape(2, 2)
+        (c1, c2), (s1, s2) = np.cos(angles), np.sin(angles)
+        found = np.array(equations(p, c1, s1, c2, s2))
+        return found[:2], found[2:].reshape(2, 2)
 
     seen: list[Array] = []
     stable = 0
     for start in starts:
         angles = root(gradient, start, jac=True, method="hybr").x
-        value, slopes = equations(p, *angles)
+        value, slopes = gradient(angles)
         apart = [np.abs(np.remainder(angles - a + np.pi, 2 * np.pi) - np.pi).max() for a in seen]
         if np.abs(value).max() < RESIDUAL * scale and min(apart, default=1.0) >= SAME_SOLUTION:
             seen.append(angles)
-            stable += bool(is_stable(slopes))
+            stable += bool(is_stable(*slopes.ravel()))
     return stable, len(seen)
 
 
