@@ -107,7 +107,7 @@ class FourBar:
             return False
         if None in sides:
             return False
-        (g1, g2), (f1, f2), (s1, s2) = ((side[u] for u in mechanism.angles) for side in sides if side is not None)
+        (g1, g2), (f1, f2), (s1, s2) = ([side[u] for u in mechanism.angles] for side in sides if side is not None)
         return (f1 - g1) * (s2 - g2) != (f2 - g2) * (s1 - g1)
 
     def named(self, fold: Fold, free_lengths: bool = False) -> str:
