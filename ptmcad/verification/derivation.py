@@ -9,7 +9,7 @@ length, unless their lengths are asked for.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -258,27 +258,30 @@ def _moments(configuration: Configuration, mechanism: Mechanism) -> tuple[Any, .
     return tuple(total)
 
 
-def potential(configuration: Configuration, mechanism: Mechanism) -> Any:
-    """Half the stiffness times the squared length of each spring, without free lengths, less the work of the loads."""
+def potential(configuration: Configuration, mechanism: Mechanism, length: Callable[[Any], Any] | None = None) -> Any:
+    """Half the stiffness times the squared length of each spring, without free lengths, less the work of the loads.
+
+    Parameters
+    ----------
+    length : the length by its square; if it is given, lengths are those beyond the free lengths.
+    """
     points = configuration.points(mechanism)
-    energy = work(configuration, points, mechanism)
+    energy: Any = fmpq(0)
+    for load in mechanism.loads:
+        for force, coordinate in zip((load.x, load.y), points[load.point], strict=True):
+            energy = energy - coordinate * configuration.value(force)
     for spring in mechanism.springs:
         across, up = (points[spring.end][i] - points[spring.start][i] for i in (0, 1))
-        energy = energy + (across * across + up * up) * (configuration.value(spring.stiffness) * fmpq(1, 2))
+        square = across * across + up * up
+        if length is not None:
+            stretch = length(square) - configuration.value(spring.free)
+            square = stretch * stretch
+        energy = energy + square * (configuration.value(spring.stiffness) * fmpq(1, 2))
     for torsion in mechanism.torsion:
         cosine, sine = configuration.circle(torsion.angle)
         at_rest = [from_fraction(value) for value in torsion.rest]
         difference = cosine * at_rest[0] + sine * at_rest[1]
         energy = energy + configuration.value(torsion.stiffness) * (fmpq(1) - difference)
-    return energy
-
-
-def work(configuration: Configuration, points: Mapping[str, tuple[Any, Any]], mechanism: Mechanism) -> Any:
-    """What the loads contribute to the potential."""
-    energy: Any = fmpq(0)
-    for load in mechanism.loads:
-        for force, coordinate in zip((load.x, load.y), points[load.point], strict=True):
-            energy = energy - coordinate * configuration.value(force)
     return energy
 
 

@@ -20,12 +20,11 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz
 
 from ptmcad.answer.regionmap import System
 from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
-from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.tree import names_of
 from ptmcad.verification.certified.decimals import in_quotients
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import Configuration, formulas, work
+from ptmcad.verification.derivation import Configuration, formulas, potential
 from ptmcad.verification.loops import distances
 from ptmcad.verification.report import Unchecked, Violation
 
@@ -196,9 +195,15 @@ class _Text:
                     found.append(square)
         return found
 
-    def length(self, square: fmpq_mpoly) -> fmpq_mpoly | None:
-        """The length whose square, in normal form, is given; None when no spring has it."""
-        return self._gen[f"l{self.squares.index(square)}"] if square in self.squares else None
+    def length(self, square: Any) -> fmpq_mpoly:
+        """The length whose square is given.
+
+        Raises
+        ------
+        ValueError
+            When no spring has it.
+        """
+        return self._gen[f"l{self.squares.index(self.reduced(square))}"]
 
     def on_circles(self, p: fmpq_mpoly) -> fmpq_mpoly:
         """At most the first power of each cosine."""
@@ -285,10 +290,12 @@ class _Text:
 
     def _call(self, name: str, inner: ast.expr, node: ast.expr) -> fmpq_mpoly:
         if name == "sqrt":
-            length = self.length(self.reduced(self._value(inner)))
-            if length is None:
-                raise Violation(f"the stored potential has a root of what is no spring's length: {_shown(node)}")
-            return length
+            try:
+                return self.length(self._value(inner))
+            except ValueError:
+                raise Violation(
+                    f"the stored potential has a root of what is no spring's length: {_shown(node)}"
+                ) from None
         if name not in ("cos", "sin"):
             raise Violation(f"the stored potential has a part that is no formula: {_shown(node)}")
         cosine, sine = self.ring.constant(1), self.ring.constant(0)
@@ -326,23 +333,11 @@ def _energy(model: Model) -> fmpq_mpoly:
     if not isinstance(model, Mechanism):
         given: Any = formulas(text.configuration, model).energy
         return text.reduced(given)
-    here = text.configuration
-    points = here.points(model)
-    energy: Any = text.ring.constant(0) + work(here, points, model)
-    for spring in model.springs:
-        across, up = (points[spring.end][i] - points[spring.start][i] for i in (0, 1))
-        length = text.length(text.on_circles(text.ring.constant(0) + across * across + up * up))
-        assert length is not None
-        stretch = length - here.value(spring.free)
-        energy = energy + stretch * stretch * (here.value(spring.stiffness) * fmpq(1, 2))
-    for torsion in model.torsion:
-        cosine, sine = here.circle(torsion.angle)
-        at_rest = [from_fraction(value) for value in torsion.rest]
-        energy = energy + here.value(torsion.stiffness) * (1 - cosine * at_rest[0] - sine * at_rest[1])
+    energy: Any = text.ring.constant(0) + potential(text.configuration, model, text.length)
     for unknown, tree in model.moments if model.has_potential else ():
         if unknown in text.varying:
             continue
-        energy = energy - here.value(tree) * text.names[unknown]
+        energy = energy - text.configuration.value(tree) * text.names[unknown]
     return text.reduced(energy)
 
 
