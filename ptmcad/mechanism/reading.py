@@ -10,7 +10,7 @@ from enum import Enum
 from fractions import Fraction
 from typing import TypeVar
 
-from ptmcad.errors import ConfigError, ExpressionError, Faults, excerpt, quoted
+from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
 from ptmcad.mechanism.angles import PI, split_angle, without_quarter_turns
 from ptmcad.mechanism.description import Kind, Parameter, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate, value_at
@@ -335,9 +335,7 @@ def located(work: Callable[[], _T], entry: Entry) -> _T:
     try:
         return work()
     except ExpressionError as error:
-        at = error.position
-        where = "" if at is None else f" (character {at + 1} of {excerpt(str(entry.value), at)})"
-        raise entry.error(f"{error.message}{where}") from None
+        raise entry.place.located(error, str(entry.value)) from None
 
 
 def constant(entry: Entry, instead: str = "") -> str:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from decimal import Decimal
 from typing import Any, NamedTuple, TypeVar
 
-from ptmcad.errors import ConfigError, Faults, quoted
+from ptmcad.errors import ConfigError, ExpressionError, Faults, excerpt, quoted
 from ptmcad.text.numerals import exactly, text_of
 from ptmcad.text.syntax import did_you_mean
 
@@ -33,6 +33,12 @@ class Place(NamedTuple):
     def error(self, message: str) -> ConfigError:
         """A `ConfigError` that names this place."""
         return ConfigError(message, key=self.key, file=self.file, line=self.line)
+
+    def located(self, error: ExpressionError, text: str) -> ConfigError:
+        """What is wrong with an expression that stands here, with the part of its text that is meant."""
+        at = error.position
+        where = "" if at is None or len(text) < 2 else f" (character {at + 1} of {excerpt(text, at)})"
+        return self.error(f"{error.message}{where}")
 
     def below(self, key: str, line: int | None = None) -> Place:
         """The place of an entry under this one."""

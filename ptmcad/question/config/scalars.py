@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from ptmcad.errors import ConfigError, ExpressionError, excerpt
+from ptmcad.errors import ExpressionError
 from ptmcad.text.entry import Entry, Node, Scalar
 from ptmcad.text.expressions import Expression
 from ptmcad.text.parsing import names_in, parse
@@ -38,7 +38,7 @@ def names_in_scalar(scalar: Scalar) -> tuple[str, ...]:
     try:
         return names_in(scalar.text)
     except ExpressionError as error:
-        raise _located(scalar, error) from error
+        raise scalar.place.located(error, scalar.text) from error
 
 
 def parsed(scalar: Scalar, names: Mapping[str, Expression]) -> Expression:
@@ -46,10 +46,4 @@ def parsed(scalar: Scalar, names: Mapping[str, Expression]) -> Expression:
     try:
         return parse(scalar.text, names)
     except ExpressionError as error:
-        raise _located(scalar, error) from error
-
-
-def _located(scalar: Scalar, error: ExpressionError) -> ConfigError:
-    at, text = error.position, scalar.text
-    where = "" if at is None or len(text) < 2 else f" (character {at + 1} of {excerpt(text, at)})"
-    return scalar.place.error(f"{error.message}{where}")
+        raise scalar.place.located(error, scalar.text) from error

@@ -18,7 +18,6 @@ from ptmcad.text.codec import (
     INTEGER,
     NATURAL,
     RATIONAL,
-    TEXT,
     Codec,
     Key,
     by_name,
@@ -70,9 +69,9 @@ NUMBER: Codec[AlgebraicNumber | Enclosure] = either(
 AXIS = record_of(Axis, name=LINE)
 
 
-def with_decimal(text: Callable[[Any], str | None], codec: Codec[Any] = TEXT) -> Codec[Any]:
+def with_decimal(text: Callable[[Any], str | None]) -> Codec[Any]:
     """The window's edge, or an algebraic number, beside its decimal, which a function makes."""
-    edge: Codec[Fraction] = record(lambda window: window, window=Key(RATIONAL, _itself), decimal=derived(text, codec))
+    edge: Codec[Fraction] = record(lambda window: window, window=Key(RATIONAL, _itself), decimal=derived(text))
     return either("window", lambda end: isinstance(end, Fraction), edge, algebraic_with_decimal(text))
 
 

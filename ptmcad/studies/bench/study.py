@@ -15,10 +15,10 @@ from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
 
-from ptmcad.text.codec import TEXT, TRUTH, Codec, Key, line, listed, named, optional, record
-from ptmcad.text.node import Node
 from ptmcad.studies.bench.error import Figures
 from ptmcad.studies.bench.harness import Times
+from ptmcad.text.codec import TEXT, TRUTH, Codec, Key, line, listed, named, optional, record
+from ptmcad.text.node import Node
 from ptmcad.text.textfile import read_as
 
 FORMAT = "ptmcad-bench/1"
