@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 from flint import (
@@ -28,7 +27,6 @@ from flint import (
 
 from ptmcad.algebra.groebner import Monomial, shifted
 from ptmcad.algebra.quotient import standard_monomials
-from ptmcad.algebra.real_roots import sign
 from ptmcad.errors import LimitReached
 
 RationalPolynomial = Mapping[Monomial, fmpq]
@@ -214,25 +212,32 @@ class UnivariateRepresentation(NamedTuple):
     coordinates : one polynomial in Q[T] for each unknown: its value at a root, over that of ``slope``, is the unknown.
     slope : in Q[T]; not zero at the roots.
     form : the coefficients of the linear form, one for each unknown.
+    characteristic : the form's characteristic polynomial, of which the roots are as multiple as the points.
     """
 
     minimal: fmpz_poly
     coordinates: tuple[fmpq_poly, ...]
     slope: fmpq_poly
     form: tuple[int, ...]
+    characteristic: fmpz_poly
 
 
-def univariate_representation(algebra: Fibre) -> UnivariateRepresentation | None:
-    """The representation by the first separating form of a fixed list; None when the solutions are not all simple.
+def univariate_representation(algebra: Fibre, multiple: bool = False) -> UnivariateRepresentation | None:
+    """The representation by the first separating form of a fixed list.
 
-    A form separates simple solutions exactly when its characteristic polynomial is squarefree; if the solutions are
-    all simple, one of more than d^2/2 forms of this list does (Rouillier 1999, lemma 2.1).
+    A form separates the solutions exactly when its characteristic polynomial has as many different roots as there are
+    points; one of more than d^2/2 forms of this list does (Rouillier 1999, lemma 2.1).
 
-    The coordinates are quotients (theorem 3.1 there): for an unknown v, the sum over the points of v times the product
-    of (T - value of the form) over the other points has the coefficients trace(v form^j), and for v = 1 it is the
-    derivative of the characteristic polynomial. Polynomials without a denominator would be several times as long.
+    The coordinates are quotients (theorem 3.1 there): for an unknown v, the sum over the points of multiplicity times v
+    times the product of (T - value of the form) over the other points has the coefficients trace(v form^j), as it has
+    for v = 1. Polynomials without a denominator would be several times as long.
+
+    Parameters
+    ----------
+    multiple : whether solutions may be multiple; else None is returned where they are not all simple.
     """
     size, count = algebra.dimension, len(algebra.multiplication)
+    different = size if not multiple else None
     for trial in range(1, size * (size - 1) // 2 * (count - 1) + 2):
         weights = tuple(trial**k for k in range(count))  # points on a moment curve
         form = fmpq_mat(size, size)
@@ -241,35 +246,39 @@ def univariate_representation(algebra: Fibre) -> UnivariateRepresentation | None
         # in integers over common denominators: reducing every fraction on the way would take most of the time
         step, denominator = form.numer_denom()
         characteristic = step.charpoly()
-        coefficients = characteristic.coeffs()
-        powers = [denominator**i for i in range(size + 1)]
-        stretched = fmpz_poly([c * b for c, b in zip(coefficients, powers, strict=True)])
-        minimal = stretched // stretched.content()
-        if minimal.gcd(minimal.derivative()).degree() > 0:
+        radical = characteristic // characteristic.gcd(characteristic.derivative())
+        degree = radical.degree()
+        if degree < size and different is None:
+            different = hermite_matrix(algebra, evaluate(algebra, {(0,) * count: fmpq(1)})).rank()
+        if degree not in (size, different):
             continue
+        powers = [denominator**i for i in range(size + 1)]
         row, row_denominator = _basis_traces(algebra)
         traces_of_powers = row.entries()
-        for _ in range(size - 1):
+        for _ in range(degree - 1):
             row = row * step
             traces_of_powers += row.entries()
         columns, column_denominator = fmpq_mat(
-            size, count, [m[i, 0] for i in range(size) for m in algebra.multiplication]
+            size,
+            count + 1,
+            [c for i in range(size) for c in (fmpq(int(i == 0)), *(m[i, 0] for m in algebra.multiplication))],
         ).numer_denom()
-        traces = fmpz_mat(size, size, traces_of_powers) * columns
-        # rows of coefficients: the quotients of the characteristic polynomial by T, T^2, and so on
-        padded = [*coefficients, *[fmpz(0)] * size]
-        hankel = fmpz_mat(size, size, [c for i in range(1, size + 1) for c in padded[i : i + size]])
+        traces = fmpz_mat(degree, size, traces_of_powers) * columns
+        # rows of coefficients: the quotients of the radical by T, T^2, and so on
+        padded = [*radical.coeffs(), *[fmpz(0)] * degree]
+        hankel = fmpz_mat(degree, degree, [c for i in range(1, degree + 1) for c in padded[i : i + degree]])
         totals = (hankel * traces).entries()
         scale = fmpq(1, row_denominator * column_denominator)
-        coordinates = tuple(
-            fmpq_poly(fmpz_poly([c * b for c, b in zip(totals[k::count], powers, strict=False)])) * scale
-            for k in range(count)
+        slope, *coordinates = (fmpq_poly(_stretched(totals[k :: count + 1], powers)) * scale for k in range(count + 1))
+        minimal, whole = (_stretched(p.coeffs(), powers) for p in (radical, characteristic))
+        return UnivariateRepresentation(
+            minimal // minimal.content(), tuple(coordinates), slope, weights, whole // whole.content()
         )
-        slope = fmpq_poly(
-            fmpz_poly([c * b for c, b in zip(characteristic.derivative().coeffs(), powers, strict=False)])
-        )
-        return UnivariateRepresentation(minimal, coordinates, slope, weights)
     return None
+
+
+def _stretched(coefficients: Sequence[fmpz], powers: Sequence[fmpz]) -> fmpz_poly:
+    return fmpz_poly([c * b for c, b in zip(coefficients, powers, strict=False)])
 
 
 def _basis_traces(algebra: Fibre) -> tuple[fmpz_mat, fmpz]:
@@ -311,49 +320,12 @@ def hermite_matrix(algebra: Fibre, weight: fmpq_mat) -> fmpq_mat:
     Its rank is the number of different solutions where the weight is not zero, its signature the number of real
     solutions with positive weight minus those with negative weight (Hermite; Basu, Pollack, Roy, theorem 4.101).
     """
-    return block_hermite_matrix(algebra, [[weight]])
-
-
-def block_hermite_matrix(algebra: Fibre, weights: Sequence[Sequence[fmpq_mat]]) -> fmpq_mat:
-    """The matrix of blocks trace(weights[k][l] b_i b_j), for a symmetric matrix of multiplication matrices.
-
-    Its signature is the sum over the real solutions of the signatures of the weights' values there: the form is the sum
-    over all solutions of that of the value, evaluated at the values of the elements, and the parts of two conjugate
-    solutions together have signature zero.
-    """
     size = algebra.dimension
-    multiplications = []
-    for monomial in algebra.basis:
-        m = fmpq_mat(size, size, [fmpq(int(i == j)) for i in range(size) for j in range(size)])
-        for matrix, e in zip(algebra.multiplication, monomial, strict=True):
-            for _ in range(e):
-                m = matrix * m
-        multiplications.append(m)
-    # the traces of all w b_i, for w = sum of w_j b_j, are this matrix times the w_j
-    traces = fmpq_mat(size, 1, [sum((m[i, i] for i in range(size)), fmpq(0)) for m in multiplications])
+    row, denominator = _basis_traces(algebra)
     # column j of a multiplication is the normal form of its element times b_j
-    transposed = [m.transpose() for m in multiplications]
-    traces_of_products = fmpq_mat(size, size, [t for m in transposed for t in (m * traces).entries()])
-    number = len(weights)
-    entries = fmpq_mat(number * size, number * size)
-    for k, row in enumerate(weights):
-        for n, weight in enumerate(row):
-            # the first basis monomial is 1, so the first column is the weight's own normal form
-            weighted = traces_of_products * fmpq_mat(size, 1, [weight[i, 0] for i in range(size)])
-            for b, m in enumerate(transposed):
-                for j, value in enumerate((m * weighted).entries()):
-                    entries[k * size + b, n * size + j] = value
-    return entries
-
-
-def signature(symmetric: fmpq_mat) -> tuple[int, int]:
-    """(number of positive eigenvalues, number of negative ones), by Descartes' rule, exact as all roots are real."""
-    coefficients = symmetric.charpoly().coeffs()
-    positive = _sign_changes(coefficients)
-    negative = _sign_changes([c if i % 2 == 0 else -c for i, c in enumerate(coefficients)])
-    return positive, negative
-
-
-def _sign_changes(coefficients: Sequence[fmpq]) -> int:
-    signs = [s for s in map(sign, coefficients) if s]
-    return sum(a != b for a, b in pairwise(signs))
+    products = [evaluate(algebra, {m: fmpq(1)}).transpose() for m in algebra.basis]
+    traces = fmpq_mat(row).transpose() / denominator
+    traces_of_products = fmpq_mat(size, size, [t for m in products for t in (m * traces).entries()])
+    # the first basis monomial is 1, so the first column is the weight's own normal form
+    weighted = traces_of_products * fmpq_mat(size, 1, [weight[i, 0] for i in range(size)])
+    return fmpq_mat(size, size, [value for m in products for value in (m * weighted).entries()])

@@ -8,9 +8,10 @@ from typing import Any
 
 import pytest
 from flint import fmpq
+from support.signatures import signature
 
 import ptmcad
-from ptmcad.algebra.fibre import evaluate, hermite_matrix, signature
+from ptmcad.algebra.fibre import evaluate, hermite_matrix
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.checking import check
 from ptmcad.errors import ConfigError, NothingToCountError

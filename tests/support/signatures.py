@@ -7,12 +7,13 @@ the multiplication matrices of `ptmcad.exact.point_system`.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import combinations, product
+from itertools import combinations, pairwise, product
 from math import comb
 
 from flint import fmpq, fmpq_mat
 
-from ptmcad.algebra.fibre import block_hermite_matrix, evaluate, signature
+from ptmcad.algebra.fibre import Fibre, evaluate
+from ptmcad.algebra.real_roots import sign
 from ptmcad.answer.counts import Counts
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial
 from ptmcad.exact.point_system import DegeneratePoint, simple_solutions, text_of_point
@@ -94,3 +95,48 @@ def _minor(matrix: Sequence[Sequence[fmpq_mat]], rows: Sequence[int], columns: S
 def _lifted(p: RationalPolynomial, width: int) -> RationalPolynomial:
     """The polynomial in more coordinates."""
     return {(*m, *(0,) * (width - len(m))): c for m, c in p.items()}
+
+
+def block_hermite_matrix(algebra: Fibre, weights: Sequence[Sequence[fmpq_mat]]) -> fmpq_mat:
+    """The matrix of blocks trace(weights[k][l] b_i b_j), for a symmetric matrix of multiplication matrices.
+
+    Its signature is the sum over the real solutions of the signatures of the weights' values there: the form is the sum
+    over all solutions of that of the value, evaluated at the values of the elements, and the parts of two conjugate
+    solutions together have signature zero.
+    """
+    size = algebra.dimension
+    multiplications = []
+    for monomial in algebra.basis:
+        m = fmpq_mat(size, size, [fmpq(int(i == j)) for i in range(size) for j in range(size)])
+        for matrix, e in zip(algebra.multiplication, monomial, strict=True):
+            for _ in range(e):
+                m = matrix * m
+        multiplications.append(m)
+    # the traces of all w b_i, for w = sum of w_j b_j, are this matrix times the w_j
+    traces = fmpq_mat(size, 1, [sum((m[i, i] for i in range(size)), fmpq(0)) for m in multiplications])
+    # column j of a multiplication is the normal form of its element times b_j
+    transposed = [m.transpose() for m in multiplications]
+    traces_of_products = fmpq_mat(size, size, [t for m in transposed for t in (m * traces).entries()])
+    number = len(weights)
+    entries = fmpq_mat(number * size, number * size)
+    for k, row in enumerate(weights):
+        for n, weight in enumerate(row):
+            # the first basis monomial is 1, so the first column is the weight's own normal form
+            weighted = traces_of_products * fmpq_mat(size, 1, [weight[i, 0] for i in range(size)])
+            for b, m in enumerate(transposed):
+                for j, value in enumerate((m * weighted).entries()):
+                    entries[k * size + b, n * size + j] = value
+    return entries
+
+
+def signature(symmetric: fmpq_mat) -> tuple[int, int]:
+    """(number of positive eigenvalues, number of negative ones), by Descartes' rule, exact as all roots are real."""
+    coefficients = symmetric.charpoly().coeffs()
+    positive = _sign_changes(coefficients)
+    negative = _sign_changes([c if i % 2 == 0 else -c for i, c in enumerate(coefficients)])
+    return positive, negative
+
+
+def _sign_changes(coefficients: Sequence[fmpq]) -> int:
+    signs = [s for s in map(sign, coefficients) if s]
+    return sum(a != b for a, b in pairwise(signs))
