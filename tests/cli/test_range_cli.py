@@ -78,7 +78,7 @@ def test_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         ([FIG4, "--along", "rho", "--at", "L2=nan"], "at L2"),
         ([FIG4, "--along", "rho", "--at", "L2=1", "--pose", "1"], "--pose: chooses a pose to follow"),
         ([FIG4, "--along", "rho", "--at", "L2=1", "--path", "x"], "--path"),
-        ([FIG4, "--along", "rho", "--at", "L2=1", "--path", "7"], "--path: 7 is outside the window"),
+        ([FIG4, "--along", "rho", "--at", "L2=1", "--path", "7"], "--path: 7 is not inside the window"),
         ([FIG4, "--along", "rho", "--over", "L2", "--path", "1"], "--path: needs the value of the other axis too"),
         ([FIG4, "--along", "rho", "--over", "rho"], "rho"),
         ([FIG4, "--along", "q", "--at", "L2=1"], "q"),
