@@ -13,11 +13,12 @@ from hypothesis import strategies as st
 from support.examples import examples
 from support.maps import CONFIGS, shipped
 from support.poles import power_trace_denominators
+from support.signatures import signature
 
 from ptmcad import load
 from ptmcad.algebra.determinants import MIN_INTERPOLATED, determinant
 from ptmcad.algebra.fibre import evaluate as multiplication
-from ptmcad.algebra.fibre import fibre, signature
+from ptmcad.algebra.fibre import fibre
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
 from ptmcad.algebra.polynomials import PLANE, coefficients_in, evaluate, from_expression, irreducible_factors, to_plane
 from ptmcad.algebra.quotient import multiplication_denominator, norm, poles, quotient_algebra
