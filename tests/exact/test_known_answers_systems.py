@@ -212,11 +212,11 @@ SHIPPED = Path(__file__).resolve().parents[2] / "configs" / "systems"
 @pytest.mark.parametrize(
     "name",
     [
-        *["cubic", "cubic-and-quadratic", "duffing", "escape", "kuramoto", "schloegl", "von-mises-truss"],
+        *["cubic", "cubic-and-quadratic", "duffing", "kuramoto", "schloegl", "von-mises-truss"],
         pytest.param("orthogonal-3r", marks=pytest.mark.slow),
     ],
 )
-@pytest.mark.fast_cases("escape", "schloegl")
+@pytest.mark.fast_cases("schloegl")
 def test_published_areas_of_shipped_systems_by_the_certified_engine(name: str) -> None:
     pytest.importorskip("numba")
     slice = ptmcad.load(SHIPPED / f"{name}.yaml")

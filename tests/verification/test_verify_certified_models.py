@@ -145,10 +145,6 @@ RECORDS: dict[str, dict[str, Any]] = {
         },
         "axes": {"a": [-1, 4], "b": [1, 4]},
     },
-    "escape": {
-        "system": {"unknowns": {"x": "real"}, "equations": ["a*x^3 - x + b"]},
-        "axes": {"a": [-1, 1], "b": [-8, 8]},
-    },
     "half of a well": {
         "system": {
             "unknowns": {"x": "real"}, "potential": "x^4/4 - a*x^2/2 + b*x", "positive": ["x + 1/3", "2"],
