@@ -113,7 +113,7 @@ def test_a_base_below_zero_is_rejected_and_what_is_too_long_is_said_to_be_unchec
     given = {**true.slice.parameters, "rho": constant(0), "k1": parse("rho^16*L2^16+1+rho*L2", names)}
     found = check_domain(Claims(replace(true, slice=replace(true.slice, parameters=given))))
     assert isinstance(found, Unchecked)
-    assert found.startswith("k1: ")
+    assert found.startswith("k1")
 
 
 @pytest.mark.parametrize(

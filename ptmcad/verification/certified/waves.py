@@ -27,6 +27,9 @@ Key = tuple[Multi, Multi, int]
 Waves = Mapping[Key, Terms]
 """Factors of the waves; the first multiple that is not zero is positive, and there is no sine of nothing."""
 _Polynomials = dict[Key, fmpq_mpoly]
+_Side = tuple[str, _Polynomials, list[_Polynomials], list[_Polynomials]]
+"""Springs side by side: their names, and the pull and the vector, with its derivative along loops, of the one that they
+are together."""
 
 
 class Cone(NamedTuple):
@@ -292,7 +295,7 @@ def _cones(
         vector = [ring.waves(points[spring.end][i] - points[spring.start][i]) for i in (0, 1)]
         if parameters.vanish(pull) or not any(_by(d, k) for d in vector for k in everything):
             continue
-        new = _Side(spring.name, pull, vector, along[n] if along else [])
+        new = (spring.name, pull, vector, along[n] if along else [])
         for k, side in enumerate(sides):
             if joined := _joined(side, new, parameters):
                 sides[k] = joined
@@ -316,27 +319,17 @@ def _cones(
         yield Cone(name, terms, pair(vector), derivatives[0], derivatives[1], derivatives[2], line)
 
 
-class _Side(NamedTuple):
-    """Springs side by side: their names, and the pull and the vector, with its derivative along loops, of the one that
-    they are together.
-    """
-
-    names: str
-    pull: _Polynomials
-    vector: list[_Polynomials]
-    along: list[_Polynomials]
-
-
 def _joined(one: _Side, other: _Side, parameters: Parameters) -> _Side | None:
     """Two as one, if their vectors are f e and g e at every point of the slice: K |f e| + K' |g e|."""
+    (name, pull, vector, along), (also, more, parallel, _) = one, other
     for look in (dict, parameters.valued):  # where parameters may stay, they do: they are factors of equations
-        vector, parallel = ([look(f) for f in side.vector] for side in (one, other))
-        if any(vector) and (factors := parameters.shares(vector, parallel)):
+        ours, theirs = ([look(f) for f in some] for some in (vector, parallel))
+        if any(ours) and (factors := parameters.shares(ours, theirs)):
             f, g = factors
-            pulls = [(key, c * f) for key, c in look(one.pull).items()]
-            pulls += [(key, c * g) for key, c in look(other.pull).items()]
-            over = [[{key: c / f for key, c in look(d).items()} for d in some] for some in (one.vector, one.along)]
-            return _Side(f"{one.names} + {other.names}", _collected(pulls), *over)
+            pulls = [(key, c * f) for key, c in look(pull).items()]
+            pulls += [(key, c * g) for key, c in look(more).items()]
+            left, right = ([{key: c / f for key, c in look(d).items()} for d in some] for some in (vector, along))
+            return f"{name} + {also}", _collected(pulls), left, right
     return None
 
 
