@@ -285,7 +285,7 @@ def _basis_traces(algebra: Fibre) -> tuple[fmpz_mat, fmpz]:
     """The traces of the multiplications by the basis monomials: a row of integers, and their common denominator."""
     size = algebra.dimension
     products: dict[Monomial, fmpq_mat] = {}
-    traces = [fmpq(size)]
+    traces = [fmpq(size)][:size]  # of no solution there is none
     for monomial in algebra.basis[1:]:  # a divisor of a basis monomial is one too, and comes before it
         k = next(k for k, e in enumerate(monomial) if e)
         rest = shifted(monomial, k, -1)

@@ -274,8 +274,8 @@ def test_a_tube_holds_one_branch_only() -> None:
 @pytest.mark.parametrize(
     ("start", "number", "message"),
     [
-        ("5", None, "outside the window"),
-        ("2", None, "outside"),
+        ("5", None, "not inside the window"),
+        ("2", None, "not inside"),
         ("7/10", 3, "none of the 2 stable"),
         ("7/10", 0, "none"),
     ],
