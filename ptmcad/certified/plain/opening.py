@@ -94,8 +94,21 @@ class Coordinates:
         return self.frame.unknowns(self.evens, odds, self.graph)
 
     def _near(self, odd: int) -> Formula:
-        """1/(1 + t^2), t being the tangent of half an angle."""
-        return 1 / (1 + self.v * self.w[odd].squared())
+        """A variable for 1/(1 + t^2), t being the tangent of half an angle."""
+        return self.graph.variable(self.coordinate.variable + 1 + odd)
+
+    def nears(self) -> dict[int, Formula]:
+        """What takes the places of these variables."""
+        return {self._near(j).variable: 1 / (1 + (self.r * w).squared()) for j, w in enumerate(self.w)}
+
+    def derivative(self, f: Formula, by: Formula) -> Formula:
+        """The derivative by a coordinate of what has no roots in it."""
+        total = self.graph.derivative(f, by.variable)
+        for j, w in enumerate(self.w):
+            near = self._near(j)
+            slope = self.graph.derivative(self.v * w.squared(), by.variable)
+            total = total - self.graph.derivative(f, near.variable) * (near.squared() * slope)
+        return total
 
     def pace(self, odd: int) -> Formula:
         """The derivative of an odd coordinate by its share or tangent."""
@@ -238,6 +251,49 @@ def coordinates(frame: Frame, lead: int) -> Coordinates:
     return Coordinates(frame, lead, graph, tuple(variables[:size]), variables[size], w, variables[count])
 
 
+def stiffness(at: Coordinates, vectors: Sequence[tuple[Formula, Formula]]) -> Formula:
+    """Where one coordinate alone is odd the second derivative by it on the fixed points, times a positive number.
+
+    Parameters
+    ----------
+    vectors : of the springs with a free length, by the even coordinates.
+    """
+    springs = list(_springs(at))
+    slope, _ = _slopes(at, springs)
+    here = at.graph.constant(int(at.is_turning))
+    return placed(-slope if at.is_turning else slope, {at.coordinate.variable: here} | dict.fromkeys(at.nears(), at.graph.constant(1)) | _lengths(springs, vectors))
+
+
+def _slopes(at: Coordinates, springs: Sequence[_Spring]) -> tuple[Formula, list[Formula]]:
+    """u_c, and of each odd coordinate the derivative by its share or tangent over r: that of the lead without springs."""
+    odds = at.frame.odds
+    ratios = [
+        at.parts([(s, at.frame.problem.equations[k]) for k, s in odd]).odd * (1 if at.is_turning else at.pace(j))
+        for j, odd in enumerate(odds)
+    ]
+    if at.is_turning:
+        slope = -ratios[0]
+    else:
+        slope = sum((w * g for w, g in zip(at.w, ratios, strict=True)), start=at.graph.constant(0)) * _HALF
+    for spring in springs:
+        slope = slope - spring.pull * _stretch(at, spring, at.coordinate)
+        for j, odd in enumerate(odds):
+            if j != at.lead:
+                ratios[j] = ratios[j] - spring.pull * at.pace(j) * _share(at, spring, odd)
+    return slope, ratios
+
+
+def _lengths(springs: Sequence[_Spring], vectors: Sequence[tuple[Formula, Formula]]) -> dict[int, Formula]:
+    """What takes the places of the roots."""
+    values = {}
+    for spring in springs:
+        one, other = vectors[spring.number], vectors[spring.image]
+        inverse = inverse_length(*one)
+        values[spring.inverse.variable] = inverse if one is other else inverse * inverse_length(*other)
+        values[spring.mean.variable] = (length(*one) + length(*other)) * _HALF
+    return values
+
+
 def opening(at: Coordinates, vectors: Sequence[tuple[Formula, Formula]]) -> Opening:
     """The derivatives in some coordinates.
 
@@ -245,38 +301,19 @@ def opening(at: Coordinates, vectors: Sequence[tuple[Formula, Formula]]) -> Open
     ----------
     vectors : of the springs with a free length, by the variables.
     """
-    graph, frame = at.graph, at.frame
     springs = list(_springs(at))
-    slopes = [at.parts([(s, frame.problem.equations[k]) for k, s in odd]).odd for odd in frame.odds]
+    slope, ratios = _slopes(at, springs)
 
     def derivative(f: Formula, by: Formula) -> Formula:
-        total = graph.derivative(f, by.variable)
+        total = at.derivative(f, by)
         for spring in springs:
-            for root, slope in _roots(at, spring, by):
-                total = total + graph.derivative(f, root.variable) * slope
+            for root, change in _roots(at, spring, by):
+                total = total + at.graph.derivative(f, root.variable) * change
         return total
 
-    # by the shares or tangents, over r
-    ratios = [slope * at.pace(j) for j, slope in enumerate(slopes)]
-    if at.is_turning:
-        slope = -slopes[0]
-    else:
-        slope = sum((w * g for w, g in zip(at.w, ratios, strict=True)), start=graph.constant(0)) * _HALF
-    for spring in springs:
-        slope = slope - spring.pull * _stretch(at, spring, at.coordinate)
-        for j, odd in enumerate(frame.odds):
-            if j != at.lead:
-                ratios[j] = ratios[j] - spring.pull * at.pace(j) * _share(at, spring, odd)
     others = [j for j in range(len(at.w)) if j != at.lead]
     g = [ratios[j] for j in others]
-    values = {at.coordinate.variable: at.value}
-    for spring in springs:
-        one, other = vectors[spring.number], vectors[spring.image]
-        if spring.image == spring.number:
-            values[spring.inverse.variable] = inverse_length(*one)
-        else:
-            values[spring.inverse.variable] = inverse_length(*one) * inverse_length(*other)
-            values[spring.mean.variable] = (length(*one) + length(*other)) * _HALF
+    values = {at.coordinate.variable: at.value} | at.nears() | _lengths(springs, vectors)
 
     def put(f: Formula, *by: Formula) -> Formula:
         return placed(derivative(f, *by) if by else f, values)
@@ -297,7 +334,7 @@ def _springs(at: Coordinates) -> Iterator[_Spring]:
     problem, change = at.frame.problem, at.frame.change
     squares = [square_of(cone.difference) for cone in problem.cones]
     left = dict(enumerate(squares))
-    number = at.coordinate.variable
+    number = at.coordinate.variable + len(at.w)
     while left:
         k = min(left)
         image, pull = change.of(left.pop(k)), problem.cones[k].pull
@@ -314,17 +351,17 @@ def _springs(at: Coordinates) -> Iterator[_Spring]:
 
 def _stretch(at: Coordinates, spring: _Spring, by: Formula) -> Formula:
     """The derivative of the length, or of the sum of both."""
-    slope = at.graph.derivative(spring.parts.even, by.variable)
+    slope = at.derivative(spring.parts.even, by)
     if spring.image == spring.number:
         return spring.inverse * slope * _HALF
-    return (slope + spring.inverse * at.graph.derivative(spring.product(at), by.variable) * _HALF) / (2 * spring.mean)
+    return (slope + spring.inverse * at.derivative(spring.product(at), by) * _HALF) / (2 * spring.mean)
 
 
 def _roots(at: Coordinates, spring: _Spring, by: Formula) -> Iterator[tuple[Formula, Formula]]:
     """The variables that stand for roots, with their derivatives."""
     alone = spring.image == spring.number
     square = spring.parts.even if alone else spring.product(at)
-    slope = at.graph.derivative(square, by.variable)
+    slope = at.derivative(square, by)
     yield spring.inverse, -(spring.inverse * spring.inverse.squared()) * slope * _HALF
     if not alone:
         yield spring.mean, _stretch(at, spring, by) * _HALF

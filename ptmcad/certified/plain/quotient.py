@@ -22,10 +22,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ptmcad.certified.curve import Curve
-from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.chart import chart, determinant, principal_minors
 from ptmcad.certified.plain.frame import Frame
-from ptmcad.certified.plain.opening import Coordinates, Opening, coordinates, opening
+from ptmcad.certified.plain.opening import Coordinates, Opening, coordinates, opening, stiffness
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.plain.search import Search, dependent, semidefinite, values
 from ptmcad.certified.plain.springs import Matrix
@@ -43,31 +42,34 @@ def symmetric_folds(search: Search, frames: Sequence[Frame]) -> Iterator[Curve]:
 def _fixed(search: Search, frame: Frame) -> Iterator[Curve]:
     """Folds on a component of the fixed points."""
     for parting in (False, True) if frame.ranges else (True,):
-        graph = Graph()
-        evens = [graph.variable(FIRST + k) for k in range(len(frame.ranges))]
-        at = chart(search.exact, unknowns=frame.unknowns(evens, (), graph))
+        place = coordinates(frame, 0)
+        at = chart(search.exact, unknowns=frame.unknowns(place.evens, (), place.graph))
         there = at.matrix_at_equilibrium()
         block, other = (frame.odds, frame.evens) if parting else (frame.evens, frame.odds)
         singular, known = (frame.block(h, block, at.scales, over=True) for h in (at.hessian, there))
         definite = frame.block(there, other, at.scales, over=True)
+        across = [stiffness(place, [spring.vector for spring in at.springs])] if len(frame.odds) == 1 else []
+        zero = across[0] if parting and across else determinant(singular)
         yield Curve(
             f"{'pitchfork' if parting else 'fold'} of a stable equilibrium that is its own image{search.where}",
             "a minimum parts with two others, or meets two saddles, that are each other's images"
             if parting
             else "a minimum meets a saddle, and both are their own images",
             system(
-                [*(at.equations[e[0][0]] for e in frame.evens), determinant(singular)],
-                (0, 1, *range(FIRST, FIRST + len(evens))),
+                [*(at.equations[e[0][0]] for e in frame.evens), zero],
+                (0, 1, *range(FIRST, FIRST + len(frame.ranges))),
                 dependent(search, at, costly=[determinant(known), at.levelled()]),
                 [
+                    *([] if parting else across),
                     *principal_minors(known),
                     *(principal_minors(definite, whole=True)),
                     *semidefinite(at),
                     *values(search.conditions, at),
                 ],
+                solved=search.solved([*at.equations, zero]),
             ),
             frame.ranges,
-            np.array([*search.weights[:2], *(1.0 for _ in evens)]),
+            np.array([*search.weights[:2], *(1.0 for _ in frame.ranges)]),
         )
 
 
@@ -78,14 +80,16 @@ def _moved(search: Search, frame: Frame, lead: int) -> Curve:
     near = opening(place, [spring.vector for spring in at.springs])
     matrix = _matrix(place, near, frame.block(at.hessian, frame.evens, at.scales, over=False))
     equations = [sum((s * at.equations[k] for k, s in e[1:]), start=at.equations[e[0][0]]) for e in frame.evens]
+    cheap, costly = dependent(search, at, at.equations)
     return Curve(
         f"fold of a stable equilibrium that is not its own image{search.where}",
         "a minimum meets a saddle: det H = 0 with no negative principal minor; so do their images",
         system(
             [*equations, near.slope, *near.ratios, determinant(matrix)],
             (0, 1, *search.problem.variables),
-            dependent(search, at, at.equations),
+            (cheap, costly),
             [*semidefinite(at), *principal_minors(matrix), *values(search.conditions, at)],
+            solved=search.solved([*at.equations, *equations, near.slope, *near.ratios, *cheap]),
         ),
         place.ranges,
         np.array([*search.weights[:2], *(1.0 for _ in at.equations)]),

@@ -15,6 +15,7 @@ from ptmcad.certified.plain.bounds import Range
 from ptmcad.certified.plain.chart import Chart, principal_minors
 from ptmcad.certified.plain.geometry import Geometry
 from ptmcad.certified.plain.problem import Condition, Problem
+from ptmcad.certified.solved import Quotient, quotients
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +41,11 @@ class Search:
     dependent: bool
     conditions: tuple[Condition, ...]
     where: str
+
+    def solved(self, vanishing: Sequence[Formula]) -> tuple[Quotient, ...]:
+        """Formulas that vanish at solutions, solved for axes on which no spring's direction depends."""
+        ends = [c for cone in self.problem.cones for d in cone.difference for pair in d.terms.values() for c in pair]
+        return quotients(vanishing, [k for k in (0, 1) if not any(c.uses(k) for c in ends)])
 
 
 def semidefinite(at: Chart) -> list[Formula]:
