@@ -14,9 +14,10 @@ from typing import NamedTuple
 from ptmcad.certified.formula import Formula, Graph
 from ptmcad.certified.plain.angle import Angle, Unknown
 from ptmcad.certified.plain.bounds import TURN, Range
-from ptmcad.certified.plain.involution import Involution
+from ptmcad.certified.plain.involution import Involution, square_of
 from ptmcad.certified.plain.problem import Problem
 from ptmcad.certified.plain.springs import Matrix
+from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 
 
 class Place(NamedTuple):
@@ -41,6 +42,7 @@ class Frame:
     problem : what they are coordinates of.
     change : the involution.
     places : of the unknowns.
+    squares : of the lengths of its springs.
     ranges : of the even coordinates.
     reaches : of the odd coordinates that are no angles the largest absolute values; 0 for an angle, of which a quarter
         turn to each side is taken.
@@ -49,6 +51,7 @@ class Frame:
     problem: Problem
     change: Involution
     places: tuple[Place, ...]
+    squares: tuple[TrigonometricPolynomial, ...]
     ranges: tuple[Range, ...]
     reaches: tuple[Fraction, ...]
 
@@ -116,6 +119,7 @@ def frames(problem: Problem, change: Involution, ranges: Sequence[Range]) -> Ite
     """One for each component of the fixed points; together their odd coordinates reach all configurations."""
     angles = [name not in problem.reals for name in problem.unknowns]
     alone = [k for k, j in enumerate(change.images) if j == k and change.signs[k] < 0 and angles[k]]
+    squares = tuple(square_of(cone.difference) for cone in problem.cones)
     for sides in product((0, 2), repeat=len(alone)):
         turned = dict(zip(alone, sides, strict=True))
         places, evens, reaches = dict[int, Place](), list[Range](), list[Fraction]()
@@ -135,4 +139,4 @@ def frames(problem: Problem, change: Involution, ranges: Sequence[Range]) -> Ite
             else:
                 places[k] = Place(-1, 0, len(reaches), 1, half + turned.get(k, 0))
                 reaches.append(Fraction(0) if angles[k] else Fraction(max(-low, high)))
-        yield Frame(problem, change, tuple(places[k] for k in range(len(places))), tuple(evens), tuple(reaches))
+        yield Frame(problem, change, tuple(places[k] for k in range(len(places))), squares, tuple(evens), tuple(reaches))

@@ -21,7 +21,6 @@ from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Angle, Unknown
 from ptmcad.certified.plain.bounds import Range
 from ptmcad.certified.plain.frame import Frame
-from ptmcad.certified.plain.involution import square_of
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial
 from ptmcad.certified.solved import with_formula
@@ -117,11 +116,12 @@ class Coordinates:
 
     def _wave(self, multiples: Multi) -> Parts:
         """The cosine of a sum of odd angles, and its sine over r."""
-        cosine, sine = self.graph.constant(1), self.graph.constant(0)
         if self.is_turning:
-            for _ in range(multiples[0]):
-                cosine, sine = cosine * self.coordinate - self.v * sine, sine * self.coordinate + cosine
-            return Parts(cosine, sine)
+            before = Parts(self.coordinate, self.graph.constant(-1))
+            wave = Parts(self.graph.constant(1), self.graph.constant(0))
+            for _ in range(multiples[0]):  # Chebyshev's polynomials
+                before, wave = wave, Parts(*(2 * self.coordinate * f - g for f, g in zip(wave, before, strict=True)))
+            return wave
         run, rise, near = self.graph.constant(1), self.graph.constant(0), self.graph.constant(1)
         for j, n in enumerate(multiples):
             for _ in range(abs(n)):
@@ -203,9 +203,10 @@ class _Spring(NamedTuple):
     Attributes
     ----------
     image : number of the other one, or its own.
-    square : of l.
-    inverse : a variable for 1/l; of two for the product of both.
-    mean : a variable for half the sum of both.
+    square, parts : of l.
+    product : l^2, or of two the square of the product of both, which is even.
+    inverse : a variable for one over its root.
+    share : of two, a variable for one over the sum of both.
     """
 
     number: int
@@ -213,12 +214,9 @@ class _Spring(NamedTuple):
     pull: Formula
     square: TrigonometricPolynomial
     parts: Parts
+    product: Formula
     inverse: Formula
-    mean: Formula
-
-    def product(self, at: Coordinates) -> Formula:
-        """Z, the square of the product of both lengths."""
-        return self.parts.even.squared() - at.v * self.parts.odd.squared()
+    share: Formula
 
 
 @dataclass(frozen=True, slots=True)
@@ -290,7 +288,7 @@ def _lengths(springs: Sequence[_Spring], vectors: Sequence[tuple[Formula, Formul
         one, other = vectors[spring.number], vectors[spring.image]
         inverse = inverse_length(*one)
         values[spring.inverse.variable] = inverse if one is other else inverse * inverse_length(*other)
-        values[spring.mean.variable] = (length(*one) + length(*other)) * _HALF
+        values[spring.share.variable] = 1 / (length(*one) + length(*other))
     return values
 
 
@@ -332,7 +330,7 @@ def opening(at: Coordinates, vectors: Sequence[tuple[Formula, Formula]]) -> Open
 def _springs(at: Coordinates) -> Iterator[_Spring]:
     """The springs, each together with its image."""
     problem, change = at.frame.problem, at.frame.change
-    squares = [square_of(cone.difference) for cone in problem.cones]
+    squares = at.frame.squares
     left = dict(enumerate(squares))
     number = at.coordinate.variable + len(at.w)
     while left:
@@ -342,29 +340,27 @@ def _springs(at: Coordinates) -> Iterator[_Spring]:
         if image != squares[k]:
             other = next(j for j, f in left.items() if f == image and problem.cones[j].pull == pull)
             del left[other]
-        inverse, mean = at.graph.variable(number + 1), at.graph.variable(number + 2)
+        parts, weight = at.parts([(1, squares[k])]), expression_formula(at.graph, pull)
+        product = parts.even if other == k else at.parts([(1, squares[k] * image)]).even
+        inverse, share = at.graph.variable(number + 1), at.graph.variable(number + 2)
         number += 2
-        yield _Spring(
-            k, other, expression_formula(at.graph, pull), squares[k], at.parts([(1, squares[k])]), inverse, mean
-        )
+        yield _Spring(k, other, weight, squares[k], parts, product, inverse, share)
 
 
 def _stretch(at: Coordinates, spring: _Spring, by: Formula) -> Formula:
-    """The derivative of the length, or of the sum of both."""
-    slope = at.derivative(spring.parts.even, by)
+    """The derivative of the length, or of the sum of both, whose square is twice the even part and their product."""
+    slope = spring.inverse * at.derivative(spring.product, by) * _HALF
     if spring.image == spring.number:
-        return spring.inverse * slope * _HALF
-    return (slope + spring.inverse * at.derivative(spring.product(at), by) * _HALF) / (2 * spring.mean)
+        return slope
+    return spring.share * (at.derivative(spring.parts.even, by) + slope)
 
 
 def _roots(at: Coordinates, spring: _Spring, by: Formula) -> Iterator[tuple[Formula, Formula]]:
     """The variables that stand for roots, with their derivatives."""
-    alone = spring.image == spring.number
-    square = spring.parts.even if alone else spring.product(at)
-    slope = at.derivative(square, by)
-    yield spring.inverse, -(spring.inverse * spring.inverse.squared()) * slope * _HALF
-    if not alone:
-        yield spring.mean, _stretch(at, spring, by) * _HALF
+    slope = spring.inverse * at.derivative(spring.product, by) * _HALF
+    yield spring.inverse, -(spring.inverse.squared() * slope)
+    if spring.image != spring.number:
+        yield spring.share, -(spring.share.squared() * _stretch(at, spring, by))
 
 
 def _share(at: Coordinates, spring: _Spring, odd: Sequence[tuple[int, int]]) -> Formula:
@@ -372,8 +368,9 @@ def _share(at: Coordinates, spring: _Spring, odd: Sequence[tuple[int, int]]) -> 
     slope = at.parts([(s, spring.square.derivative(k)) for k, s in odd])
     if spring.image == spring.number:
         return spring.inverse * slope.odd * _HALF
-    tilt = spring.parts.odd / (2 * spring.mean)
-    return spring.inverse * (slope.odd * spring.mean - slope.even * tilt)
+    # 1/l = (l' + l - r M/(l + l'))/(2 l l'), with the squares N + r M and N - r M
+    tilt = spring.share * spring.parts.odd
+    return spring.inverse * (slope.odd * (_HALF / spring.share) - slope.even * tilt)
 
 
 def placed(f: Formula, values: Mapping[int, Formula]) -> Formula:

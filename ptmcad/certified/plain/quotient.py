@@ -41,14 +41,14 @@ def symmetric_folds(search: Search, frames: Sequence[Frame]) -> Iterator[Curve]:
 
 def _fixed(search: Search, frame: Frame) -> Iterator[Curve]:
     """Folds on a component of the fixed points."""
+    place = coordinates(frame, 0)
+    at = chart(search.exact, unknowns=frame.unknowns(place.evens, (), place.graph))
+    there = at.matrix_at_equilibrium()
+    across = [stiffness(place, [spring.vector for spring in at.springs])] if len(frame.odds) == 1 else []
     for parting in (False, True) if frame.ranges else (True,):
-        place = coordinates(frame, 0)
-        at = chart(search.exact, unknowns=frame.unknowns(place.evens, (), place.graph))
-        there = at.matrix_at_equilibrium()
         block, other = (frame.odds, frame.evens) if parting else (frame.evens, frame.odds)
         singular, known = (frame.block(h, block, at.scales, over=True) for h in (at.hessian, there))
         definite = frame.block(there, other, at.scales, over=True)
-        across = [stiffness(place, [spring.vector for spring in at.springs])] if len(frame.odds) == 1 else []
         zero = across[0] if parting and across else determinant(singular)
         yield Curve(
             f"{'pitchfork' if parting else 'fold'} of a stable equilibrium that is its own image{search.where}",
