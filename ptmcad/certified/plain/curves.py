@@ -18,18 +18,43 @@ from ptmcad.certified.formula import Formula
 from ptmcad.certified.plain.bounds import TURN, Range
 from ptmcad.certified.plain.chart import Chart, chart, determinant, principal_minors
 from ptmcad.certified.plain.excesses import boundaries
+from ptmcad.certified.plain.frame import frames
 from ptmcad.certified.plain.geometry import Geometry, geometry
-from ptmcad.certified.plain.frame import Frame, frames
 from ptmcad.certified.plain.infinity import Patch, at_infinity, patches
-from ptmcad.certified.plain.involution import involution_of
+from ptmcad.certified.plain.involution import Involution, involution_of
 from ptmcad.certified.plain.loopcurves import curves_of_loops
 from ptmcad.certified.plain.problem import FIRST, Condition, Problem, problem_of
-from ptmcad.certified.plain.quotient import symmetric_folds
-from ptmcad.certified.plain.search import Search, dependent, semidefinite, values
+from ptmcad.certified.plain.quotient import folds
 from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.scales import TURNING_WEIGHT, short_lengths, variable_weights
+from ptmcad.certified.solved import quotients
 from ptmcad.certified.system import system
 from ptmcad.question.slice import Count, Slice
+
+
+@dataclass(frozen=True, slots=True)
+class _Search:
+    """What all curves of a slice have in common.
+
+    Attributes
+    ----------
+    exact : the problem with common factors that are positive in the window.
+    short : below this length a spring is searched in its chart.
+    stable : whether only folds of minima are asked for.
+    swallowed : whether solutions that springs without length swallow have curves of their own.
+    dependent : whether formulas that vanish at all solutions are used besides the equations.
+    """
+
+    problem: Problem
+    exact: Geometry
+    ranges: tuple[Range, ...]
+    weights: tuple[float, ...]
+    short: tuple[Fraction, ...]
+    stable: bool
+    swallowed: bool
+    dependent: bool
+    conditions: tuple[Condition, ...]
+    where: str
 
 
 def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) -> tuple[Curve, ...]:
@@ -56,7 +81,7 @@ def _of_patch(slice: Slice, count: Count, without: frozenset[str], patch: Patch)
     exact = geometry(problem, slice.axes)
     at = chart(exact)
     stable = problem.is_gradient and count.is_of_stable and "folds-of-saddles" not in without
-    search = Search(
+    search = _Search(
         problem,
         exact,
         patch.ranges,
@@ -68,23 +93,16 @@ def _of_patch(slice: Slice, count: Count, without: frozenset[str], patch: Patch)
         problem.conditions(count),
         problem.where + "".join(f" with {problem.unknowns[k]} large" for k in patch.inverse),
     )
-    folds = _frames(search, patch) if not search.swallowed else ()
-    yield from symmetric_folds(search, folds) if folds else _smooth(search, at)
+    found = None
+    if "mirror-images" not in without and not (search.swallowed or patch.inverse):
+        found = involution_of(problem, slice.axes)
+    yield from _smooth(search, at) if found is None else _quotient(search, found)
     yield from _boundaries(search, at)
     yield from _at_free_lengths(search, at)
     yield from _infinite(search, patch)
 
 
-def _frames(search: Search, patch: Patch) -> tuple[Frame, ...]:
-    """Coordinates about the fixed points of an involution; none where there is none, or springs may have no pull."""
-    problem = search.problem
-    if patch.inverse or problem.pushes or problem.covering:
-        return ()
-    change = involution_of(problem)
-    return () if change is None else tuple(frames(problem, change, search.ranges))
-
-
-def _infinite(search: Search, patch: Patch) -> Iterator[Curve]:
+def _infinite(search: _Search, patch: Patch) -> Iterator[Curve]:
     """Where a solution leaves to infinity."""
     for k in patch.inverse:
         equations, conditions = at_infinity(patch, k, search.conditions)
@@ -105,7 +123,7 @@ def _infinite(search: Search, patch: Patch) -> Iterator[Curve]:
         )
 
 
-def _smooth(search: Search, at: Chart) -> tuple[Curve, ...]:
+def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
     """The folds, and the cones."""
     if not search.swallowed:
         # the folds' systems have the points at which a minimum is swallowed
@@ -115,14 +133,38 @@ def _smooth(search: Search, at: Chart) -> tuple[Curve, ...]:
     return (_fold(search, at), *_short_folds(search, at), *_cones(search))
 
 
-def _charted(search: Search, at: Chart) -> list[int]:
+def _quotient(search: _Search, change: Involution) -> Iterator[Curve]:
+    """The folds of minima where an involution keeps the problem."""
+    ends = [c for cone in search.problem.cones for d in cone.difference for pair in d.terms.values() for c in pair]
+    # to solve for an axis that springs' directions depend on is sound, and no use
+    axes = [k for k in (0, 1) if not any(c.uses(k) for c in ends)]
+    for frame in frames(search.problem, change, search.ranges):
+        for fold in folds(search.exact, frame):
+            vanishing = tuple([*own, *more] for own, more in zip(fold.vanishing, _dependent(search, fold.at), strict=True))
+            cheap, costly = vanishing if search.dependent else ((), ())
+            yield Curve(
+                fold.name + search.where,
+                fold.reason,
+                system(
+                    fold.equations,
+                    (0, 1, *(FIRST + k for k in range(len(fold.ranges)))),
+                    ([f for f in cheap if f.value is None], costly),
+                    [*fold.nonnegative, *_semidefinite(fold.at), *_values(search.conditions, fold.at)],
+                    solved=quotients([*fold.equations, *fold.at.equations, *cheap], axes),
+                ),
+                fold.ranges,
+                np.array([*search.weights[:2], *(1.0 for _ in fold.ranges)]),
+            )
+
+
+def _charted(search: _Search, at: Chart) -> list[int]:
     """The cones that have a chart: none with one unknown, and for minima those that depend on several."""
     least = 1 if search.swallowed else 2
     many = len(search.problem.unknowns) > 1
     return [s for s, spring in enumerate(at.springs) if many and len(spring.active) >= least]
 
 
-def _fold(search: Search, at: Chart) -> Curve:
+def _fold(search: _Search, at: Chart) -> Curve:
     """Solutions with a singular Jacobian, every spring long that has a chart where it is short."""
     return Curve(
         _name(search),
@@ -130,11 +172,11 @@ def _fold(search: Search, at: Chart) -> Curve:
         system(
             [*at.equations, at.determinant()],
             (0, 1, *search.problem.variables),
-            dependent(search, at),
+            _dependent(search, at),
             [
                 *(at.lengths[s] - search.short[s] for s in _charted(search, at)),
-                *(semidefinite(at) if search.stable else []),
-                *values(search.conditions, at),
+                *(_semidefinite(at) if search.stable else []),
+                *_values(search.conditions, at),
             ],
         ),
         search.ranges,
@@ -142,16 +184,44 @@ def _fold(search: Search, at: Chart) -> Curve:
     )
 
 
-def _boundaries(search: Search, at: Chart) -> Iterator[Curve]:
+def _semidefinite(at: Chart) -> list[Formula]:
+    """What is not negative at minima, nor at limits of them, but for the determinant."""
+    return [
+        *principal_minors(at.matrix_at_equilibrium()),
+        *(f for s in range(len(at.springs)) for f in at.diagonal_times_length(s)),
+        *(turned.stiffness for turned in at.turned),
+    ]
+
+
+def _dependent(search: _Search, at: Chart) -> tuple[Sequence[Formula], Sequence[Formula]]:
+    """What vanishes at folds besides the equations, cheap formulas first."""
+    if not search.dependent:
+        return (), ()
+    moments = [turned.moment for turned in at.turned]
+    along = () if at.short is None else at.along
+    return (*moments, *at.dependent, *along), (
+        *at.balances,
+        *([at.determinant(at_equilibrium=True)] if at.springs else []),
+        *at.determinants_by_turning(),
+        *([at.levelled()] if at.springs and not search.stable else []),
+    )
+
+
+def _values(conditions: Sequence[Condition], at: Chart) -> list[Formula]:
+    """What is not negative at solutions that count, nor at limits of them."""
+    return [condition.value.formula(at.equations[0].graph, at.unknowns) for condition in conditions]
+
+
+def _boundaries(search: _Search, at: Chart) -> Iterator[Curve]:
     """Solutions at which a condition is zero and no other one is violated; there one stops or begins to count."""
     semidefinite = [*principal_minors(at.hessian), determinant(at.hessian)] if search.stable else []
     for k, condition in enumerate(search.conditions):
-        others = values([*search.conditions[:k], *search.conditions[k + 1 :]], at)
+        others = _values([*search.conditions[:k], *search.conditions[k + 1 :]], at)
         yield Curve(
             f"point where {condition.text} is 0{search.where}",
             f"solutions count where {condition.text} > 0, and at one of them it is zero",
             system(
-                [*at.equations, *values([condition], at)],
+                [*at.equations, *_values([condition], at)],
                 (0, 1, *search.problem.variables),
                 nonnegative=[*others, *semidefinite],
             ),
@@ -160,11 +230,11 @@ def _boundaries(search: Search, at: Chart) -> Iterator[Curve]:
         )
 
 
-def _at_free_lengths(search: Search, at: Chart) -> Iterator[Curve]:
+def _at_free_lengths(search: _Search, at: Chart) -> Iterator[Curve]:
     """Stable equilibria at which one spring has its free length, and no other one is shorter than its own."""
     problem = search.problem
     graph = at.equations[0].graph
-    minima = [*semidefinite(at), at.determinant(at_equilibrium=True)] if problem.is_gradient else []
+    minima = [*_semidefinite(at), at.determinant(at_equilibrium=True)] if problem.is_gradient else []
     moments = [turned.moment for turned in at.turned]
     for found in boundaries(problem.excesses, [graph.variable(k) for k in problem.variables]):
         yield Curve(
@@ -174,14 +244,14 @@ def _at_free_lengths(search: Search, at: Chart) -> Iterator[Curve]:
                 [*at.equations, found.zero],
                 (0, 1, *problem.variables),
                 ([*found.others, *moments, *at.dependent], at.balances),
-                [*found.not_negative, *minima, *values(search.conditions, at)],
+                [*found.not_negative, *minima, *_values(search.conditions, at)],
             ),
             search.ranges,
             np.array(search.weights),
         )
 
 
-def _short_folds(search: Search, at: Chart) -> Iterator[Curve]:
+def _short_folds(search: _Search, at: Chart) -> Iterator[Curve]:
     """The same where one spring is short, in its chart; the other ones may have any length."""
     for s in _charted(search, at):
         cone, at = search.problem.cones[s], chart(search.exact, s)
@@ -194,12 +264,12 @@ def _short_folds(search: Search, at: Chart) -> Iterator[Curve]:
             system(
                 [at.aligned, *at.equations, at.determinant()],
                 (0, 1, *search.problem.variables, FIRST + len(search.problem.unknowns)),
-                dependent(search, at),
+                _dependent(search, at),
                 [
                     at.springs[s].extent,
                     search.short[s] - at.lengths[s],
                     *semidefinite,
-                    *values(search.conditions, at),
+                    *_values(search.conditions, at),
                 ],
             ),
             (*search.ranges, TURN),
@@ -207,7 +277,7 @@ def _short_folds(search: Search, at: Chart) -> Iterator[Curve]:
         )
 
 
-def _points_without_length(search: Search, at: Chart) -> Iterator[Curve]:
+def _points_without_length(search: _Search, at: Chart) -> Iterator[Curve]:
     """The same as `_cones` for one unknown, where two equations d = 0 leave curves and need no direction."""
     (unknown,) = (at.equations[0].graph.variable(k) for k in search.problem.variables)
     for cone in search.problem.cones:
@@ -219,14 +289,14 @@ def _points_without_length(search: Search, at: Chart) -> Iterator[Curve]:
                 [f for f in vanishing if f.value != 0],
                 (0, 1, FIRST),
                 ((), at.equations),
-                values(search.conditions, at),
+                _values(search.conditions, at),
             ),
             search.ranges,
             np.array(search.weights),
         )
 
 
-def _cones(search: Search) -> Iterator[Curve]:
+def _cones(search: _Search) -> Iterator[Curve]:
     """Equilibria that come to a configuration in which a spring with a free length has none."""
     for s, cone in enumerate(search.problem.cones):
         at = chart(search.exact, s)
@@ -241,18 +311,18 @@ def _cones(search: Search) -> Iterator[Curve]:
                 [*vanishing, *at.equations],
                 (0, 1, *search.problem.variables, FIRST + len(search.problem.unknowns)),
                 ((), at.balances),
-                values(search.conditions, at),
+                _values(search.conditions, at),
             ),
             (*search.ranges, TURN),
             np.array([*search.weights, TURNING_WEIGHT]),
         )
 
 
-def _name(search: Search) -> str:
+def _name(search: _Search) -> str:
     return ("fold of a stable equilibrium" if search.stable else "fold") + search.where
 
 
-def _reason(search: Search) -> str:
+def _reason(search: _Search) -> str:
     if search.stable:
         return "a minimum meets a saddle: det H = 0 with no negative principal minor"
     return "equilibria meet: det H = 0" if search.problem.is_gradient else "solutions meet: the Jacobian is singular"

@@ -18,87 +18,98 @@ Golubitsky, Stewart & Schaeffer, Singularities and Groups in Bifurcation Theory 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
-import numpy as np
-
-from ptmcad.certified.curve import Curve
-from ptmcad.certified.plain.chart import chart, determinant, principal_minors
+from ptmcad.certified.formula import Formula
+from ptmcad.certified.plain.bounds import Range
+from ptmcad.certified.plain.chart import Chart, chart, determinant, principal_minors
 from ptmcad.certified.plain.frame import Frame
+from ptmcad.certified.plain.geometry import Geometry
 from ptmcad.certified.plain.opening import Coordinates, Opening, coordinates, opening, stiffness
-from ptmcad.certified.plain.problem import FIRST
-from ptmcad.certified.plain.search import Search, dependent, semidefinite, values
 from ptmcad.certified.plain.springs import Matrix
-from ptmcad.certified.system import system
 
 
-def symmetric_folds(search: Search, frames: Sequence[Frame]) -> Iterator[Curve]:
-    """All folds of minima, on the fixed points and off them."""
-    for frame in frames:
-        yield from _fixed(search, frame)
-        for lead in range(len(frame.reaches)):
-            yield _moved(search, frame, lead)
+@dataclass(frozen=True, slots=True)
+class Fold:
+    """Where minima meet others, in coordinates of their own.
+
+    Attributes
+    ----------
+    at : the problem's formulas in these coordinates.
+    equations : as many as there are coordinates, and one more.
+    vanishing : cheap and costly formulas that vanish there, besides the problem's.
+    nonnegative : what is not negative there.
+    ranges : of the coordinates.
+    """
+
+    name: str
+    reason: str
+    at: Chart
+    equations: tuple[Formula, ...]
+    vanishing: tuple[Sequence[Formula], Sequence[Formula]]
+    nonnegative: tuple[Formula, ...]
+    ranges: tuple[Range, ...]
 
 
-def _fixed(search: Search, frame: Frame) -> Iterator[Curve]:
-    """Folds on a component of the fixed points."""
+def folds(exact: Geometry, frame: Frame) -> Iterator[Fold]:
+    """All folds of minima about a component of the fixed points, on it and off it."""
+    yield from _fixed(exact, frame)
+    for lead in range(len(frame.reaches)):
+        yield _moved(exact, frame, lead)
+
+
+def _fixed(exact: Geometry, frame: Frame) -> Iterator[Fold]:
+    """Folds on the component itself."""
     place = coordinates(frame, 0)
-    at = chart(search.exact, unknowns=frame.unknowns(place.evens, (), place.graph))
+    at = chart(exact, unknowns=frame.unknowns(place.evens, (), place.graph))
     there = at.matrix_at_equilibrium()
     across = [stiffness(place, [spring.vector for spring in at.springs])] if len(frame.odds) == 1 else []
-    for parting in (False, True) if frame.ranges else (True,):
+    balance = [at.equations[e[0][0]] for e in frame.evens]
+    for parting in (False, True) if balance else (True,):
         block, other = (frame.odds, frame.evens) if parting else (frame.evens, frame.odds)
-        singular, known = (frame.block(h, block, at.scales, over=True) for h in (at.hessian, there))
-        definite = frame.block(there, other, at.scales, over=True)
-        zero = across[0] if parting and across else determinant(singular)
-        yield Curve(
-            f"{'pitchfork' if parting else 'fold'} of a stable equilibrium that is its own image{search.where}",
+        singular, known = (determinant(frame.block(h, block, at.scales, over=True)) for h in (at.hessian, there))
+        zero = across[0] if parting and across else singular
+        yield Fold(
+            f"{'pitchfork' if parting else 'fold'} of a stable equilibrium that is its own image",
             "a minimum parts with two others, or meets two saddles, that are each other's images"
             if parting
             else "a minimum meets a saddle, and both are their own images",
-            system(
-                [*(at.equations[e[0][0]] for e in frame.evens), zero],
-                (0, 1, *range(FIRST, FIRST + len(frame.ranges))),
-                dependent(search, at, costly=[determinant(known), at.levelled()]),
-                [
-                    *([] if parting else across),
-                    *principal_minors(known),
-                    *(principal_minors(definite, whole=True)),
-                    *semidefinite(at),
-                    *values(search.conditions, at),
-                ],
-                solved=search.solved([*at.equations, zero]),
+            at,
+            (*balance, zero),
+            ((), (known, at.levelled())),
+            (
+                *(() if parting else across),
+                *principal_minors(frame.block(there, block, at.scales, over=True)),
+                *principal_minors(frame.block(there, other, at.scales, over=True), whole=True),
             ),
             frame.ranges,
-            np.array([*search.weights[:2], *(1.0 for _ in frame.ranges)]),
         )
 
 
-def _moved(search: Search, frame: Frame, lead: int) -> Curve:
-    """Folds off the fixed points, each for its image, too: where the odd coordinate of number ``lead`` is largest."""
+def _moved(exact: Geometry, frame: Frame, lead: int) -> Fold:
+    """Folds off it, each for its image, too: where the odd coordinate of number ``lead`` is the largest."""
     place = coordinates(frame, lead)
-    at = chart(search.exact, unknowns=place.unknowns())
+    at = chart(exact, unknowns=place.unknowns())
     near = opening(place, [spring.vector for spring in at.springs])
     matrix = _matrix(place, near, frame.block(at.hessian, frame.evens, at.scales, over=False))
-    equations = [sum((s * at.equations[k] for k, s in e[1:]), start=at.equations[e[0][0]]) for e in frame.evens]
-    cheap, costly = dependent(search, at, at.equations)
-    return Curve(
-        f"fold of a stable equilibrium that is not its own image{search.where}",
+    balance = [sum((s * at.equations[k] for k, s in e[1:]), start=at.equations[e[0][0]]) for e in frame.evens]
+    return Fold(
+        "fold of a stable equilibrium that is not its own image",
         "a minimum meets a saddle: det H = 0 with no negative principal minor; so do their images",
-        system(
-            [*equations, near.slope, *near.ratios, determinant(matrix)],
-            (0, 1, *search.problem.variables),
-            (cheap, costly),
-            [*semidefinite(at), *principal_minors(matrix), *values(search.conditions, at)],
-            solved=search.solved([*at.equations, *equations, near.slope, *near.ratios, *cheap]),
-        ),
+        at,
+        (*balance, near.slope, *near.ratios, determinant(matrix)),
+        (at.equations, ()),
+        tuple(principal_minors(matrix)),
         place.ranges,
-        np.array([*search.weights[:2], *(1.0 for _ in at.equations)]),
     )
 
 
 def _matrix(place: Coordinates, near: Opening, even: Matrix) -> Matrix:
     """By the even coordinates, by c, and by w over r each time: symmetric, and singular where equilibria meet."""
-    rows = [[*row, mixed, *(place.r * f[k] for f in near.by_even)] for k, (row, mixed) in enumerate(zip(even, near.mixed, strict=True))]
+    rows = [
+        [*row, mixed, *(place.r * f[k] for f in near.by_even)]
+        for k, (row, mixed) in enumerate(zip(even, near.mixed, strict=True))
+    ]
     rows.append([*near.mixed, near.bend, *(place.r * f for f in near.by_coordinate)])
     for by_even, by_coordinate, by_ratio in zip(near.by_even, near.by_coordinate, near.by_ratio, strict=True):
         rows.append([*(place.r * f for f in (*by_even, by_coordinate)), *by_ratio])
