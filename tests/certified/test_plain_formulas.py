@@ -14,7 +14,8 @@ from support.records import TRUSS
 
 import ptmcad
 from ptmcad.answer.regionmap import Status
-from ptmcad.certified.formulation import curves, point_counter
+from ptmcad.certified.plain.curves import curves
+from ptmcad.certified.plain.points import plain_counter as point_counter
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain import rational
 from ptmcad.certified.plain.bounds import ranges

@@ -22,6 +22,8 @@ from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.distinct import FULL_TURN, distinct
 from ptmcad.certified.evaluation import Indices, program, run
 from ptmcad.certified.formula import Formula
+from ptmcad.certified.parameters import values_at
+from ptmcad.certified.peaks import peaks
 from ptmcad.certified.plain.bounds import Range, known_ranges
 from ptmcad.certified.plain.chart import Chart, chart, principal_minors
 from ptmcad.certified.plain.covering import in_description
@@ -36,6 +38,7 @@ from ptmcad.certified.search import Boxes, Found, isolate
 from ptmcad.certified.system import Arguments, System, system
 from ptmcad.certified.tape import Tape, enclosing_floats, record
 from ptmcad.errors import DegenerateSliceError
+from ptmcad.mechanism import ptm
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.numerals import text_of
 
@@ -145,6 +148,11 @@ class PlainCounter:
         if smooth and sum((-1) ** k * number for k, number in enumerate(index)):
             raise ArithmeticError(f"critical points of a function on the torus by index {index} at ({x}, {y})")
         cones = 0 if smooth else None
+        if self.slice.model == ptm() and self.problem.has_springs:
+            found = peaks(values_at(self.slice, x, y))
+            cones = found.count
+            if found.regular and index[0] - index[1] + index[2] + cones:
+                raise ArithmeticError(f"minima, saddles and maxima {index} with {cones} cones at ({x}, {y})")
         return PointCount(len(solutions), index[0], None, tuple(index), cones, solutions, True)
 
     def _with_admissible(
