@@ -27,7 +27,7 @@ from ptmcad.certified.plain.problem import FIRST, Condition, Problem, problem_of
 from ptmcad.certified.plain.quotient import folds
 from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.scales import TURNING_WEIGHT, short_lengths, variable_weights
-from ptmcad.certified.solved import quotients
+from ptmcad.certified.solved import Quotient, quotients
 from ptmcad.certified.system import system
 from ptmcad.question.slice import Count, Slice
 
@@ -135,9 +135,6 @@ def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
 
 def _quotient(search: _Search, change: Involution) -> Iterator[Curve]:
     """The folds of minima where an involution keeps the problem."""
-    ends = [c for cone in search.problem.cones for d in cone.difference for pair in d.terms.values() for c in pair]
-    # to solve for an axis that springs' directions depend on is sound, and no use
-    axes = [k for k in (0, 1) if not any(c.uses(k) for c in ends)]
     for frame in frames(search.problem, change, search.ranges):
         for fold in folds(search.exact, frame):
             vanishing = tuple([*own, *more] for own, more in zip(fold.vanishing, _dependent(search, fold.at), strict=True))
@@ -150,11 +147,17 @@ def _quotient(search: _Search, change: Involution) -> Iterator[Curve]:
                     (0, 1, *(FIRST + k for k in range(len(fold.ranges)))),
                     ([f for f in cheap if f.value is None], costly),
                     [*fold.nonnegative, *_semidefinite(fold.at), *_values(search.conditions, fold.at)],
-                    solved=quotients([*fold.equations, *fold.at.equations, *cheap], axes),
+                    solved=_solved(search, [*fold.equations, *fold.at.equations, *cheap]),
                 ),
                 fold.ranges,
                 np.array([*search.weights[:2], *(1.0 for _ in fold.ranges)]),
             )
+
+
+def _solved(search: _Search, vanishing: Sequence[Formula]) -> tuple[Quotient, ...]:
+    """Formulas that vanish at solutions, solved for axes: not such as springs' directions depend on, which is no use."""
+    ends = [c for cone in search.problem.cones for d in cone.difference for pair in d.terms.values() for c in pair]
+    return quotients(vanishing, [k for k in (0, 1) if search.dependent and not any(c.uses(k) for c in ends)])
 
 
 def _charted(search: _Search, at: Chart) -> list[int]:
@@ -178,6 +181,7 @@ def _fold(search: _Search, at: Chart) -> Curve:
                 *(_semidefinite(at) if search.stable else []),
                 *_values(search.conditions, at),
             ],
+            solved=_solved(search, [*at.equations, *_dependent(search, at)[0]]),
         ),
         search.ranges,
         np.array(search.weights),
@@ -245,6 +249,7 @@ def _at_free_lengths(search: _Search, at: Chart) -> Iterator[Curve]:
                 (0, 1, *problem.variables),
                 ([*found.others, *moments, *at.dependent], at.balances),
                 [*found.not_negative, *minima, *_values(search.conditions, at)],
+                solved=_solved(search, [*at.equations, *moments, *at.dependent]),
             ),
             search.ranges,
             np.array(search.weights),
@@ -271,6 +276,7 @@ def _short_folds(search: _Search, at: Chart) -> Iterator[Curve]:
                     *semidefinite,
                     *_values(search.conditions, at),
                 ],
+                solved=_solved(search, [*at.equations, *_dependent(search, at)[0]]),
             ),
             (*search.ranges, TURN),
             np.array([*search.weights, TURNING_WEIGHT]),
