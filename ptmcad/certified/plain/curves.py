@@ -157,7 +157,7 @@ def _quotient(search: _Search, change: Involution) -> Iterator[Curve]:
 def _solved(search: _Search, vanishing: Sequence[Formula]) -> tuple[Quotient, ...]:
     """Formulas that vanish at solutions, solved for axes: not such as springs' directions depend on, which is no use."""
     ends = [c for cone in search.problem.cones for d in cone.difference for pair in d.terms.values() for c in pair]
-    return quotients(vanishing, [k for k in (0, 1) if search.dependent and not any(c.uses(k) for c in ends)])
+    return quotients(vanishing, [k for k in (0, 1) if search.dependent and ends and not any(c.uses(k) for c in ends)])
 
 
 def _charted(search: _Search, at: Chart) -> list[int]:
