@@ -33,7 +33,7 @@ from ptmcad.certified.statement import plan_of
 from ptmcad.certified.tape import enclosing_floats
 from ptmcad.certified.tiling import COMPILED
 from ptmcad.cover import union_area
-from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
+from ptmcad.cover.rectangles import MAX_STEPS, Cover
 from ptmcad.cover.simplification import combined, gathered, simplified
 from ptmcad.cover.subdivision import rectangle_array
 from ptmcad.errors import ConfigError, LimitReached

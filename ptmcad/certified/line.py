@@ -17,9 +17,9 @@ from flint import ctx
 from ptmcad.certified.arb_evaluation import ball, lower, upper
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.curve import Curve
+from ptmcad.certified.pitchforks import pitchforks
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.points import plain_counter
-from ptmcad.certified.pitchforks import pitchforks
 from ptmcad.certified.points import PointCount
 from ptmcad.certified.search import Boxes, isolate
 from ptmcad.certified.system import System

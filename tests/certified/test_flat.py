@@ -8,11 +8,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from flint import arb, ctx
+from flint import arb
 from numpy.typing import NDArray
 from support.dense_search import dense_search
-
-from ptmcad.text.balls import ball_of
 
 pytest.importorskip("numba")
 

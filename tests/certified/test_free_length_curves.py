@@ -199,6 +199,4 @@ def test_formulas_of_the_fold_agree_with_the_energy() -> None:
         z = rng.uniform([0.2, 0.2, -3, -3], [1.9, 1.9, 3, 3])
         slope, h = derivatives(z, 0.2, -0.1)
         assert run(program(tape), z, z, low, high, 0, len(tape))
-        np.testing.assert_allclose(
-            low[tape.outputs[0]], [*slope, *h.ravel(), np.linalg.det(h)], rtol=1e-9, atol=1e-9
-        )
+        np.testing.assert_allclose(low[tape.outputs[0]], [*slope, *h.ravel(), np.linalg.det(h)], rtol=1e-9, atol=1e-9)

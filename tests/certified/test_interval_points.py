@@ -51,7 +51,7 @@ def test_known_counts(rho: str, l2: str, free: str, force: str, total: int, stab
     assert counts.at(Q(rho), Q(l2), Count.STABLE).stable == stable
 
 
-def random_case(generator: random.Random) -> tuple[PointCounter, Q, Q]:
+def random_case(generator: random.Random) -> tuple[BranchCounter, Q, Q]:
     def number(low: float, high: float) -> Q:
         return Q(generator.randint(int(low * 1000), int(high * 1000)), 1000)
 

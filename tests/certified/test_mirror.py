@@ -8,12 +8,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from flint import arb, ctx
+from flint import arb
 from numpy.typing import NDArray
 from support.dense_search import dense_search
 from support.few import few
-
-from ptmcad.text.balls import ball_of
 
 pytest.importorskip("numba")
 

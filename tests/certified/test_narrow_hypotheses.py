@@ -21,11 +21,10 @@ from support.few import few
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified.engine import certified_map
-from ptmcad.certified.formula import Graph
-from ptmcad.certified.points import PointCount
 from ptmcad.certified.peaks import peaks
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.points import plain_counter
+from ptmcad.certified.points import PointCount
 from ptmcad.errors import ConfigError, DegenerateSliceError, LimitReached
 from ptmcad.mechanism import ptm
 from ptmcad.options import Options

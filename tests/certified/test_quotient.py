@@ -1,4 +1,4 @@
-"""The quotient by an involution: which are found, that its formulas are the energy's, and a map with three odd angles."""
+"""The quotient by an involution: which are found, its formulas, and a map with three odd angles."""
 
 from __future__ import annotations
 
@@ -52,8 +52,8 @@ CART = {
     "parameters": {"k": {"kind": "stiffness"}, "l": {"kind": "length"}},
     "unknowns": {"t": "angle", "u": "length", "v": "length"},
     "points": {
-        "A": ["u", 0], "B": ["v", 1], "C": ["cos(t)", "sin(t) + 2"], "D": [1, 0], "E": [1, 1], "M": [-1, 0], "N": [-1, 1],
-        "S": [0, 2],
+        "A": ["u", 0], "B": ["v", 1], "C": ["cos(t)", "sin(t) + 2"], "D": [1, 0], "E": [1, 1],
+        "M": [-1, 0], "N": [-1, 1], "S": [0, 2],
     },
     "bars": [["S", "C"]],
     "supports": {"S": "pin", "D": "pin", "E": "pin", "M": "pin", "N": "pin"},
@@ -91,7 +91,9 @@ MECHANISMS: dict[str, dict[str, Any]] = {"pendulum": PENDULUM, "cart": CART, "tw
 def slice_of(name: str, **loads: object) -> Slice:
     given = {p: "2" for p in MECHANISMS[name]["parameters"] if p not in WINDOWS[name]}
     mechanism = MECHANISMS[name] | ({"loads": loads} if loads else {})
-    return slice_from_mapping({"name": name, "mechanism": {"name": name, **mechanism}, "parameters": given, "axes": WINDOWS[name]})
+    return slice_from_mapping(
+        {"name": name, "mechanism": {"name": name, **mechanism}, "parameters": given, "axes": WINDOWS[name]}
+    )
 
 
 def found(slice: Slice) -> Involution | None:
@@ -136,7 +138,7 @@ def test_formulas_are_the_energys_derivatives(name: str) -> None:
     """Against difference quotients of an energy that is read off the record by other means."""
     slice, rng = slice_of(name), random.Random(3)
     exact = geometry(problem_of(slice), slice.axes)
-    for frame, lead in rng.sample(cases(name), min(4, len(cases(name)))):
+    for frame, lead in rng.sample(cases(name), min(2, len(cases(name)))):
         at = coordinates(frame, lead)
         near = opening(at, [s.vector for s in chart(exact, unknowns=at.unknowns()).springs])
         numbers = [Fraction(rng.randint(100, 900), 1000) for _ in range(3 + len(frame.places))]
@@ -148,35 +150,39 @@ def test_formulas_are_the_energys_derivatives(name: str) -> None:
         with ctx.workprec(200):
             run = run_arb(tape, [ball_of(v) for v in (x, y, *free, r, *shares)], 200)
             values = [float(run[int(k)].mid()) for k in tape.outputs[0]]
-        with mp.workdps(60):
+        with mp.workdps(40):
             big = [mpf(v.numerator) / v.denominator for v in (x, y, *free, r, *shares)]
-            given = dict(zip(slice.axis_names, big, strict=False))
-            given |= {n: mpf(2) for n in MECHANISMS[name]["parameters"] if n not in given}
-            c = mp.cos(big[2 + len(free)]) if at.is_turning else big[2 + len(free)] ** 2
-            point = [*big[2 : 2 + len(free)], c, *big[3 + len(free) :]]
-            size, others = len(free), [j for j in range(len(at.w)) if j != lead]
+            given = {n: mpf(2) for n in MECHANISMS[name]["parameters"]}
+            given |= dict(zip(slice.axis_names, big, strict=False))
+            r_, size = big[2 + len(free)], len(free)
+            c = mp.cos(r_) if at.is_turning else r_**2
+            expected = reference(name, at, given, [*big[2 : 2 + size], c, *big[3 + size :]])
+        assert values == pytest.approx([float(v) for v in expected], rel=1e-9, abs=1e-9)
 
-            def u(*z: mpf, lead: int = lead, size: int = size, at: Coordinates = at, given: Any = given) -> mpf:
-                w = [*z[size + 1 : size + 1 + lead], mpf(1), *z[size + 1 + lead :]]
-                return energy(MECHANISMS[name], given, place_of(at, z[:size], z[size], w))
 
-            def g(j: int) -> Any:
-                orders = [int(k == size + 1 + j) for k in range(len(point))]
-                return lambda *z: mp.diff(u, z, tuple(orders)) / z[size]
+def reference(name: str, at: Coordinates, given: dict[str, mpf], point: list[mpf]) -> list[mpf]:
+    """The derivatives of an `Opening` by difference quotients, at even coordinates, c, and the shares in turn."""
+    size, others, lead = len(at.evens), range(len(at.w) - 1), at.lead
 
-            def by(f: Any, k: int) -> mpf:
-                return mp.diff(f, tuple(point), tuple(int(n == k) for n in range(len(point))))
+    def u(*z: mpf) -> mpf:
+        w = [*z[size + 1 : size + 1 + lead], mpf(1), *z[size + 1 + lead :]]
+        return energy(MECHANISMS[name], given, place_of(at, z[:size], z[size], w))
 
-            def slope(*z: mpf) -> mpf:
-                return mp.diff(u, z, tuple(int(n == size) for n in range(len(point))))
+    def by(f: Any, k: int, z: Sequence[mpf] = point) -> mpf:
+        return mp.diff(f, tuple(z), tuple(int(n == k) for n in range(len(point))))
 
-            ratios = [g(j) for j in range(len(others))]
-            expected = [
-                slope(*point), *(f(*point) for f in ratios), by(slope, size), *(by(slope, k) for k in range(size)),
-                *(by(f, k) for f in ratios for k in range(size)), *(by(f, size) for f in ratios),
-                *(by(f, size + 1 + j) for f in ratios for j in range(len(others))),
-            ]  # fmt: skip
-            assert values == pytest.approx([float(v) for v in expected], rel=1e-9, abs=1e-9)
+    def slope(*z: mpf) -> mpf:
+        return by(u, size, z)
+
+    def ratio(j: int) -> Any:
+        return lambda *z: by(u, size + 1 + j, z) / z[size]
+
+    ratios = [ratio(j) for j in others]
+    return [
+        slope(*point), *(f(*point) for f in ratios), by(slope, size), *(by(slope, k) for k in range(size)),
+        *(by(f, k) for f in ratios for k in range(size)), *(by(f, size) for f in ratios),
+        *(by(f, size + 1 + j) for f in ratios for j in others),
+    ]  # fmt: skip
 
 
 def test_the_stiffness_on_the_fixed_points_is_the_hessians() -> None:
@@ -203,7 +209,7 @@ def test_three_odd_unknowns_have_a_chart_each_about_every_fixed_point() -> None:
 
 @pytest.mark.slow
 def test_a_map_with_three_odd_unknowns() -> None:
-    """The straight pendulum loses its stability where the load is large enough; beside that the counts are two and one."""
+    """Its counts are those at points, which are found without the symmetry."""
     slice = slice_of("pendulum")
     found = ptmcad.classify(slice, engine="certified", tolerance="1/4", jobs=1)
     counter = plain_counter(slice)

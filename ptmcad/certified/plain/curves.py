@@ -137,7 +137,9 @@ def _quotient(search: _Search, change: Involution) -> Iterator[Curve]:
     """The folds of minima where an involution keeps the problem."""
     for frame in frames(search.problem, change, search.ranges):
         for fold in folds(search.exact, frame):
-            vanishing = tuple([*own, *more] for own, more in zip(fold.vanishing, _dependent(search, fold.at), strict=True))
+            vanishing = tuple(
+                [*own, *more] for own, more in zip(fold.vanishing, _dependent(search, fold.at), strict=True)
+            )
             cheap, costly = vanishing if search.dependent else ((), ())
             yield Curve(
                 fold.name + search.where,
@@ -155,7 +157,7 @@ def _quotient(search: _Search, change: Involution) -> Iterator[Curve]:
 
 
 def _solved(search: _Search, vanishing: Sequence[Formula]) -> tuple[Quotient, ...]:
-    """Formulas that vanish at solutions, solved for axes: not such as springs' directions depend on, which is no use."""
+    """Formulas that vanish at solutions, solved for axes; for none that springs' directions depend on."""
     ends = [c for cone in search.problem.cones for d in cone.difference for pair in d.terms.values() for c in pair]
     return quotients(vanishing, [k for k in (0, 1) if search.dependent and ends and not any(c.uses(k) for c in ends)])
 

@@ -139,4 +139,6 @@ def frames(problem: Problem, change: Involution, ranges: Sequence[Range]) -> Ite
             else:
                 places[k] = Place(-1, 0, len(reaches), 1, half + turned.get(k, 0))
                 reaches.append(Fraction(0) if angles[k] else Fraction(max(-low, high)))
-        yield Frame(problem, change, tuple(places[k] for k in range(len(places))), squares, tuple(evens), tuple(reaches))
+        yield Frame(
+            problem, change, tuple(places[k] for k in range(len(places))), squares, tuple(evens), tuple(reaches)
+        )

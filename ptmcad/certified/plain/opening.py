@@ -259,11 +259,14 @@ def stiffness(at: Coordinates, vectors: Sequence[tuple[Formula, Formula]]) -> Fo
     springs = list(_springs(at))
     slope, _ = _slopes(at, springs)
     here = at.graph.constant(int(at.is_turning))
-    return placed(-slope if at.is_turning else slope, {at.coordinate.variable: here} | dict.fromkeys(at.nears(), at.graph.constant(1)) | _lengths(springs, vectors))
+    return placed(
+        -slope if at.is_turning else slope,
+        {at.coordinate.variable: here} | dict.fromkeys(at.nears(), at.graph.constant(1)) | _lengths(springs, vectors),
+    )
 
 
 def _slopes(at: Coordinates, springs: Sequence[_Spring]) -> tuple[Formula, list[Formula]]:
-    """u_c, and of each odd coordinate the derivative by its share or tangent over r: that of the lead without springs."""
+    """u_c, and the derivatives by shares or tangents over r; that of the lead is without springs."""
     odds = at.frame.odds
     ratios = [
         at.parts([(s, at.frame.problem.equations[k]) for k, s in odd]).odd * (1 if at.is_turning else at.pace(j))

@@ -132,7 +132,9 @@ def _horner(graph: Graph, unknowns: Sequence[Unknown], terms: _Terms, unknown: i
     most = max(by_power, default=0)
     total = _horner(graph, unknowns, by_power.get(most, {}), unknown + 1)
     for power in range(most - 1, -1, -1):
-        total = total * unknowns[unknown] + _horner(graph, unknowns, by_power.get(power, {}), unknown + 1)
+        value = unknowns[unknown]
+        assert isinstance(value, Formula)  # angles have no powers
+        total = total * value + _horner(graph, unknowns, by_power.get(power, {}), unknown + 1)
     return total
 
 
