@@ -48,4 +48,4 @@ def _is_symmetric(slice: Slice) -> bool:
         problem = problem_of(slice)
     except PtmcadError:
         return False  # the engine says why
-    return problem.is_gradient and involution_of(problem, slice.axes) is not None
+    return problem.is_gradient and involution_of(problem) is not None

@@ -53,7 +53,7 @@ def energy(slice: Slice, x: Fraction, y: Fraction) -> Energy:
 
 
 def has_flat_mirror(slice: Slice) -> bool:
-    return involution_of(problem_of(slice), slice.axes) == REFLECTION
+    return involution_of(problem_of(slice)) == REFLECTION
 
 
 def test_which_slices_have_the_mirror() -> None:

@@ -50,7 +50,7 @@ EXCHANGE = Involution((1, 0), (1, 1), (0, 0))
 
 
 def is_own_image(slice: Slice) -> bool:
-    return involution_of(problem_of(slice), slice.axes) == EXCHANGE
+    return involution_of(problem_of(slice)) == EXCHANGE
 
 
 def energy(slice: Slice, x: Fraction, y: Fraction) -> Energy:

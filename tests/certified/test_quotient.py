@@ -97,7 +97,7 @@ def slice_of(name: str, **loads: object) -> Slice:
 
 
 def found(slice: Slice) -> Involution | None:
-    return involution_of(problem_of(slice), slice.axes)
+    return involution_of(problem_of(slice))
 
 
 def test_which_are_found() -> None:
@@ -128,7 +128,7 @@ def place_of(at: Coordinates, e: Sequence[mpf], c: mpf, w: Sequence[mpf]) -> lis
 def cases(name: str) -> list[tuple[Frame, int]]:
     slice = slice_of(name)
     problem = problem_of(slice)
-    change = involution_of(problem, slice.axes)
+    change = involution_of(problem)
     assert change is not None
     return [(f, lead) for f in frames(problem, change, ranges(problem, slice.axes)) for lead in range(len(f.reaches))]
 

@@ -95,8 +95,8 @@ def _of_patch(slice: Slice, count: Count, without: frozenset[str], patch: Patch)
     )
     found = None
     if "mirror-images" not in without and not (search.swallowed or patch.inverse):
-        found = involution_of(problem, slice.axes)
-    yield from _smooth(search, at) if found is None else _quotient(search, found)
+        found = involution_of(problem)
+    yield from _smooth(search, at) if found is None else _quotient(search, found, at)
     yield from _boundaries(search, at)
     yield from _at_free_lengths(search, at)
     yield from _infinite(search, patch)
@@ -133,8 +133,9 @@ def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
     return (_fold(search, at), *_short_folds(search, at), *_cones(search))
 
 
-def _quotient(search: _Search, change: Involution) -> Iterator[Curve]:
-    """The folds of minima where an involution keeps the problem."""
+def _quotient(search: _Search, change: Involution, whole: Chart) -> Iterator[Curve]:
+    """The folds of minima where an involution keeps the problem, and limits of minima in which springs have no length."""
+    yield from _points_without_length(search, whole) if len(search.problem.unknowns) == 1 else _cones(search)
     for frame in frames(search.problem, change, search.ranges):
         for fold in folds(search.exact, frame):
             vanishing = tuple(
@@ -319,7 +320,7 @@ def _cones(search: _Search) -> Iterator[Curve]:
                 [*vanishing, *at.equations],
                 (0, 1, *search.problem.variables, FIRST + len(search.problem.unknowns)),
                 ((), at.balances),
-                _values(search.conditions, at),
+                [*(at.diagonal_times_length(s) if search.stable else ()), *_values(search.conditions, at)],
             ),
             (*search.ranges, TURN),
             np.array([*search.weights, TURNING_WEIGHT]),

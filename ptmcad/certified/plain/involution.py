@@ -16,8 +16,6 @@ from itertools import permutations, product
 
 from ptmcad.certified.plain.problem import Problem
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
-from ptmcad.question.positivity import PROVED, Need, decide
-from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression
 
 
@@ -46,15 +44,12 @@ class Involution:
         return f.moved(self.images, self.signs, self.halves)
 
 
-def involution_of(problem: Problem, axes: tuple[Axis, Axis]) -> Involution | None:
+def involution_of(problem: Problem) -> Involution | None:
     """One with as many odd unknowns as there is, if there is any; it has fixed points.
 
-    None, too, where a spring's pull may be zero in the open window: minima could run into a configuration in which it
-    has no length (Lemma Q4 of docs/soundness.md); and in half angles, or where springs are pushes.
+    None, too, in half angles, and where springs are pushes.
     """
     if problem.pushes or problem.covering:
-        return None
-    if any(decide(cone.pull, axes, Need.POSITIVE) != PROVED for cone in problem.cones):
         return None
     found = [each for each in _candidates(problem) if is_symmetry(problem, each)]
     return max(found, key=lambda each: each.odd, default=None)
