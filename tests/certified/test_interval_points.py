@@ -72,7 +72,7 @@ def compare_with_dense_search(seed: int, points: int) -> None:
     for _ in range(points):
         counts, x, y = random_case(generator)
         found, admissible = counts.at(x, y, Count.INDEX), counts.at(x, y, Count.ADMISSIBLE)
-        values = values_at(counts.slice, x, y)
+        values = values_at(counts.branches[0].slice, x, y)
         assert found.decided and admissible.decided, values
         for grid in (40, 80, 300):  # the search may miss some, so a difference has to stay with more starts
             seen = dense_search({name: float(value) for name, value in values.items()}, grid)

@@ -355,12 +355,12 @@ def test_curves_of_the_certified_engine() -> None:
     assert {"point where spring k3 has no length", "point where spring k1 has no length"} <= found(
         slice, "cones-and-creases"
     ).keys() - found(slice).keys()
-    assert {v[2] for v in found(slice, *CERTIFIED).values()} == {0}
+    assert {v[2] for name, v in found(slice, *CERTIFIED).items() if name.startswith("fold")} == {0}
     assert all(v[2] > 0 for v in found(slice).values())
     unloaded = record("free02-unloaded")
     # a pitchfork at each flat configuration, and a search beside it from either side
     symmetric = [c.name.partition(" ")[0] for c in curves(unloaded, unloaded.count)]
-    assert symmetric == ["pitchfork", "fold", "fold"] * 4
+    assert symmetric == ["pitchfork", "fold", "fold"] * 4 + ["point"] * 3
     assert len(found(unloaded, "mirror-images")) == 2
 
 

@@ -134,8 +134,7 @@ def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
 
 
 def _quotient(search: _Search, change: Involution, whole: Chart) -> Iterator[Curve]:
-    """The folds of minima where an involution keeps the problem, and limits of minima in which springs have no length."""
-    yield from _points_without_length(search, whole) if len(search.problem.unknowns) == 1 else _cones(search)
+    """The folds of minima where an involution keeps the problem, and limits of minima without a spring's length."""
     for frame in frames(search.problem, change, search.ranges):
         for fold in folds(search.exact, frame):
             vanishing = tuple(
@@ -155,6 +154,7 @@ def _quotient(search: _Search, change: Involution, whole: Chart) -> Iterator[Cur
                 fold.ranges,
                 np.array([*search.weights[:2], *(1.0 for _ in fold.ranges)]),
             )
+    yield from _points_without_length(search, whole) if len(search.problem.unknowns) == 1 else _cones(search)
 
 
 def _solved(search: _Search, vanishing: Sequence[Formula]) -> tuple[Quotient, ...]:
