@@ -83,9 +83,8 @@ def poses_at(model: Model, parameters: Mapping[str, Fraction], digits: int) -> P
         assert isinstance(model, Mechanism | ClosedMechanism)  # no other has springs
         with loading("the certified engine"):
             from ptmcad.certified.plain.poses import plain_poses
-            from ptmcad.certified.ptm.poses import certified_poses
         check_room("the certified engine")
-        return certified_poses(parameters, digits) if model == ptm() else plain_poses(model, parameters, digits)
+        return plain_poses(model, parameters, digits)
     from ptmcad.exact.poses import exact_poses
 
     given = {n: v for n, v in parameters.items() if n not in model.free_lengths}
