@@ -84,11 +84,10 @@ def poses_at(model: Model, parameters: Mapping[str, Fraction], digits: int) -> P
         with loading("the certified engine"):
             from ptmcad.certified.plain.loops import loop_poses
             from ptmcad.certified.plain.poses import plain_poses
-            from ptmcad.certified.ptm.poses import certified_poses
         check_room("the certified engine")
         if isinstance(model, ClosedMechanism):
             return loop_poses(model, parameters, digits)
-        return certified_poses(parameters, digits) if model == ptm() else plain_poses(model, parameters, digits)
+        return plain_poses(model, parameters, digits)
     from ptmcad.exact.poses import exact_poses
 
     given = {n: v for n, v in parameters.items() if n not in model.free_lengths}

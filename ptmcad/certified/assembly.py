@@ -13,7 +13,7 @@ from fractions import Fraction
 from itertools import islice
 
 from ptmcad.answer.regionmap import Cell, PlanStep, Region, RegionMap, Status
-from ptmcad.certified.formulation import Counter
+from ptmcad.certified.plain.points import BranchCounter
 from ptmcad.certified.points import PointCount
 from ptmcad.certified.statement import system_text
 from ptmcad.certified.tiling import COMPILED
@@ -36,7 +36,7 @@ class Assembler:
     """Makes maps of one slice."""
 
     slice: Slice
-    counter: Counter
+    counter: BranchCounter
     plan: tuple[PlanStep, ...]
     versions: Mapping[str, str]
 

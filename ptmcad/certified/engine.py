@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from math import inf
@@ -20,10 +20,11 @@ import numpy as np
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified.assembly import Assembler
 from ptmcad.certified.covering import Lattice, Thinning, box_rectangles, thinning
-from ptmcad.certified.formulation import curves, distance_from_degeneracy, point_counter
 from ptmcad.certified.headway import PARTS, Headway
 from ptmcad.certified.loading import load, may_be_slanted
 from ptmcad.certified.pace import SAFETY, Pace
+from ptmcad.certified.plain.curves import curves
+from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.refinement import Enclosure, begin, refine
 from ptmcad.certified.search import Boxes
 from ptmcad.certified.slanted import slanting
@@ -32,7 +33,7 @@ from ptmcad.certified.statement import plan_of
 from ptmcad.certified.tape import enclosing_floats
 from ptmcad.certified.tiling import COMPILED
 from ptmcad.cover import union_area
-from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
+from ptmcad.cover.rectangles import MAX_STEPS, Cover
 from ptmcad.cover.simplification import combined, gathered, simplified
 from ptmcad.cover.subdivision import rectangle_array
 from ptmcad.errors import ConfigError, LimitReached
@@ -124,7 +125,7 @@ class _Run:
         self.resumed = None if options.resume is None else options.resume.cover
         wanted = curves(slice, slice.count, options.without)
         self.enclosures: list[Enclosure] = begin(wanted, _rectangles(slice, self.resumed))
-        self.assembler = Assembler(slice, point_counter(slice), plan_of(slice, wanted, options.without), _versions())
+        self.assembler = Assembler(slice, plain_counter(slice), plan_of(slice, wanted, options.without), _versions())
         self.best: RegionMap | None = None
         """The map with the least undetermined area of those that were handed over."""
         self._thinned: Thinning | None = None
@@ -382,8 +383,8 @@ class _Run:
 def _rectangles(slice: Slice, resume: Cover | None) -> Boxes:
     """The rectangles (low x, low y, high x, high y) with which the search begins, rounded outwards."""
     if resume is None:
-        tiles = sorted(_tiles(), key=lambda tile: distance_from_degeneracy(slice, *_middle(slice, tile)), reverse=True)
-        steps, rectangles = START_TILES, tuple(tiles)
+        steps = START_TILES
+        rectangles = tuple((i, i + 1, j, j + 1) for i in range(steps) for j in range(steps))
     else:
         most = min(Fraction(MAX_TILES), START_TILES**2 / max(_share(resume), Fraction(1, MAX_TILES)))
         steps, rectangles = resume.steps, gathered(resume, int(most)).rectangles
@@ -402,18 +403,6 @@ def _rectangles(slice: Slice, resume: Cover | None) -> Boxes:
             value(vertical.low, vertical.high, top, inf),
         )
     return result
-
-
-def _tiles() -> Iterator[Rectangle]:
-    return ((i, i + 1, j, j + 1) for i in range(START_TILES) for j in range(START_TILES))
-
-
-def _middle(slice: Slice, tile: Rectangle) -> tuple[Fraction, Fraction]:
-    x, y = (
-        axis.low + (axis.high - axis.low) * Fraction(2 * step + 1, 2 * START_TILES)
-        for axis, step in zip(slice.axes, (tile[0], tile[2]), strict=True)
-    )
-    return x, y
 
 
 def _share(cover: Cover) -> Fraction:

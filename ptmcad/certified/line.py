@@ -17,8 +17,9 @@ from flint import ctx
 from ptmcad.certified.arb_evaluation import ball, lower, upper
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.curve import Curve
-from ptmcad.certified.formulation import curves, point_counter
 from ptmcad.certified.pitchforks import pitchforks
+from ptmcad.certified.plain.curves import curves
+from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.points import PointCount
 from ptmcad.certified.search import Boxes, isolate
 from ptmcad.certified.system import System
@@ -80,7 +81,7 @@ def line_counts(slice: Slice, varying: int, value: Fraction, bits: int) -> LineC
     axis = slice.axes[varying]
     found = [gap for curve in curves(slice, Count.INDEX) for gap in _gaps(slice, curve, varying, value, bits)]
     gaps = _joined([g for g in found if g.high > axis.low and g.low < axis.high])
-    counter = point_counter(slice)
+    counter = plain_counter(slice)
     stretches = []
     for low, high in pairwise([axis.low, *(end for gap in gaps for end in (gap.low, gap.high)), axis.high]):
         if not any((gap.low, gap.high) == (low, high) for gap in gaps) and low < high:

@@ -7,10 +7,9 @@ from __future__ import annotations
 
 from ptmcad.answer.plan import saving_step, zero_parameters, zero_terms
 from ptmcad.answer.regionmap import PlanStep
-from ptmcad.certified.ptm.flat import has_flat_mirror
-from ptmcad.certified.ptm.mirror import is_own_image
-from ptmcad.certified.ptm.statics import positive_base
-from ptmcad.mechanism import ptm
+from ptmcad.certified.plain.involution import involution_of
+from ptmcad.certified.plain.problem import problem_of
+from ptmcad.errors import PtmcadError
 from ptmcad.question.slice import Slice
 
 
@@ -21,18 +20,7 @@ def beforehand(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
     zero = [name for name in zero_parameters(slice) if name not in free_lengths]
     steps = [saving_step("imports", without, "imports of matplotlib and sympy")]
     steps += zero_terms([*zero, *absent])
-    if slice.model != ptm():
-        return (*steps, *_plain(slice, without))
-    steps.append(PlanStep("discriminant variety", False, "its degree is out of reach when springs have free lengths"))
-    if slice.count.is_of_stable:
-        steps += [saving_step("folds-of-saddles", without), saving_step("cones-and-creases", without)]
-    steps.append(saving_step("dependent-equations", without))
-    mirrored = slice.count.is_of_stable and (is_own_image(slice) or has_flat_mirror(slice))
-    if mirrored:
-        steps.append(saving_step("mirror-images", without))
-    if unloaded(slice) and not (mirrored and without.isdisjoint({"mirror-images", "folds-of-saddles"})):
-        steps.append(saving_step("unloaded-factor", without))
-    return tuple(steps)
+    return (*steps, *_plain(slice, without))
 
 
 def _plain(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
@@ -49,9 +37,15 @@ def _plain(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
             steps.append(saving_step("cones-and-creases", without))
     if slice.has_free_lengths:
         steps.append(saving_step("dependent-equations", without))
+    if slice.count.is_of_stable and "folds-of-saddles" not in without and _is_symmetric(slice):
+        steps.append(saving_step("mirror-images", without))
     return tuple(steps)
 
 
-def unloaded(slice: Slice) -> bool:
-    """Whether no load acts, on a base that is certainly positive in the open window."""
-    return positive_base(slice) and not any(slice.parameters[name].numerator for name in slice.model.forces)
+def _is_symmetric(slice: Slice) -> bool:
+    """Whether an involution keeps the slice's problem, if it has one."""
+    try:
+        problem = problem_of(slice)
+    except PtmcadError:
+        return False  # the engine says why
+    return problem.is_gradient and involution_of(problem) is not None

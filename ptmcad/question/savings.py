@@ -11,7 +11,6 @@ from enum import Enum
 from typing import NamedTuple
 
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Kind, ptm
 from ptmcad.text.syntax import did_you_mean
 
 ALL = "all"
@@ -45,7 +44,6 @@ class Saving(NamedTuple):
     why: str
 
 
-_BASE = ptm().first(Kind.BASE)
 _WHAT_AND_WHY = {
     Engine.EXACT: (
         ("sign-curve", "projection of H11 = 0", "where it vanishes off the critical curves, det H < 0"),
@@ -66,8 +64,7 @@ _WHAT_AND_WHY = {
          "no minimum appears or vanishes there without a fold"),
         ("dependent-equations", "boxes on which dependent equations do not vanish", "they vanish at every equilibrium"),
         ("mirror-images", "mirror images of folds, and what is singular on the mirror",
-         "the mechanism is its own mirror image on the slice"),
-        ("unloaded-factor", f"the factor {_BASE} of the unloaded moment", f"{_BASE} is zero nowhere in the window"),
+         "an exchange or a reflection of the unknowns leaves the slice as it is"),
     ),
     Engine.ANY: (("imports", "imports of numpy, matplotlib, sympy and numba", "nothing needs them before it asks"),),
 }  # fmt: skip

@@ -15,7 +15,8 @@ import pytest
 pytest.importorskip("numba")
 
 import ptmcad
-from ptmcad.certified.formulation import curves, point_counter
+from ptmcad.certified.plain.curves import curves
+from ptmcad.certified.plain.points import plain_counter as point_counter
 from ptmcad.certified.search import search_curve
 from ptmcad.mechanism.ptm import RECORD
 from ptmcad.question.slice import Count, Slice

@@ -18,9 +18,10 @@ import ptmcad
 from ptmcad.answer.regionmap import Status
 from ptmcad.certified.evaluation import program, run
 from ptmcad.certified.formula import Graph
-from ptmcad.certified.formulation import curves, point_counter
 from ptmcad.certified.plain.bounds import ranges
+from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.nested import eliminated, nested, scaled, sharp_squares, times
+from ptmcad.certified.plain.points import plain_counter as point_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.trigonometric import Harmonics
 from ptmcad.certified.points import PointCount

@@ -20,9 +20,11 @@ from ptmcad.certified.arb_evaluation import run_arb
 from ptmcad.certified.contraction import contract, workspace
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.evaluation import program, run
-from ptmcad.certified.formula import Formula, Graph
-from ptmcad.certified.ptm.curves import curves
-from ptmcad.certified.ptm.statics import Statics, slice_statics
+from ptmcad.certified.formula import Formula
+from ptmcad.certified.plain.chart import Chart, chart
+from ptmcad.certified.plain.curves import curves
+from ptmcad.certified.plain.geometry import geometry
+from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.search import search_curve
 from ptmcad.certified.tape import Tape, record
 from ptmcad.question.config import slice_from_mapping
@@ -47,15 +49,15 @@ def slice_of(name: str) -> Slice:
     )
 
 
-def differentiable(m: Statics) -> list[Formula]:
-    h = m.hessian
-    return [*m.equilibrium, h.p11, h.p22, h.q, h.determinant]
+def differentiable(m: Chart) -> list[Formula]:
+    (p11, q), (_, p22) = m.hessian
+    return [*m.equations, p11, p22, q, m.determinant()]
 
 
 def tape_of(name: str) -> tuple[Tape, int]:
-    """E1, E2, P11, P22, q, D, then the lengths; and derivatives of all six by x, y, th1, th2, row by row."""
-    graph = Graph()
-    m = slice_statics(graph, slice_of(name))
+    """Both slopes, the Hessian and its determinant, then the lengths; and derivatives of all six, row by row."""
+    m = chart(geometry(problem_of(slice_of(name))))
+    graph = m.equations[0].graph
     wanted = differentiable(m)
     gradients = [graph.derivative(f, variable) for f in wanted for variable in range(4)]
     return record([[*wanted, *m.lengths, *gradients]]), len(wanted)
@@ -116,7 +118,9 @@ def test_formulas_are_those_of_the_verification(name: str) -> None:
             values = run_arb(tape, [ball_of(p) for p in point], 200)
             there = energy(slice, point[0], point[1])
             d = there(ball_of(point[2]), ball_of(point[3]))
-            expected = [d.e1, d.e2, d.e11, d.e22, d.e12 / there.bars[1], d.e11 * d.e22 - d.e12 * d.e21]
+            bar1, bar2 = there.bars
+            h11, h22, h12 = bar1 * d.e11, bar2 * d.e22, bar1 * d.e12
+            expected = [bar1 * d.e1, bar2 * d.e2, h11, h22, h12, h11 * h22 - h12 * h12]
             lengths = [q.sqrt() for q in there.squares(ball_of(point[2]), ball_of(point[3]))]
             for place, value in zip(tape.outputs[0][: number + 3], [*expected, *lengths], strict=True):
                 assert abs(values[int(place)] - value) < 1e-40

@@ -21,11 +21,11 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.bands import certified_widths
 from ptmcad.ask.fields.field import field_of, request_of
+from ptmcad.certified import engine
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.engine import certified_map
 from ptmcad.certified.formula import Formula
 from ptmcad.certified.intervals import certified_intervals
-from ptmcad.certified.plain import curves as plain_curves
 from ptmcad.certified.plain import loopcurves
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.plain.problem import problem_of
@@ -336,12 +336,12 @@ def test_what_is_not_computed_is_refused() -> None:
 
 def without_curves(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
     """Leave out the curves whose names begin with one of these."""
-    complete = plain_curves.curves
+    complete = engine.curves
 
     def some(*given: Any, **options: Any) -> tuple[Curve, ...]:
         return tuple(curve for curve in complete(*given, **options) if not curve.name.startswith(names))
 
-    monkeypatch.setattr(plain_curves, "curves", some)
+    monkeypatch.setattr(engine, "curves", some)
 
 
 def test_without_flat_loops_counts_are_wrong(monkeypatch: pytest.MonkeyPatch) -> None:

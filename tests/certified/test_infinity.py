@@ -12,8 +12,9 @@ from support.few import few
 from support.random_models import random_system
 
 import ptmcad
-from ptmcad.certified.formulation import curves, point_counter
+from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.infinity import patches
+from ptmcad.certified.plain.points import plain_counter as point_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.errors import ConfigError, HypothesisError
 from ptmcad.question.config import slice_from_mapping

@@ -13,9 +13,9 @@ from support.dense_search import dense_search
 import ptmcad
 from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.parameters import values_at
+from ptmcad.certified.peaks import peaks
+from ptmcad.certified.plain.points import BranchCounter, plain_counter
 from ptmcad.certified.points import PointCount
-from ptmcad.certified.ptm.cones import cones
-from ptmcad.certified.ptm.points import PointCounter, point_counter
 from ptmcad.mechanism import ptm
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import axis
@@ -23,14 +23,14 @@ from ptmcad.text.expressions import axis
 UNIT = {"L1": Q(1), "k1": Q(1), "k2": Q(1), "k3": Q(1), "F3x": Q(0), "F4x": Q(0)}
 
 
-def counter(**values: Q) -> PointCounter:
+def counter(**values: Q) -> BranchCounter:
     """Counts in the plane of rho and L2; every other parameter is a number."""
     given = UNIT | values
     parameters = {name: axis(0) * 0 + value for name, value in given.items()} | {"rho": axis(0), "L2": axis(1)}
-    return point_counter(Slice("test", ptm(), (Axis("rho", Q(0), Q(2)), Axis("L2", Q(0), Q(2))), parameters))
+    return plain_counter(Slice("test", ptm(), (Axis("rho", Q(0), Q(2)), Axis("L2", Q(0), Q(2))), parameters))
 
 
-def equal_springs(free: Q, force: Q, **more: Q) -> PointCounter:
+def equal_springs(free: Q, force: Q, **more: Q) -> BranchCounter:
     return counter(F3=force, F4=force, l0_1=free, l0_2=free, l0_3=free, **more)
 
 
@@ -51,7 +51,7 @@ def test_known_counts(rho: str, l2: str, free: str, force: str, total: int, stab
     assert counts.at(Q(rho), Q(l2), Count.STABLE).stable == stable
 
 
-def random_case(generator: random.Random) -> tuple[PointCounter, Q, Q]:
+def random_case(generator: random.Random) -> tuple[BranchCounter, Q, Q]:
     def number(low: float, high: float) -> Q:
         return Q(generator.randint(int(low * 1000), int(high * 1000)), 1000)
 
@@ -72,7 +72,7 @@ def compare_with_dense_search(seed: int, points: int) -> None:
     for _ in range(points):
         counts, x, y = random_case(generator)
         found, admissible = counts.at(x, y, Count.INDEX), counts.at(x, y, Count.ADMISSIBLE)
-        values = values_at(counts.slice, x, y)
+        values = values_at(counts.branches[0].slice, x, y)
         assert found.decided and admissible.decided, values
         for grid in (40, 80, 300):  # the search may miss some, so a difference has to stay with more starts
             seen = dense_search({name: float(value) for name, value in values.items()}, grid)
@@ -173,25 +173,25 @@ def test_boxes_are_disjoint_and_hold_one_zero_each() -> None:
         assert a.radius > 0
         for b in found.solutions[:number]:
             assert any(abs(u - v) > a.radius + b.radius for u, v in zip(a.center, b.center, strict=True))
-    tape = counts.equilibria.equations.tape
+    equations = counts.branches[0].equations
     for solution in found.solutions:
         box = [ball(Q("1.20609"), Q("1.20609")), ball(Q(1), Q(1))]
         box += [ball(c - solution.radius, c + solution.radius) for c in solution.center]
-        values = run_arb(tape, box, 100, 1)
-        assert all(values[int(place)].contains(0) for place in counts.equilibria.equations.equations)
+        values = run_arb(equations.tape, box, 100, 1)
+        assert all(values[int(place)].contains(0) for place in equations.equations)
 
 
 def test_a_cone_appears_at_its_exact_place() -> None:
     # unloaded, L1 = L2 = 1, rho = 1/2: |g| s12 = rho^2 H (1 - l0) and l0 s12 = l0 rho H, equal at l0 = 1/3
     given = UNIT | {"L2": Q(1), "rho": Q(1, 2), "F3": Q(0), "F4": Q(0)}
     for free, count, regular in ((Q(33, 100), 0, True), (Q(1, 3), 0, False), (Q(34, 100), 2, True)):
-        found = cones(given | {f"l0_{i}": free for i in (1, 2, 3)})
+        found = peaks(given | {f"l0_{i}": free for i in (1, 2, 3)})
         assert (found.count, found.regular) == (count, regular)
 
 
 def test_without_a_free_length_of_spring_3_there_is_no_cone() -> None:
     given = UNIT | {"L2": Q(1), "rho": Q(1, 2), "F3": Q(0), "F4": Q(0), "l0_1": Q(1), "l0_2": Q(1), "l0_3": Q(0)}
-    assert cones(given).count == 0
+    assert peaks(given).count == 0
 
 
 fractions = st.integers(0, 40).map(lambda n: Q(3 * n, 59))

@@ -166,11 +166,11 @@ def test_the_time_limit_is_kept_in_every_phase(monkeypatch: pytest.MonkeyPatch, 
 @pytest.mark.slow
 def test_counts_are_left_out_before_the_limit_is_missed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each count at a point takes ten seconds: what is not counted is undetermined, and the map is there in time."""
-    from ptmcad.certified.ptm.points import PointCounter
+    from ptmcad.certified.plain.points import BranchCounter
 
     clock = Clock()
     monkeypatch.setattr(engine, "Pace", lambda until: Pace(until, clock, clock))
-    monkeypatch.setattr(PointCounter, "at", clock.slowed(PointCounter.at, 10.0))
+    monkeypatch.setattr(BranchCounter, "at", clock.slowed(BranchCounter.at, 10.0))
     deadline = clock() + 16
     result = engine.certified_map(window(), Options(tolerance=Fraction(99, 100), deadline=deadline, jobs=1))
     assert clock.now <= deadline + 10

@@ -14,11 +14,12 @@ from support.records import TRUSS
 
 import ptmcad
 from ptmcad.answer.regionmap import Status
-from ptmcad.certified.formulation import curves, point_counter
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain import rational
 from ptmcad.certified.plain.bounds import ranges
+from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.points import plain_counter
+from ptmcad.certified.plain.points import plain_counter as point_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.trigonometric import Harmonics

@@ -14,8 +14,10 @@ from ptmcad.certified.contraction import contract, workspace
 from ptmcad.certified.evaluation import program, run
 from ptmcad.certified.formula import Formula, Graph
 from ptmcad.certified.line import on_line
-from ptmcad.certified.ptm.curves import curves
-from ptmcad.certified.ptm.statics import slice_statics
+from ptmcad.certified.plain.chart import Chart, chart
+from ptmcad.certified.plain.curves import curves
+from ptmcad.certified.plain.geometry import geometry
+from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.search import search_curve
 from ptmcad.certified.solved import quotients
 from ptmcad.certified.system import System, system
@@ -45,6 +47,10 @@ def slice_of(horizontal: str, vertical: str, **given: str) -> Slice:
     return slice_from_mapping({"name": "s", "parameters": parameters, "axes": window})
 
 
+def chart_of(slice: Slice) -> Chart:
+    return chart(geometry(problem_of(slice), slice.axes))
+
+
 def values(formulas: list[Formula], point: list[float]) -> Floats:
     tape = record([formulas])
     low, high = np.empty((2, len(tape)))
@@ -54,9 +60,8 @@ def values(formulas: list[Formula], point: list[float]) -> Floats:
 
 @pytest.mark.parametrize("axis", LINEAR)
 def test_rest_and_slope_are_the_equation(axis: str) -> None:
-    graph = Graph()
-    m = slice_statics(graph, slice_of("rho", axis, **LINEAR[axis]))
-    formulas = [*m.equilibrium, *m.dependent]
+    m = chart_of(slice_of("rho", axis, **LINEAR[axis]))
+    formulas = [*m.equations, *m.dependent]
     found = [(f, q) for f in formulas for q in quotients([f], (0, 1))]
     assert len(found) >= 2
     assert {q.variable for _, q in found} == {1}
@@ -71,8 +76,8 @@ def test_rest_and_slope_are_the_equation(axis: str) -> None:
 
 
 def test_what_is_not_linear_is_left_alone() -> None:
-    m = slice_statics(Graph(), slice_of("rho", "F", F3="F^2", F4="F^3"))
-    assert quotients([*m.equilibrium, *m.dependent], (0, 1)) == ()
+    m = chart_of(slice_of("rho", "F", F3="F^2", F4="F^3"))
+    assert quotients([*m.equations, *m.dependent], (0, 1)) == ()
     graph = Graph()
     x, y, t = (graph.variable(k) for k in range(3))
     assert quotients([x + t, y * y, t.cos() + t, (x * t) / y], (1,)) == ()
@@ -107,20 +112,20 @@ def equilibria_over_two_linear_axes(number: int) -> tuple[System, list[Floats]]:
             "axes": {"F": ["-300", "300"], "l0": ["0", "3"]},
         }
     )
-    m = slice_statics(Graph(), slice)
-    graph = m.equilibrium[0].graph
-    gradient = [graph.derivative(e, axis) for e in m.equilibrium for axis in (0, 1)]
+    m = chart_of(slice)
+    graph = m.equations[0].graph
+    gradient = [graph.derivative(e, axis) for e in m.equations for axis in (0, 1)]
     rng, found = random.Random(4), list[Floats]()
     while len(found) < number:
         angles = [rng.choice([rng.uniform(-3, 3), np.pi / 2, 1e-3, rng.uniform(-0.1, 0.1)]) for _ in range(2)]
-        e1, e2, *j = values([*m.equilibrium, *gradient], [0.0, 0.0, *angles])
+        e1, e2, *j = values([*m.equations, *gradient], [0.0, 0.0, *angles])
         determinant = j[0] * j[3] - j[1] * j[2]
         if abs(determinant) > 1e-6:
             x, y = (e2 * j[1] - e1 * j[3]) / determinant, (e1 * j[2] - e2 * j[0]) / determinant
             if abs(x) < 300 and 0 < y < 3:
                 found.append(np.array([x, y, *angles]))
-    solved = quotients([*m.equilibrium, *m.dependent], (0, 1))
-    return system(m.equilibrium, (0, 1, 2, 3), (m.dependent, ()), solved=solved), found
+    solved = quotients([*m.equations, *m.dependent], (0, 1))
+    return system(m.equations, (0, 1, 2, 3), (m.dependent, ()), solved=solved), found
 
 
 def test_contraction_keeps_equilibria_and_tells_the_axes() -> None:

@@ -48,16 +48,8 @@ def own_names(path: Path) -> Iterator[tuple[int, str]]:
 ELSEWHERE = ("studies/", "question/config/starters/")
 """Studies of this mechanism: constructions, published equations and rival methods are its own. And records to begin
 other mechanisms with, whose parts have such names too."""
-KERNELS = {
-    "certified/ptm/cones.py",
-    "certified/ptm/curves.py",
-    "certified/ptm/equilibria.py",
-    "certified/ptm/flat.py",
-    "certified/ptm/mirror.py",
-    "certified/ptm/points.py",
-    "certified/ptm/statics.py",
-}
-"""The certified engine's formulas, made by hand for this mechanism."""
+KERNELS = {"certified/peaks.py"}
+"""Where this mechanism's energy has peaks, which no formula for all mechanisms tells."""
 GREEK = ("show/polynomial_text.py", "show/render/axes.py", "text/syntax.py")
 """A Greek letter's name, and no other name."""
 WRITTEN = {"record.schema.json"}

@@ -21,6 +21,7 @@ from typing import NamedTuple
 
 from ptmcad.certified.formula import Formula, Graph, length
 from ptmcad.certified.parameters import expression_formula
+from ptmcad.certified.plain.angle import Unknown
 from ptmcad.certified.plain.geometry import Geometry
 from ptmcad.certified.plain.minors import Bent, bent, determinant
 from ptmcad.certified.plain.problem import FIRST
@@ -57,6 +58,7 @@ class Chart:
     short : number of the cone whose direction is a variable.
     turned : bodies turned by one angle.
     symmetric : whether the equations are, but for their factors, derivatives of one function.
+    unknowns : what stands for the problem's.
     """
 
     equations: tuple[Formula, ...]
@@ -72,6 +74,7 @@ class Chart:
     short: int | None
     turned: tuple[Turned, ...]
     symmetric: bool
+    unknowns: tuple[Unknown, ...]
 
     @property
     def aligned(self) -> Formula:
@@ -129,15 +132,16 @@ class Chart:
         )
 
 
-def chart(exact: Geometry, short: int | None = None) -> Chart:
-    """The formulas of a problem in a graph of their own.
+def chart(exact: Geometry, short: int | None = None, unknowns: Sequence[Unknown] = ()) -> Chart:
+    """The formulas of a problem, in a graph of their own or in that of what stands for the unknowns.
 
     Parameters
     ----------
     short : number of the cone whose direction is a variable.
+    unknowns : what stands for the problem's; without them each is a variable.
     """
-    graph = Graph()
-    unknowns = [graph.variable(k) for k in exact.problem.variables]
+    graph = unknowns[0].graph if unknowns else Graph()
+    unknowns = unknowns or [graph.variable(k) for k in exact.problem.variables]
     size = range(len(unknowns))
     smooth = [f.formula(graph, unknowns) for f in exact.equations]
     scales = tuple(expression_formula(graph, g) for g in exact.factors)
@@ -171,10 +175,11 @@ def chart(exact: Geometry, short: int | None = None) -> Chart:
         short,
         tuple(_turned(turn, springs, unknowns) for turn in exact.turns),
         exact.problem.is_gradient,
+        tuple(unknowns),
     )
 
 
-def _turned(turn: Turn, springs: Sequence[Spring], unknowns: Sequence[Formula]) -> Turned:
+def _turned(turn: Turn, springs: Sequence[Spring], unknowns: Sequence[Unknown]) -> Turned:
     factor = expression_formula(unknowns[0].graph, turn.factor)
     return Turned(turn.weights, turn.moment(springs, unknowns), turn.stiffness(springs, unknowns, factor), factor)
 
@@ -217,12 +222,12 @@ def _balances(at: Spring, rest: Sequence[Formula]) -> list[Formula]:
     ]
 
 
-def principal_minors(hessian: Matrix) -> list[Formula]:
-    """All but the determinant itself; none is negative where the Hessian is positive semidefinite."""
+def principal_minors(hessian: Matrix, *, whole: bool = False) -> list[Formula]:
+    """All, with or without the determinant itself; none is negative where the Hessian is positive semidefinite."""
     size = len(hessian)
     return [
         determinant(tuple(tuple(hessian[i][j] for j in chosen) for i in chosen))
-        for order in range(1, size)
+        for order in range(1, size + whole)
         for chosen in combinations(range(size), order)
     ]
 

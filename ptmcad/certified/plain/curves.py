@@ -18,12 +18,16 @@ from ptmcad.certified.formula import Formula
 from ptmcad.certified.plain.bounds import TURN, Range
 from ptmcad.certified.plain.chart import Chart, chart, determinant, principal_minors
 from ptmcad.certified.plain.excesses import boundaries
+from ptmcad.certified.plain.frame import frames
 from ptmcad.certified.plain.geometry import Geometry, geometry
 from ptmcad.certified.plain.infinity import Patch, at_infinity, patches
+from ptmcad.certified.plain.involution import Involution, involution_of
 from ptmcad.certified.plain.loopcurves import curves_of_loops
 from ptmcad.certified.plain.problem import FIRST, Condition, Problem, problem_of
+from ptmcad.certified.plain.quotient import folds
 from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.scales import TURNING_WEIGHT, short_lengths, variable_weights
+from ptmcad.certified.solved import Quotient, quotients
 from ptmcad.certified.system import system
 from ptmcad.question.slice import Count, Slice
 
@@ -89,7 +93,10 @@ def _of_patch(slice: Slice, count: Count, without: frozenset[str], patch: Patch)
         problem.conditions(count),
         problem.where + "".join(f" with {problem.unknowns[k]} large" for k in patch.inverse),
     )
-    yield from _smooth(search, at)
+    found = None
+    if "mirror-images" not in without and not (search.swallowed or patch.inverse):
+        found = involution_of(problem)
+    yield from _smooth(search, at) if found is None else _quotient(search, found, at)
     yield from _boundaries(search, at)
     yield from _at_free_lengths(search, at)
     yield from _infinite(search, patch)
@@ -126,6 +133,36 @@ def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
     return (_fold(search, at), *_short_folds(search, at), *_cones(search))
 
 
+def _quotient(search: _Search, change: Involution, whole: Chart) -> Iterator[Curve]:
+    """The folds of minima where an involution keeps the problem, and limits of minima without a spring's length."""
+    for frame in frames(search.problem, change, search.ranges):
+        for fold in folds(search.exact, frame):
+            vanishing = tuple(
+                [*own, *more] for own, more in zip(fold.vanishing, _dependent(search, fold.at), strict=True)
+            )
+            cheap, costly = vanishing if search.dependent else ((), ())
+            yield Curve(
+                fold.name + search.where,
+                fold.reason,
+                system(
+                    fold.equations,
+                    (0, 1, *(FIRST + k for k in range(len(fold.ranges)))),
+                    ([f for f in cheap if f.value is None], costly),
+                    [*fold.nonnegative, *_semidefinite(fold.at), *_values(search.conditions, fold.at)],
+                    solved=_solved(search, [*fold.equations, *fold.at.equations, *cheap]),
+                ),
+                fold.ranges,
+                np.array([*search.weights[:2], *(1.0 for _ in fold.ranges)]),
+            )
+    yield from _points_without_length(search, whole) if len(search.problem.unknowns) == 1 else _cones(search)
+
+
+def _solved(search: _Search, vanishing: Sequence[Formula]) -> tuple[Quotient, ...]:
+    """Formulas that vanish at solutions, solved for axes; for none that springs' directions depend on."""
+    ends = [c for cone in search.problem.cones for d in cone.difference for pair in d.terms.values() for c in pair]
+    return quotients(vanishing, [k for k in (0, 1) if search.dependent and ends and not any(c.uses(k) for c in ends)])
+
+
 def _charted(search: _Search, at: Chart) -> list[int]:
     """The cones that have a chart: none with one unknown, and for minima those that depend on several."""
     least = 1 if search.swallowed else 2
@@ -147,6 +184,7 @@ def _fold(search: _Search, at: Chart) -> Curve:
                 *(_semidefinite(at) if search.stable else []),
                 *_values(search.conditions, at),
             ],
+            solved=_solved(search, [*at.equations, *_dependent(search, at)[0]]),
         ),
         search.ranges,
         np.array(search.weights),
@@ -178,9 +216,7 @@ def _dependent(search: _Search, at: Chart) -> tuple[Sequence[Formula], Sequence[
 
 def _values(conditions: Sequence[Condition], at: Chart) -> list[Formula]:
     """What is not negative at solutions that count, nor at limits of them."""
-    graph = at.equations[0].graph
-    unknowns = [graph.variable(FIRST + k) for k in range(len(at.equations))]
-    return [condition.value.formula(graph, unknowns) for condition in conditions]
+    return [condition.value.formula(at.equations[0].graph, at.unknowns) for condition in conditions]
 
 
 def _boundaries(search: _Search, at: Chart) -> Iterator[Curve]:
@@ -216,6 +252,7 @@ def _at_free_lengths(search: _Search, at: Chart) -> Iterator[Curve]:
                 (0, 1, *problem.variables),
                 ([*found.others, *moments, *at.dependent], at.balances),
                 [*found.not_negative, *minima, *_values(search.conditions, at)],
+                solved=_solved(search, [*at.equations, *moments, *at.dependent]),
             ),
             search.ranges,
             np.array(search.weights),
@@ -242,6 +279,7 @@ def _short_folds(search: _Search, at: Chart) -> Iterator[Curve]:
                     *semidefinite,
                     *_values(search.conditions, at),
                 ],
+                solved=_solved(search, [*at.equations, *_dependent(search, at)[0]]),
             ),
             (*search.ranges, TURN),
             np.array([*search.weights, TURNING_WEIGHT]),
@@ -282,7 +320,7 @@ def _cones(search: _Search) -> Iterator[Curve]:
                 [*vanishing, *at.equations],
                 (0, 1, *search.problem.variables, FIRST + len(search.problem.unknowns)),
                 ((), at.balances),
-                _values(search.conditions, at),
+                [*(at.diagonal_times_length(s) if search.stable else ()), *_values(search.conditions, at)],
             ),
             (*search.ranges, TURN),
             np.array([*search.weights, TURNING_WEIGHT]),

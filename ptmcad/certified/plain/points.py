@@ -17,11 +17,13 @@ import numpy as np
 from flint import arb_mat, ctx
 
 from ptmcad.answer.regionmap import Solution
-from ptmcad.certified.arb_evaluation import ball, run_arb
-from ptmcad.certified.arb_isolation import Box, refined
+from ptmcad.certified.arb_evaluation import ball, lower, run_arb, upper
+from ptmcad.certified.arb_isolation import Box, Isolated, isolate_arb, refined
 from ptmcad.certified.distinct import FULL_TURN, distinct
 from ptmcad.certified.evaluation import Indices, program, run
 from ptmcad.certified.formula import Formula
+from ptmcad.certified.parameters import values_at
+from ptmcad.certified.peaks import peaks
 from ptmcad.certified.plain.bounds import Range, known_ranges
 from ptmcad.certified.plain.chart import Chart, chart, principal_minors
 from ptmcad.certified.plain.covering import in_description
@@ -36,6 +38,7 @@ from ptmcad.certified.search import Boxes, Found, isolate
 from ptmcad.certified.system import Arguments, System, system
 from ptmcad.certified.tape import Tape, enclosing_floats, record
 from ptmcad.errors import DegenerateSliceError
+from ptmcad.mechanism import ptm
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.numerals import text_of
 
@@ -45,6 +48,8 @@ MANY_BOXES = 6_000_000
 MAX_OPEN_BOXES = 40
 """Boxes as narrow as is looked at that stay open, before a search ends: with one of them nothing is decided."""
 
+ARB_BUDGETS = (6_000, 800)
+"""Boxes by precision. What takes many is nearly a curve of equilibria, and of that more digits make no fewer."""
 HALVINGS = 60
 """Of a box around a solution, before it is in no other solution's way."""
 
@@ -145,6 +150,11 @@ class PlainCounter:
         if smooth and sum((-1) ** k * number for k, number in enumerate(index)):
             raise ArithmeticError(f"critical points of a function on the torus by index {index} at ({x}, {y})")
         cones = 0 if smooth else None
+        if self.slice.model == ptm() and self.problem.has_springs:
+            found = peaks(values_at(self.slice, x, y))
+            cones = found.count
+            if found.regular and index[0] - index[1] + index[2] + cones:
+                raise ArithmeticError(f"minima, saddles and maxima {index} with {cones} cones at ({x}, {y})")
         return PointCount(len(solutions), index[0], None, tuple(index), cones, solutions, True)
 
     def _with_admissible(
@@ -235,6 +245,8 @@ class PlainCounter:
             found = self._isolated(arguments, start, finest, thorough)
             if not len(found.left()):
                 break
+        if thorough and 0 < len(found.small) <= MAX_OPEN_BOXES and not len(found.waiting):
+            found = self._with_more_digits(x, y, stable, found)
         periods = np.zeros(variables)
         for k, name in enumerate(self.problem.unknowns, FIRST):
             periods[k] = 0.0 if name in self.problem.reals else FULL_TURN
@@ -255,6 +267,23 @@ class PlainCounter:
             more = isolate(arguments, equations, found.waiting, (finest, part, MAX_OPEN_BOXES), weights)
             unique, narrow, small = (np.concatenate(pair) for pair in zip(found[:3], more[:3], strict=True))
             found = Found(unique, narrow, small, more.waiting, found.used + more.used)
+        return found
+
+    def _with_more_digits(self, x: Fraction, y: Fraction, stable: bool, found: Found) -> Found:
+        """The same with the zeros, if any, in the boxes that floating point left open, where more digits tell them."""
+        searched = self.stable if stable else self.all
+        for precision, budget in zip(PRECISIONS, ARB_BUDGETS, strict=True):
+            with ctx.workprec(precision):
+                start = [self._box(x, y, box) for box in found.small]
+            zeros = isolate_arb(searched, self.equations, start, precision, budget)
+            boxes = [_in_floats(zero, found.small[0]) for zero in zeros or ()]
+            if zeros is not None and None not in boxes:
+                more = np.array(boxes, np.float64).reshape(len(boxes), 2, found.small.shape[1])
+                return found._replace(
+                    unique=np.concatenate([found.unique, more[:, 0]]),
+                    narrow=np.concatenate([found.narrow, more[:, 1]]),
+                    small=found.small[:0],
+                )
         return found
 
     def zero_condition(self, x: Fraction, y: Fraction, count: Count) -> str:
@@ -321,6 +350,18 @@ class BranchCounter:
             if not parts[-1].decided:
                 return PointCount()
         return parts[0] if len(parts) == 1 else _sum(parts)
+
+
+def _in_floats(zero: Isolated, around: Boxes) -> tuple[list[float], list[float]] | None:
+    """Its boxes, the wide one rounded inward and the narrow one outward; None where these meet."""
+    wide = low, high = [list(map(float, some)) for some in np.split(around, 2)]
+    least, most = list(low), list(high)
+    for k in range(FIRST, len(low)):
+        low[k], high[k] = enclosing_floats(lower(zero.unique[k]))[1], enclosing_floats(upper(zero.unique[k]))[0]
+        least[k], most[k] = enclosing_floats(lower(zero.narrow[k]))[0], enclosing_floats(upper(zero.narrow[k]))[1]
+        if not low[k] < least[k] <= most[k] < high[k]:
+            return None
+    return [end for ends in wide for end in ends], [*least, *most]
 
 
 def _ends(box: Boxes) -> tuple[Boxes, Boxes]:

@@ -17,6 +17,7 @@ from ptmcad.answer.regionmap import Solution, Status
 from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box
 from ptmcad.certified.formula import Graph
+from ptmcad.certified.peaks import peaks
 from ptmcad.certified.plain.covering import located
 from ptmcad.certified.plain.points import BranchCounter, PlainCounter, plain_counter
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS_AT_POINTS
@@ -24,7 +25,7 @@ from ptmcad.certified.plain.rational import Point, exact_eigenvalues, exact_valu
 from ptmcad.certified.plain.spectrum import ordered_eigenvalues
 from ptmcad.certified.potential import potential
 from ptmcad.certified.tape import Tape, record
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism import Mechanism, Model, ptm
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Axis, Count, Slice
@@ -32,6 +33,11 @@ from ptmcad.text.balls import bounded, enclosed
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.expressions import axis
 
+_PEAKED = ptm().springs[2]
+_PEAKS = {
+    1: f"the energy has a peak where spring {_PEAKED.start}{_PEAKED.end} has no length too",
+    2: f"the energy has two peaks where spring {_PEAKED.start}{_PEAKED.end} has no length too",
+}
 Written = tuple[Tape, tuple[str, ...]]
 """A tape and the names of its first outputs."""
 MAX_DOUBLINGS = 4
@@ -60,7 +66,8 @@ def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits
     zeros, unclear = solutions_at(plain_counter(slice, MAX_UNKNOWNS_AT_POINTS), Count.INDEX)
     written = tape_of(mechanism, parameters)
     poses = [pose_at(mechanism, parameters, written, at, solution, digits) for at, solution in zeros]
-    return answered(mechanism, parameters, digits, sorted(poses, key=lambda p: _order(p[0])), unclear, NOT_TOLD)
+    remark = _PEAKS.get(peaks(parameters).count, "") if mechanism == ptm() else ""
+    return answered(mechanism, parameters, digits, _ordered(poses), unclear, NOT_TOLD, remark)
 
 
 def answered(
@@ -100,6 +107,24 @@ def boxes_of(counter: PlainCounter, solution: Solution, precision: int) -> tuple
     cube, box = located(counter.problem, counter.equations, (Fraction(0), Fraction(0)), solution, precision)
     with ctx.workprec(precision):
         return (*box[:FIRST], *(ball(c - cube.radius, c + cube.radius) for c in cube.center)), box
+
+
+def _ordered(poses: Sequence[tuple[Pose, int]]) -> list[tuple[Pose, int]]:
+    """In their order; of those whose energies are not separated larger angles come first."""
+    found: list[list[tuple[Pose, int]]] = []
+    for entry in sorted(poses, key=lambda p: _order(p[0])):
+        last, energy = found[-1][0][0] if found else None, entry[0].energy
+        if (
+            last is not None
+            and energy is not None
+            and last.energy is not None
+            and last.stable == entry[0].stable
+            and energy.low <= max(p.known_energy.high for p, _ in found[-1])
+        ):
+            found[-1].append(entry)
+        else:
+            found.append([entry])
+    return [p for group in found for p in sorted(group, key=lambda p: [a.center for a in p[0].angles], reverse=True)]
 
 
 def _order(pose: Pose) -> tuple[Fraction, ...]:
@@ -156,7 +181,8 @@ def pose_at(
     numbers, bits = measured(mechanism, parameters, written, lambda bits: boxes_of(counter, solution, bits), digits)
     has_index = mechanism.has_potential and solution.signs and not mechanism.closing
     index = solution.signs.count("-") if has_index else None
-    return assembled(mechanism, parameters, numbers, index), bits
+    flat = all(numbers[f"{name} 1"].exact == 0 for name in mechanism.points)
+    return assembled(mechanism, parameters, numbers, index, flat), bits
 
 
 def measured(

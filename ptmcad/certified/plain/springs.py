@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 from ptmcad.certified.formula import Formula, Graph, direction, inverse_length, length, meet
 from ptmcad.certified.parameters import expression_formula
+from ptmcad.certified.plain.angle import Unknown
 from ptmcad.certified.plain.problem import Cone
 from ptmcad.certified.plain.scaling import over
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
@@ -97,7 +98,7 @@ class Shape:
     squares: tuple[tuple[TrigonometricPolynomial, ...], ...]
     crosses: tuple[tuple[TrigonometricPolynomial, ...], ...]
 
-    def spring(self, graph: Graph, unknowns: Sequence[Formula], phi: Formula | None) -> Spring:
+    def spring(self, graph: Graph, unknowns: Sequence[Unknown], phi: Formula | None) -> Spring:
         """The formulas in a graph.
 
         Parameters

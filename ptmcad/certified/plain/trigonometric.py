@@ -14,9 +14,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Any
 
 from ptmcad.certified.formula import Formula, Graph
 from ptmcad.certified.parameters import expression_formula
+from ptmcad.certified.plain.angle import Unknown
 from ptmcad.errors import ExpressionError
 from ptmcad.text.expressions import Expression, constant
 
@@ -85,34 +87,54 @@ class TrigonometricPolynomial:
             ]
         )
 
-    def formula(self, graph: Graph, unknowns: Sequence[Formula]) -> Formula:
-        """The polynomial as a formula: by Horner's rule in each real unknown, over sums of harmonics."""
+    def moved(self, images: Multi, signs: Multi, halves: Multi) -> TrigonometricPolynomial:
+        """With sign_k q_image(k) + half_k pi for each unknown q_k; the images are a permutation."""
+        size = range(len(images))
+        places = sorted(size, key=lambda k: images[k])
+        terms = []
+        for (m, e), (a, b) in self.terms.items():
+            odd = sum(n * h for n, h in zip(m, halves, strict=True))
+            odd += sum(p for p, s in zip(e, signs, strict=True) if s < 0)
+            sign = -1 if odd % 2 else 1
+            key = tuple(signs[k] * m[k] for k in places), tuple(e[k] for k in places)
+            terms.append((key, (a * sign, b * sign)))
+        return _collected(terms)
+
+    def formula(self, graph: Graph, unknowns: Sequence[Unknown]) -> Formula:
+        """The polynomial as a formula: by Horner's rule in each real unknown, over sums of harmonics.
+
+        Parameters
+        ----------
+        unknowns : formulas, or of angles what sums of their multiples have a cosine and a sine of.
+        """
         return _horner(graph, unknowns, dict(self.terms), 0)
 
 
 _Terms = dict[tuple[Multi, Multi], tuple[Expression, Expression]]
 
 
-def _horner(graph: Graph, unknowns: Sequence[Formula], terms: _Terms, unknown: int) -> Formula:
+def _horner(graph: Graph, unknowns: Sequence[Unknown], terms: _Terms, unknown: int) -> Formula:
     """The terms' sum without the powers of earlier unknowns."""
     if unknown == len(unknowns):
         total = graph.constant(0)
         for (m, _), (a, b) in sorted(terms.items(), key=lambda term: term[0]):
-            angle = graph.constant(0)
-            for multiple, variable in zip(m, unknowns, strict=True):
-                angle = angle + multiple * variable
-            if angle.value is not None:  # no angle: the cosine is 1
+            parts: list[Any] = [multiple * angle for multiple, angle in zip(m, unknowns, strict=True) if multiple]
+            if not parts:  # no angle: the cosine is 1
                 total = total + expression_formula(graph, a)
                 continue
+            angle = sum(parts[1:], start=parts[0])
             for coefficient, wave in ((a, angle.cos()), (b, angle.sin())):
                 total = total + expression_formula(graph, coefficient) * wave
         return total
     by_power: dict[int, _Terms] = {}
     for (m, e), coefficients in terms.items():
         by_power.setdefault(e[unknown], {})[m, e] = coefficients
-    total = graph.constant(0)
-    for power in range(max(by_power, default=0), -1, -1):
-        total = total * unknowns[unknown] + _horner(graph, unknowns, by_power.get(power, {}), unknown + 1)
+    most = max(by_power, default=0)
+    total = _horner(graph, unknowns, by_power.get(most, {}), unknown + 1)
+    for power in range(most - 1, -1, -1):
+        value = unknowns[unknown]
+        assert isinstance(value, Formula)  # angles have no powers
+        total = total * value + _horner(graph, unknowns, by_power.get(power, {}), unknown + 1)
     return total
 
 

@@ -16,6 +16,7 @@ from fractions import Fraction
 from itertools import product
 
 from ptmcad.certified.formula import Formula
+from ptmcad.certified.plain.angle import Unknown
 from ptmcad.certified.plain.problem import Cone, Problem
 from ptmcad.certified.plain.scaling import common_factor, over
 from ptmcad.certified.plain.springs import Pair, Spring
@@ -46,7 +47,7 @@ class Turn:
     levers: tuple[tuple[int, Pair, Pair], ...]
     factor: Expression
 
-    def moment(self, springs: Sequence[Spring], unknowns: Sequence[Formula]) -> Formula:
+    def moment(self, springs: Sequence[Spring], unknowns: Sequence[Unknown]) -> Formula:
         """What vanishes at equilibria."""
         total = self.slope.formula(unknowns[0].graph, unknowns)
         for at, (_, e, _) in zip(springs, self.levers, strict=True):
@@ -54,7 +55,7 @@ class Turn:
             total = total - at.pull * (ux * x + uy * y)
         return total
 
-    def stiffness(self, springs: Sequence[Spring], unknowns: Sequence[Formula], factor: Formula) -> Formula:
+    def stiffness(self, springs: Sequence[Spring], unknowns: Sequence[Unknown], factor: Formula) -> Formula:
         """The second derivative along w."""
         total = self.bend.formula(unknowns[0].graph, unknowns)
         for at, (c, e, de) in zip(springs, self.levers, strict=True):
@@ -64,7 +65,7 @@ class Turn:
         return total
 
 
-def _written(pair: Pair, unknowns: Sequence[Formula]) -> tuple[Formula, Formula]:
+def _written(pair: Pair, unknowns: Sequence[Unknown]) -> tuple[Formula, Formula]:
     first, second = pair
     return first.formula(unknowns[0].graph, unknowns), second.formula(unknowns[0].graph, unknowns)
 

@@ -15,7 +15,7 @@ from functools import lru_cache
 import sympy as sp
 
 from ptmcad.certified.formula import Formula, Graph, Operation
-from ptmcad.certified.ptm.statics import Angles, statics
+from ptmcad.certified.potential import potential
 from ptmcad.mechanism import ptm
 from ptmcad.studies.paper.symbolic import (
     F3,
@@ -60,11 +60,11 @@ def squared_lengths() -> tuple[Expr, ...]:
     return tuple(sp.expand(sum((p - q) ** 2 for p, q in zip(at[a], at[b], strict=True))) for a, b in ends)
 
 
-def derivative(potential: Expr, number: int) -> Expr:
+def derivative(energy: Expr, number: int) -> Expr:
     """The derivative by th1 or th2 of an expression in cosines, sines and the three lengths."""
-    total = by_angle(potential, number)
+    total = by_angle(energy, number)
     for length, square in zip(LENGTHS, squared_lengths(), strict=True):
-        total += sp.diff(potential, length) * by_angle(square, number) / (2 * length)
+        total += sp.diff(energy, length) * by_angle(square, number) / (2 * length)
     return total
 
 
@@ -79,10 +79,12 @@ def engine_gradient() -> tuple[Expr, Expr]:
     """
     graph = Graph()
     variables = [graph.variable(n) for n in range(len(NAMES) + 2)]
-    formulas = statics(dict(zip(NAMES, variables, strict=False)), Angles(variables[-2], variables[-1]))
-    known: dict[int, Expr] = {v.number: _PARAMETERS[name] for v, name in zip(variables, NAMES, strict=False)}
-    first, second = (sp.expand(_translated(e, known)) for e in formulas.equilibrium)
-    return sp.expand(L1 * first), sp.expand(L2 * second)
+    values, angles = dict(zip(NAMES, variables, strict=False)), dict(zip(ptm().unknowns, variables[-2:], strict=True))
+    energy = potential(ptm(), values, angles).energy
+    known: dict[int, Expr] = {v.number: _PARAMETERS[name] for name, v in values.items()}
+    slopes = (graph.derivative(energy, v.variable) for v in angles.values())
+    first, second = (sp.expand(_translated(slope, known)) for slope in slopes)
+    return first, second
 
 
 def _translated(formula: Formula, known: dict[int, Expr]) -> Expr:
@@ -106,6 +108,8 @@ def _combined(operation: Operation, operands: list[Expr]) -> Expr:
         return -operands[0]
     if operation is Operation.SQUARE:
         return operands[0] ** 2
+    if operation is Operation.LENGTH:
+        return _length(*operands)
     if operation is Operation.DIRECTION:
         return operands[0] / _length(*operands)
     raise ArithmeticError(f"an equation of equilibrium with the operation {operation.name}")

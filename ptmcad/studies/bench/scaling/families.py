@@ -112,11 +112,11 @@ def designs(seed: int) -> tuple[tuple[str, str, str, str], ...]:
 
 def equilibria(size: int, seed: int) -> tuple[Run, ...]:
     """The proved equilibria of every design, each a run; a design that is not decided has no run."""
-    from ptmcad.certified.ptm.points import point_counter
+    from ptmcad.certified.plain.points import plain_counter
 
     runs = []
     for rho, bar, free, load in designs(seed):
-        counter = point_counter(design_slice(free, load))
+        counter = plain_counter(design_slice(free, load))
         watch = Stages()
         found = counter.at(Fraction(rho), Fraction(bar), Count.TOTAL)
         if found.decided and found.total is not None:
@@ -247,17 +247,17 @@ def warm_up(certified: bool) -> None:
     exact(2, fold(2))
     if certified:
         from ptmcad.certified.engine import certified_map
-        from ptmcad.certified.ptm.points import point_counter
+        from ptmcad.certified.plain.points import plain_counter
 
-        point_counter(design_slice("1/5", "-10")).at(Fraction(1), Fraction(3, 2), Count.TOTAL)
+        plain_counter(design_slice("1/5", "-10")).at(Fraction(1), Fraction(3, 2), Count.TOTAL)
         certified_map(certified_window(), Options(tolerance=Fraction(1, 4), jobs=1))
 
 
 def touch(certified: bool) -> None:
     """A small run of the same code: a forked child gets its pages one by one when it first uses them."""
     if certified:
-        from ptmcad.certified.ptm.points import point_counter
+        from ptmcad.certified.plain.points import plain_counter
 
-        point_counter(design_slice("1/5", "-10")).at(Fraction(1), Fraction(3, 2), Count.TOTAL)
+        plain_counter(design_slice("1/5", "-10")).at(Fraction(1), Fraction(3, 2), Count.TOTAL)
     else:
         exact(2, fold(2))

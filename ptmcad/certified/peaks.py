@@ -1,6 +1,6 @@
-"""The configurations in which spring 3 has length zero: whether the energy has a peak there, decided exactly.
+"""Of the paper's mechanism the configurations in which spring 3 has no length: whether the energy has a peak there.
 
-Guarantee: rational arithmetic in Q(sqrt(W)) only, so that no sign is rounded.
+Guarantee: decided exactly. Rational arithmetic in Q(sqrt(W)) only, so that no sign is rounded.
 
 With |L1 - L2| < rho < L1 + L2 there are two, mirror images: A3 and A4 meet at the corner of the triangle with sides
 rho, L1, L2, at height H = +-sqrt(W). Springs 1 and 2 are as long as the bars there. Near such a point U is -k3 l0_3 l3
@@ -15,7 +15,7 @@ from fractions import Fraction
 
 
 @dataclass(frozen=True, slots=True)
-class Cones:
+class Peaks:
     """``count`` peaks; ``regular`` is False where one is about to appear or vanish, or where springs degenerate.
 
     When ``regular`` holds, minima - saddles + maxima + count = 0 (if there are finitely many, none degenerate).
@@ -25,20 +25,20 @@ class Cones:
     regular: bool
 
 
-def cones(values: Mapping[str, Fraction]) -> Cones:
-    """The cones of the mechanism at values of all variables of its description, in any unit of stiffness."""
+def peaks(values: Mapping[str, Fraction]) -> Peaks:
+    """Those of the mechanism at values of all variables of its description, in any unit of stiffness."""
     rho, p1, p2 = values["rho"], values["L1"], values["L2"]
     regular = not any(creases_at(values))
     if values["k3"] * values["l0_3"] == 0:
-        return Cones(0, regular)
+        return Peaks(0, regular)
     if rho == 0:
-        return Cones(0, regular and p1 != p2)
+        return Peaks(0, regular and p1 != p2)
     square = height_squared(values)
     if square <= 0:
-        return Cones(0, regular and square < 0)
+        return Peaks(0, regular and square < 0)
     even, odd = excess_of_pull(values)
     signs = [_sign(even, side * odd, square) for side in (1, -1)]
-    return Cones(signs.count(-1), regular and 0 not in signs)
+    return Peaks(signs.count(-1), regular and 0 not in signs)
 
 
 def creases_at(values: Mapping[str, Fraction]) -> tuple[bool, bool]:

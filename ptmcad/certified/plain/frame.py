@@ -1,0 +1,144 @@
+"""Coordinates that an involution keeps, or takes to their negatives, about a component of its fixed points.
+
+Guarantee: together the frames of an involution reach all configurations, or the image of each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+from typing import NamedTuple
+
+from ptmcad.certified.formula import Formula, Graph
+from ptmcad.certified.plain.angle import Angle, Unknown
+from ptmcad.certified.plain.bounds import TURN, Range
+from ptmcad.certified.plain.involution import Involution, square_of
+from ptmcad.certified.plain.problem import Problem
+from ptmcad.certified.plain.springs import Matrix
+from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
+
+
+class Place(NamedTuple):
+    """An unknown as a sum: a sign times an even coordinate, one times an odd one, and quarter turns.
+
+    A coordinate that is not in it is -1.
+    """
+
+    even: int
+    even_sign: int
+    odd: int
+    odd_sign: int
+    quarters: int
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """Coordinates about one component of an involution's fixed points.
+
+    Attributes
+    ----------
+    problem : what they are coordinates of.
+    change : the involution.
+    places : of the unknowns.
+    squares : of the lengths of its springs.
+    ranges : of the even coordinates.
+    reaches : of the odd coordinates that are no angles the largest absolute values; 0 for an angle, of which a quarter
+        turn to each side is taken.
+    """
+
+    problem: Problem
+    change: Involution
+    places: tuple[Place, ...]
+    squares: tuple[TrigonometricPolynomial, ...]
+    ranges: tuple[Range, ...]
+    reaches: tuple[Fraction, ...]
+
+    @property
+    def evens(self) -> list[list[tuple[int, int]]]:
+        """For each even coordinate the unknowns that it is in, with its signs."""
+        return [[(k, p.even_sign) for k, p in enumerate(self.places) if p.even == e] for e in range(len(self.ranges))]
+
+    @property
+    def odds(self) -> list[list[tuple[int, int]]]:
+        """The same of the odd ones."""
+        return [[(k, p.odd_sign) for k, p in enumerate(self.places) if p.odd == o] for o in range(len(self.reaches))]
+
+    def unknowns(self, evens: Sequence[Formula], odds: Sequence[Formula | Angle], graph: Graph) -> list[Unknown]:
+        """What stands for the unknowns.
+
+        Parameters
+        ----------
+        odds : angles, and formulas of what is none; none on the component itself.
+        """
+        found: list[Unknown] = []
+        for name, place in zip(self.problem.unknowns, self.places, strict=True):
+            if name in self.problem.reals:
+                total = graph.constant(0)
+                if place.even >= 0:
+                    total = total + place.even_sign * evens[place.even]
+                if odds and place.odd >= 0:
+                    odd = odds[place.odd]
+                    assert isinstance(odd, Formula)
+                    total = total + place.odd_sign * odd
+                found.append(total)
+                continue
+            angle = Angle(graph, quarters=place.quarters)
+            if place.even >= 0:
+                angle = angle + place.even_sign * Angle(graph, {evens[place.even]: 1})
+            if odds and place.odd >= 0:
+                odd = odds[place.odd]
+                assert isinstance(odd, Angle)
+                angle = angle + place.odd_sign * odd
+            found.append(angle)
+        return found
+
+    def block(
+        self, hessian: Matrix, columns: Sequence[Sequence[tuple[int, int]]], scales: Sequence[Formula], *, over: bool
+    ) -> Matrix:
+        """The Hessian by some coordinates, from that by the unknowns with rows over ``scales``.
+
+        Parameters
+        ----------
+        over : whether rows may stay over a positive factor.
+        """
+
+        def entry(a: Sequence[tuple[int, int]], b: Sequence[tuple[int, int]]) -> Formula:
+            total = scales[0].graph.constant(0)
+            common = over and all(scales[i] is scales[a[0][0]] for i, _ in a)
+            for i, s in a:
+                row = sum(((s * t) * hessian[i][j] for j, t in b), start=scales[0].graph.constant(0))
+                total = total + (row if common else scales[i] * row)
+            return total
+
+        return tuple(tuple(entry(a, b) for b in columns) for a in columns)
+
+
+def frames(problem: Problem, change: Involution, ranges: Sequence[Range]) -> Iterator[Frame]:
+    """One for each component of the fixed points; together their odd coordinates reach all configurations."""
+    angles = [name not in problem.reals for name in problem.unknowns]
+    alone = [k for k, j in enumerate(change.images) if j == k and change.signs[k] < 0 and angles[k]]
+    squares = tuple(square_of(cone.difference) for cone in problem.cones)
+    for sides in product((0, 2), repeat=len(alone)):
+        turned = dict(zip(alone, sides, strict=True))
+        places, evens, reaches = dict[int, Place](), list[Range](), list[Fraction]()
+        for k, (j, sign, half) in enumerate(zip(change.images, change.signs, change.halves, strict=True)):
+            if j < k:
+                continue
+            low, high = ranges[k]
+            if j > k:
+                least, most = sorted(sign * end for end in ranges[j])
+                places[k] = Place(len(evens), 1, len(reaches), 1, 0)
+                places[j] = Place(len(evens), sign, len(reaches), -sign, 2 * half)
+                evens.append(TURN if angles[k] else ((low + least) / 2, (high + most) / 2))
+                reaches.append(Fraction(0) if angles[k] else Fraction(max(most - low, high - least)) / 2)
+            elif sign > 0:
+                places[k] = Place(len(evens), 1, -1, 0, 0)
+                evens.append(ranges[k])
+            else:
+                places[k] = Place(-1, 0, len(reaches), 1, half + turned.get(k, 0))
+                reaches.append(Fraction(0) if angles[k] else Fraction(max(-low, high)))
+        yield Frame(
+            problem, change, tuple(places[k] for k in range(len(places))), squares, tuple(evens), tuple(reaches)
+        )

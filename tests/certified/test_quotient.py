@@ -1,0 +1,218 @@
+"""The quotient by an involution: which are found, its formulas, and a map with three odd angles."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from flint import arb, ctx
+from mpmath import mp, mpf
+from support.mechanisms_energy import energy
+
+from ptmcad.text.balls import ball_of
+
+pytest.importorskip("numba")
+
+import ptmcad
+from ptmcad.certified.arb_evaluation import run_arb
+from ptmcad.certified.formula import Formula
+from ptmcad.certified.plain.bounds import ranges
+from ptmcad.certified.plain.chart import chart
+from ptmcad.certified.plain.curves import curves
+from ptmcad.certified.plain.frame import Frame, frames
+from ptmcad.certified.plain.geometry import geometry
+from ptmcad.certified.plain.involution import Involution, involution_of
+from ptmcad.certified.plain.opening import Coordinates, coordinates, opening, stiffness
+from ptmcad.certified.plain.points import plain_counter
+from ptmcad.certified.plain.problem import problem_of
+from ptmcad.certified.tape import record
+from ptmcad.question.config import slice_from_mapping
+from ptmcad.question.slice import Count, Slice
+
+PENDULUM = {
+    "parameters": {"k": {"kind": "stiffness"}, "F": {"kind": "force"}, "l": {"kind": "length"}},
+    "unknowns": {"a": "angle", "b": "angle", "c": "angle"},
+    "points": {
+        "O": [0, 0], "P": ["cos(a)", "sin(a)"], "Q": ["cos(a) + cos(b)", "sin(a) + sin(b)"],
+        "R": ["cos(a) + cos(b) + cos(c)", "sin(a) + sin(b) + sin(c)"], "E": [5, 0],
+    },
+    "bars": [["O", "P"], ["P", "Q"], ["Q", "R"]],
+    "supports": {"O": "pin", "E": "pin"},
+    "springs": [
+        {"between": ["P", "E"], "k": "k", "free": "l"}, {"between": ["Q", "E"], "k": 1},
+        {"between": ["R", "E"], "k": 1, "free": "l"}, {"between": ["O", "R"], "k": "1/2"},
+    ],
+    "loads": {"R": ["F", 0]},
+}  # fmt: skip
+"""Three bars in a row along an axis: all angles are odd."""
+CART = {
+    "parameters": {"k": {"kind": "stiffness"}, "l": {"kind": "length"}},
+    "unknowns": {"t": "angle", "u": "length", "v": "length"},
+    "points": {
+        "A": ["u", 0], "B": ["v", 1], "C": ["cos(t)", "sin(t) + 2"], "D": [1, 0], "E": [1, 1],
+        "M": [-1, 0], "N": [-1, 1], "S": [0, 2],
+    },
+    "bars": [["S", "C"]],
+    "supports": {"S": "pin", "D": "pin", "E": "pin", "M": "pin", "N": "pin"},
+    "springs": [
+        {"between": ["A", "C"], "k": "k", "free": "l"}, {"between": ["B", "C"], "k": 1, "free": "l/2"},
+        {"between": ["A", "D"], "k": 1, "free": "l"}, {"between": ["A", "M"], "k": 1, "free": "l"},
+        {"between": ["B", "E"], "k": 2}, {"between": ["B", "N"], "k": 2},
+    ],
+}  # fmt: skip
+"""Two sliders and a bar above them: a reflection takes each slider to its negative, and the bar's angle to pi less it;
+springs are each other's images."""
+TWINS = {
+    "parameters": {"k": {"kind": "stiffness"}, "F": {"kind": "force"}, "l": {"kind": "length"}},
+    "unknowns": {"a": "angle", "b": "angle"},
+    "points": {
+        "A": [0, 0], "B": [1, 0], "P": ["cos(a)", "sin(a)"], "Q": ["1 - cos(b)", "sin(b)"],
+    },
+    "bars": [["A", "P"], ["B", "Q"]],
+    "supports": {"A": "pin", "B": "pin"},
+    "springs": [
+        {"between": ["A", "Q"], "k": "k", "free": "l"}, {"between": ["B", "P"], "k": "k", "free": "l"},
+        {"between": ["P", "Q"], "k": 3, "free": "l/2"},
+    ],
+    "loads": {"P": [0, "F"], "Q": [0, "F"]},
+}  # fmt: skip
+"""Two bars that are each other's images."""
+WINDOWS: dict[str, dict[str, list[str]]] = {
+    "pendulum": {"F": ["-2", "-1"], "l": ["1/2", "1"]},
+    "cart": {"k": ["1", "2"], "l": ["1/4", "1/2"]},
+    "twins": {"F": ["-2", "-1"], "l": ["1/4", "1/2"]},
+}
+MECHANISMS: dict[str, dict[str, Any]] = {"pendulum": PENDULUM, "cart": CART, "twins": TWINS}
+
+
+def slice_of(name: str, **loads: object) -> Slice:
+    given = {p: "2" for p in MECHANISMS[name]["parameters"] if p not in WINDOWS[name]}
+    mechanism = MECHANISMS[name] | ({"loads": loads} if loads else {})
+    return slice_from_mapping(
+        {"name": name, "mechanism": {"name": name, **mechanism}, "parameters": given, "axes": WINDOWS[name]}
+    )
+
+
+def found(slice: Slice) -> Involution | None:
+    return involution_of(problem_of(slice))
+
+
+def test_which_are_found() -> None:
+    assert found(slice_of("pendulum")) == Involution((0, 1, 2), (-1, -1, -1), (0, 0, 0))
+    assert found(slice_of("pendulum", R=["F", "1/1000"])) is None
+    assert found(slice_of("cart")) == Involution((0, 1, 2), (-1, -1, -1), (1, 0, 0))
+    assert found(slice_of("twins")) == Involution((1, 0), (1, 1), (0, 0))
+    assert found(slice_of("twins", P=[0, "F"], Q=[0, "2*F"])) is None
+
+
+def place_of(at: Coordinates, e: Sequence[mpf], c: mpf, w: Sequence[mpf]) -> list[mpf]:
+    """The unknowns, by the definition of the coordinates."""
+    r = mp.acos(c) if at.is_turning else mp.sqrt(c)
+    odds = []
+    for share, reach in zip(w, at.frame.reaches, strict=True):
+        if reach:
+            odds.append(mpf(reach.numerator) / reach.denominator * r * share)
+        else:
+            odds.append(r if at.is_turning else 2 * mp.atan(r * share))
+    return [
+        (p.even_sign * e[p.even] if p.even >= 0 else 0)
+        + (p.odd_sign * odds[p.odd] if p.odd >= 0 else 0)
+        + p.quarters * mp.pi / 2
+        for p in at.frame.places
+    ]
+
+
+def cases(name: str) -> list[tuple[Frame, int]]:
+    slice = slice_of(name)
+    problem = problem_of(slice)
+    change = involution_of(problem)
+    assert change is not None
+    return [(f, lead) for f in frames(problem, change, ranges(problem, slice.axes)) for lead in range(len(f.reaches))]
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_formulas_are_the_energys_derivatives(name: str) -> None:
+    """Against difference quotients of an energy that is read off the record by other means."""
+    slice, rng = slice_of(name), random.Random(3)
+    exact = geometry(problem_of(slice), slice.axes)
+    for frame, lead in rng.sample(cases(name), min(2, len(cases(name)))):
+        at = coordinates(frame, lead)
+        near = opening(at, [s.vector for s in chart(exact, unknowns=at.unknowns()).springs])
+        numbers = [Fraction(rng.randint(100, 900), 1000) for _ in range(3 + len(frame.places))]
+        x, y = (a.low + (a.high - a.low) * share for a, share in zip(slice.axes, numbers, strict=False))
+        *free, r = numbers[2 : 3 + len(frame.ranges)]
+        shares = numbers[3 + len(frame.ranges) :][: len(at.w) - 1]
+        tape = record([[near.slope, *near.ratios, near.bend, *near.mixed, *(f for row in near.by_even for f in row),
+                        *near.by_coordinate, *(f for row in near.by_ratio for f in row)]])  # fmt: skip
+        with ctx.workprec(200):
+            run = run_arb(tape, [ball_of(v) for v in (x, y, *free, r, *shares)], 200)
+            values = [float(run[int(k)].mid()) for k in tape.outputs[0]]
+        with mp.workdps(40):
+            big = [mpf(v.numerator) / v.denominator for v in (x, y, *free, r, *shares)]
+            given = {n: mpf(2) for n in MECHANISMS[name]["parameters"]}
+            given |= dict(zip(slice.axis_names, big, strict=False))
+            r_, size = big[2 + len(free)], len(free)
+            c = mp.cos(r_) if at.is_turning else r_**2
+            expected = reference(name, at, given, [*big[2 : 2 + size], c, *big[3 + size :]])
+        assert values == pytest.approx([float(v) for v in expected], rel=1e-9, abs=1e-9)
+
+
+def reference(name: str, at: Coordinates, given: dict[str, mpf], point: list[mpf]) -> list[mpf]:
+    """The derivatives of an `Opening` by difference quotients, at even coordinates, c, and the shares in turn."""
+    size, others, lead = len(at.evens), range(len(at.w) - 1), at.lead
+
+    def u(*z: mpf) -> mpf:
+        w = [*z[size + 1 : size + 1 + lead], mpf(1), *z[size + 1 + lead :]]
+        return energy(MECHANISMS[name], given, place_of(at, z[:size], z[size], w))
+
+    def by(f: Any, k: int, z: Sequence[mpf] = point) -> mpf:
+        return mp.diff(f, tuple(z), tuple(int(n == k) for n in range(len(point))))
+
+    def slope(*z: mpf) -> mpf:
+        return by(u, size, z)
+
+    def ratio(j: int) -> Any:
+        return lambda *z: by(u, size + 1 + j, z) / z[size]
+
+    ratios = [ratio(j) for j in others]
+    return [
+        slope(*point), *(f(*point) for f in ratios), by(slope, size), *(by(slope, k) for k in range(size)),
+        *(by(f, k) for f in ratios for k in range(size)), *(by(f, size) for f in ratios),
+        *(by(f, size + 1 + j) for f in ratios for j in others),
+    ]  # fmt: skip
+
+
+def test_the_stiffness_on_the_fixed_points_is_the_hessians() -> None:
+    slice = slice_of("twins")
+    problem = problem_of(slice)
+    (frame, _), *_ = cases("twins")
+    at = coordinates(frame, 0)
+    here = chart(geometry(problem, slice.axes), unknowns=frame.unknowns(at.evens, (), at.graph))
+    across: Formula = stiffness(at, [s.vector for s in here.springs])
+    block = frame.block(here.hessian, frame.odds, here.scales, over=False)[0][0]
+    tape = record([[across, block]])
+    with ctx.workprec(200):
+        for share in (1, 3, 4):
+            run = run_arb(tape, [ball_of(Fraction(-3, 2)), ball_of(Fraction(1, 3)), ball_of(Fraction(share, 2))], 200)
+            one, other = (run[int(k)] for k in tape.outputs[0])
+            assert abs(one - other) < arb(2) ** -150
+
+
+def test_three_odd_unknowns_have_a_chart_each_about_every_fixed_point() -> None:
+    slice = slice_of("pendulum")
+    names = [c.name.partition(" ")[0] for c in curves(slice, Count.STABLE)]
+    assert names == ["pitchfork", "fold", "fold", "fold"] * 8 + ["point"] * 2
+
+
+@pytest.mark.slow
+def test_a_map_with_three_odd_unknowns() -> None:
+    """Its counts are those at points, which are found without the symmetry."""
+    slice = slice_of("pendulum")
+    found = ptmcad.classify(slice, engine="certified", tolerance="1/4", jobs=1)
+    counter = plain_counter(slice)
+    assert found.cells
+    for cell in found.cells:
+        assert counter.at(*cell.sample, Count.STABLE).stable == cell.stable
