@@ -18,8 +18,8 @@ from support.minima_search import minima
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.certified import engine
 from ptmcad.certified.curve import Curve
-from ptmcad.certified.plain import curves as plain_curves
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.mechanism.ptm import RECORD
@@ -241,12 +241,12 @@ def without(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
     def kept(name: str) -> bool:
         return not any(part in name for part in names)
 
-    complete = plain_curves.curves
+    complete = engine.curves
 
     def some(*given: Any, **options: Any) -> tuple[Curve, ...]:
         return tuple(curve for curve in complete(*given, **options) if kept(curve.name))
 
-    monkeypatch.setattr(plain_curves, "curves", some)
+    monkeypatch.setattr(engine, "curves", some)
 
 
 @pytest.mark.parametrize(("name", "tolerance"), [("chain", "1/20"), ("four-bar", "1/20")])
