@@ -27,7 +27,7 @@ from ptmcad.exact.sizes import sizes
 from ptmcad.exact.stages import SliceProblem, point_values, problem_of, prove_regular
 from ptmcad.exact.survey import Survey, survey
 from ptmcad.exact.witness import SHARES, points
-from ptmcad.mechanism import Mechanism, ptm
+from ptmcad.mechanism import ClosedMechanism, Mechanism, ptm
 from ptmcad.mechanism.sizes import terms_of
 from ptmcad.process.timed import returns_within
 from ptmcad.question.domain import prove_slice
@@ -112,6 +112,10 @@ def check(slice: Slice, sized: bool = True) -> Check:
     at = (sample[0], sample[1])
     if is_certified(slice, "auto"):
         cost, flat = _CERTIFIED, flat_loops(slice)
+        if isinstance(slice.model, ClosedMechanism) and slice.model.tangent:
+            from ptmcad.certified.plain.problem import check_loops
+
+            check_loops(slice.model, slice)  # however long the rest would take
         try:
             if not _is_large(slice):
                 _check_certified(slice)

@@ -176,7 +176,7 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
             raise ConfigError(f"the certified engine does not take {key}, and {model.name} has some", key=key)
     ring = Harmonics(tuple(model.unknowns), model.reals, slice.parameters)
     if isinstance(model, ClosedMechanism) and model.tangent:
-        _check_loops(model, slice)
+        check_loops(model, slice)
     if isinstance(model, ClosedMechanism) and slice.has_free_lengths:
         return _asked(slice, model.mechanism, ring, _of_loops(model, ring, slice.axes))
     if isinstance(model, System):
@@ -226,7 +226,7 @@ def _over(cone: Cone, factor: Expression) -> Cone:
     return replace(cone, difference=(dx, dy), weights=tuple(weights))
 
 
-def _check_loops(model: ClosedMechanism, slice: Slice) -> None:
+def check_loops(model: ClosedMechanism, slice: Slice) -> None:
     """Refuse a loop with flat poses all over the window: the Jacobian is singular there, nothing would be decided."""
     found = flat_everywhere(model.mechanism, slice.parameters)
     if found is not None:
