@@ -140,7 +140,7 @@ def test_absorption_by_the_cone_lies_in_the_enclosure() -> None:
         # spring 3 pulls A3 by free * u and A4 by -free * u
         return float(np.linalg.norm(np.linalg.solve(np.array([t1, -t2]), -np.array(forces))) - free)
 
-    name = "point where spring k3 has no length"
+    name = "point where spring A3A4 has no length"
     cone = tuple(c for c in curves(slice_of("1/5", **LOADED), Count.TOTAL) if c.name == name)
     rng, seen = np.random.default_rng(3), 0
     while seen < 12:
@@ -168,24 +168,24 @@ def test_enclosures_are_thin() -> None:
 def test_creases_are_the_lines_where_a_spring_can_have_no_length() -> None:
     total = {c.name: c for c in curves(slice_of("1/5", **LOADED), Count.TOTAL)}
     for name, p in (
-        ("point where spring k1 has no length", (0.7, 0.7)),
-        ("point where spring k2 has no length", (1.0, 0.7)),
+        ("point where spring A1A4 has no length", (0.7, 0.7)),
+        ("point where spring A2A3 has no length", (1.0, 0.7)),
     ):
         assert covers(rectangles((total[name],), np.array(p), 0.01, 1e-7), np.array(p), 0.0)
-    assert not len(rectangles((total["point where spring k2 has no length"],), np.array([0.9, 0.7]), 0.01, 1e-7))
+    assert not len(rectangles((total["point where spring A2A3 has no length"],), np.array([0.9, 0.7]), 0.01, 1e-7))
 
 
 def test_curves_of_each_count() -> None:
     s = slice_of("1/5", **LOADED)
     names = {count: [c.name for c in curves(replace(s, count=count), count)] for count in Count}
     assert names[Count.TOTAL] == names[Count.INDEX]
-    cone = "point where spring k3 has no length"
+    cone = "point where spring A3A4 has no length"
     assert cone in names[Count.TOTAL] and cone not in names[Count.STABLE]
     assert names[Count.ADMISSIBLE] == [
         *names[Count.STABLE],
-        "point where spring k1 has its free length",
-        "point where spring k2 has its free length",
-        "point where spring k3 has its free length",
+        "point where spring A1A4 has its free length",
+        "point where spring A2A3 has its free length",
+        "point where spring A3A4 has its free length",
     ]
     assert [c.name for c in curves(slice_of("0", **LOADED), Count.TOTAL)] == ["fold"]
 

@@ -92,7 +92,7 @@ def test_a_pole_on_the_window_s_edge(changes: dict[str, Any], at_least: int) -> 
 def test_a_spring_s_pull_that_vanishes_on_a_line(free: str) -> None:
     """There spring 3 has no free length, but it is present elsewhere, and so are its curves and its cone."""
     s = slice_of({"rho": ["4/5", 1], "L2": ["4/5", "6/5"]}, l0_3=free)
-    assert "point where spring k3 has no length" in [c.name for c in curves(s, Count.TOTAL)]
+    assert "point where spring A3A4 has no length" in [c.name for c in curves(s, Count.TOTAL)]
     counter = plain_counter(s)
     for y in (Q(1), Q(1) + Q(1, 10**9), Q(1) - Q(1, 10**30)):
         found = counter.at(Q(17, 20), y, Count.STABLE)
@@ -102,9 +102,9 @@ def test_a_spring_s_pull_that_vanishes_on_a_line(free: str) -> None:
 
 def test_a_spring_without_free_length_is_absent_however_it_is_written() -> None:
     s = slice_of({"rho": ["4/5", 1], "L2": ["4/5", "6/5"]}, l0_3="(L2 - 1)^2 - L2^2 + 2*L2 - 1")
-    assert "point where spring k3 has no length" not in [c.name for c in curves(s, Count.TOTAL)]
+    assert "point where spring A3A4 has no length" not in [c.name for c in curves(s, Count.TOTAL)]
     s = slice_of({"rho": ["4/5", 1], "L2": ["4/5", "6/5"]}, l0_3="(L2 - 1)^2 - L2^2 + 2*L2 - 1 + 1e-300")
-    assert "point where spring k3 has no length" in [c.name for c in curves(s, Count.TOTAL)]
+    assert "point where spring A3A4 has no length" in [c.name for c in curves(s, Count.TOTAL)]
 
 
 OFF = (Q(0), Q(1, 10**6), Q(-1, 10**6), Q(1, 10**13), Q(-1, 10**13), Q(1, 10**20))
@@ -130,7 +130,7 @@ def test_rho_nearly_equal_to_a_bar_everywhere() -> None:
     near, apart = (
         slice_of({"m": ["1/2", "3/5"], "L2": ["4/5", "9/10"]}, rho=f"m + m/10^{digits}", L1="m") for digits in (9, 4)
     )
-    assert "point where spring k2 has no length" in [c.name for c in curves(near, Count.TOTAL)]
+    assert "point where spring A2A3 has no length" in [c.name for c in curves(near, Count.TOTAL)]
     counts, beside = plain_counter(near), plain_counter(apart)
     for x, y in ((Q(11, 20), Q(17, 20)), (Q(1, 2), Q(9, 10))):
         found = counts.at(x, y, Count.TOTAL)
