@@ -233,7 +233,7 @@ def test_every_spring_with_a_free_length_has_a_chart_and_a_cone() -> None:
 def test_minima_need_the_chart_of_a_spring_that_depends_on_both_angles_alone() -> None:
     fold = "fold of a stable equilibrium"
     names = [curve.name for curve in curves(_slice(PLAIN_PTM), Count.STABLE)]
-    assert names == [fold, f"{fold} with spring A3A4 short"]
+    assert names == [fold, f"{fold} with spring k3 short"]
     every = [curve.name for curve in curves(_slice(PLAIN_PTM), Count.STABLE, frozenset({"cones-and-creases"}))]
     assert every == [fold, *(f"{fold} with spring k{n} short" for n in (1, 2, 3)), *NO_LENGTH]
 
