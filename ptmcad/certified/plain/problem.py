@@ -21,8 +21,7 @@ from ptmcad.certified.plain.excesses import Excess, excesses
 from ptmcad.certified.plain.parallel import shares
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError
-from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, System, ptm
-from ptmcad.mechanism.description import Spring
+from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, System
 from ptmcad.mechanism.energy import points_in, with_springs
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.fourbars import closed_by, flat_everywhere
@@ -204,9 +203,7 @@ def _checked(mechanism: Mechanism, cones: Iterable[Cone], axes: tuple[Axis, Axis
     for cone in cones:
         asked = f"stiffness times free length of spring {cone.name}", Kind.FREE_LENGTH, cone.pull, axes
         if problem := fault(*asked) or unproved(*asked):
-            number = next(
-                n for n, spring in enumerate(mechanism.springs, 1) if _shown_name(mechanism, spring) == cone.name
-            )
+            number = next(n for n, s in enumerate(mechanism.springs, 1) if cone.name in (s.name, s.start + s.end))
             raise GeometryError(problem, part=f"springs.{number}")
         for k, other in enumerate(found):
             # each of K |d| and K' |d'| alone has a cone, and where both are short at once neither direction would be
@@ -314,18 +311,13 @@ def _gradient(energy: TrigonometricPolynomial, ring: Harmonics) -> tuple[Trigono
     return tuple(energy.derivative(k) for k in range(len(ring.unknowns)))
 
 
-def _shown_name(mechanism: Mechanism, spring: Spring) -> str:
-    """A spring's name, for people: the paper's springs are named by their ends, as in all answers."""
-    return f"{spring.start}{spring.end}" if mechanism == ptm() else spring.name
-
-
 def _cones(mechanism: Mechanism, ring: Harmonics) -> Iterator[Cone]:
     """The springs with a free length, as parts of the energy's derivatives by the unknowns."""
     for spring, (dx, dy) in springs_of(mechanism, ring):
         pull = constant_of(evaluate(spring.stiffness, ring) * evaluate(spring.free, ring))
         if pull.numerator and (dx.terms or dy.terms):
             slopes = tuple((dx.derivative(k), dy.derivative(k)) for k in range(len(ring.unknowns)))
-            yield Cone(_shown_name(mechanism, spring), pull, (dx, dy), slopes)
+            yield Cone(spring.name, pull, (dx, dy), slopes)
 
 
 def _energy(mechanism: Mechanism, ring: Harmonics) -> TrigonometricPolynomial:
