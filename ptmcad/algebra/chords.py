@@ -12,7 +12,6 @@ excludes zero on each piece of it. So the branch does not meet the chord there, 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from flint import Ordering, arb, arb_poly, ctx, fmpq, fmpq_mpoly_ctx, fmpq_poly, fmpz_poly
 
@@ -69,16 +68,8 @@ def _no_zero(p: arb_poly, low: fmpq, high: fmpq, depth: int) -> bool:
     return _no_zero(p, low, middle, depth - 1) and _no_zero(p, middle, high, depth - 1)
 
 
-@dataclass(frozen=True, slots=True)
-class Slope:
-    """Enclosures, over a panel, of a branch's first and second derivative."""
-
-    first: arb
-    second: arb
-
-
-def slope_over(in_v: Sequence[fmpz_poly], at_middle: RealRoot, middle: fmpq, radius: fmpq) -> Slope | None:
-    """The derivatives of a branch v(u) for every u in [middle - radius, middle + radius].
+def slope_over(in_v: Sequence[fmpz_poly], at_middle: RealRoot, middle: fmpq, radius: fmpq) -> tuple[arb, arb] | None:
+    """Enclosures of a branch's first and second derivative for every u in [middle - radius, middle + radius].
 
     Parameters
     ----------
@@ -127,4 +118,4 @@ def slope_over(in_v: Sequence[fmpz_poly], at_middle: RealRoot, middle: fmpq, rad
         first = -p_u / p_v
         p_vv, p_uv, p_uu = value(by_w(by_w(local))), value(by_w(by_h)) * scale, value(by_hh) * scale * scale
         second = -(p_vv * first * first + 2 * p_uv * first + p_uu) / p_v
-        return Slope(first, second) if first.is_finite() and second.is_finite() else None
+        return (first, second) if first.is_finite() and second.is_finite() else None

@@ -75,23 +75,19 @@ def boundary_surface(
             key="surface",
         )
     options = Options(timeout=timeout, progress=progress)
-    return surface_of(in_common(Restored(found)), found.changes, Fineness(share, max_members), options)
-
-
-class Fineness(NamedTuple):
-    """How near sheets are to come to the members between them, and the most members."""
-
-    tolerance: Fraction = TOLERANCE
-    max_members: int = MAX_MEMBERS
-
-
-FINENESS = Fineness()
+    return surface_of(in_common(Restored(found)), found.changes, share, max_members, options)
 
 
 def surface_of(
-    common: Common, changes: Changes, fineness: Fineness = FINENESS, options: Options = DEFAULTS
-) -> BoundarySurface:
+    common: Common, changes: Changes, tolerance: Fraction = TOLERANCE, max_members: int = MAX_MEMBERS,
+    options: Options = DEFAULTS,
+) -> BoundarySurface:  # fmt: skip
     """The boundary surface of a family of which it is known what its members have in common, and its changes.
+
+    Parameters
+    ----------
+    tolerance : how near sheets are to come to the members between them.
+    max_members : the most members.
 
     Raises
     ------
@@ -100,11 +96,11 @@ def surface_of(
     ConfigError
         For numbers beyond doubles.
     """
-    search = _Search(common, changes, fineness, options)
+    search = _Search(common, changes, tolerance, max_members, options)
     search.run()
     axes, free, runs = common.family.axes, common.family.free, search.runs()
     with within_doubles(common.family.member(changes.between[0])):
-        mesh = mesh_of(runs, axes, fineness.tolerance / 4)
+        mesh = mesh_of(runs, axes, tolerance / 4)
     members = tuple(sorted({value for run in runs for value, _ in run}))
     return BoundarySurface(
         (axes[0].name, axes[1].name, free.name), mesh.vertices, mesh.faces, mesh.sheet, mesh.member, mesh.sheets,
@@ -146,10 +142,13 @@ class _Search:
     deviation, unresolved : as of `BoundarySurface`.
     """
 
-    def __init__(self, common: Common, changes: Changes, fineness: Fineness, options: Options) -> None:
+    def __init__(
+        self, common: Common, changes: Changes, tolerance: Fraction, max_members: int, options: Options
+    ) -> None:
         first = Members(common, options)
         base = next((p.variety.base for v in changes.between if (p := first.tried(v)) is not None), None)
-        self.members, self.fineness = Members(common, options, base), fineness
+        self.members = Members(common, options, base)
+        self.tolerance, self.max_members = tolerance, max_members
         self.slabs = _slabs(changes, self.members)
         self.width = changes.free.high - changes.free.low
         self.stated = common.family.values
@@ -169,8 +168,8 @@ class _Search:
                 self._push(heap, self._gap(slab, *start, *end))
         while heap:
             gap = heappop(heap)[2]
-            self.members.report("members of the surface", len(self._known), self.fineness.max_members)
-            if gap.deviation <= self.fineness.tolerance:
+            self.members.report("members of the surface", len(self._known), self.max_members)
+            if gap.deviation <= self.tolerance:
                 self._join(gap)
             elif self._is_last(gap):
                 self._close(gap)
@@ -190,7 +189,7 @@ class _Search:
     def _is_last(self, gap: _Gap) -> bool:
         # where boundaries have the same shape, they come nearer and nearer, but for a jump at which their strips do
         narrowest = NARROWEST if gap.deviation == inf else NARROWEST / 16
-        return gap.high - gap.low <= narrowest * self.width or len(self._known) >= self.fineness.max_members
+        return gap.high - gap.low <= narrowest * self.width or len(self._known) >= self.max_members
 
     def _join(self, gap: _Gap) -> None:
         self.joined |= {(gap.low, gap.middle), (gap.middle, gap.high)}
@@ -198,7 +197,7 @@ class _Search:
 
     def _close(self, gap: _Gap) -> None:
         """What sheets there can be in a gap that is not looked into any further."""
-        if gap.deviation <= _TOO_FAR * self.fineness.tolerance:
+        if gap.deviation <= _TOO_FAR * self.tolerance:
             self._join(gap)
             return
         if gap.deviation < inf:
@@ -243,7 +242,7 @@ class _Search:
         most = Fraction(0)
         for number, strip in enumerate(a.strips):
             for share in _SHARES if len(strip.keys) > 1 else ():
-                points = [(each.at(number, share).at, *each.at(number, share).heights) for each in (a, b, c)]
+                points = [each.at(number, share) for each in (a, b, c)]
                 for k, (p, q, r) in enumerate(zip(*points, strict=True)):
                     most = max(most, abs(p + (r - p) * weight - q) / base[min(k, 1)])
         return float(most)

@@ -26,7 +26,7 @@ from ptmcad.ask.engines import is_certified
 from ptmcad.ask.members import Asked, Common, in_common, in_space
 from ptmcad.errors import ConfigError, HypothesisError, LimitReached
 from ptmcad.exact.arrangement import Picture, picture_of
-from ptmcad.exact.familyprojection import OutOfReach, critical_values
+from ptmcad.exact.familyprojection import critical_values
 from ptmcad.exact.surfaces import surfaces_of
 from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.config import Family, family_from
@@ -97,8 +97,8 @@ def changes_of(common: Common, tolerance: Fraction = TOLERANCE, options: Options
     check_count(asked.member(asked.values[0]))
     members = Members(common, options)
     found = _critical(members)
-    if isinstance(found, OutOfReach):
-        return _bisected(members, tolerance, found.reason)
+    if isinstance(found, str):
+        return _bisected(members, tolerance, found)
     return _compared(members, found, tolerance)
 
 
@@ -153,11 +153,11 @@ class Members:
             return None
 
 
-def _critical(members: Members) -> tuple[RealRoot, ...] | OutOfReach:
-    """All values at which the arrangement can change."""
+def _critical(members: Members) -> tuple[RealRoot, ...] | str:
+    """All values at which the arrangement can change, or why they are out of reach."""
     variety, asked = members.common.variety, members.family
     if variety is None:
-        return OutOfReach("the equations are not eliminated over all members in common")
+        return "the equations are not eliminated over all members in common"
     members.report("critical values", 0, 1)
     box = [(from_fraction(a.low), from_fraction(a.high)) for a in (*asked.axes, asked.free)]
     return critical_values(surfaces_of(*in_space(asked), variety, box), box, members.check)

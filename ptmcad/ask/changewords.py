@@ -7,7 +7,6 @@ counts agree. Near enough to the change they are; no decision rests on it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from ptmcad.answer.arrangement import SIDES
 from ptmcad.answer.words import index_words, noun
@@ -16,19 +15,15 @@ from ptmcad.exact.regions import Link, members, merge
 from ptmcad.question.slice import Count
 from ptmcad.text.numerals import text_of
 
-
-class _Same(NamedTuple):
-    """Regions before and after that are one region, or parts of one."""
-
-    before: tuple[int, ...]
-    after: tuple[int, ...]
+_Same = tuple[list[int], list[int]]
+"""Regions before and after that are one region, or parts of one."""
 
 
 def described(before: Picture, after: Picture) -> tuple[str, ...]:
     """What happens to the regions on the way, a sentence each; never nothing."""
     groups = _groups(before, after)
     found = [*_births(before, after, groups)]
-    kept = {g.before[0]: g.after[0] for g in groups if len(g.before) == len(g.after) == 1}
+    kept = {old[0]: new[0] for old, new in groups if len(old) == len(new) == 1}
     found += _sides(before, after, kept)
     found += _contacts(before, after, kept)
     return tuple(dict.fromkeys(found)) or ("regions lie in another order along the window's sides",)
@@ -40,7 +35,7 @@ def _groups(before: Picture, after: Picture) -> list[_Same]:
     links = [Link(a, number + b, 1) for a, b in _shared(before, after)]
     links += [Link(a, number + b, 1) for b, a in _shared(after, before)]
     groups = members(merge(keys, links))
-    return [_Same(tuple(n for n in g if n < number), tuple(n - number for n in g if n >= number)) for g in groups]
+    return [([n for n in g if n < number], [n - number for n in g if n >= number]) for g in groups]
 
 
 def _shared(one: Picture, other: Picture) -> Iterator[tuple[int, int]]:
@@ -54,9 +49,9 @@ def _shared(one: Picture, other: Picture) -> Iterator[tuple[int, int]]:
 def _births(before: Picture, after: Picture, groups: list[_Same]) -> Iterator[str]:
     appear: dict[tuple[int, ...], int] = {}
     vanish: dict[tuple[int, ...], int] = {}
-    for group in groups:
-        many, others = len(group.before), len(group.after)
-        key = before.arrangement.keys[group.before[0]] if many else after.arrangement.keys[group.after[0]]
+    for old, new in groups:
+        many, others = len(old), len(new)
+        key = before.arrangement.keys[old[0]] if many else after.arrangement.keys[new[0]]
         of = _of(before, key)
         if not many:
             appear[key] = appear.get(key, 0) + 1

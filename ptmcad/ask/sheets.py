@@ -63,7 +63,7 @@ def _add_walls(builder: _Builder, run: Joined, number: int, tolerance: float) ->
         rows = []
         for value, strips in run:
             columns = [strips.at(number, share) for share in shares]
-            points = [builder.point(strips.base, c.at, c.heights[wall]) for c in columns]
+            points = [builder.point(strips.base, at, heights[wall]) for at, *heights in columns]
             rows.append(builder.row(value, points))
         for first, second in pairwise(rows):
             builder.band(sheet, first, second)
@@ -90,7 +90,7 @@ def _shares(builder: _Builder, run: Joined, number: int, tolerance: float) -> li
 
     def columns(place: float) -> NDArray[np.float64]:
         found = [(s.base, s.at(number, _share(place))) for s in some]
-        return np.array([[builder.point(base, c.at, h) for h in c.heights] for base, c in found])
+        return np.array([[builder.point(base, at, h) for h in heights] for base, (at, *heights) in found])
 
     known = {place: columns(place) for place in (0.0, 0.25, 0.5, 0.75, 1.0)}
     pending = list(pairwise(sorted(known)))

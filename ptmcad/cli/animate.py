@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from math import degrees
@@ -37,26 +36,11 @@ FORMATS = ("gif", "mp4")
 MAX_FPS = 60
 
 
-@dataclass(frozen=True, slots=True)
-class Film:
-    """What the film shows and how it looks, as it was typed."""
-
-    path: str
-    pose: str
-    frames: int
-    fps: int
-    style: Style
-    dpi: int
-
-
-def _film(
-    path: str, pose: str, frames: int, fps: int, size: str | None, palette: str | None, title: str | None, dpi: int
-) -> Film:
+def _style(size: str | None, palette: str | None, title: str | None) -> Style:
     try:
-        style = styled("default", size=size, palette=palette, title=title)
+        return styled("default", size=size, palette=palette, title=title)
     except ConfigError as error:
         raise ConfigError(error.message, key=f"--{error.key}") from error
-    return Film(path, pose, frames, fps, style, dpi)
 
 
 @click.command("animate")
@@ -79,10 +63,10 @@ def _film(
 @click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-motion]")
 @format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}; mp4 needs the program ffmpeg.", "gif")
 @limit_options
-@gathered(film=_film)
+@gathered(style=_style)
 def command(
-    *, asked: Asked, film: Film, tolerance: Fraction, out: Path, name: str | None, formats: tuple[str, ...],
-    limits: Limits,
+    *, asked: Asked, path: str, pose: str, frames: int, fps: int, style: Style, dpi: int, tolerance: Fraction,
+    out: Path, name: str | None, formats: tuple[str, ...], limits: Limits,
 ) -> None:  # fmt: skip
     """Show the mechanism moving along a path of parameters, and where it snaps.
 
@@ -111,8 +95,8 @@ def command(
         from ptmcad.ask.fields.motion import motion_of
 
         with stored_in(asked.config if stored else None):
-            motion = motion_of(result, film.path, film.pose, film.frames, progress)
-            write_files(out, {each: picture(each, partial(_draw, motion, film)) for each in names})
+            motion = motion_of(result, path, pose, frames, progress)
+            write_files(out, {each: picture(each, partial(_draw, motion, style, fps, dpi)) for each in names})
     click.echo(f"{question_of(result.slice)}\n{summary(motion)}")
     report_written(out, names)
 
@@ -125,13 +109,13 @@ def _slice(asked: Asked) -> Slice:
     return slice
 
 
-def _draw(motion: Motion, film: Film, path: Path) -> None:
+def _draw(motion: Motion, style: Style, fps: int, dpi: int, path: Path) -> None:
     from ptmcad.show.render.backend import load_matplotlib
 
     load_matplotlib()
     from ptmcad.show.render.film import save_film
 
-    save_film(motion, path, film.style, film.fps, film.dpi)
+    save_film(motion, path, style, fps, dpi)
 
 
 def summary(motion: Motion) -> str:

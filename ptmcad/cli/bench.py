@@ -79,23 +79,25 @@ def command(
         return _compare(*compare)
     slices = _slices(configs)
     require(Extra.bench, key="bench")
-    from ptmcad.studies.bench.measuring import Settings, measure
+    from ptmcad.studies.bench.measuring import measure
     from ptmcad.studies.bench.methods import Method
     from ptmcad.studies.bench.report import PAGE, SUFFIXES, save, save_page, terminal
     from ptmcad.verification import verify
 
     check_writable(out, (*(f"{slice.name}.{suffix}" for slice, _ in slices for suffix in SUFFIXES), PAGE))
     chosen = tuple(Method(name) for name in methods) or tuple(Method)
-    settings = Settings(chosen, rounds, seed, time_limit, quick)
     for number, (slice, path) in enumerate(slices):
         with ProgressBar() as progress:
 
             def report(stage: str, shown: ProgressBar = progress) -> None:
                 shown(f"{stage} ...", 0, 1)
 
-            study = measure(slice, path, lambda m: verify(m).ok, settings, warm_up=number == 0, report=report)
+            study = measure(
+                slice, path, lambda m: verify(m).ok, methods=chosen, rounds=rounds, seed=seed,
+                time_limit=time_limit, quick=quick, warm_up=number == 0, report=report,
+            )  # fmt: skip
             save(study, out)
-        click.echo(f"{study.slice}: {study.heading}\n{terminal(study)}")
+        click.echo(f"{slice.name}: {slice.heading}\n{terminal(study)}")
         report_written(out, (f"{slice.name}.{suffix}" for suffix in SUFFIXES))
         click.echo()
     if page:
@@ -113,9 +115,8 @@ def _slices(configs: tuple[Path, ...]) -> list[tuple[Slice, Path]]:
 
 
 def _compare(old: Path, new: Path) -> int:
-    from ptmcad.studies.bench.compare import BAD, compare, comparison_table
-    from ptmcad.studies.bench.study import read_study
+    from ptmcad.studies.bench.study import BAD, compare, comparison_table, read_study
 
     changes = compare(read_study(old), read_study(new))
     click.echo(comparison_table(changes))
-    return 1 if any(c.verdict in BAD for c in changes) else 0
+    return 1 if any(c["verdict"] in BAD for c in changes) else 0

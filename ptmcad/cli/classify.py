@@ -240,9 +240,9 @@ def _idle(slice: Slice, options: Options) -> tuple[Idle, ...]:
 
     certified = is_certified(slice, options.engine)
     return (
-        Idle("no_areas", certified, "this engine gets areas at no extra cost"),
-        Idle("tolerance", not certified, "the exact engine leaves nothing undetermined"),
-        Idle("jobs", not certified, "the exact engine uses one thread"),
+        ("no_areas", certified, "this engine gets areas at no extra cost"),
+        ("tolerance", not certified, "the exact engine leaves nothing undetermined"),
+        ("jobs", not certified, "the exact engine uses one thread"),
     )
 
 
@@ -273,9 +273,9 @@ def _classify_family(
     from ptmcad.cli.families import Wanted, family_to_files, names_of_family
 
     report_idle((
-        Idle("resume", resume is not None, "the members of a family are classified anew"),
-        Idle("explain", output.explain, "a family has a plan for each of its members: give one with --set"),
-        Idle("surface", third.surface and not set(output.formats) & {*PICTURES, *MESHES},
+        ("resume", resume is not None, "the members of a family are classified anew"),
+        ("explain", output.explain, "a family has a plan for each of its members: give one with --set"),
+        ("surface", third.surface and not set(output.formats) & {*PICTURES, *MESHES},
              "no picture and no mesh is written, see --format"),
         *idle_drawing(output.formats),
     ))  # fmt: skip
@@ -379,8 +379,8 @@ def command(
         raise ConfigError(f"{meshes[0]} is for the boundary surface of a family: add --free NAME=LO:HI", key="--format")
     report_idle((
         *_idle(slice, options),
-        Idle("changes", third.changes, "no parameter is free: add --free NAME=LO:HI"),
-        Idle("surface", third.surface, "no parameter is free: add --free NAME=LO:HI"),
+        ("changes", third.changes, "no parameter is free: add --free NAME=LO:HI"),
+        ("surface", third.surface, "no parameter is free: add --free NAME=LO:HI"),
         *idle_drawing(output.formats),
     ))  # fmt: skip
     spent = 0.0

@@ -13,7 +13,7 @@ from ptmcad.answer.design import BestDesign
 from ptmcad.cli.drawing import share_of
 from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
-from ptmcad.cli.idle import Idle, report_idle
+from ptmcad.cli.idle import report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.paths import out_option, record_argument
 from ptmcad.cli.pictures import picture, report_written, write_result
@@ -57,29 +57,6 @@ class Asked:
         return design_from_options(self.config, self.maximise, self.along, self.over, where, self.pose)
 
 
-@dataclass(frozen=True, slots=True)
-class Search:
-    """How far the search and the proof go."""
-
-    tolerance: Fraction | None
-    seed: int
-    evaluations: int | None
-    boxes: int
-
-
-@dataclass(frozen=True, slots=True)
-class Output:
-    """The files to write, and where."""
-
-    out: Path
-    name: str | None
-    formats: tuple[str, ...]
-
-    def stem(self, asked: Design) -> str:
-        """The start of the files' names."""
-        return asked.name if self.name is None else file_name(self.name, "--name")
-
-
 @click.command("design")
 @record_argument(required=True)
 @click.option("--maximise", metavar="WHAT",
@@ -107,8 +84,19 @@ class Output:
 @click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-design]")
 @format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.  [default: none]")
 @limit_options
-@gathered(asked=Asked, search=Search, output=Output)
-def command(*, asked: Asked, search: Search, output: Output, limits: Limits) -> int:
+@gathered(asked=Asked)
+def command(
+    *,
+    asked: Asked,
+    tolerance: Fraction | None,
+    seed: int,
+    evaluations: int | None,
+    boxes: int,
+    out: Path,
+    name: str | None,
+    formats: tuple[str, ...],
+    limits: Limits,
+) -> int:
     """Find the design that makes a range, an area, a barrier or an expression as large as possible.
 
     CONFIG is a record, of whose key `design` the options override parts. A global search (differential evolution) looks
@@ -124,29 +112,29 @@ def command(*, asked: Asked, search: Search, output: Output, limits: Limits) -> 
         ptmcad design fig4 --maximise barrier --pose stable:2 --over rho=1/4:2 --over L2=1/4:2
     """
     question = asked.design()
-    stem = output.stem(question)
-    wanted = tuple(f"{stem}.{kind}" for kind in sorted(output.formats, key=lambda kind: kind == "json"))
+    stem = question.name if name is None else file_name(name, "--name")
+    wanted = tuple(f"{stem}.{kind}" for kind in sorted(formats, key=lambda kind: kind == "json"))
     why = "no file is written, see --format"
-    report_idle((Idle("out", not wanted, why), Idle("name", not wanted, why)))
+    report_idle((("out", not wanted, why), ("name", not wanted, why)))
     with held(limits):
         if wanted:
-            check_writable(output.out, wanted)
+            check_writable(out, wanted)
         with clock_stopped(limits.timeout):  # the time that the import takes is not the computation's
             from ptmcad.ask.designs import TOLERANCE, design
         with ProgressBar() as progress:
             found = design(
                 question,
-                tolerance=search.tolerance or TOLERANCE,
-                seed=search.seed,
-                evaluations=search.evaluations,
-                boxes=search.boxes,
+                tolerance=tolerance or TOLERANCE,
+                seed=seed,
+                evaluations=evaluations,
+                boxes=boxes,
                 timeout=None if limits.timeout is None else limits.timeout * _RESERVE,
                 progress=progress,
             )
         click.echo(f"{question_in(question.record, question.record.name or stem)}\n{found.table()}")
         if wanted:
-            _save(found, wanted, output.out)
-            report_written(output.out, wanted)
+            _save(found, wanted, out)
+            report_written(out, wanted)
     return 3 if found.bound is not None and found.best is not None and not found.proved else 0
 
 

@@ -70,15 +70,10 @@ class Wanted(NamedTuple):
         return tuple(kind for kind in self.formats if kind in DATA)
 
 
-class Made(NamedTuple):
-    """A family's maps, and its boundary surface where that is wanted."""
+def family_to_files(family: Family, options: Options, wanted: Wanted) -> tuple[FamilyMap, BoundarySurface | None]:
+    """Classify the members one by one, write each, then the family's own files.
 
-    maps: FamilyMap
-    surface: BoundarySurface | None
-
-
-def family_to_files(family: Family, options: Options, wanted: Wanted) -> Made:
-    """Classify the members one by one, write each, then the family's own files; return what was made.
+    Returns the maps, and the boundary surface where that is wanted.
 
     Raises
     ------
@@ -124,7 +119,7 @@ def family_to_files(family: Family, options: Options, wanted: Wanted) -> Made:
     )
     if writers := _writers(result, surface, wanted):
         write_files(wanted.out, writers)
-    return Made(result, surface)
+    return result, surface
 
 
 def _changes(common: Common, options: Options, wanted: Wanted) -> Changes | None:

@@ -7,7 +7,6 @@ goes on as without it.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
 
 import click
 from click.core import ParameterSource
@@ -18,12 +17,8 @@ STYLE = (
 """The options that make a picture's style, by their parameters' names."""
 
 
-class Idle(NamedTuple):
-    """An option by its parameter's name, whether it is without effect, and why it would be."""
-
-    parameter: str
-    idle: bool
-    why: str
+Idle = tuple[str, bool, str]
+"""An option by its parameter's name, whether it is without effect, and why it would be."""
 
 
 def report_idle(cases: Iterable[Idle]) -> None:
@@ -41,7 +36,7 @@ def _has_picture(formats: Iterable[str]) -> bool:
 
 def idle_style(formats: Iterable[str]) -> tuple[Idle, ...]:
     """The options of a picture's style where none of these formats is a picture."""
-    return tuple(Idle(name, not _has_picture(formats), "no picture is written") for name in (*STYLE, "dpi"))
+    return tuple((name, not _has_picture(formats), "no picture is written") for name in (*STYLE, "dpi"))
 
 
 def idle_drawing(formats: Iterable[str]) -> tuple[Idle, ...]:
@@ -49,7 +44,7 @@ def idle_drawing(formats: Iterable[str]) -> tuple[Idle, ...]:
     chosen = set(formats)
     return (
         *idle_style(formats),
-        Idle("samples", not _has_picture(formats), "no picture is written"),
-        Idle("pixels", "npz" not in chosen, "only NPZ has a grid, see --format"),
-        Idle("boundary_tolerance", not chosen & {"csv", "npz"}, "only CSV and NPZ have boundaries, see --format"),
+        ("samples", not _has_picture(formats), "no picture is written"),
+        ("pixels", "npz" not in chosen, "only NPZ has a grid, see --format"),
+        ("boundary_tolerance", not chosen & {"csv", "npz"}, "only CSV and NPZ have boundaries, see --format"),
     )

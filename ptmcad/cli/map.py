@@ -14,7 +14,7 @@ from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.field import Field
 from ptmcad.cli.drawing import pixels_of, share_of, style_options
 from ptmcad.cli.formats import format_option
-from ptmcad.cli.idle import Idle, idle_style, report_idle
+from ptmcad.cli.idle import idle_style, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.maps import made_map, stored_map
 from ptmcad.cli.paths import out_option
@@ -102,9 +102,9 @@ def command(
     nothing_drawn = set(formats) <= set(DATA)
     report_idle([
         *idle_style(formats),
-        Idle("contours", nothing_drawn, "no picture is written"),
-        Idle("thin_lines", not nothing_drawn, "the curves over a quantity are those where the count changes"),
-        Idle("legend", not nothing_drawn and style.legend is Place.RIGHT, "beside the map is the scale"),
+        ("contours", nothing_drawn, "no picture is written"),
+        ("thin_lines", not nothing_drawn, "the curves over a quantity are those where the count changes"),
+        ("legend", not nothing_drawn and style.legend is Place.RIGHT, "beside the map is the scale"),
     ])  # fmt: skip
     stem = f"{slice.name}-{_slug(value)}-{_slug(pose)}"
     names = tuple(f"{stem}.{kind}" for kind in formats)

@@ -9,7 +9,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.cli.idle import Idle, report_idle
+from ptmcad.cli.idle import report_idle
 from ptmcad.cli.limits import clock_stopped
 from ptmcad.cli.slices import Asked
 from ptmcad.cli.stored import is_result, read_result
@@ -32,7 +32,7 @@ def stored_map(asked: Asked) -> RegionMap | None:
     for option, value in given.items():
         if value:
             raise ConfigError("a result has its slice already: give the problem record to change it", key=option)
-    report_idle([Idle("tolerance", True, "the map is made already")])
+    report_idle([("tolerance", True, "the map is made already")])
     return read_result(asked.config)
 
 
@@ -45,7 +45,7 @@ def made_map(slice: Slice, options: Options, tolerance: Fraction) -> RegionMap:
     """
     from ptmcad.ask.classification import prepare, region_map
 
-    report_idle([Idle("tolerance", not slice.has_free_lengths, "the exact engine leaves nothing undetermined")])
+    report_idle([("tolerance", not slice.has_free_lengths, "the exact engine leaves nothing undetermined")])
     if slice.has_free_lengths:
         options = replace(options, areas=True, tolerance=tolerance)
     with clock_stopped(options.timeout):

@@ -57,9 +57,9 @@ def _idle(result: Path, drawing: Drawing, added: Added) -> tuple[Idle, ...]:
     several = added.compare is not None or kind_of(result) == "family"
     below = several and drawing.style.legend is Place.RIGHT
     return (
-        Idle("samples", several or bool(added.at), "sample points are drawn on a map alone"),
-        Idle("legend", below, "a legend of several maps is below them"),
-        Idle("surface", kind_of(result) != "family", "this is one map: a surface is of a family"),
+        ("samples", several or bool(added.at), "sample points are drawn on a map alone"),
+        ("legend", below, "a legend of several maps is below them"),
+        ("surface", kind_of(result) != "family", "this is one map: a surface is of a family"),
     )
 
 

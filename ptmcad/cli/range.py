@@ -12,7 +12,7 @@ from click.core import ParameterSource
 
 from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
-from ptmcad.cli.idle import Idle, report_idle
+from ptmcad.cli.idle import report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.paths import out_option, record_argument
@@ -34,7 +34,7 @@ FORMATS = ("json", "png", "svg", "pdf")
 
 @dataclass(frozen=True, slots=True)
 class AskedLine:
-    """The record, what changes it, and the line in the slice, as they were typed."""
+    """The record, what changes it, the line in the slice, and what is asked for beside it, as they were typed."""
 
     config: Path | None
     along: str
@@ -43,6 +43,11 @@ class AskedLine:
     sets: tuple[str, ...]
     ranges: tuple[str, ...]
     over: str | None
+    rows: int
+    start: str | None
+    pose: int | None
+    digits: int
+    quantities: tuple[str, ...]
 
 
 def slice_and_line(asked: AskedLine) -> tuple[Slice, dict[str, str]]:
@@ -101,52 +106,24 @@ def _axes(asked: AskedLine) -> tuple[str, ...]:
     return () if asked.config is None else names_in_record(asked.config)[0]
 
 
-@dataclass(frozen=True, slots=True)
-class Wanted:
-    """What is asked for beside the line, as it was typed; see `Request`."""
+def request_of(asked: AskedLine, at: Mapping[str, str]) -> Request:
+    """What is asked for beside the line, checked.
 
-    rows: int
-    start: str | None
-    pose: int | None
-    digits: int
-    quantities: tuple[str, ...]
-
-    def request(self, asked: AskedLine, at: Mapping[str, str]) -> Request:
-        """The same, checked.
-
-        Raises
-        ------
-        ConfigError
-            For an option that needs another one.
-        """
-        over, start = asked.over is not None, _start(self.start, at)
-        quantities = tuple(dict.fromkeys(self.quantities))
-        request = Request(asked.along, at, over, self.rows, start, self.pose, self.digits, quantities)
-        if quantities and not at:
-            raise ConfigError(f"needs the value of the other axis too, as in --at {SECOND}=3/2", key="--quantity")
-        if not over and click.get_current_context().get_parameter_source("rows") is not ParameterSource.DEFAULT:
-            raise ConfigError("is for the table over the other axis: give --over NAME too", key="--rows")
-        if self.pose is not None and self.start is None:
-            raise ConfigError("chooses a pose to follow: give --path VALUE too", key="--pose")
-        return request
-
-
-@dataclass(frozen=True, slots=True)
-class Output:
-    """The files to write, and where."""
-
-    out: Path
-    name: str | None
-    formats: tuple[str, ...]
-
-    @property
-    def pictures(self) -> list[str]:
-        """Their formats."""
-        return [suffix for suffix in self.formats if suffix != "json"]
-
-    def stem(self, slice: Slice) -> str:
-        """The start of the files' names."""
-        return f"{slice.name}-range" if self.name is None else file_name(self.name, "--name")
+    Raises
+    ------
+    ConfigError
+        For an option that needs another one.
+    """
+    over, start = asked.over is not None, _start(asked.start, at)
+    quantities = tuple(dict.fromkeys(asked.quantities))
+    request = Request(asked.along, at, over, asked.rows, start, asked.pose, asked.digits, quantities)
+    if quantities and not at:
+        raise ConfigError(f"needs the value of the other axis too, as in --at {SECOND}=3/2", key="--quantity")
+    if not over and click.get_current_context().get_parameter_source("rows") is not ParameterSource.DEFAULT:
+        raise ConfigError("is for the table over the other axis: give --over NAME too", key="--rows")
+    if asked.pose is not None and asked.start is None:
+        raise ConfigError("chooses a pose to follow: give --path VALUE too", key="--pose")
+    return request
 
 
 @click.command("range")
@@ -184,8 +161,8 @@ class Output:
                    "eigenvalue), force:SPRING, length:SPRING, angle:UNKNOWN, x:POINT or y:POINT. "
                    "Repeatable.")  # fmt: skip
 @limit_options
-@gathered(asked=AskedLine, wanted=Wanted, output=Output)
-def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits) -> None:
+@gathered(asked=AskedLine)
+def command(*, asked: AskedLine, out: Path, name: str | None, formats: tuple[str, ...], limits: Limits) -> None:
     """Find the intervals of constant count along one axis, and the operation range, where the most are stable.
 
     Of the paper's mechanism these are two equilibria; where nothing says what is stable, all solutions are counted.
@@ -204,24 +181,26 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
         ptmcad range --along rho --at L2=3/2,F3=-10,F4=-10 --quantity th1 --quantity energy --format png
     """
     slice, at = slice_and_line(asked)
-    request = wanted.request(asked, at)
-    stem = output.stem(slice)
+    request = request_of(asked, at)
+    stem = f"{slice.name}-range" if name is None else file_name(name, "--name")
+    suffixes = [suffix for suffix in formats if suffix != "json"]
     with held(limits):
         enclosed = is_enclosed(slice, request)
         drawn = request.quantities or request.over or request.start is not None
-        if enclosed and set(output.formats) - {"json"} and not drawn:
+        if enclosed and suffixes and not drawn:
             raise ConfigError(
                 "with a free length there is the table and JSON, and a picture of branches (--quantity NAME), of paths "
                 "(--path VALUE) or of a band (--over NAME) only",
                 key="--format",
             )
         parts = _parts(request, enclosed=enclosed)
-        names = [f"{stem}{part}.{suffix}" for part in parts for suffix in output.pictures]
-        names += [f"{stem}.json"] * ("json" in output.formats)
+        pictures = {f"{stem}{part}.{suffix}": part for part in parts for suffix in suffixes}
+        file = f"{stem}.json" if "json" in formats else ""
+        names = [*pictures, *filter(None, [file])]
         if names:
-            check_writable(output.out, tuple(names))
+            check_writable(out, tuple(names))
         why = "no file is written, see --format"
-        report_idle((Idle("out", not names, why), Idle("name", not names, why)))
+        report_idle((("out", not names, why), ("name", not names, why)))
         with ProgressBar() as progress:
             if enclosed:
                 from ptmcad.ask.classification import load_certified
@@ -233,27 +212,23 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
             found = answer(slice, request)
         click.echo(found.text)
         if names:
-            _save(slice, request, found, stem, output)
-            report_written(output.out, names)
+            _save(slice, request, found, out, pictures, file)
+            report_written(out, names)
 
 
-def _save(slice: Slice, request: Request, found: Answer, stem: str, output: Output) -> None:
-    """Write the pictures and, last, the JSON."""
-    writers: dict[str, Writer] = {
-        name: picture(name, draw)
-        for part, draw in found.pictures.items()
-        for name in (f"{stem}{part}.{suffix}" for suffix in output.pictures)
-    }
-    if "json" in output.formats:
+def _save(slice: Slice, request: Request, found: Answer, out: Path, pictures: Mapping[str, str], file: str) -> None:
+    """Write the pictures, each of a part of the answer, and, last, the JSON, where it has a file."""
+    writers: dict[str, Writer] = {name: picture(name, found.pictures[part]) for name, part in pictures.items()}
+    if file:
         from ptmcad.show.document.slice import SLICE
         from ptmcad.show.ranges.document import document
 
         asked = {"slice": SLICE.write(slice), "request": request_codec().write(request)}
         text = document(slice.name, slice.mechanism, {**found.parts, **asked})
-        writers[f"{stem}.json"] = text_writer(text)
-        write_result(output.out, writers, f"{stem}.json", text)
+        writers[file] = text_writer(text)
+        write_result(out, writers, file, text)
     else:
-        write_files(output.out, writers)
+        write_files(out, writers)
 
 
 def _parts(request: Request, *, enclosed: bool) -> list[str]:

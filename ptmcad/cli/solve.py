@@ -11,7 +11,7 @@ import click
 from ptmcad.answer.poses import MAX_DIGITS, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.cli.formats import format_option
-from ptmcad.cli.idle import Idle, report_idle
+from ptmcad.cli.idle import report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.paths import out_option, record_argument
@@ -143,8 +143,8 @@ def command(
             check_writable(out, names)
         report_idle(
             (
-                Idle("out", not names, "no file is written, see --format"),
-                Idle("name", not names, "no file is written, see --format"),
+                ("out", not names, "no file is written, see --format"),
+                ("name", not names, "no file is written, see --format"),
             )
         )
         from ptmcad.ask.classification import load_certified

@@ -18,8 +18,8 @@ from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 
 if TYPE_CHECKING:
-    from ptmcad.studies.stress.campaign import Campaign
     from ptmcad.studies.stress.case import Case
+    from ptmcad.studies.stress.judgement import Row
 
 FORMATS = ("table", "json", "csv", "md", "png", "svg")
 NAME = "stress"
@@ -27,7 +27,7 @@ GRACE_SECONDS = 60.0
 """Seconds after the time limit for the case that is being run, before the process is ended from outside."""
 
 
-def save(found: Campaign, folder: Path, formats: tuple[str, ...]) -> tuple[str, ...]:
+def save(found: Row, folder: Path, formats: tuple[str, ...]) -> tuple[str, ...]:
     """Write the files of these formats, all or none, and return their names.
 
     Raises
@@ -37,7 +37,7 @@ def save(found: Campaign, folder: Path, formats: tuple[str, ...]) -> tuple[str, 
     """
     from ptmcad.studies.stress.report import markdown, to_csv, to_json
 
-    name = NAME if found.complete else f"{NAME}.partial"
+    name = NAME if found["complete"] else f"{NAME}.partial"
     writers: dict[str, Writer] = {}
     for suffix in formats:
         if suffix == "csv":
@@ -55,14 +55,14 @@ def save(found: Campaign, folder: Path, formats: tuple[str, ...]) -> tuple[str, 
     return tuple(writers)
 
 
-def _draw(found: Campaign, path: Path) -> None:
+def _draw(found: Row, path: Path) -> None:
     from ptmcad.show.render.backend import load_matplotlib
 
     load_matplotlib()
     from ptmcad.show.render.printing import save as save_figure
     from ptmcad.studies.stress.picture import draw_stress
 
-    save_figure(draw_stress(found.outcomes), path)
+    save_figure(draw_stress(found["cases"]), path)
 
 
 @click.command("stress")
@@ -129,11 +129,11 @@ def command(
         with ProgressBar() as progress:
             found = campaign(cases, seed=seed, repeats=repeats, deadline=deadline, progress=progress)
         written = save(found, out, formats)
-        click.echo(table(found) if "table" in formats else "\n".join(summary(found)))
+        click.echo(table(found, len(cases)) if "table" in formats else "\n".join(summary(found, len(cases))))
         report_written(out, written)
-    if not found.complete:
-        raise LimitReached(f"the time limit was reached after {len(found.outcomes)} of {found.wanted} cases")
-    return 1 if found.wrong else 0
+    if not found["complete"]:
+        raise LimitReached(f"the time limit was reached after {len(found['cases'])} of {len(cases)} cases")
+    return 0 if all(row["right"] for row in found["cases"]) else 1
 
 
 def _cases(names: tuple[str, ...], number: int, seed: int, *, everything: bool) -> tuple[Case, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ from ptmcad.cli.values import names
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.process.extras import Extra, require, require_ffmpeg
 from ptmcad.process.handover import Topic, send
-from ptmcad.process.output import check_writable, text_writer, write_files
+from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config.sweeps import Sweeping, load_sweep
 from ptmcad.show.style import DEFAULT
 
@@ -67,15 +68,6 @@ class Asked:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class How:
-    """Which processes compute, and how often they try."""
-
-    jobs: int | None
-    scheduler: str | None
-    retries: int
-
-
 @click.command("sweep")
 @record_argument(required=True)
 @click.option("--out", type=click.Path(path_type=Path), help="Folder of the sweep.  [default: NAME-sweep]")
@@ -104,9 +96,10 @@ class How:
 @click.option("--member-timeout", type=click.FloatRange(min=0, min_open=True, max=1e9), metavar="S",
               help="Stop a member after S seconds, which is then a failure.")  # fmt: skip
 @limit_options
-@gathered(asked=Asked, how=How)
+@gathered(asked=Asked)
 def command(
-    *, config: Path, out: Path | None, formats: tuple[str, ...], fps: int, asked: Asked, how: How, limits: Limits
+    *, config: Path, out: Path | None, formats: tuple[str, ...], fps: int, asked: Asked, jobs: int | None,
+    scheduler: str | None, retries: int, limits: Limits,
 ) -> int:  # fmt: skip
     """Classify every member of a sweep.
 
@@ -125,7 +118,7 @@ def command(
         ptmcad sweep loads.yaml --scheduler tcp://localhost:8786
     """
     question = load_sweep(config)
-    if how.scheduler is not None:
+    if scheduler is not None:
         require(Extra.distributed, key="--scheduler")
     if "mp4" in formats:
         require_ffmpeg()
@@ -137,74 +130,63 @@ def command(
         wanted = asked.wanted(question)
         check_writable(folder, wanted_files)
         send(Topic.RESUMABLE, f"what is done is in {folder}; the same command goes on")
-        found = sweep(question, folder, how.jobs, how.scheduler, wanted, how.retries, limits.timeout, progress)
+        found = sweep(question, folder, jobs, scheduler, wanted, retries, limits.timeout, progress)
         if wanted_files:
-            made = Made(found, how.jobs, fps, progress)
-            write_files(folder, {name: picture(name, made.write) for name in wanted_files})
+            making: dict[str, Writer] = {"csv": partial(_table, found), "html": partial(_atlas, found, jobs, progress)}
+            film = partial(_film, found, fps, progress)
+            files = zip(wanted_files, formats, strict=True)
+            write_files(folder, {name: picture(name, making.get(kind, film)) for name, kind in files})
     click.echo(f"{question_in(question.record, question.name)}\n{found.table()}")
     report_written(folder, wanted_files)
     return _status(found)
 
 
-@dataclass(frozen=True, slots=True)
-class Made:
-    """A sweep that has run, of which files are written."""
+def _table(sweep: Sweep, path: Path) -> None:
+    text_writer(sweep.to_csv())(path)
 
-    sweep: Sweep
-    jobs: int | None
-    fps: int
-    progress: ProgressBar
 
-    def write(self, path: Path) -> None:
-        """The file of the whole sweep whose format the suffix says."""
-        kind = path.suffix.removeprefix(".")
-        if kind == "csv":
-            text_writer(self.sweep.to_csv())(path)
-        elif kind == "html":
-            self._atlas(path)
-        else:
-            self._film(path)
+def _atlas(sweep: Sweep, jobs: int | None, progress: ProgressBar, path: Path) -> None:
+    from ptmcad.show.report.atlas import atlas, chosen, frame_of
+    from ptmcad.sweeping.index import members
+    from ptmcad.sweeping.sketches import sketches
 
-    def _atlas(self, path: Path) -> None:
-        from ptmcad.show.report.atlas import atlas, chosen, frame_of
-        from ptmcad.sweeping.index import members
-        from ptmcad.sweeping.sketches import sketches
+    shown = list(members(sweep, chosen(sweep)))
+    done = [member.number for member in shown if member.state is State.DONE]
+    drawn = dict(sketches(sweep.folder, done, jobs, progress))
+    frame = frame_of(sweep, _some(sweep).slice, drawn.values())
+    text_writer(atlas(sweep, frame, shown, drawn))(path)
 
-        shown = list(members(self.sweep, chosen(self.sweep)))
-        done = [member.number for member in shown if member.state is State.DONE]
-        drawn = dict(sketches(self.sweep.folder, done, self.jobs, self.progress))
-        frame = frame_of(self.sweep, self._some().slice, drawn.values())
-        text_writer(atlas(self.sweep, frame, shown, drawn))(path)
 
-    def _film(self, path: Path) -> None:
-        from ptmcad.show.render.backend import load_matplotlib
+def _film(sweep: Sweep, fps: int, progress: ProgressBar, path: Path) -> None:
+    from ptmcad.show.render.backend import load_matplotlib
 
-        load_matplotlib()
-        from ptmcad.show.render.sweepfilm import save_sweep_film
+    load_matplotlib()
+    from ptmcad.show.render.sweepfilm import save_sweep_film
 
-        done = [member for member in self.sweep if member.state is State.DONE]
-        every = -(-len(done) // MAX_FRAMES)
-        shown = done[::every]
+    done = [member for member in sweep if member.state is State.DONE]
+    every = -(-len(done) // MAX_FRAMES)
+    shown = done[::every]
 
-        def seen(number: int) -> RegionMap:
-            self.progress("pictures", number, len(shown))
-            return self.sweep.result(shown[number].number)
+    def seen(number: int) -> RegionMap:
+        progress("pictures", number, len(shown))
+        return sweep.result(shown[number].number)
 
-        self._some()
-        save_sweep_film(seen, [member.parameters for member in shown], path, DEFAULT, self.fps)
+    _some(sweep)
+    save_sweep_film(seen, [member.parameters for member in shown], path, DEFAULT, fps)
 
-    def _some(self) -> RegionMap:
-        """The map of the first member that has one.
 
-        Raises
-        ------
-        ConfigError
-            When none has.
-        """
-        first = next((member for member in self.sweep if member.state is State.DONE), None)
-        if first is None:
-            raise ConfigError("no member has a map, so there is nothing to draw", key="--format")
-        return self.sweep.result(first.number)
+def _some(sweep: Sweep) -> RegionMap:
+    """The map of the first member that has one.
+
+    Raises
+    ------
+    ConfigError
+        When none has.
+    """
+    first = next((member for member in sweep if member.state is State.DONE), None)
+    if first is None:
+        raise ConfigError("no member has a map, so there is nothing to draw", key="--format")
+    return sweep.result(first.number)
 
 
 def _status(found: Sweep) -> int:

@@ -23,7 +23,7 @@ from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import Bounds, Member, Summary
 from ptmcad.cli.families import read_family_file
-from ptmcad.cli.idle import Idle, report_idle
+from ptmcad.cli.idle import report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import MAX_BYTES, kind_of, read_other, read_result
@@ -135,7 +135,7 @@ def _reports(path: Path, seed: int | None, boxes: int | None, effort: int | None
 
     def of_map(stored: RegionMap) -> Verify:
         exact = stored.cover is None
-        report_idle([Idle(name, exact, "an exact map is checked whole") for name in ("boxes", "effort")])
+        report_idle([(name, exact, "an exact map is checked whole") for name in ("boxes", "effort")])
         return lambda progress: verify(stored, seed=seed, boxes=boxes, progress=progress, effort=effort)
 
     if path.is_dir():
@@ -143,8 +143,8 @@ def _reports(path: Path, seed: int | None, boxes: int | None, effort: int | None
         return
     kind = kind_of(path)
     if kind in ("design", "poses", "range"):
-        report_idle([Idle("boxes", boxes is not None, "all that is stored is checked"),
-                     Idle("effort", effort is not None, "all that is stored is checked")])  # fmt: skip
+        report_idle([("boxes", boxes is not None, "all that is stored is checked"),
+                     ("effort", effort is not None, "all that is stored is checked")])  # fmt: skip
     if kind == "design":
         design = read_other(path, BestDesign.from_json, "ptmcad-design/1")
         yield "", partial(_verified_design, design, seed)

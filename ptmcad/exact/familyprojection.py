@@ -21,7 +21,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import combinations
 from math import gcd
-from typing import NamedTuple
 
 from ptmcad.algebra.polynomials import Coefficient, UnivariatePolynomial, coefficients_in, irreducible_factors
 from ptmcad.algebra.real_roots import RealRoot
@@ -37,16 +36,12 @@ MAX_COST = 5 * 10**9
 """Of the second projection, by `projection.predicted_cost`; some minutes."""
 
 
-class OutOfReach(NamedTuple):
-    """Elimination would take too long, and why."""
-
-    reason: str
-
-
 def critical_values(
     surfaces: Sequence[Coefficient], box: Sequence[Interval], check: Check = nothing
-) -> tuple[RealRoot, ...] | OutOfReach:
+) -> tuple[RealRoot, ...] | str:
     """All values in the open range of z at which the arrangement can change, in increasing order.
+
+    Or, where elimination would take too long, the reason.
 
     Parameters
     ----------
@@ -57,16 +52,14 @@ def critical_values(
     works = [(_work(surfaces, axis), axis) for axis in (1, 0)]
     work, axis = min(works, key=lambda pair: pair[0])
     if work > MAX_WORK:
-        return OutOfReach(
-            f"the surfaces' discriminants and resultants would take {work:.1e} operations, more than {MAX_WORK:.0e}"
-        )
+        return f"the surfaces' discriminants and resultants would take {work:.1e} operations, more than {MAX_WORK:.0e}"
     curves, points = _projected(surfaces, axis, box[axis], check)
     base, fibre = box[2], box[1 - axis]
     seen = [curve(n, p, 0) for n, p in enumerate(curves) if p.degrees()[1] > 0]
     lines = [coefficients_in(p, 1)[0] for p in curves if p.degrees()[1] == 0]
     cost = predicted_cost(seen)
     if cost > MAX_COST:
-        return OutOfReach(f"the second projection would take {cost:.1e} operations, more than {MAX_COST:.0e}")
+        return f"the second projection would take {cost:.1e} operations, more than {MAX_COST:.0e}"
     found = project(seen, [*lines, *points], base, fibre, check)
     return found.abscissae
 

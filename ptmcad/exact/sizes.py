@@ -123,13 +123,8 @@ def _at(problem: SliceProblem, at: Sample, solutions: int, most: Work | None) ->
     return point if point.algebra.dimension == solutions else None
 
 
-class _Value(NamedTuple):
-    """At a point of a line: the parameter, the norm, and the sum of the tables' entries where the basis is the usual
-    one."""
-
-    parameter: int
-    norm: int
-    entries: int | None
+_Value = tuple[int, int, int | None]
+"""At a point of a line: the parameter, its norm, and the sum of the tables' entries where the basis is the usual."""
 
 
 def _values(
@@ -149,11 +144,7 @@ def _values(
             continue
         entries = [int(c) for table in tables for c in table.entries()]
         usual_here = point.algebra.basis == basis
-        yield _Value(
-            s,
-            _norm(tables, point.jacobian, prime),
-            weighted(entries, prime) if usual_here else None,
-        )
+        yield s, _norm(tables, point.jacobian, prime), weighted(entries, prime) if usual_here else None
 
 
 def _residues(algebra: Fibre, prime: int) -> list[nmod_mat] | None:
@@ -203,11 +194,11 @@ def _sizes_on(values: Iterator[_Value], known: Sequence[LinePolynomial], end: fl
             seen.append(value)
             if process_time() > end:
                 return None
-        norm = numerator([(v.parameter, v.norm) for v in seen], prime, known)
-        entries = [(v.parameter, v.entries) for v in seen if v.entries is not None]
+        found = numerator([(s, norm) for s, norm, _ in seen], prime, known)
+        entries = [(s, sums) for s, _, sums in seen if sums is not None]
         tables = degree(entries, prime)
-        if norm is not None and (tables is not None or len(seen) < asked or 2 * len(entries) < len(seen)):
-            return norm, len(entries) // 2 if tables is None else tables
+        if found is not None and (tables is not None or len(seen) < asked or 2 * len(entries) < len(seen)):
+            return found, len(entries) // 2 if tables is None else tables
         if len(seen) < asked:
             return None
         asked = min(asked * 3 // 2, MAX_POINTS) if asked < MAX_POINTS else asked + 1

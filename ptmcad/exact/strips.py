@@ -92,11 +92,8 @@ class Opening(NamedTuple):
     high: Fraction
 
 
-class Column(NamedTuple):
-    """The points of the boundary over an abscissa: heights of the walls, from below."""
-
-    at: Fraction
-    heights: tuple[Fraction, ...]
+Column = tuple[Fraction, ...]
+"""The points of the boundary over an abscissa: that, and then the heights of the walls, from below."""
 
 
 Shape = tuple[int, tuple[tuple[Key, ...], ...]]
@@ -133,7 +130,7 @@ class Strips:
             u = _abscissa(strip, share)
             part = next((p for p in strip.parts if u <= p.high), strip.parts[-1])
             u = max(u, part.low)
-            self._known[number, share] = Column(to_fraction(u), self._heights(part, u))
+            self._known[number, share] = (to_fraction(u), *self._heights(part, u))
         return self._known[number, share]
 
     def _heights(self, part: _Part, u: fmpq, accuracy: Fraction = ACCURACY) -> tuple[Fraction, ...]:

@@ -9,7 +9,7 @@ from functools import cache
 from html import escape
 from importlib.resources import files
 from string import Template
-from typing import Any, NamedTuple
+from typing import Any
 
 from ptmcad.explore.panel import Panel
 from ptmcad.mechanism import Mechanism
@@ -23,29 +23,22 @@ from ptmcad.show.report.pathdata import GRID
 from ptmcad.text.numerals import shortest_text, text_of
 from ptmcad.version import __version__
 
-
-class Asset(NamedTuple):
-    """A file of a package, and its type."""
-
-    package: str
-    kind: str
-
-
 _STYLE, _SCRIPT = "text/css", "text/javascript"
 ASSETS = {
-    "page.css": Asset("ptmcad.show.report", _STYLE),
-    "explore.css": Asset("ptmcad.explore", _STYLE),
-    "theme.js": Asset("ptmcad.show.report", _SCRIPT),
-    "mechanism.js": Asset("ptmcad.show.report", _SCRIPT),
-    "ask.js": Asset("ptmcad.explore", _SCRIPT),
-    "explore.js": Asset("ptmcad.explore", _SCRIPT),
+    "page.css": ("ptmcad.show.report", _STYLE),
+    "explore.css": ("ptmcad.explore", _STYLE),
+    "theme.js": ("ptmcad.show.report", _SCRIPT),
+    "mechanism.js": ("ptmcad.show.report", _SCRIPT),
+    "ask.js": ("ptmcad.explore", _SCRIPT),
+    "explore.js": ("ptmcad.explore", _SCRIPT),
 }
+"""Files by their names, each with its package and its type."""
 
 
 @cache
 def asset(name: str) -> str:
     """The text of one of `ASSETS`."""
-    return (files(ASSETS[name].package) / name).read_text(encoding="utf-8")
+    return (files(ASSETS[name][0]) / name).read_text(encoding="utf-8")
 
 
 def page(panel: Panel, secret: str) -> str:

@@ -125,7 +125,7 @@ class Server:
 
     async def _asset(self, request: web.Request) -> web.Response:
         name = request.path.removeprefix("/")
-        return web.Response(text=asset(name), content_type=ASSETS[name].kind, charset="utf-8")
+        return web.Response(text=asset(name), content_type=ASSETS[name][1], charset="utf-8")
 
     async def _question(self, request: web.Request) -> web.Response:
         if not self.guard.trusts(request.headers):

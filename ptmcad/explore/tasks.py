@@ -130,17 +130,17 @@ class Tasks:
 
     def _record(self, values: Values, _job: Job) -> dict[str, Any]:
         slice = self.panel.slice(values)
-        found = reproduction(slice)
-        if found.record is None:
+        record, command = reproduction(slice)
+        if record is None:
             raise ConfigError("no problem record gives this slice")
-        return {"name": slice.name, "record": found.record, "command": f"ptmcad classify {slice.name}.yaml",
-                "alone": found.command or ""}  # fmt: skip
+        return {"name": slice.name, "record": record, "command": f"ptmcad classify {slice.name}.yaml",
+                "alone": command or ""}  # fmt: skip
 
     def _save(self, values: Values, job: Job) -> dict[str, Any]:
         """The figure, its result and its record as files, all or none; nothing that is there is written over."""
         name = file_name(job["name"], "the name")
         slice = replace(self.panel.slice(values), name=name)
-        record = reproduction(slice).record
+        record = reproduction(slice)[0]
         if record is None:
             raise ConfigError("no problem record gives this slice")
         names = [f"{name}.yaml", *(f"{name}.{kind}" for kind in PICTURES if kind in job["formats"]), f"{name}.json"]

@@ -123,7 +123,7 @@ def loading(what: str) -> Iterator[None]:
             yield
     except (ImportError, OSError) as error:
         missing = isinstance(error, ModuleNotFoundError)
-        small = any(limit.size < LOW_LIMIT for limit in caller_limits())  # of which many loaders say nothing, as LLVM's
+        small = any(size < LOW_LIMIT for size, _ in caller_limits())  # of which many loaders say nothing, as LLVM's
         if speaks_of_memory(str(error)) or (small and not missing):
             raise MemoryError(str(error)) from error
         raise

@@ -4,7 +4,6 @@ The watching process imports it, so it imports nothing that takes time.
 """
 
 import sys
-from typing import NamedTuple
 
 LOW_LIMIT = 1 << 30
 """Below so many bytes a memory limit may keep the libraries from being loaded."""
@@ -27,11 +26,8 @@ def speaks_of_memory(text: str) -> bool:
     return any(sign in text for sign in SIGNS)
 
 
-class Limit(NamedTuple):
-    """A limit on memory in bytes, and how to name it to the user."""
-
-    size: int
-    text: str
+Limit = tuple[int, str]
+"""A limit on memory in bytes, and how to name it to the user."""
 
 
 def caller_limits() -> tuple[Limit, ...]:
@@ -44,7 +40,7 @@ def caller_limits() -> tuple[Limit, ...]:
     for which, option in ((resource.RLIMIT_DATA, "-d"), (resource.RLIMIT_AS, "-v")):
         size = resource.getrlimit(which)[0]
         if size != resource.RLIM_INFINITY:
-            found.append(Limit(size, f"{in_units(size)} that the caller has set (ulimit {option})"))
+            found.append((size, f"{in_units(size)} that the caller has set (ulimit {option})"))
     return tuple(found)
 
 

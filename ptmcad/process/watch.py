@@ -225,10 +225,10 @@ class Watch:
 
     def _limits(self) -> "list[Limit]":
         """The limits on the child's memory: its caller's, and its own."""
-        from ptmcad.process.shortage import Limit, caller_limits  # not before it is needed: every start would pay
+        from ptmcad.process.shortage import caller_limits  # not before it is needed: every start would pay
 
         own = self.reports.get(Topic.MEMORY)
-        return [*caller_limits(), *([] if own is None else [Limit(int(own[0]), own[1])])]
+        return [*caller_limits(), *([] if own is None else [(int(own[0]), own[1])])]
 
     def _limit_reached(self) -> str:
         """The lowest limit, in words."""
@@ -242,9 +242,9 @@ class Watch:
         from ptmcad.process.shortage import LOW_LIMIT, caller_limits
 
         loading = self.reports.get(Topic.LOADING, ["the program"])[0]
-        if loading and any(limit.size < LOW_LIMIT for limit in caller_limits()):
+        if loading and any(size < LOW_LIMIT for size, _ in caller_limits()):
             return True
-        return any(2 * self.most_memory >= limit.size for limit in self._limits())
+        return any(2 * self.most_memory >= size for size, _ in self._limits())
 
     def _processor_time_is_over(self) -> bool:
         """Whether the child had the processor time that the caller allows."""

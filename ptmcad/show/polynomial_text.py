@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from functools import partial
 from keyword import iskeyword
@@ -31,23 +30,9 @@ class Style(Enum):
     LATEX = "latex"
 
 
-@dataclass(frozen=True, slots=True)
-class _Notation:
-    """How a language writes powers (a format of base and exponent) and products."""
-
-    power: str = "{}^{}"
-    times: str = "*"
-
-
-_NOTATIONS = {
-    Style.TEXT: _Notation(),
-    Style.SYMPY: _Notation(power="{}**{}"),
-    Style.MAPLE: _Notation(),
-    Style.MATHEMATICA: _Notation(),
-    Style.QEPCAD: _Notation(times=" "),
-    Style.MSOLVE: _Notation(),
-    Style.LATEX: _Notation(power="{}^{{{}}}", times=" "),
-}
+_POWERS = {Style.SYMPY: "{}**{}", Style.LATEX: "{}^{{{}}}"}
+"""How a language writes powers, a format of base and exponent, where it is not as in others."""
+_PRODUCTS = {Style.QEPCAD: " ", Style.LATEX: " "}
 
 _MAX_PYTHON_NUMBER = 4000
 """Digits; Python refuses decimal numbers of more than 4300 digits in a program, but takes hexadecimal ones."""
@@ -124,9 +109,9 @@ def polynomial_lines(
 
 def _terms(polynomial: PlanePolynomial, spelled: tuple[str, ...], style: Style) -> Iterator[str]:
     """Each term with its sign; the first one without when it is positive."""
-    notation = _NOTATIONS[style]
+    power, times = _POWERS.get(style, "{}^{}"), _PRODUCTS.get(style, "*")
     terms = (((i, j), c) for i, j, c in polynomial.terms)
-    return signed_terms(terms, spelled, notation.power, notation.times, partial(_number, style=style))
+    return signed_terms(terms, spelled, power, times, partial(_number, style=style))
 
 
 def _number(natural: int, style: Style) -> str:

@@ -14,31 +14,24 @@ the denominators cleared it is N(t) = 0, N of degree six. An equilibrium at th2 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from typing import Any
 
-T = TypeVar("T")
-
-
-@dataclass(frozen=True, slots=True)
-class Sextic(Generic[T]):
-    """Coefficients of 1, t, t^2, ...: of N, and of V, W and X^2 + Y^2, each times 1 + t^2."""
-
-    coefficients: tuple[T, ...]
-    v: tuple[T, T, T]
-    w: tuple[T, T, T]
-    square: tuple[T, T, T]
+Coefficients = tuple[Any, ...]
+"""Of 1, t, t^2, ..., elements of one ring."""
 
 
-def sextic(p: Mapping[str, Any]) -> Sextic[Any]:
-    """The sextic for the parameters L1, L2, rho, k1, k2, k3, F3, F4, F3x and F4x, elements of one ring."""
+def sextic(p: Mapping[str, Any]) -> tuple[Coefficients, Coefficients, Coefficients, Coefficients]:
+    """The sextic N for the parameters L1, L2, rho, k1, k2, k3, F3, F4, F3x and F4x, elements of one ring.
+
+    Beside it are V, W and X^2 + Y^2, each times 1 + t^2.
+    """
     b1, b2 = (p["k2"] + p["k3"]) * p["rho"] + p["F3x"], (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
     pull, stretch = p["k3"] * p["L1"], p["k3"] * p["L2"]
     v, w = (p["F3"], 2 * b1, -p["F3"]), (-p["F4"], 2 * b2, p["F4"])
     middle, along = b1 * b1 + stretch * stretch + p["F3"] * p["F3"], 2 * b1 * p["k3"] * p["L2"]
     square = (middle - along, 4 * p["k3"] * p["L2"] * p["F3"], middle + along)
     left, right = product((pull * pull, 0 * pull, pull * pull), product(v, v)), product(square, product(w, w))
-    return Sextic(tuple(a - b for a, b in zip(left, right, strict=True)), v, w, square)
+    return tuple(a - b for a, b in zip(left, right, strict=True)), v, w, square
 
 
 def product(left: Sequence[Any], right: Sequence[Any]) -> tuple[Any, ...]:

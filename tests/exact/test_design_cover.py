@@ -112,9 +112,9 @@ def test_the_longest_of_several_intervals() -> None:
 def test_runs_that_are_short_enough_still_count() -> None:
     bounder = Lengths(_two_intervals(), fmpq(1, 10))
     place = (WINDOW, WINDOW)
-    first = bounder.over(place, bounder.whole(), fmpq(1), fmpq(1, 10))
+    _, _, state = bounder.over(place, bounder.whole(), fmpq(1), fmpq(1, 10))
     for enough in (fmpq(3, 10), fmpq(1, 2)):
-        assert bounder.over(place, first.state, fmpq(1), enough).bound == fmpq(3, 8)
+        assert bounder.over(place, state, fmpq(1), enough)[0] == fmpq(3, 8)
 
 
 def test_roots_are_rounded_outwards() -> None:

@@ -148,8 +148,8 @@ def test_slopes_enclose_those_of_a_known_branch() -> None:
     assert found is not None
     for u in (fmpq(7, 8), fmpq(1), fmpq(9, 8)):
         root = float(u) ** 0.5
-        assert found.first.contains(1 / (2 * root)) or abs(found.first - 1 / (2 * root)) < 1e-9
-        assert abs(found.second + 1 / (4 * float(u) * root)) < found.second.rad() * 2 + 1e-9
+        assert found[0].contains(1 / (2 * root)) or abs(found[0] - 1 / (2 * root)) < 1e-9
+        assert abs(found[1] + 1 / (4 * float(u) * root)) < found[1].rad() * 2 + 1e-9
     assert slope_over(parabola.in_v, at, fmpq(1), fmpq(1)) is None  # it would reach the turning point
 
 

@@ -27,7 +27,6 @@ from ptmcad.cli.pictures import picture, write_result
 from ptmcad.errors import ConfigError, PictureError
 from ptmcad.process.memory import MIN_ROOM, Bound, bounded, check_room, loading, private_memory
 from ptmcad.process.output import text_writer
-from ptmcad.process.shortage import Limit
 from ptmcad.process.streams import quiet_stream
 
 pytestmark = linux
@@ -183,7 +182,7 @@ def test_a_library_that_does_not_say_why(monkeypatch: pytest.MonkeyPatch) -> Non
     """LLVM's loader says under a low limit on address space that its file is not found."""
     failure = OSError("Could not find/load shared object file 'libllvmlite.so'")
     for size, expected in ((200 * MIB, MemoryError), (1 << 40, OSError)):
-        monkeypatch.setattr("ptmcad.process.memory.caller_limits", lambda size=size: (Limit(size, "a limit"),))
+        monkeypatch.setattr("ptmcad.process.memory.caller_limits", lambda size=size: ((size, "a limit"),))
         with pytest.raises(expected), loading("a library"):
             raise failure
         with pytest.raises(ModuleNotFoundError), loading("a library"):

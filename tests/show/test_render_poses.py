@@ -145,7 +145,7 @@ def labels_are_clear(found: Poses) -> None:
         seen = sketch(found.model, pose, frame, arrows)
         strokes = [Stroke(a, b, w / 2) for (a, b), w in zip(seen.bars, BAR_WIDTHS, strict=True)]
         strokes += [s for line in seen.springs for s in polyline(line, 0.4)]
-        strokes += [Stroke(a.start, a.end, 2.0) for a in seen.arrows]
+        strokes += [Stroke(start, end, 2.0) for _, start, end in seen.arrows]
         boxes = [placed.box for placed in seen.labels]
         for box in boxes:
             assert not any(crosses(stroke, box) for stroke in strokes)
@@ -153,7 +153,7 @@ def labels_are_clear(found: Poses) -> None:
             assert box[0] >= 0 and box[1] >= 0 and box[2] <= frame.width and box[3] <= frame.height
         assert not any(overlap(a, b) for a, b in combinations(boxes, 2))
         inside = [*seen.nodes.values(), *(p for line in seen.springs for p in line)]
-        inside += [p for a in seen.arrows for p in (a.start, a.end)]
+        inside += [p for _, *ends in seen.arrows for p in ends]
         assert all(0 <= x <= frame.width and 0 <= y <= frame.height for x, y in inside)
 
 

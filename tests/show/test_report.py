@@ -198,19 +198,19 @@ def core(slice: ptmcad.Slice) -> ptmcad.Slice:
 @pytest.mark.parametrize("path", sorted(CONFIGS.glob("*.yaml")), ids=lambda p: p.stem)
 def test_record_and_command_pose_the_slice_again(path: Path, count: ptmcad.Count, tmp_path: Path) -> None:
     slice = replace(load(path), count=count)
-    found = reproduction(slice)
+    posed, command = reproduction(slice)
     if count is ptmcad.Count.ADMISSIBLE and not slice.has_free_lengths:
-        assert found.record is None and found.command is None, "such a slice is refused"
+        assert posed is None and command is None, "such a slice is refused"
         return
-    assert found.record is not None
-    assert found.command is not None
+    assert posed is not None
+    assert command is not None
     record = tmp_path / f"{slice.name}.yaml"
-    record.write_text(found.record, encoding="utf-8")
+    record.write_text(posed, encoding="utf-8")
     again = load(record)
     assert core(again) == core(slice)
     assert (again.name, again.title) == (slice.name, slice.title)
-    assert yaml.safe_load(found.record)["name"] == slice.name  # any reader of YAML, not just ours
-    words = shlex.split(found.command)
+    assert yaml.safe_load(posed)["name"] == slice.name  # any reader of YAML, not just ours
+    words = shlex.split(command)
     assert words[:2] == ["ptmcad", "classify"]
     options: dict[str, list[str]] = {}
     for option, value in zip(words[2::2], words[3::2], strict=True):
@@ -223,11 +223,11 @@ def test_record_and_command_pose_the_slice_again(path: Path, count: ptmcad.Count
 def test_a_record_poses_the_slice_of_another_model_again(path: Path, tmp_path: Path) -> None:
     """With its whole description; no command line says as much."""
     slice = load(path)
-    found = reproduction(slice)
-    assert found.record is not None
-    assert found.command is None
+    posed, command = reproduction(slice)
+    assert posed is not None
+    assert command is None
     record = tmp_path / "again.yaml"
-    record.write_text(found.record, encoding="utf-8")
+    record.write_text(posed, encoding="utf-8")
     assert core(load(record)) == core(slice)
 
 
@@ -256,7 +256,7 @@ def test_the_commands_on_the_page_give_the_same_result(
 @given(title=st.text(st.characters(blacklist_categories=("C", "Zl", "Zp", "Zs")), max_size=40))
 def test_titles_of_any_letters_survive_the_record(title: str) -> None:
     slice = replace(load(CONFIGS / "fig4.yaml"), title=title)
-    record = reproduction(slice).record
+    record = reproduction(slice)[0]
     assert record is not None
     assert yaml.safe_load(record).get("title", "") == title
 
@@ -264,7 +264,7 @@ def test_titles_of_any_letters_survive_the_record(title: str) -> None:
 def test_a_slice_that_no_record_gives_is_said_to_be_so(shipped: Shipped) -> None:
     result = shipped("fig4")
     odd = replace(result, slice=replace(result.slice, model=known_of("another")))
-    assert reproduction(odd.slice).record is None
+    assert reproduction(odd.slice)[0] is None
     assert "No problem record gives this slice" in page(odd)
 
 

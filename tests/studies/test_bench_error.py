@@ -123,7 +123,7 @@ def test_half_plane_of_known_error(n: int, expected: Fraction) -> None:
     centre = (np.arange(n) + 0.5) / n
     picture = np.where(centre[None, :] < centre[:, None], 1, 2).astype(np.int16)
     assert abs(wrong_area(polyline([ZERO, ONE]), picture) - expected) < 1e-12
-    low, high = grid_error(polyline([ZERO, ONE]), np.zeros((n, n), dtype=int), picture).wrong
+    low, high = grid_error(polyline([ZERO, ONE]), np.zeros((n, n), dtype=int), picture)["wrong"]
     assert low <= expected <= high < low + 1e-5
 
 
@@ -167,7 +167,7 @@ def test_centres_are_where_locate_finds_them(name: str, n: int) -> None:
 def test_blank_picture_of_fig3_is_wrong_where_two_are_stable() -> None:
     """The reference's area 7.352277514 of 20; the other counts' regions add up to the rest."""
     found, known = exact("fig3")
-    low, high = grid_error(known["stable"], cells_at_centres(found, 4), np.ones((4, 4), dtype=np.int16)).wrong
+    low, high = grid_error(known["stable"], cells_at_centres(found, 4), np.ones((4, 4), dtype=np.int16))["wrong"]
     assert low <= 7.352277514 / 20 <= high
     assert high - low < 1e-5
     assert len(known["stable"].counts) == 3
@@ -188,11 +188,11 @@ def test_error_of_grids_shrinks_with_their_pixels() -> None:
     for n in (10, 20, 40):
         stable, total = grid("fig3", n)
         errors.append(grid_error(known["index"], cells_at_centres(found, n), shown_count(stable, total, "index")))
-    assert [e.wrong_centres for e in errors] == [0, 0, 0]
-    assert errors[0].wrong[0] > 1.5 * errors[1].wrong[1] > 2.25 * errors[2].wrong[1]
-    assert [e.missed for e in errors] == [1, 1, 1]  # the sliver of (6, 1) near rho = 0 is between the centres
-    assert errors[2].faintest is not None and errors[2].faintest[0] == 0
-    assert errors[2].distance is not None and errors[2].distance[0] > 0.05
+    assert [e["wrong_centres"] for e in errors] == [0, 0, 0]
+    assert errors[0]["wrong"][0] > 1.5 * errors[1]["wrong"][1] > 2.25 * errors[2]["wrong"][1]
+    assert [e["missed"] for e in errors] == [1, 1, 1]  # the sliver of (6, 1) near rho = 0 is between the centres
+    assert errors[2]["faintest"] is not None and errors[2]["faintest"][0] == 0
+    assert errors[2]["distance"] is not None and errors[2]["distance"][0] > 0.05
 
 
 def test_wrong_counts_are_seen() -> None:
@@ -203,10 +203,10 @@ def test_wrong_counts_are_seen() -> None:
     damaged[19, 0] = 5
     cells = cells_at_centres(found, 20)
     before, after = (grid_error(known["stable"], cells, shown) for shown in (stable, damaged))
-    assert abs(after.wrong[0] - before.wrong[0] - 1 / 400) < 1e-6
-    assert (before.wrong_centres, after.wrong_centres) == (0, 1)
+    assert abs(after["wrong"][0] - before["wrong"][0] - 1 / 400) < 1e-6
+    assert (before["wrong_centres"], after["wrong_centres"]) == (0, 1)
     damaged[19, 0] = -1
-    assert grid_error(known["stable"], cells, damaged).undetermined == 1 / 400
+    assert grid_error(known["stable"], cells, damaged)["undetermined"] == 1 / 400
 
 
 @given(st.fractions(0, 1, max_denominator=97).filter(lambda h: 0 < h < 1), st.integers(1, 9), st.integers(1, 9))
@@ -216,7 +216,7 @@ def test_distance_of_two_levels(height: Fraction, n: int, row: int) -> None:
         return
     picture = np.ones((n, n), dtype=np.int16)
     picture[:, row:] = 2
-    found = grid_error(polyline([height, height]), np.zeros((n, n), dtype=int), picture).distance
+    found = grid_error(polyline([height, height]), np.zeros((n, n), dtype=int), picture)["distance"]
     assert found is not None
     apart = float(abs(height - Fraction(row, n)))
     assert found[0] <= apart <= found[1]
@@ -267,14 +267,14 @@ def test_error_of_a_certified_map() -> None:
     for count in COUNTS:
         error = cover_error(known[count], result, count)
         assert error is not None
-        assert abs(error.wrong[0] - result.undetermined) < 1e-6
-        assert error.wrong[1] - error.wrong[0] < 1e-5
+        assert abs(error["wrong"][0] - result.undetermined) < 1e-6
+        assert error["wrong"][1] - error["wrong"][0] < 1e-5
     largest = max(range(len(result.cells)), key=lambda n: result.regions[result.cells[n].region].area[0])
     cells = list(result.cells)
     cells[largest] = replace(cells[largest], stable=7)
     damaged = cover_error(known["stable"], replace(result, cells=tuple(cells)), "stable")
     assert damaged is not None
-    assert damaged.wrong[0] > result.undetermined + Fraction(1, 20)
+    assert damaged["wrong"][0] > result.undetermined + Fraction(1, 20)
 
 
 def test_error_of_a_certified_map_with_slanted_pieces() -> None:
@@ -286,9 +286,9 @@ def test_error_of_a_certified_map_with_slanted_pieces() -> None:
     assert known is not None and known.keys() == {"total"}
     assert result.cover is not None and result.cover.patches
     error = cover_error(known["total"], result, "total")
-    assert error is not None and error.faintest is not None
-    assert error.wrong[0] <= result.undetermined <= error.wrong[1] < result.undetermined + Fraction(1, 10**4)
-    assert error.faintest[0] > 0.99
+    assert error is not None and error["faintest"] is not None
+    assert error["wrong"][0] <= result.undetermined <= error["wrong"][1] < result.undetermined + Fraction(1, 10**4)
+    assert error["faintest"][0] > 0.99
     first = replace(result.cells[0], total=7)
     damaged = cover_error(known["total"], replace(result, cells=(first, *result.cells[1:])), "total")
-    assert damaged is not None and damaged.wrong[0] > 0.1
+    assert damaged is not None and damaged["wrong"][0] > 0.1

@@ -22,64 +22,78 @@ from ptmcad.errors import ConfigError
 from ptmcad.question.config import load
 from ptmcad.show.report.error_curve import read_error_curve
 from ptmcad.studies.bench import measuring
-from ptmcad.studies.bench.compare import BAD, Change, Verdict, compare, comparison_table
-from ptmcad.studies.bench.error import Figures, outward
-from ptmcad.studies.bench.harness import Times
+from ptmcad.studies.bench.error import figures, outward
+from ptmcad.studies.bench.harness import Row
 from ptmcad.studies.bench.methods import RIVALS, Method
-from ptmcad.studies.bench.picture import Labels, draw
+from ptmcad.studies.bench.picture import draw
 from ptmcad.studies.bench.process import Usage
 from ptmcad.studies.bench.report import curve_file, curves, page, sentences, terminal
-from ptmcad.studies.bench.study import Measurement, Study, smallest_grid, study_of, write_study, write_table
+from ptmcad.studies.bench.study import (
+    BAD,
+    compare,
+    comparison_table,
+    measurement,
+    smallest_grid,
+    study_of,
+    write_study,
+    write_table,
+)
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIGS = ROOT / "configs"
 SCHEMA = json.loads((ROOT / "docs" / "bench.schema.json").read_text(encoding="utf-8"))
-NONE = Figures(wrong=(0.0, 0.0), undetermined=0.0, regions=3, missed=0, faintest=(1.0, 1.0), distance=(0.0, 0.0))
+NONE = figures((0.0, 0.0), 0.0, regions=3, missed=0, faintest=(1.0, 1.0), distance=(0.0, 0.0))
 
 
-def times(seconds: float, runs: int = 3, spread: float = 0.02) -> Times:
-    return Times(runs, seconds, seconds * (1 - spread), seconds * (1 + spread))
+def times(seconds: float, runs: int = 3, spread: float = 0.02) -> Row:
+    return {
+        "runs": runs,
+        "median": seconds,
+        "minimum": seconds * (1 - spread),
+        "maximum": seconds * (1 + spread),
+    }
 
 
-def pixels(n: int, seconds: float, wrong: float, missed: int, faint: float) -> Measurement:
-    f = Figures((wrong, wrong * 1.001), 0.0, 0, 3, missed, (faint, faint), (0.5 / n, 0.6 / n))
-    return Measurement("companion", f"N = {n}", times(seconds), times(seconds / 2), 60.0, figures={"index": f})
+def pixels(n: int, seconds: float, wrong: float, missed: int, faint: float) -> Row:
+    f = figures((wrong, wrong * 1.001), 0.0, 0, 3, missed, (faint, faint), (0.5 / n, 0.6 / n))
+    return measurement("companion", f"N = {n}", times(seconds), times(seconds / 2), 60.0, figures={"index": f})
 
 
-STUDY = Study(
-    slice="fig4",
-    heading="Equal loads",
-    machine={"cores": "2"},
-    versions={"python": "3.11"},
-    seed=1,
-    rounds=3,
-    time_limit=60.0,
-    quick=False,
-    verified=True,
-    floor=times(0.2),
-    measurements=(
-        Measurement(
+STUDY: Row = {
+    "format": "ptmcad-bench/1",
+    "slice": "fig4",
+    "heading": "Equal loads",
+    "machine": {"cores": "2"},
+    "versions": {"python": "3.11"},
+    "seed": 1,
+    "rounds": 3,
+    "time_limit": 60.0,
+    "quick": False,
+    "verified": True,
+    "floor": times(0.2),
+    "measurements": (
+        measurement(
             "exact", "area tolerance 1e-2", times(0.3), times(0.2), 35.0, figures={"index": NONE}, area_width=2e-3
         ),
-        Measurement(
+        measurement(
             "exact", "area tolerance 1e-8", times(0.4), times(0.3), 35.0, figures={"index": NONE}, area_width=2e-9
         ),
         pixels(25, 0.2, 0.02, 1, 0.0),
         pixels(400, 1.5, 0.001, 0, 0.4),
         pixels(800, 6.0, 0.0005, 0, 0.992),
-        Measurement("companion", "N = 1600", None, reason="left out: the 60 s for each method were used up"),
-        Measurement(
-            "qepcad", "where 6, where 4", times(3.0), figures={"total": Figures((0.0, 0.0), 0.0)}, note="claimed"
+        measurement("companion", "N = 1600", reason="left out: the 60 s for each method were used up"),
+        measurement(
+            "qepcad", "where 6, where 4", times(3.0), figures={"total": figures((0.0, 0.0), 0.0)}, note="claimed"
         ),
-        Measurement("gcad", "", None, reason="gcad is not installed"),
+        measurement("gcad", "", reason="gcad is not installed"),
     ),
-)
+}
 
 
-def changed(number: int, **values: Any) -> Study:
-    m = list(STUDY.measurements)
-    m[number] = replace(m[number], **values)
-    return replace(STUDY, measurements=tuple(m))
+def changed(number: int, **values: Any) -> Row:
+    m = list(STUDY["measurements"])
+    m[number] = {**m[number], **values}
+    return {**STUDY, "measurements": tuple(m)}
 
 
 def test_written_and_read_again() -> None:
@@ -126,7 +140,7 @@ def test_the_methods_are_those_of_command_and_schema() -> None:
 
 def test_table_has_a_row_for_each_measurement_and_count() -> None:
     rows = list(csv.DictReader(StringIO(write_table(STUDY))))
-    assert len(rows) == len(STUDY.measurements)
+    assert len(rows) == len(STUDY["measurements"])
     assert (rows[3]["setting"], rows[3]["wrong_low"], rows[3]["missed"], rows[3]["runs"]) == (
         "N = 400",
         "0.001",
@@ -151,65 +165,64 @@ def test_smallest_grids() -> None:
     assert "no error after 0.30 s; the 400 x 400 grid has 5.0 times that time" in said
 
 
-def verdicts(found: tuple[Change, ...]) -> dict[tuple[str, str], list[Verdict]]:
-    told: dict[tuple[str, str], list[Verdict]] = {}
+def verdicts(found: tuple[Row, ...]) -> dict[tuple[str, str], list[str]]:
+    told: dict[tuple[str, str], list[str]] = {}
     for c in found:
-        told.setdefault((c.method, c.setting), []).append(c.verdict)
+        told.setdefault((c["method"], c["setting"]), []).append(c["verdict"])
     return told
 
 
 def test_the_same_study_has_not_changed() -> None:
-    assert {c.verdict for c in compare(STUDY, STUDY)} == {Verdict.SAME}
+    assert {c["verdict"] for c in compare(STUDY, STUDY)} == {"same"}
     assert comparison_table(compare(STUDY, STUDY)).endswith("nothing became slower or worse beyond noise")
 
 
 @pytest.mark.parametrize(
     ("new", "expected"),
     [
-        (changed(0, seconds=times(0.6)), Verdict.SLOWER),
-        (changed(0, seconds=times(0.1)), Verdict.FASTER),
-        (changed(0, seconds=times(0.32)), Verdict.SAME),  # within a tenth and the spread
-        (changed(0, seconds=Times(3, 0.6, 0.31, 0.7)), Verdict.SAME),  # one of its runs was as fast
-        (changed(0, seconds=times(0.42, runs=1, spread=0.0)), Verdict.SAME),  # once: half as much again is noise
-        (changed(0, seconds=times(0.6, runs=1, spread=0.0)), Verdict.SLOWER),
-        (changed(0, area_width=3e-3), Verdict.WORSE),
-        (changed(0, area_width=1e-3), Verdict.BETTER),
-        (changed(0, figures={"index": replace(NONE, missed=1)}), Verdict.WORSE),
-        (changed(0, figures={"index": replace(NONE, wrong=(1e-10, 1e-9))}), Verdict.WORSE),
-        (changed(0, figures={"stable": NONE}), Verdict.LOST),
-        (changed(0, seconds=None, reason="timed out"), Verdict.LOST),
-        (replace(STUDY, measurements=STUDY.measurements[1:]), Verdict.LOST),
+        (changed(0, seconds=times(0.6)), "slower"),
+        (changed(0, seconds=times(0.1)), "faster"),
+        (changed(0, seconds=times(0.32)), "same"),  # within a tenth and the spread
+        (changed(0, seconds={**times(0.6), "minimum": 0.31, "maximum": 0.7}), "same"),  # one of its runs was as fast
+        (changed(0, seconds=times(0.42, runs=1, spread=0.0)), "same"),  # once: half as much again is noise
+        (changed(0, seconds=times(0.6, runs=1, spread=0.0)), "slower"),
+        (changed(0, area_width=3e-3), "worse"),
+        (changed(0, area_width=1e-3), "better"),
+        (changed(0, figures={"index": {**NONE, "missed": 1}}), "worse"),
+        (changed(0, figures={"index": {**NONE, "wrong": (1e-10, 1e-9)}}), "worse"),
+        (changed(0, figures={"stable": NONE}), "lost"),
+        (changed(0, seconds=None, reason="timed out"), "lost"),
+        ({**STUDY, "measurements": STUDY["measurements"][1:]}, "lost"),
     ],
-    ids=lambda x: x.value if isinstance(x, Verdict) else "",
+    ids=lambda x: x if isinstance(x, str) else "",
 )
-def test_verdicts(new: Study, expected: Verdict) -> None:
+def test_verdicts(new: Row, expected: str) -> None:
     found = verdicts(compare(STUDY, new))
     assert found.pop(("exact", "area tolerance 1e-2")) == [expected]
-    assert all(v == [Verdict.SAME] for v in found.values())
+    assert all(v == ["same"] for v in found.values())
 
 
 def test_a_slower_machine_is_no_slower_program() -> None:
     """Everything takes three times as long, the reference job too."""
 
-    def slow(t: Times | None) -> Times | None:
-        return t and Times(t.runs, 3 * t.median, 3 * t.minimum, 3 * t.maximum)
+    def slow(m: Row) -> Row:
+        t = m["seconds"]
+        return {**m, "seconds": t and {name: x if name == "runs" else 3 * x for name, x in t.items()}}
 
-    there = replace(
-        STUDY, floor=times(0.6), measurements=tuple(replace(m, seconds=slow(m.seconds)) for m in STUDY.measurements)
-    )
-    assert not BAD & {c.verdict for c in compare(STUDY, there)}
-    there = replace(there, floor=STUDY.floor)
-    assert Verdict.SLOWER in {c.verdict for c in compare(STUDY, there)}
+    there = {**STUDY, "floor": times(0.6), "measurements": tuple(map(slow, STUDY["measurements"]))}
+    assert not {*BAD} & {c["verdict"] for c in compare(STUDY, there)}
+    there = {**there, "floor": STUDY["floor"]}
+    assert "slower" in {c["verdict"] for c in compare(STUDY, there)}
 
 
 def test_what_is_gained() -> None:
     new = changed(5, seconds=times(24.0), reason="")
-    assert verdicts(compare(STUDY, new))["companion", "N = 1600"] == [Verdict.GAINED]
+    assert verdicts(compare(STUDY, new))["companion", "N = 1600"] == ["gained"]
 
 
 def test_studies_of_different_slices_are_not_compared() -> None:
     with pytest.raises(ConfigError, match="differ in slice: fig4 and fig3"):
-        compare(STUDY, replace(STUDY, slice="fig3"))
+        compare(STUDY, {**STUDY, "slice": "fig3"})
 
 
 def test_comparing_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -268,14 +281,15 @@ def test_one_slice_by_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     names = {f"fig2.{s}" for s in ("bench.json", "bench.csv", "bench.svg", "bench.png", "error-time.json")}
     assert {path.name for path in tmp_path.iterdir()} == names | {"error-time.md"}
     study = study_of((tmp_path / "fig2.bench.json").read_text(encoding="utf-8"))
-    assert study.verified is True
-    assert [(m.method, m.setting) for m in study.measurements][:2] == [
+    assert study["verified"] is True
+    assert [(m["method"], m["setting"]) for m in study["measurements"]][:2] == [
         ("exact", "area tolerance 1e-2"), ("exact", "area tolerance 1e-4")
     ]  # fmt: skip
-    for m in study.measurements:
-        assert m.seconds is not None and m.computing is not None and m.figures is not None
+    for m in study["measurements"]:
+        assert None not in (m["seconds"], m["computing"], m["figures"])
         # tan(theta/2) loses theta = pi, and with it nearly everything on the unloaded slice
-        assert m.figures["index"].wrong == (0.0, 0.0) if m.method == "exact" else m.figures["index"].wrong[0] > 0.5
+        wrong = m["figures"]["index"]["wrong"]
+        assert wrong == (0.0, 0.0) if m["method"] == "exact" else wrong[0] > 0.5
     assert terminal(study) in shown
     assert len(read_error_curve(tmp_path / "fig2.error-time.json").series) == 2
     assert "![Error against seconds for fig2](fig2.bench.svg)" in (tmp_path / "error-time.md").read_text(
@@ -299,7 +313,7 @@ def test_everything_but_the_times_is_repeatable(tmp_path: Path) -> None:
 
 
 def test_a_zero_is_drawn_below_the_logarithms() -> None:
-    figure = draw(Labels("fig4", "seconds", "share", sentences(STUDY)), curves(STUDY))
+    figure = draw("fig4", "seconds", "share", curves(STUDY), sentences(STUDY))
     (axes,) = figure.axes
     marks = [line for line in axes.lines if line.get_marker() in ("o", "P", "X", "D")]
     zeros = [y for line in marks if line.get_linestyle() == "None" for y in line.get_ydata() if y == 0]
@@ -327,9 +341,9 @@ def test_page_tells_what_is_left_out_and_what_is_claimed() -> None:
     assert "| companion | N = 1600 | left out: the 60 s for each method were used up | - |" in text
     assert r"\* qepcad: claimed" in text
     assert "passed `ptmcad verify`" in text
-    assert "did NOT pass" in page([replace(STUDY, verified=False)])
+    assert "did NOT pass" in page([{**STUDY, "verified": False}])
     assert "](fig4.bench.svg)" in text
-    assert ".svg" not in page([replace(STUDY, measurements=STUDY.measurements[-1:])])  # nothing to draw
+    assert ".svg" not in page([{**STUDY, "measurements": STUDY["measurements"][-1:]}])  # nothing to draw
 
 
 STOPPING = """
@@ -361,13 +375,13 @@ def test_a_certified_run_that_is_stopped_is_a_point_too(tmp_path: Path, monkeypa
     arguments = ["bench", str(ROOT / "configs" / "free02.yaml"), "--method", "certified", "--rounds", "1"]
     assert run([*arguments, "--time-limit", "600", "--out", str(tmp_path)]) == 0
     study = study_of((tmp_path / "free02.bench.json").read_text(encoding="utf-8"))
-    told = {m.setting.split()[-1]: m for m in study.measurements}
+    told = {m["setting"].split()[-1]: m for m in study["measurements"]}
     for tolerance, seconds in taken.items():
         m = told.pop(tolerance)
-        assert m.seconds is not None and m.seconds.median == seconds
-        share = next(iter((m.figures or {}).values())).undetermined
-        assert (share > float(tolerance)) == ("stopped at the limit" in m.note) == (tolerance == "1e-3")
+        assert m["seconds"]["median"] == seconds
+        share = next(iter(m["figures"].values()))["undetermined"]
+        assert (share > float(tolerance)) == ("stopped at the limit" in m["note"]) == (tolerance == "1e-3")
         assert share < 1
     left_out = told.pop("1e-4")
-    assert left_out.seconds is None and left_out.reason.startswith("left out")
+    assert left_out["seconds"] is None and left_out["reason"].startswith("left out")
     assert not told

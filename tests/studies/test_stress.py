@@ -23,7 +23,8 @@ from ptmcad.studies.stress.campaign import answer, campaign, work_of
 from ptmcad.studies.stress.case import Case, Question, chosen, named_cases, point
 from ptmcad.studies.stress.constructions import FEW, NAMED, Degenerate
 from ptmcad.studies.stress.doubles import double_poses
-from ptmcad.studies.stress.judgement import Verdict, judge
+from ptmcad.studies.stress.judgement import Row, judge
+from ptmcad.studies.stress.judgement import verdict as a_verdict
 from ptmcad.studies.stress.picture import draw_stress, exponent
 from ptmcad.studies.stress.random_cases import KINDS, changed, random_case, stiffened, stretched
 from ptmcad.studies.stress.reference import Degenerate as DegeneratePoint
@@ -48,7 +49,7 @@ def case(name: str) -> Case:
 
 
 @cache
-def judged(name: str) -> Verdict:
+def judged(name: str) -> Row:
     c = case(name)
     return judge(c, answer(c.question, name))
 
@@ -76,7 +77,7 @@ def judged(name: str) -> Verdict:
 )
 def test_ptmcad_is_right(case: Case) -> None:
     verdict = judged(case.name)
-    assert verdict.right, verdict.remarks
+    assert verdict["right"], verdict["remarks"]
 
 
 def test_there_are_enough_cases_and_all_that_was_asked_for() -> None:
@@ -103,15 +104,15 @@ WRONG_IN_DOUBLES = (
 
 def test_double_precision_is_wrong() -> None:
     """What the manual says of it."""
-    assert [name for name in WRONG_IN_DOUBLES if judged(name).double_right] == []
+    assert [name for name in WRONG_IN_DOUBLES if judged(name)["double_right"]] == []
 
 
 @pytest.mark.parametrize("name", ["units-force-1e30", "units-length-1e-9", "lengths-loaded-1e-9", "fold-few-1e-6"])
 def test_double_precision_is_right_where_nothing_cancels(name: str) -> None:
     verdict = judged(name)
-    assert verdict.double_right
-    assert verdict.double_error is not None
-    assert verdict.double_error < 1e-9
+    assert verdict["double_right"]
+    assert verdict["double_error"] is not None
+    assert verdict["double_error"] < 1e-9
 
 
 # ------------------------------------------------------------------------------------------------------------- cost
@@ -236,12 +237,12 @@ def test_a_wrong_answer_is_called_wrong() -> None:
     """The judge itself: counts, status, poses and areas that are not right do not pass."""
     c = case("stiffness-1e4")
     other = ptmcad.solve(**point(k=10, F3=-10, F4=-10).parameters)
-    assert not judge(c, other).right
-    assert "reference" in " ".join(judge(c, ptmcad.solve(**point(k=1001, F3=-10, F4=-10).parameters)).remarks)
+    assert not judge(c, other)["right"]
+    assert "reference" in " ".join(judge(c, ptmcad.solve(**point(k=1001, F3=-10, F4=-10).parameters))["remarks"])
     question = case("window-line-1e-20").question
     low, high = question.axes["rho"]
     halved = Question(question.parameters, {**question.axes, "rho": (low, (low + high) / 2)})
-    assert not judge(case("window-line-1e-20"), answer(halved)).right
+    assert not judge(case("window-line-1e-20"), answer(halved))["right"]
 
 
 # ----------------------------------------------------------------------------------------------------- random cases
@@ -252,7 +253,7 @@ def test_a_wrong_answer_is_called_wrong() -> None:
 def test_random_extreme_cases_are_answered_right(seed: int, number: int) -> None:
     c = random_case(seed, number)
     verdict = judge(c, answer(c.question))
-    assert verdict.right, (c.name, verdict.remarks)
+    assert verdict["right"], (c.name, verdict["remarks"])
 
 
 def test_random_cases_are_the_same_in_every_run_and_of_all_kinds() -> None:
@@ -293,7 +294,7 @@ def test_the_record_holds_every_figure() -> None:
 @pytest.mark.slow
 def test_the_plot_has_a_panel_for_each_family_and_marks_what_is_wrong() -> None:
     cases = [case(n) for n in ("fold-many-1e-6", "fold-many-1e-30", "symmetry-inside-1e-20", "stiffness-1e4")]
-    figure = draw_stress(campaign(cases, seed=1, repeats=1).outcomes)
+    figure = draw_stress(campaign(cases, seed=1, repeats=1)["cases"])
     assert [axes.get_title() for axes in figure.axes] == ["fold", "symmetry", "stiffness"]
     right, wrong, _ = figure.axes[0].lines[:3]
     assert list(right.get_xdata()) == pytest.approx([-6])
@@ -341,8 +342,8 @@ def test_a_time_limit_saves_what_there_is(tmp_path: Path, capsys: pytest.Capture
 def test_a_wrong_answer_gives_exit_status_1(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def wrong(_case: Case, _found: object) -> Verdict:
-        return Verdict("6/2", "4/1", "6/2", ("total 4, but 6 by construction",), True, 0.0, 0.0, 1.0, 112)
+    def wrong(_case: Case, _found: object) -> Row:
+        return a_verdict("6/2", "4/1", "6/2", ("total 4, but 6 by construction",), True, 0.0, 0.0, 1.0, 112)
 
     monkeypatch.setattr(campaign_module, "judge", wrong)
     assert run(["stress", "stiffness-1e4", "--repeats", "1", "--format", "table"]) == 1

@@ -69,7 +69,7 @@ def test_names_in_texts_have_texts(parameters: dict[str, str], alone: set[str]) 
     assert not alone & slice.parameters.keys()
     check_text(claims(slice))
     assert "parameters" in check_domain(claims(slice))
-    record = reproduction(slice).record
+    record = reproduction(slice)[0]
     assert record is not None
     assert all(name in record for name in alone - {"l0"})
 

@@ -11,7 +11,7 @@ as many parts as keep it near itself; where it ends, the energy descends to the 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any
@@ -78,18 +78,13 @@ def motion_of(
     with within_doubles(result.slice):
         walk = _Walk(result, Course.through(result.slice, corners))
         stops = _stops(walk, frames)
-        start = _start(result, stops[0].step.at, choice)
+        start = _start(result, stops[0][1].at, choice)
         steps, falls, end = _walked(walk, stops, start, max(12, frames // 3), progress)
     return Motion(result, corners, str(choice), tuple(steps), tuple(falls), end)
 
 
-@dataclass(frozen=True, slots=True)
-class _Stop:
-    """A step before the pose is known, and all solutions there; None where they are not known."""
-
-    share: Fraction
-    step: Step
-    solutions: Floats | None
+_Stop = tuple[Fraction, Step, Floats | None]
+"""A share of the path, the step before the pose is known, and all solutions there; None where they are not known."""
 
 
 class _Walk(Track):
@@ -125,7 +120,7 @@ def _stops(walk: _Walk, frames: int) -> list[_Stop]:
     follower = Follower(result, places)
     solutions, wanted = filled(result, follower), follower.wanted
     complete(result, lambda _, column: points[column], solutions, wanted.total, lambda: None)
-    stops = []
+    stops: list[_Stop] = []
     for k, (share, point, number) in enumerate(zip(shares, points, cells, strict=True)):
         step = Step(float(share), point, (), None)
         if number == NONE:
@@ -134,7 +129,7 @@ def _stops(walk: _Walk, frames: int) -> list[_Stop]:
         counts, many = result.cells[number], int(wanted.total[0, k])
         known = solutions.at[:, 0, k, :many] if solutions.done[0, k] and many >= 0 else None
         told = replace(step, total=counts.total, stable=counts.stable)
-        stops.append(_Stop(share, _with_others(walk, told, known), known))
+        stops.append((share, _with_others(walk, told, known), known))
     return stops
 
 
@@ -142,11 +137,11 @@ def _open(walk: _Walk, share: Fraction, step: Step) -> _Stop:
     """Where the map tells nothing: by an exact solution at the point."""
     poses = exact_at(walk.result, *step.at)
     if poses.status not in (Status.EXACT, Status.CERTIFIED):
-        return _Stop(share, step, None)
+        return share, step, None
     found = np.array([unknowns_of(p) for p in poses.equilibria]).reshape(-1, len(walk.model.unknowns)).T
     stable = poses.stable if walk.model.tells_stability else None
     told = replace(step, total=len(poses.equilibria), stable=stable)
-    return _Stop(share, _with_others(walk, told, found), found)
+    return share, _with_others(walk, told, found), found
 
 
 def _with_others(walk: _Walk, step: Step, known: Floats | None) -> Step:
@@ -182,18 +177,18 @@ def _walked(
     walk: _Walk, stops: list[_Stop], start: Floats, fall_frames: int, progress: Progress | None
 ) -> tuple[list[Step], list[Fall], str]:
     """All steps; where the pose vanishes those of its fall, as far as it goes."""
-    at, own = start, negatives(walk.state(stops[0].step.at, start[:, None]))
+    at, own = start, negatives(walk.state(stops[0][1].at, start[:, None]))
     steps: list[Step] = [_taken(walk, stops[0], at)]
     falls: list[Fall] = []
     for number, (last, stop) in enumerate(pairwise(stops), 1):
         if progress is not None:
             progress("motion: step", number, len(stops))
-        done = float(last.share)
+        done, until = float(last[0]), float(stop[0])
         while True:
-            at, done = followed(walk, at, done, float(stop.share), own)
-            if done >= float(stop.share):
+            at, done = followed(walk, at, done, until, own)
+            if done >= until:
                 break
-            beyond = min(done + MIN_STEP, float(stop.share))
+            beyond = min(done + MIN_STEP, until)
             before, after = (walk.cell(walk.course.at(Fraction(share))) for share in (done, beyond))
             if before == after != NONE:
                 raise LostError(f"the pose was lost at {100 * done:.6g} % of the path, in the middle of a region")
@@ -228,13 +223,14 @@ def _where(walk: _Walk, share: float) -> str:
 
 def _taken(walk: _Walk, stop: _Stop, at: Floats) -> Step:
     """The step with the pose, which has to be one of the solutions there."""
-    if stop.solutions is not None:
-        gap = stop.solutions - at[:, None]
+    share, step, solutions = stop
+    if solutions is not None:
+        gap = solutions - at[:, None]
         turns = len(walk.model.angles)
         gap[:turns] = np.remainder(gap[:turns] + np.pi, 2 * np.pi) - np.pi
         if not np.abs(gap).max(axis=0).min(initial=np.inf) < SAME * (1 + np.abs(at).max()):
-            raise LostError(f"at {_where(walk, float(stop.share))} the followed pose is none of those that are counted")
-    return _seen(walk, stop.step, at)
+            raise LostError(f"at {_where(walk, float(share))} the followed pose is none of those that are counted")
+    return _seen(walk, step, at)
 
 
 def _seen(walk: _Walk, step: Step, at: Floats) -> Step:

@@ -89,10 +89,10 @@ def cross(
     while True:
         check()
         width, resolution = width / 2**step, resolution / 2 ** (step - 2)
-        low, high = _bracket(end, width, left.sample, right.sample)
-        sides = _sides(curves, (low, high), fibre, resolution)
-        found = _separators(curves, sides, fibre, extra)
-        gaps = _open_gaps(found, len(sides.over_low), len(sides.over_high), fibre)
+        bracket = _bracket(end, width, left.sample, right.sample)
+        sides = [[refine(root, resolution) for _, root in roots_over(curves, u, fibre)] for u in bracket]
+        found = _separators(curves, bracket, sides, fibre, extra)
+        gaps = _open_gaps(found, len(sides[0]), len(sides[1]), fibre)
         # without any separator nothing is proved, even if no branch runs up to the line
         unresolved = [g for g in gaps if not found or _reason(g, curves, end, points) is None]
         if not unresolved:
@@ -118,24 +118,19 @@ def _bracket(end: BaseEnd, width: fmpq, low: fmpq, high: fmpq) -> tuple[fmpq, fm
     return root.low, root.high
 
 
-class _Sides(NamedTuple):
-    """Abscissae on both sides of the critical one, and the branches over each, isolated, from below."""
+def _separators(
+    curves: Sequence[Curve], bracket: Interval, sides: Sequence[Sequence[RealRoot]], fibre: Interval,
+    extra: Sequence[fmpq],
+) -> list[Separator]:  # fmt: skip
+    """The separators among the gaps between the branches and among the extra heights, from below.
 
-    low: fmpq
-    high: fmpq
-    over_low: tuple[RealRoot, ...]
-    over_high: tuple[RealRoot, ...]
-
-
-def _sides(curves: Sequence[Curve], bracket: Interval, fibre: Interval, resolution: fmpq) -> _Sides:
-    over_low, over_high = (tuple(refine(root, resolution) for _, root in roots_over(curves, u, fibre)) for u in bracket)
-    return _Sides(*bracket, over_low, over_high)
-
-
-def _separators(curves: Sequence[Curve], sides: _Sides, fibre: Interval, extra: Sequence[fmpq]) -> list[Separator]:
-    """The separators among the gaps between the branches and among the extra heights, from below."""
-    low, high, over_low, over_high = sides
-    occupied = sorted((r.low, r.high) for r in (*over_low, *over_high))
+    Parameters
+    ----------
+    bracket : abscissae on both sides of the critical one.
+    sides : the branches over each, isolated, from below.
+    """
+    low, high = bracket
+    occupied = sorted((r.low, r.high) for over in sides for r in over)
     heights = list(extra)
     top = fibre[0]
     for start, stop in [*occupied, (fibre[1], fibre[1])]:
@@ -149,7 +144,7 @@ def _separators(curves: Sequence[Curve], sides: _Sides, fibre: Interval, extra: 
             continue
         if any(has_root_between(c.trace(height), low, high) for c in curves):
             continue
-        left, right = (sum(r.high < height for r in over) for over in (over_low, over_high))
+        left, right = (sum(r.high < height for r in over) for over in sides)
         result.append(Separator(left, right, low, high, height))
     return result
 

@@ -85,20 +85,6 @@ class RegionStacks(NamedTuple):
             ]
 
 
-class _Strips(NamedTuple):
-    """What is left to any region around each critical abscissa.
-
-    Attributes
-    ----------
-    share : of a stack's width.
-    own : whether the stack is the strip's own one. Otherwise it is the narrower of the two stacks there: in a vast
-        window some are narrower than others by many orders of magnitude.
-    """
-
-    share: fmpq
-    own: bool
-
-
 class _Frame(NamedTuple):
     """What the areas are without walls: the exact contributions of the window's edges, and the area in the strips.
 
@@ -148,7 +134,7 @@ def region_areas(
     bits += _bits_lost(parts.base) + _bits_lost(parts.fibre)
     broad, narrowest = width * fmpq(1, 2 ** (3 * digits // 2)), min(map(_isolated, parts.stacks))
     more = _MIN_ORDER + max(0, max((len(c.in_v) for c in parts.curves), default=0) - _LONG_FIBRE) // _FIBRE_PER_ORDER
-    strips, finer = _Strips(fmpq(1, 10 ** (digits + 3) * 4), own=True), 20
+    share, own, finer = fmpq(1, 10 ** (digits + 3) * 4), True, 20
     curve_of = by_component(parts.curves)
     axes = {component: curve.reflection and curve.reflection.axis for component, curve in curve_of.items()}
 
@@ -161,7 +147,7 @@ def region_areas(
         effort = Effort(digits + more, width, parts.fibre, broad, narrowest / 2 ** (bits // 2), roots, axes)
         try:
             with ctx.workprec(bits):
-                bounds = _areas(parts, strips, tolerance * 3 / 4, effort, check)
+                bounds = _areas(parts, _spans(parts.stacks, share, own=own), tolerance * 3 / 4, effort, check)
                 return tuple(_with_room(b, tolerance, whole) for b in bounds), bits
         except PrecisionTooLow:
             bits = 3 * bits // 2
@@ -169,10 +155,10 @@ def region_areas(
             # a region is tiny, or the precision is too low for it: the effort grows fast, so this ends soon
             if not obstacle.strips:
                 bits = 3 * bits // 2
-            elif strips.own:
-                strips = _Strips(strips.share, own=False)
+            elif own:
+                own = False
             else:
-                bits, strips, finer = bits + finer, _Strips(strips.share / 2**finer, own=False), 2 * finer
+                bits, share, finer = bits + finer, share / 2**finer, 2 * finer
 
 
 def _bits_lost(interval: Interval) -> int:
@@ -192,10 +178,9 @@ def _with_room(bounds: tuple[Fraction, Fraction], tolerance: Fraction, whole: Fr
 
 
 def _areas(
-    parts: RegionStacks, strips: _Strips, tolerance: Fraction, effort: Effort, check: Callable[[], None]
+    parts: RegionStacks, spans: Sequence[Interval], tolerance: Fraction, effort: Effort, check: Callable[[], None]
 ) -> Bounds:
     """One attempt, at the context's precision."""
-    spans = _spans(parts.stacks, strips)
     lost = sum((b[0] - a[1] for a, b in pairwise(spans)), fmpq(0)) * parts.height
     borders = list(parts.borders(spans))
     rough, sizes = _rough(spans, parts, borders, effort)
@@ -225,14 +210,21 @@ def _isolated(stack: StackData) -> fmpq:
     return high - low
 
 
-def _spans(stacks: Sequence[StackData], strips: _Strips) -> list[Interval]:
-    """The stacks' base intervals without the strips at their ends."""
+def _spans(stacks: Sequence[StackData], share: fmpq, *, own: bool) -> list[Interval]:
+    """The stacks' base intervals without the strips at their ends, which are left to any region.
+
+    Parameters
+    ----------
+    share : of a stack's width, for a strip.
+    own : whether the stack is the strip's own one. Otherwise it is the narrower of the two stacks there: in a vast
+        window some are narrower than others by many orders of magnitude.
+    """
     widths = [_isolated(stack) for stack in stacks]
     left = right = widths
-    if not strips.own:
+    if not own:
         narrower = [min(a, b) for a, b in pairwise(widths)]
         left, right = [widths[0], *narrower], [*narrower, widths[-1]]
-    return [_span(s, a * strips.share, b * strips.share) for s, a, b in zip(stacks, left, right, strict=True)]
+    return [_span(s, a * share, b * share) for s, a, b in zip(stacks, left, right, strict=True)]
 
 
 def _span(stack: StackData, left_strip: fmpq, right_strip: fmpq) -> Interval:

@@ -66,19 +66,14 @@ def chains(
         number = Counter(w.component for w in stack.walls)
         walls = []
         for b in branches:
-            left, right = (_End(*e, _goes_on(b, e, number[b.curve.component])) for e in (ends[k], ends[k + 1]))
+            left, right = ((*e, _goes_on(b, e, number[b.curve.component])) for e in (ends[k], ends[k + 1]))
             walls.append(_chain(b, left, right, tolerance, check))
         found.append(tuple(walls))
     return tuple(found)
 
 
-@dataclass(frozen=True, slots=True)
-class _End:
-    """An end of a stack, between two shares of the base; ``regular`` where the wall runs on into it."""
-
-    low: Fraction
-    high: Fraction
-    regular: bool
+_End = tuple[Fraction, Fraction, bool]
+"""An end of a stack, between two shares of the base; and whether the wall runs on into it, as where it is regular."""
 
 
 def _goes_on(wall: Branch, end: Span, number: int) -> bool:
@@ -125,23 +120,24 @@ def _enclosed(value: CriticalValue, before: fmpq, after: fmpq) -> RealRoot:
 
 
 def _chain(wall: Branch, left: _End, right: _End, tolerance: Fraction, check: Callable[[], None]) -> Chain:
-    width = right.low - left.high
+    width = right[0] - left[1]
     start, first = _level(wall, left, width, tolerance)
     end, last = _level(wall, right, -width, tolerance)
     parts = chords(wall, (start, end), tolerance, _NARROWEST * width, check, (tolerance, Fraction(1)))
     points = [(start, parts[0].at_left), *((c.right, c.at_right) for c in parts)]
-    if not left.regular:
-        points.insert(0, ((left.low + left.high) / 2, parts[0].at_left))
-    if not right.regular:
-        points.append(((right.low + right.high) / 2, parts[-1].at_right))
+    if not left[2]:
+        points.insert(0, ((left[0] + left[1]) / 2, parts[0].at_left))
+    if not right[2]:
+        points.append(((right[0] + right[1]) / 2, parts[-1].at_right))
     return Chain(tuple(points), max(first, last, *(c.distance for c in parts)))
 
 
 def _level(wall: Branch, end: _End, width: Fraction, tolerance: Fraction) -> tuple[Fraction, Fraction]:
     """Where the level piece at an end of a wall stops, and how far the wall is from it at most."""
-    if end.regular:
-        return end.low, Fraction(0)
-    away, far = (end.high, end.low) if width > 0 else (end.low, end.high)
+    low, high, regular = end
+    if regular:
+        return low, Fraction(0)
+    away, far = (high, low) if width > 0 else (low, high)
     share, best = _FIRST, (away + width * _FIRST, UNPROVED)
     for _ in range(_QUARTERS):
         at = away + width * share

@@ -131,7 +131,7 @@ def _distance(wall: Branch, panel: Span) -> Fraction | None:
     slope = slope_over(wall.curve.in_v, wall.at(u), u, radius)
     if slope is None:
         return None
-    distance = exact((abs(slope.second) * arb(radius * radius / 2 / (wall.fibre[1] - wall.fibre[0]))).upper())
+    distance = exact((abs(slope[1]) * arb(radius * radius / 2 / (wall.fibre[1] - wall.fibre[0]))).upper())
     return -((-distance * _GRID_STEPS).__floor__()) * Fraction(1, _GRID_STEPS)
 
 

@@ -68,7 +68,7 @@ class Areas(NamedTuple):
             waiting = cut
         strips = sorted((*done, *waiting))
         most, least = (sum((getattr(s, end) for s in strips), fmpq(0)) for end in ("most", "least"))
-        return Bounded(most, least, tuple(strips))
+        return most, least, tuple(strips)
 
     def _strip(self, base: Interval, runs: Sequence[Run], designs: Interval, share: fmpq) -> Strip:
         space, width = self.space, base[1] - base[0]

@@ -20,19 +20,9 @@ Place = tuple[Interval, ...]
 Point = tuple[fmpq, ...]
 
 
-class Bounded(NamedTuple):
-    """What is known over a box.
-
-    Attributes
-    ----------
-    bound : of every design's value, from above.
-    certain : a lower bound of every design's value.
-    state : what a box inside of it starts from.
-    """
-
-    bound: fmpq
-    certain: fmpq
-    state: Any
+Bounded = tuple[fmpq, fmpq, Any]
+"""What is known over a box: a bound of every design's value from above, one from below, and what a box inside of it
+starts from."""
 
 
 class Bounder(Protocol):
@@ -99,8 +89,8 @@ def search(
     check : called with the number of boxes, the bound and the best value; whether to go on.
     """
     best = improved(None)
-    first = bounder.over(whole, bounder.whole(), fmpq(1), _enough(best, wanted))
-    heap = [(-first.bound, 0, whole, first.state)]
+    bound, _, state = bounder.over(whole, bounder.whole(), fmpq(1), _enough(best, wanted))
+    heap = [(-bound, 0, whole, state)]
     settled: list[tuple[Place, fmpq]] = []
     boxes = 1
     while heap and -heap[0][0] > _enough(best, wanted) and boxes < wanted.most and check(boxes, -heap[0][0], best):
@@ -109,12 +99,12 @@ def search(
             if not feasible(half):
                 continue
             boxes += 1
-            found = bounder.over(half, state, _share(half, whole), _enough(best, wanted))
-            bound = min(found.bound, -negative)
-            if bound > _enough(best, wanted) and bound + found.certain > 2 * best:
+            above, certainly, within = bounder.over(half, state, _share(half, whole), _enough(best, wanted))
+            bound = min(above, -negative)
+            if bound > _enough(best, wanted) and bound + certainly > 2 * best:
                 best = improved(tuple((low + high) / 2 for low, high in half))
             if bound > _enough(best, wanted):
-                heappush(heap, (-bound, boxes, half, found.state))
+                heappush(heap, (-bound, boxes, half, within))
             else:
                 settled.append((half, bound))
     settled += [(place, -negative) for negative, _, place, _ in heap]
@@ -157,7 +147,7 @@ class Lengths(NamedTuple):
         box = (place[0], place[1] if len(place) > 1 else _ANY)
         runs = refined(space, box, [run for run in state if run not in short], resolution)
         bound = max(longest(space, runs), longest(space, short))
-        return Bounded(bound, certain(space, runs), (*runs, *short))
+        return bound, certain(space, runs), (*runs, *short)
 
 
 _FINENESS = 16

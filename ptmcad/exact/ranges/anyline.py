@@ -56,14 +56,9 @@ _SAMPLES = 12
 """Tried in a gap until one has as many solutions, with multiplicity, as points of the line have in general."""
 
 
-class LineRanges(NamedTuple):
-    """The ranges of a count on a line: those that are certain, and all that are possible."""
-
-    certain: tuple[Span, ...]
-    possible: tuple[Span, ...]
-
-
-NO_RANGES = LineRanges((), ())
+LineRanges = tuple[tuple[Span, ...], tuple[Span, ...]]
+"""The ranges of a count on a line: those that are certain, and all that are possible."""
+NO_RANGES: LineRanges = ((), ())
 
 
 def ranges_on(slice: Slice, along: str, value: End, working: int) -> LineRanges:
@@ -79,7 +74,7 @@ def ranges_on(slice: Slice, along: str, value: End, working: int) -> LineRanges:
     if isinstance(value, Fraction):
         try:
             found = intervals(slice, along, {slice.axis_names[1 - number]: value}, working).operation
-            return LineRanges(found, found)
+            return found, found
         except (DegenerateSliceError, InfiniteSolutionsError):
             on_line = line_of(slice, along, {slice.axis_names[1 - number]: value}).parameters
             if not all(on_line[name].numerator for name in system_from(slice.model).positive):
@@ -95,21 +90,19 @@ def ranges_on(slice: Slice, along: str, value: End, working: int) -> LineRanges:
     given = on_slice(system, {ALONG: (PLANE.gen(0), ONE)})
     finite = _finite(given)
     if finite is None:  # of one unknown infinitely many are all, on a part that conditions leave: a count of 0 or none
-        return LineRanges((), whole if known.dimension > 1 or not working else ())
+        return (), whole if known.dimension > 1 or not working else ()
     equations, algebra = finite
     if not algebra.dimension:
-        return LineRanges(whole, whole) if not working else NO_RANGES
+        return (whole, whole) if not working else NO_RANGES
     if algebra.dimension > MAX_DIMENSION:
-        return LineRanges((), whole)
+        return (), whole
     numbers = _critical(equations, algebra, axis)
     flat = known.has_index or mechanism_in(slice.model) is not None
     counting = _Counting(system, algebra.dimension, equations is not given, minimal, working, flat)
     ends: list[End] = [axis.low, *numbers, axis.high]
     lows, highs = [axis.low, *(n.high for n in numbers)], [*(n.low for n in numbers), axis.high]
     here = [counting.between(*map(from_fraction, gap)) for gap in zip(lows, highs, strict=True)]
-    return LineRanges(
-        tuple(_spans(ends, [h is True for h in here])), tuple(_spans(ends, [h is not False for h in here]))
-    )
+    return tuple(_spans(ends, [h is True for h in here])), tuple(_spans(ends, [h is not False for h in here]))
 
 
 def _finite(equations: SliceSystem) -> tuple[SliceSystem, QuotientAlgebra] | None:

@@ -8,7 +8,6 @@ from the limits. None means that this was not proved.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import NamedTuple
 
 from flint import fmpq
 
@@ -129,7 +128,7 @@ def chord_length(strip: Strip, end: fmpq, direction: int, limits: tuple[End, End
             third = (rises[0] - rises[1]) / 3
             slope = simplest_between(*sorted((rises[1] + third, rises[0] - third)))
             if all(
-                _keeps_to(side, branch, strip.fibre, _Chord(end, limit, slope, run))
+                _keeps_to(side, branch, strip.fibre, (end, limit), slope, run)
                 for side, branch, limit in zip((1, -1), branches, limits, strict=True)
             ):
                 return length
@@ -137,23 +136,18 @@ def chord_length(strip: Strip, end: fmpq, direction: int, limits: tuple[End, End
     return None
 
 
-class _Chord(NamedTuple):
-    """From a limit at the end of a strip as far as ``run``, which is negative towards the left."""
+def _keeps_to(side: int, branch: Branch, fibre: Interval, start: tuple[fmpq, End], slope: fmpq, run: fmpq) -> bool:
+    """Whether a branch is proved to stay above (side 1) or below (side -1) a chord.
 
-    end: fmpq
-    limit: End
-    slope: fmpq
-    run: fmpq
-
-
-def _keeps_to(side: int, branch: Branch, fibre: Interval, chord: _Chord) -> bool:
-    """Whether a branch is proved to stay above (side 1) or below (side -1) the chord from its limit."""
-    low, high = (end + chord.slope * chord.run for end in ends_of(chord.limit))
-    tip = at_abscissa(branch, chord.end + chord.run, fibre, abs(chord.run) / 2**60)
+    It starts at a branch's limit at the end of a strip, and goes as far as ``run``, which is negative towards the left.
+    """
+    end, limit = start
+    low, high = (value + slope * run for value in ends_of(limit))
+    tip = at_abscissa(branch, end + run, fibre, abs(run) / 2**60)
     if not (tip.low > high if side > 0 else tip.high < low):
         return False
     if branch.curve is None:
         return True  # the edge is level and, as the tip shows, the chord leaves it to the right side
-    if isinstance(chord.limit, Fraction):
+    if isinstance(limit, Fraction):
         return False
-    return side_of_chord(branch.curve.in_v, chord.end, root_of(chord.limit), chord.slope, chord.run)
+    return side_of_chord(branch.curve.in_v, end, root_of(limit), slope, run)

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
@@ -90,41 +89,40 @@ def enclose(family: Family, low: Fraction, high: Fraction, guess: Vector) -> Tub
     along the branch is known far better, so that steps are in proportion to d.
     """
     with ctx.workprec(BITS):
-        at = _Range(family.at((low + high) / 2, (low + high) / 2), family.at(low, high), (high - low) / 2)
-        center = polish(at.middle, guess)
-        inverse = inverse_of(at.middle.jacobian(center))
+        middle = family.at((low + high) / 2, (low + high) / 2)
+        over = (middle, family.at(low, high), (high - low) / 2)
+        center = polish(middle, guess)
+        inverse = inverse_of(middle.jacobian(center))
         if inverse is None:
             return None
-        velocity = tuple((-fall).mid() for fall in times(inverse, at.middle.slope(center)))
+        velocity = tuple((-fall).mid() for fall in times(inverse, middle.slope(center)))
         for centered in (False, True) if low < high else (False,):
-            found = _krawczyk(family.angles, at, center, inverse, velocity, centered)
+            found = _krawczyk(family.angles, over, center, inverse, velocity, centered)
             if found is not None:
                 return Tube(low, high, center, velocity, *found)
         return None
 
 
-class _Range(NamedTuple):
-    """The equations at the middle of a range of the parameter and in the whole of it, and half its length."""
-
-    middle: Instance
-    along: Instance
-    half: Fraction
-
-
 def _krawczyk(
-    angles: int, at: _Range, center: Vector, inverse: Matrix, velocity: Vector, centered: bool
-) -> tuple[Vector, Vector] | None:
-    """Boxes around a moving center: one that holds a single solution at each value, and one in which it lies."""
-    unit = arb(0, 1)
-    ahead = ball_of(at.half) * unit
+    angles: int, over: tuple[Instance, Instance, Fraction], center: Vector, inverse: Matrix, velocity: Vector,
+    centered: bool,
+) -> tuple[Vector, Vector] | None:  # fmt: skip
+    """Boxes around a moving center: one that holds a single solution at each value, and one in which it lies.
+
+    Parameters
+    ----------
+    over : the equations at the middle of a range of the parameter and in the whole of it, and half its length.
+    """
+    (middle, along, half), unit = over, arb(0, 1)
+    ahead = ball_of(half) * unit
     swept = plus(center, scaled(velocity, ahead))
-    start = times(inverse, at.middle.equations(center))
+    start = times(inverse, middle.equations(center))
     if centered:
-        here = plus(at.middle.slope(center), times(at.middle.jacobian(center), velocity))
-        drift = plus(times(inverse, here), scaled(times(inverse, at.along.bend(swept, velocity)), ahead))
-        known = product(inverse, at.middle.jacobian(center))
+        here = plus(middle.slope(center), times(middle.jacobian(center), velocity))
+        drift = plus(times(inverse, here), scaled(times(inverse, along.bend(swept, velocity)), ahead))
+        known = product(inverse, middle.jacobian(center))
     else:
-        drift = plus(times(inverse, at.along.slope(swept)), times(product(inverse, at.along.jacobian(swept)), velocity))
+        drift = plus(times(inverse, along.slope(swept)), times(product(inverse, along.jacobian(swept)), velocity))
     move = plus(start, scaled(drift, ahead))
     least = _least(center, angles)
     reach = [2 * abs(m).upper() + e for m, e in zip(move, least, strict=True)]
@@ -132,9 +130,9 @@ def _krawczyk(
         spread = tuple(r * unit for r in reach)
         whole = plus(swept, spread)
         if centered:
-            slopes = _changed(known, inverse, at.along.jacobian_slopes(whole), velocity, ahead, spread)
+            slopes = _changed(known, inverse, along.jacobian_slopes(whole), velocity, ahead, spread)
         else:
-            slopes = product(inverse, at.along.jacobian(whole))
+            slopes = product(inverse, along.jacobian(whole))
         image = plus(tuple(-m for m in move), times(from_identity(slopes), spread))
         if all(abs(k) < r for k, r in zip(image, reach, strict=True)):
             return spread, image

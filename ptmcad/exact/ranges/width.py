@@ -128,7 +128,7 @@ class SpecialLine(NamedTuple):
     @property
     def most(self) -> Fraction:
         """An upper bound of the widths on it."""
-        return max((span.width.high for span in self.ranges.possible), default=Fraction(0))
+        return max((span.width.high for span in self.ranges[1]), default=Fraction(0))
 
 
 def lines_of(slice: Slice, along: str, found: Strips) -> list[SpecialLine]:
@@ -197,9 +197,10 @@ class _Search:
         ranges = self.lines.get(_value(end))
         if ranges is None:
             return True
-        if any((ends is not None and _within(ends, span)) or _width(span)[0] >= width[1] for span in ranges.certain):
+        certain, possible = ranges
+        if any((ends is not None and _within(ends, span)) or _width(span)[0] >= width[1] for span in certain):
             return True
-        return False if all(_width(span)[1] < width[0] for span in ranges.possible) else None
+        return False if all(_width(span)[1] < width[0] for span in possible) else None
 
     # ------------------------------------------------------------------------------------------------ lower bounds
 
@@ -406,7 +407,7 @@ def width_slopes(strip: Strip, low: fmpq, high: fmpq) -> tuple[arb, arb] | None:
         slope = slope_over(branch.curve.in_v, at, middle, radius)
         if slope is None:
             return None
-        total = (total[0] + sign * slope.first, total[1] + sign * slope.second)
+        total = (total[0] + sign * slope[0], total[1] + sign * slope[1])
     return total
 
 

@@ -64,8 +64,8 @@ def draw_sketch(axes: Any, seen: Sketch, style: Style, prefix: str) -> None:
             _line(axes, wound, style.spring, 0.95, f"{prefix}torsion-{number + 1}", 5)
     for name, (x, y) in seen.nodes.items():
         axes.add_artist(_pin(x, y, style.base, f"{prefix}node-{name}"))
-    for arrow in seen.arrows:
-        axes.add_artist(_arrow(arrow.start, arrow.end, style.load, f"{prefix}load-{arrow.name}"))
+    for name, start, end in seen.arrows:
+        axes.add_artist(_arrow(start, end, style.load, f"{prefix}load-{name}"))
     for placed in seen.labels:
         if placed.leader is not None:
             _line(axes, (placed.label.at, placed.leader), style.text, 0.4, "", 8)

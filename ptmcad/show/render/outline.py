@@ -168,7 +168,7 @@ def _outline(of: Same[RegionMap], view: View, tolerance: float) -> Outline:
     result = of.it
     base = result.base
     curves = by_component(curves_of(result.components, base))
-    roots = tuple(_Abscissa(result, k) for k in range(len(result.critical_values)))
+    roots = tuple(_abscissa(result, k) for k in range(len(result.critical_values)))
     low, high = view.along(base)
     stacks = []
     for number, stack in enumerate(result.stacks):
@@ -176,39 +176,36 @@ def _outline(of: Same[RegionMap], view: View, tolerance: float) -> Outline:
         if ends[0] < high and ends[1] > low:
             stacks.append(_Tracer(result, view, curves, (number, stack), tolerance).trace(ends))
     lines = []
-    for k, abscissa in enumerate(roots):
+    for k, root in enumerate(roots):
         component = _vertical_component(result, k)
-        at = (abscissa.middle - low) / (high - low)
+        at = ((root[0] + root[1]) / 2 - low) / (high - low)
         if component is not None and 0 <= at <= 1:
             lines.append((float(at), k, component))
     return Outline(result, view, base == 1, tuple(stacks), tuple(lines))
 
 
-class _Abscissa:
+def _abscissa(result: RegionMap, number: int) -> Interval:
     """A critical abscissa: rational bounds of it that are short against the neighbouring stacks."""
-
-    def __init__(self, result: RegionMap, number: int) -> None:
-        values = result.critical_values
-        value = values[number]
-        axis = result.slice.axes[result.base]
-        before = values[number - 1].high if number else axis.low
-        after = values[number + 1].low if number + 1 < len(values) else axis.high
-        self.left, self.right = value.low, value.high
-        if value.low != value.high:
-            room = max(min(value.low - before, after - value.high), value.high - value.low)
-            plane = from_plane(PlanePolynomial.of((i, 0, c) for i, c in enumerate(value.polynomial)))
-            polynomial = coefficients_in(plane, 1)[0]
-            root = RealRoot(polynomial, from_fraction(value.low), from_fraction(value.high))
-            short = refine(root, from_fraction(room * _LIMIT))
-            self.left, self.right = to_fraction(short.low), to_fraction(short.high)
-        self.middle = (self.left + self.right) / 2
+    values = result.critical_values
+    value = values[number]
+    axis = result.slice.axes[result.base]
+    before = values[number - 1].high if number else axis.low
+    after = values[number + 1].low if number + 1 < len(values) else axis.high
+    if value.low == value.high:
+        return value.low, value.high
+    room = max(min(value.low - before, after - value.high), value.high - value.low)
+    plane = from_plane(PlanePolynomial.of((i, 0, c) for i, c in enumerate(value.polynomial)))
+    polynomial = coefficients_in(plane, 1)[0]
+    root = RealRoot(polynomial, from_fraction(value.low), from_fraction(value.high))
+    short = refine(root, from_fraction(room * _LIMIT))
+    return to_fraction(short.low), to_fraction(short.high)
 
 
-def _ends(result: RegionMap, stack: Stack, critical: tuple[_Abscissa, ...]) -> Interval:
+def _ends(result: RegionMap, stack: Stack, critical: tuple[Interval, ...]) -> Interval:
     """Rational ends of a stack, just inside of it where an end is irrational."""
     axis = result.slice.axes[result.base]
-    low = axis.low if stack.left is None else critical[stack.left].right
-    high = axis.high if stack.right is None else critical[stack.right].left
+    low = axis.low if stack.left is None else critical[stack.left][1]
+    high = axis.high if stack.right is None else critical[stack.right][0]
     return low, high
 
 

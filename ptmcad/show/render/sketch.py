@@ -65,13 +65,8 @@ class Frame:
         }
 
 
-@dataclass(frozen=True, slots=True)
-class Arrow:
-    """A load's component at a node, by its name, such as F3x."""
-
-    name: str
-    start: Position
-    end: Position
+Arrow = tuple[str, Position, Position]
+"""A load's component at a node: its name, such as F3x, its start and its end."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,7 +177,7 @@ def sketched(
     placed_arrows = tuple(_arrows(mechanism.loads, nodes, arrows))
     rails = tuple(_rails(mechanism, nodes))
     strokes = [*drawn, *(Stroke(a, b, 1.0) for a, b in rails)]
-    strokes += [Stroke(arrow.start, arrow.end, 3.0) for arrow in placed_arrows]
+    strokes += [Stroke(start, end, 3.0) for _, start, end in placed_arrows]
     placed = place(
         (labels or _labels)(nodes), strokes, _symbols(mechanism, nodes), (2.0, 2.0, sides[0] - 2.0, sides[1] - 2.0)
     )
@@ -258,10 +253,10 @@ def _arrows(loads: Sequence[Load], nodes: Mapping[str, Position], lengths: Mappi
         horizontal, vertical = load.names
         if horizontal in lengths:
             sign = 1 if lengths[horizontal] > 0 else -1
-            yield Arrow(horizontal, (x + sign * PIN, y + side), (x + sign * PIN + lengths[horizontal], y + side))
+            yield horizontal, (x + sign * PIN, y + side), (x + sign * PIN + lengths[horizontal], y + side)
         if vertical in lengths:
             sign = 1 if lengths[vertical] > 0 else -1
-            yield Arrow(vertical, (x + side, y + sign * PIN), (x + side, y + sign * PIN + lengths[vertical]))
+            yield vertical, (x + side, y + sign * PIN), (x + side, y + sign * PIN + lengths[vertical])
 
 
 def own_labels(nodes: Mapping[str, Position], offsets: Mapping[str, Position]) -> Iterator[Label]:

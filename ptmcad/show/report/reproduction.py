@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Kind, built_in, mechanism_of
@@ -20,22 +20,14 @@ from ptmcad.text.numerals import text_of
 from ptmcad.text.yamltree import read_text
 
 
-@dataclass(frozen=True, slots=True)
-class Reproduction:
+def reproduction(slice: Slice) -> tuple[str | None, str | None]:
     """Ways to the same slice: a record in YAML, and a command line that needs none (it cannot set the title)."""
-
-    record: str | None
-    command: str | None
-
-
-def reproduction(slice: Slice) -> Reproduction:
-    """How the question of a slice is put again."""
     # what the user wrote, if that gives the same functions; else the functions themselves
     for values in (_given(slice, slice.text), _given(slice, {})):
         record = _yaml(_mapping(slice, values))
         if _same(slice, record):
-            return Reproduction(record, _command(slice, values))
-    return Reproduction(None, None)
+            return record, _command(slice, values)
+    return None, None
 
 
 def _given(slice: Slice, written: Mapping[str, str]) -> dict[str, str]:

@@ -241,17 +241,17 @@ def again(result: RegionMap) -> str:
 
 def _again(result: RegionMap) -> Iterator[str]:
     name = result.slice.name
-    found = reproduction(result.slice)
-    if found.record is None:
+    record, command = reproduction(result.slice)
+    if record is None:
         yield "<p>No problem record gives this slice: the result was not made by ptmcad classify, or was changed.</p>"
     else:
         yield f"<p>Save this problem record as <code>{escape(name)}.yaml</code>:</p>"
-        yield copied(found.record, "the record")
+        yield copied(record, "the record")
         yield "<p>and run</p>"
         yield copied(f"ptmcad classify {name}.yaml", "the command")
-    if found.command is not None:
+    if command is not None:
         yield "<p>Without a record, the same slice under another name:</p>"
-        yield copied(found.command, "the whole command")
+        yield copied(command, "the whole command")
     if result.cover is None:
         yield (
             "<p>Two runs give the same result, times apart. Only the bounds of areas depend on a further option, "

@@ -12,8 +12,8 @@ distance of its chords, and that is all that is not known.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 
@@ -24,6 +24,8 @@ from ptmcad.studies.bench.truth import UNKNOWN, Counts, Floats, Truth, shown_cou
 from ptmcad.text.numerals import decimal
 
 Bounds = tuple[float, float]
+Figures = dict[str, Any]
+"""As of `figures`, by their names."""
 DIGITS = 6
 DENSITY = 8
 """Points on the side of a pixel, and on the whole window's side for a certified map."""
@@ -32,11 +34,18 @@ NARROW = 2**15
 """Slanted pieces of a cover are in rectangles that are narrower than this part of the window."""
 
 
-@dataclass(frozen=True, slots=True)
-class Figures:
+def figures(
+    wrong: Bounds,
+    undetermined: float,
+    wrong_centres: int | None = None,
+    regions: int | None = None,
+    missed: int | None = None,
+    faintest: Bounds | None = None,
+    distance: Bounds | None = None,
+) -> Figures:
     """How far a drawn map is from the exact one, for one count; None where there is no such figure.
 
-    Attributes
+    Parameters
     ----------
     wrong : bounds of the share of the window's area that shows a wrong count or none.
     undetermined : share that shows none.
@@ -46,20 +55,16 @@ class Figures:
     faintest : bounds of the smallest share of a region's own area that shows its count.
     distance : bounds of the Hausdorff distance between the drawn boundary and the true one.
     """
-
-    wrong: Bounds
-    undetermined: float
-    wrong_centres: int | None = None
-    regions: int | None = None
-    missed: int | None = None
-    faintest: Bounds | None = None
-    distance: Bounds | None = None
+    return {
+        "wrong": wrong, "undetermined": undetermined, "wrong_centres": wrong_centres, "regions": regions,
+        "missed": missed, "faintest": faintest, "distance": distance,
+    }  # fmt: skip
 
 
 def exact_error(truth: Truth) -> Figures:
     """Of an exact map: nothing is wrong, and its boundary is the true curves themselves."""
     zero = (0.0, 0.0)
-    return Figures(zero, 0.0, None, len(truth.counts), 0, (1.0, 1.0), zero)
+    return figures(zero, 0.0, None, len(truth.counts), 0, (1.0, 1.0), zero)
 
 
 def grid_error(truth: Truth, cells: np.ndarray, drawn: Counts) -> Figures:
@@ -90,7 +95,7 @@ def grid_error(truth: Truth, cells: np.ndarray, drawn: Counts) -> Figures:
     seen = np.unique(region[right])
     undetermined = float((drawn < 0).mean())
     wrong, by_region = _wrong(truth, pieces, shown, undetermined)
-    return Figures(
+    return figures(
         wrong,
         undetermined,
         int((region >= 0).sum() - right.sum()),
@@ -130,7 +135,7 @@ def cover_error(truth: Truth, result: RegionMap, count: str) -> Figures | None:
     loose = 1 - float(_areas(pieces).sum()) - undetermined
     base = truth.result.base
     wrong, by_region = _wrong(truth, _turned(pieces, base), shown, undetermined, max(loose, 0.0))
-    return Figures(
+    return figures(
         wrong,
         _up(result.undetermined),
         None,

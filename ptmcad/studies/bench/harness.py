@@ -30,20 +30,10 @@ PTMCAD = (sys.executable, "-m", "ptmcad")
 Row = dict[str, Any]
 
 
-@dataclass(frozen=True, slots=True)
-class Times:
-    """Seconds of repeated runs."""
-
-    runs: int
-    median: float
-    minimum: float
-    maximum: float
-
-
-def times(seconds: Sequence[float]) -> Times:
-    """Median and spread, rounded to 0.1 ms."""
-    spread = (statistics.median(seconds), min(seconds), max(seconds))
-    return Times(len(seconds), *(round(x, 4) for x in spread))
+def times(seconds: Sequence[float]) -> Row:
+    """How many runs, and their median and spread, rounded to 0.1 ms."""
+    spread = {"median": statistics.median(seconds), "minimum": min(seconds), "maximum": max(seconds)}
+    return {"runs": len(seconds)} | {name: round(x, 4) for name, x in spread.items()}
 
 
 @dataclass(slots=True)
@@ -110,10 +100,10 @@ class Job:
             return found | {"reason": self.reason or "not run"}
         seconds = times([u.seconds for u in self.usages])
         return found | {
-            "runs": seconds.runs,
-            "seconds": seconds.median,
-            "least": seconds.minimum,
-            "most": seconds.maximum,
+            "runs": seconds["runs"],
+            "seconds": seconds["median"],
+            "least": seconds["minimum"],
+            "most": seconds["maximum"],
             "processor": round(statistics.median(u.processor_seconds for u in self.usages), 4),
             "peak MiB": round(max(u.peak_mebibytes for u in self.usages), 1),
         }

@@ -13,7 +13,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from itertools import zip_longest
 from pathlib import Path
@@ -26,11 +26,12 @@ from ptmcad.errors import LimitReached, PtmcadError
 from ptmcad.question.slice import Slice
 from ptmcad.show.table import count_text
 from ptmcad.studies.bench import programs, qepcad
-from ptmcad.studies.bench.error import Figures, cover_error, exact_error, grid_error, outward
-from ptmcad.studies.bench.harness import Job, Times, made_with, take_turns, times
+from ptmcad.studies.bench.error import Figures, cover_error, exact_error, figures, grid_error, outward
+from ptmcad.studies.bench.harness import Job, Row, made_with, take_turns, times
 from ptmcad.studies.bench.methods import GRIDS, Case, Method, finest_count, jobs, question
 from ptmcad.studies.bench.process import Outcome, Usage, run
-from ptmcad.studies.bench.study import Measurement, Study
+from ptmcad.studies.bench.records import difference
+from ptmcad.studies.bench.study import FORMAT, measurement
 from ptmcad.studies.bench.truth import Truth, cells_at_centres, shown_count, truths
 
 FLOOR = (
@@ -54,40 +55,29 @@ GROWTH = 4.5
 Report = Callable[[str], None]
 
 
-@dataclass(frozen=True, slots=True)
-class Settings:
-    """How a study is made.
-
-    Attributes
-    ----------
-    rounds : runs of each job that takes no longer than `MAX_REPEATED_SECONDS`; others are run once.
-    seed : of the order within a round, and of the starts of the scipy grid.
-    time_limit : seconds for each method's measured runs; settings that do not fit are left out, with the reason.
-    quick : fewer and coarser settings.
-    """
-
-    methods: Sequence[Method] = tuple(Method)
-    rounds: int = 3
-    seed: int = 1
-    time_limit: float = 60.0
-    quick: bool = False
-
-
 def measure(
     slice: Slice,
     record: Path,
     verified: Callable[[RegionMap], bool],
-    settings: Settings,
     *,
+    methods: Sequence[Method] = tuple(Method),
+    rounds: int = 3,
+    seed: int = 1,
+    time_limit: float = 60.0,
+    quick: bool = False,
     warm_up: bool = True,
     report: Report = lambda _: None,
-) -> Study:
+) -> Row:
     """Measure error against run time on one slice.
 
     Parameters
     ----------
     record : the slice's own file.
     verified : whether an independent check confirms a map, such as `ptmcad.verify`; the errors rest on it.
+    rounds : runs of each job that takes no longer than `MAX_REPEATED_SECONDS`; others are run once.
+    seed : of the order within a round, and of the starts of the scipy grid.
+    time_limit : seconds for each method's measured runs; settings that do not fit are left out, with the reason.
+    quick : fewer and coarser settings.
     warm_up : run the certified engine once before, because the first run on a machine compiles.
     report : called with what is being done.
 
@@ -100,31 +90,31 @@ def measure(
     if not slice.has_free_lengths:
         report(f"{slice.name}: the exact map that errors are measured against")
         with suppress(LimitReached):
-            exact = classify(slice, count=finest_count(slice), timeout=max(MAP_SECONDS, settings.time_limit))
+            exact = classify(slice, count=finest_count(slice), timeout=max(MAP_SECONDS, time_limit))
             sound = verified(exact)
             known = truths(exact)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "question.json").write_text(question(slice), encoding="utf-8")
-        case = Case(slice, record.resolve(), exact, folder, settings.quick, settings.seed)
+        case = Case(slice, record.resolve(), exact, folder, quick, seed)
         ranked: list[Sequence[Job]] = []
-        absent: list[Measurement] = []
-        for method in settings.methods:
+        absent: list[Row] = []
+        for method in methods:
             found = jobs(method, case)
             if isinstance(found, str):
-                absent.append(Measurement(method.value, "", None, reason=found))
+                absent.append(measurement(method.value, "", reason=found))
             else:
                 ranked.append(found)
         if warm_up:
             _compile(ranked)
-        floor = _run_all(ranked, settings, report)
+        floor = _run_all(ranked, rounds, seed, time_limit, report)
         report(f"{slice.name}: errors")
         measured = [_measured(slice, exact, known, job) for found in ranked for job in found]
-    return Study(
-        slice=slice.name, heading=slice.heading, **made_with(), seed=settings.seed, rounds=settings.rounds,
-        time_limit=settings.time_limit, quick=settings.quick, verified=sound, floor=times(floor),
-        measurements=(*measured, *absent),
-    )  # fmt: skip
+    return {
+        "format": FORMAT, "slice": slice.name, "heading": slice.heading, **made_with(), "seed": seed,
+        "rounds": rounds, "time_limit": time_limit, "quick": quick, "verified": sound, "floor": times(floor),
+        "measurements": (*measured, *absent),
+    }  # fmt: skip
 
 
 def _compile(ranked: Sequence[Sequence[Job]]) -> None:
@@ -134,10 +124,9 @@ def _compile(ranked: Sequence[Sequence[Job]]) -> None:
             run(found[0].commands[0][0], timeout=300)
 
 
-def _run_all(ranked: Sequence[Sequence[Job]], settings: Settings, report: Report) -> list[float]:
+def _run_all(ranked: Sequence[Sequence[Job]], rounds: int, seed: int, limit: float, report: Report) -> list[float]:
     """Run all jobs; the seconds of the reference job are returned."""
-    limit = settings.time_limit
-    spent = {method.value: 0.0 for method in settings.methods}
+    spent = {method.value: 0.0 for method in Method}
     last = dict(spent)
     floor = Job("", "", "reference job", ((FLOOR, ""),))
 
@@ -165,9 +154,9 @@ def _run_all(ranked: Sequence[Sequence[Job]], settings: Settings, report: Report
             job.reason = f"stopped: the {limit:g} s for each method were used up"
 
     run(FLOOR)  # fills caches
-    order = random.Random(settings.seed)
+    order = random.Random(seed)
     for rank in zip_longest(*ranked):
-        take_turns([floor, *filter(None, rank)], settings.rounds, order, attempt)
+        take_turns([floor, *filter(None, rank)], rounds, order, attempt)
     return [usage.seconds for usage in floor.usages]
 
 
@@ -185,10 +174,10 @@ def _until(job: Job, left: float) -> Usage:
     return usage
 
 
-def _measured(slice: Slice, exact: RegionMap | None, known: dict[str, Truth] | None, job: Job) -> Measurement:
+def _measured(slice: Slice, exact: RegionMap | None, known: dict[str, Truth] | None, job: Job) -> Row:
     method = Method(job.what)
     if not job.usages:
-        return Measurement(job.what, job.setting, None, reason=job.reason or "not run")
+        return measurement(job.what, job.setting, reason=job.reason or "not run")
     found: dict[str, Figures] = {}
     width: float | None = None
     note = ""
@@ -198,11 +187,11 @@ def _measured(slice: Slice, exact: RegionMap | None, known: dict[str, Truth] | N
         result = RegionMap.from_json(output := job.answer.read_text(encoding="utf-8"))
         width = outward(0, area_width(result))[1]
         note = "stopped at the limit, short of its tolerance" if result.status is Status.PARTIAL else ""
-        if method is Method.EXACT and exact is not None:
-            _agree(result, exact)
+        if method is Method.EXACT and exact is not None and (result.undetermined or difference(exact, result)):
+            raise PtmcadError(f"two exact maps of {slice.name} differ: {difference(exact, result) or 'one is open'}")
         if not known:
             share = outward(result.undetermined, result.undetermined)
-            found[slice.count.value] = Figures(wrong=share, undetermined=share[1])
+            found[slice.count.value] = figures(share, share[1])
             note = "; ".join(filter(None, [note, NO_MAP if exact is None else NO_WALLS]))
         elif method is Method.EXACT:
             found = {count: exact_error(truth) for count, truth in known.items()}
@@ -212,19 +201,19 @@ def _measured(slice: Slice, exact: RegionMap | None, known: dict[str, Truth] | N
     elif method in GRIDS:
         assert job.answer is not None and exact is not None
         if known is None:
-            return Measurement(job.what, job.setting, None, reason=NO_WALLS)
+            return measurement(job.what, job.setting, reason=NO_WALLS)
         found = grid_figures(exact, known, np.load(job.answer))
         note = qepcad.LOSES_PI if qepcad.question(slice) == qepcad.LOSES_PI else ""
     elif job.setting.startswith("where"):
-        found["stable" if "stable" in job.setting else "total"] = Figures(wrong=(0.0, 0.0), undetermined=0.0)
+        found["stable" if "stable" in job.setting else "total"] = figures((0.0, 0.0), 0.0)
         note = FORMULA
     elif exact is not None:
         answer = output if job.answer is None else job.answer.read_text(encoding="utf-8")
         asked = programs.elimination(slice, True)
         note = f"no counts; {programs.agreement(job.what, answer, exact, asked)}"
-    return Measurement(
-        method=job.what,
-        setting=job.setting,
+    return measurement(
+        job.what,
+        job.setting,
         seconds=times([u.seconds for u in job.usages]),
         computing=_computing(output),
         peak=round(max(u.peak_mebibytes for u in job.usages), 1),
@@ -234,7 +223,7 @@ def _measured(slice: Slice, exact: RegionMap | None, known: dict[str, Truth] | N
     )
 
 
-def _computing(output: str) -> Times | None:
+def _computing(output: str) -> Row | None:
     """The seconds of the computation alone, where the answer, JSON, says them."""
     if not output.startswith("{"):
         return None
@@ -266,11 +255,3 @@ def area_width(result: RegionMap) -> Fraction:
         key = count_text(region, result.slice.count)
         widths[key] = widths.get(key, Fraction(0)) + (region.area[1] - region.area[0]) / window
     return max(widths.values(), default=Fraction(1))
-
-
-def _agree(result: RegionMap, exact: RegionMap) -> None:
-    """Refuse an exact map that says other than the reference at one of its samples, or leaves something open."""
-    for cell in result.cells:
-        found = exact.locate(**dict(cell.sample))
-        if (found.stable, found.total) != (cell.stable, cell.total) or result.undetermined:
-            raise PtmcadError(f"two exact maps of {result.slice.name} differ at {dict(cell.sample)}")

@@ -51,25 +51,16 @@ class Curve(NamedTuple):
     style: int
 
 
-class Labels(NamedTuple):
-    """A title of one line, what the axes show, and sentences below."""
-
-    title: str
-    x: str
-    y: str
-    below: Sequence[str] = ()
-
-
-def draw(labels: Labels, curves: Sequence[Curve]) -> Figure:
-    """The picture of at least one curve."""
+def draw(title: str, x: str, y: str, curves: Sequence[Curve], below: Sequence[str] = ()) -> Figure:
+    """The picture of at least one curve, with a title of one line, what the axes show, and sentences below."""
     spots = [spot for curve in curves for spot in curve.spots]
-    heights = [y for spot in spots for y in spot.y]
-    least = 10.0 ** floor(log10(min((y for y in heights if y > 0), default=1e-3)))
-    notes = [line for sentence in labels.below for line in textwrap.wrap(sentence, 145)]
+    heights = [height for spot in spots for height in spot.y]
+    least = 10.0 ** floor(log10(min((h for h in heights if h > 0), default=1e-3)))
+    notes = [line for sentence in below for line in textwrap.wrap(sentence, 145)]
     tall = TALL + 0.2 * len(notes)
     with settings():
         figure = Figure(figsize=(WIDE, tall), facecolor="white")
-        figure.set_label(f"{labels.title}\n{_words(curves)} {' '.join(labels.below)}")
+        figure.set_label(f"{title}\n{_words(curves)} {' '.join(below)}")
         axes = figure.add_axes((0.09, (0.66 + 0.2 * len(notes)) / tall, 0.885, (TALL - 2.2) / tall))
         axes.set_xscale("log")
         axes.set_yscale("symlog", linthresh=least, linscale=0.5)
@@ -82,10 +73,10 @@ def draw(labels: Labels, curves: Sequence[Curve]) -> Figure:
         axes.xaxis.set_minor_locator(NullLocator())
         axes.grid(color="#dddddd", linewidth=0.6)
         axes.set_axisbelow(True)
-        axes.set_xlabel(labels.x)
-        axes.set_ylabel(labels.y)
+        axes.set_xlabel(x)
+        axes.set_ylabel(y)
         entries = [_draw(axes, c) for c in curves]
-        figure.text(0.02, 1 - 0.27 / tall, labels.title, fontsize=12, va="center")
+        figure.text(0.02, 1 - 0.27 / tall, title, fontsize=12, va="center")
         figure.legend(handles=entries, loc="upper left", bbox_to_anchor=(0.01, 1 - 0.44 / tall), ncol=2,
                       frameon=False, fontsize=9, labelcolor=INK)  # fmt: skip
         for k, line in enumerate(notes):

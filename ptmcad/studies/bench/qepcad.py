@@ -111,11 +111,11 @@ def question(slice: Slice) -> Question | str:
         return "with free lengths there is no sextic"
     if not all(value.is_polynomial for value in slice.parameters.values()):
         return "a parameter is not a polynomial in the axes"
-    found = sextic(slice.parameters)
-    if not found.coefficients[6].numerator:
+    coefficients, v, w, _ = sextic(slice.parameters)
+    if not coefficients[6].numerator:
         return LOSES_PI
-    slope = tuple(n * coefficient for n, coefficient in enumerate(found.coefficients))[1:]
-    return Question(_terms(found.coefficients), _terms(slope), _terms(found.v), _terms(found.w), slice.axes)
+    slope = tuple(n * coefficient for n, coefficient in enumerate(coefficients))[1:]
+    return Question(_terms(coefficients), _terms(slope), _terms(v), _terms(w), slice.axes)
 
 
 def program() -> str | None:

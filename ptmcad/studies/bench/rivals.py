@@ -88,7 +88,7 @@ def grid_values(question: Mapping[str, Any], n: int) -> dict[str, Array]:
 
 def companion(p: Mapping[str, Array], seed: int = 0) -> NDArray[np.int8]:
     """Stable and total counts at each point, of shape (2, points)."""
-    polynomials: Array = np.stack(sextic(p).coefficients[::-1], axis=1)
+    polynomials: Array = np.stack(sextic(p)[0][::-1], axis=1)
     size = np.abs(polynomials).max(axis=1, keepdims=True)
     polynomials = polynomials / np.where(size > 0, size, 1)
     while polynomials.shape[1] > 2 and np.abs(polynomials[:, 0]).max() < MIN_LEADING:

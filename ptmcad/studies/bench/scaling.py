@@ -208,7 +208,7 @@ def fit(points: Sequence[tuple[float, float]]) -> Row | None:
 
 def save_picture(rows: Sequence[Row], folder: Path) -> None:
     """Draw the seconds of the computation along all families into scaling.svg."""
-    from ptmcad.studies.bench.picture import Curve, Labels, Spot, draw
+    from ptmcad.studies.bench.picture import Curve, Spot, draw
 
     found: dict[str, list[Spot]] = {}
     for row in rows:
@@ -216,6 +216,6 @@ def save_picture(rows: Sequence[Row], folder: Path) -> None:
             n, seconds = float(row["setting"]), row["total s"]
             found.setdefault(row["what"], []).append(Spot((n, n, n), (seconds, seconds)))
     if found:
-        labels = Labels("How cost grows", "size", "seconds of the computation, medians")
         curves = [Curve(title, spots, style) for style, (title, spots) in enumerate(found.items())]
-        save(draw(labels, curves), folder / "scaling.svg")
+        figure = draw("How cost grows", "size", "seconds of the computation, medians", curves)
+        save(figure, folder / "scaling.svg")

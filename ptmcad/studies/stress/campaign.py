@@ -10,7 +10,6 @@ import gc
 import platform
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from statistics import median
 from time import perf_counter, process_time
 from typing import Any
@@ -19,8 +18,9 @@ from ptmcad.answer.poses import DIGITS
 from ptmcad.process.extras import Extra, require
 from ptmcad.studies.slices import ptm_slice
 from ptmcad.studies.stress.case import Case, Question
-from ptmcad.studies.stress.judgement import Verdict, judge
+from ptmcad.studies.stress.judgement import Row, judge
 from ptmcad.studies.tables import installed
+from ptmcad.text.numerals import shortest_text
 from ptmcad.version import __version__
 
 PACKAGES = ("python-flint", "numpy", "numba")
@@ -30,77 +30,10 @@ MAX_COST = 5.0
 Progress = Callable[[str, int, int], None]
 
 
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """A case with its verdict, and what it and its sibling cost.
-
-    Attributes
-    ----------
-    calls, sibling_calls : functions called, Python's and built in: work that is the same in every run.
-    seconds, sibling_seconds : processor time, medians of runs that take turns.
-    ratio_low, ratio_high : smallest and largest of the ratios of the runs.
-    """
-
-    case: Case
-    verdict: Verdict
-    calls: int
-    sibling_calls: int
-    seconds: float
-    sibling_seconds: float
-    ratio_low: float
-    ratio_high: float
-
-    @property
-    def ratio(self) -> float:
-        """Of the medians of processor time."""
-        return self.seconds / max(self.sibling_seconds, 1e-9)
-
-    @property
-    def work_ratio(self) -> float:
-        """Of the numbers of calls."""
-        return self.calls / max(self.sibling_calls, 1)
-
-
-@dataclass(frozen=True, slots=True)
-class Campaign:
-    """What came out, and what is needed to judge it.
-
-    Attributes
-    ----------
-    wanted : how many cases were to be run; more than there are outcomes when the run was stopped.
-    """
-
-    outcomes: tuple[Outcome, ...]
-    wanted: int
-    seed: int
-    repeats: int
-    machine: dict[str, str]
-    versions: dict[str, str]
-
-    @property
-    def complete(self) -> bool:
-        return len(self.outcomes) == self.wanted
-
-    @property
-    def wrong(self) -> tuple[Outcome, ...]:
-        """Where ptmcad is wrong, or undecided where it should decide."""
-        return tuple(o for o in self.outcomes if not o.verdict.right)
-
-    @property
-    def double_wrong(self) -> tuple[Outcome, ...]:
-        """Where double precision is wrong."""
-        return tuple(o for o in self.outcomes if not o.verdict.double_right)
-
-    @property
-    def expensive(self) -> tuple[Outcome, ...]:
-        """What costs more than `MAX_COST` times its sibling, in processor time."""
-        return tuple(o for o in self.outcomes if o.ratio > MAX_COST)
-
-
 def campaign(
     cases: Sequence[Case], *, seed: int, repeats: int, deadline: float | None = None, progress: Progress | None = None
-) -> Campaign:
-    """Run the cases.
+) -> Row:
+    """Run the cases: what came out, a row for each, and what is needed to judge it.
 
     Parameters
     ----------
@@ -116,26 +49,39 @@ def campaign(
     """
     if any(case.has_free_lengths for case in cases):
         require(Extra.certified)
-    outcomes = []
+    rows: list[Row] = []
     for k, case in enumerate(cases):
         if deadline is not None and perf_counter() > deadline:
             break
         if progress is not None:
             progress(case.name, k, len(cases))
-        outcomes.append(run(case, 1 if case.slow else repeats))
+        rows.append(run(case, 1 if case.slow else repeats))
     machine = {"system": platform.system(), "processor": platform.machine(), "python": platform.python_version()}
     versions = {"ptmcad": __version__, **installed(PACKAGES)}
-    return Campaign(tuple(outcomes), len(cases), seed, repeats, machine, versions)
+    return {
+        "kind": "ptmcad stress", "complete": len(rows) == len(cases), "seed": seed, "repeats": repeats,
+        "machine": machine, "versions": versions, "cases": rows,
+    }  # fmt: skip
 
 
-def run(case: Case, repeats: int) -> Outcome:
-    """Answer, judge and time a case."""
+def run(case: Case, repeats: int) -> Row:
+    """Answer, judge and time a case: a row with what it and its sibling cost.
+
+    ``calls`` are functions called, Python's and built in, work that is the same in every run; ``seconds`` processor
+    time, medians of runs that take turns; ``ratio`` is of the medians, and ``ratio_low`` and ``ratio_high`` are the
+    smallest and the largest of the runs.
+    """
     verdict = judge(case, answer(case.question, case.name))
     calls, sibling_calls = work_of(case.question), work_of(case.sibling)
     pairs = [(_seconds(case.question), _seconds(case.sibling)) for _ in range(repeats)]
     ratios = [a / max(b, 1e-9) for a, b in pairs]
     mine, its = (median(times) for times in zip(*pairs, strict=True))
-    return Outcome(case, verdict, calls, sibling_calls, mine, its, min(ratios), max(ratios))
+    return {
+        "name": case.name, "family": case.family, "asked": case.question.kind,
+        "stiffness": shortest_text(case.stiffness), "source": case.source, **verdict,
+        "calls": calls, "sibling_calls": sibling_calls, "seconds": mine, "sibling_seconds": its,
+        "ratio": mine / max(its, 1e-9), "ratio_low": min(ratios), "ratio_high": max(ratios),
+    }  # fmt: skip
 
 
 def answer(question: Question, name: str = "case") -> Any:

@@ -41,7 +41,7 @@ def _pose(p: Mapping[str, float], th1: float, th2: float) -> IndexedPose:
 
 def _companion(p: Mapping[str, float]) -> list[tuple[float, float]] | None:
     """Different pairs of angles."""
-    coefficients = np.array(sextic(p).coefficients[::-1])
+    coefficients = np.array(sextic(p)[0][::-1])
     largest = float(np.max(np.abs(coefficients), initial=0.0))
     if not np.isfinite(largest) or largest == 0:
         return None

@@ -11,8 +11,7 @@ share e, the pose turns by at most about 2 e S |H^-1| radians. A point's is the 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import groupby
 from typing import Any
@@ -28,6 +27,7 @@ from ptmcad.studies.stress.doubles import double_poses
 from ptmcad.studies.stress.reference import newton_pose, sextic_poses
 from ptmcad.text.balls import ball_of, exact
 from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.expressions import Expression
 
 GRID = 16
 """Points along each axis of a map at which double precision is asked."""
@@ -35,12 +35,23 @@ STEPS = 200
 """Points along a line."""
 _BITS = 512
 
+Row = dict[str, Any]
 
-@dataclass(frozen=True, slots=True)
-class Verdict:
-    """What came out of a case, without its cost.
 
-    Attributes
+def verdict(
+    expected: str,
+    found: str,
+    double: str,
+    remarks: Sequence[str],
+    double_right: bool,
+    error: float | None = None,
+    double_error: float | None = None,
+    condition: float | None = None,
+    bits: int = 0,
+) -> Row:
+    """What came out of a case, without its cost; ``right`` says whether ptmcad's answer is, by all checks.
+
+    Parameters
     ----------
     expected, found, double : the answers as text.
     remarks : what is not right of ptmcad's answer; a decided wrong one is as wrong as an undecided one.
@@ -52,24 +63,14 @@ class Verdict:
     condition : see the module; None for maps and lines.
     bits : of precision that ptmcad needed; the largest over its stages.
     """
-
-    expected: str
-    found: str
-    double: str
-    remarks: tuple[str, ...]
-    double_right: bool
-    error: float | None = None
-    double_error: float | None = None
-    condition: float | None = None
-    bits: int = 0
-
-    @property
-    def right(self) -> bool:
-        """Whether ptmcad's answer is, by all checks."""
-        return not self.remarks
+    return {
+        "expected": expected, "found": found, "right": not remarks, "remarks": list(remarks), "double": double,
+        "double_right": double_right, "error": error, "double_error": double_error, "condition": condition,
+        "bits": bits,
+    }  # fmt: skip
 
 
-def judge(case: Case, found: Any) -> Verdict:
+def judge(case: Case, found: Any) -> Row:
     """The verdict on an answer to the case.
 
     Raises
@@ -108,7 +109,7 @@ def as_float(value: Fraction) -> float:
 # ----------------------------------------------------------------------------------------------------------- points
 
 
-def _judge_point(case: Case, found: Poses) -> Verdict:
+def _judge_point(case: Case, found: Poses) -> Row:
     parameters, poses = case.question.parameters, found.equilibria
     double = double_poses(parameters)
     reference = _reference(case.question, found, double or ())
@@ -132,11 +133,11 @@ def _judge_point(case: Case, found: Poses) -> Verdict:
     ]  # fmt: skip
     smallest = min((abs(e.center) for pose in poses for e in pose.eigenvalues), default=Fraction(0))
     largest = Fraction(scale({name: float(value) for name, value in parameters.items()}))
-    return Verdict(
+    return verdict(
         expected=case.expected or known,
         found=text if poses else "undecided",
         double="none" if double is None else "/".join(map(str, _counts(double))),
-        remarks=tuple(remarks),
+        remarks=remarks,
         double_right=_counts(double) == _counts(reference),
         error=0.0 if error is None else as_float(error),
         double_error=max(errors, default=None),
@@ -185,7 +186,7 @@ def _ball(enclosure: Enclosure) -> arb:
 # ------------------------------------------------------------------------------------------------------ maps, lines
 
 
-def _judge_map(case: Case, found: RegionMap) -> Verdict:
+def _judge_map(case: Case, found: RegionMap) -> Row:
     certified = case.question.tolerance is not None
     regions = sorted(r.stable for r in found.regions if r.stable is not None)
     # what a certified map leaves open may part a region
@@ -202,30 +203,41 @@ def _judge_map(case: Case, found: RegionMap) -> Verdict:
     high += found.undetermined * (b - a) * (d - c)  # which may belong to any region
     if case.area is not None and not (low <= case.area[1] and high >= case.area[0]):
         remarks.append(f"two are stable on an area of {as_float(low):.10g} to {as_float(high):.10g}")
-    for region in found.regions if not certified else ():
-        known = _counts(sextic_poses(_values(found, region.sample)))[1]
-        if known != region.stable:
-            remarks.append(f"the second method finds {known} stable at a region's sample")
-    wrong, decided, seen = 0, 0, set[int]()
-    for at in ((x, y) for x in _middles(a, b, GRID) for y in _middles(c, d, GRID)):
-        truth = found.locate(**dict(zip(found.slice.axis_names, at, strict=True))).stable
-        if truth is not None:
-            count = _counts(double_poses(_values(found, at)))[1]
-            seen.add(count)
-            decided, wrong = decided + 1, wrong + (count != truth)
-    return Verdict(
+    parameters = found.slice.parameters
+    remarks += _contradicted(parameters, () if certified else [(r.sample, None, r.stable) for r in found.regions])
+    places = [(x, y) for x in _middles(a, b, GRID) for y in _middles(c, d, GRID)]
+    truths = [found.locate(**dict(zip(found.slice.axis_names, at, strict=True))).stable for at in places]
+    decided = [(at, truth) for at, truth in zip(places, truths, strict=True) if truth is not None]
+    counts = _by_doubles(parameters, [at for at, _ in decided])
+    wrong, seen = sum(count != truth for count, (_, truth) in zip(counts, decided, strict=True)), set(counts)
+    return verdict(
         expected=case.expected,
         found=_text(stable),
         double=_text(sorted(seen)),
-        remarks=tuple(remarks),
+        remarks=remarks,
         double_right=wrong == 0 and seen == set(stable),
-        double_error=wrong / max(decided, 1),
+        double_error=wrong / max(len(decided), 1),
         bits=max(found.precision.values(), default=0),
     )
 
 
-def _values(found: RegionMap, at: Sequence[Fraction]) -> Mapping[str, Fraction]:
-    return {name: e.evaluate(at[0], at[1]) for name, e in found.slice.parameters.items()}
+def _contradicted(
+    parameters: Mapping[str, Expression], samples: Iterable[tuple[Sequence[Fraction], int | None, int | None]]
+) -> Iterator[str]:
+    """What the second method finds elsewise: each sample has its place, its total, None for any, and stable count."""
+    for at, total, stable in samples:
+        known = _counts(sextic_poses(_values(parameters, at)))
+        if stable != known[1] or total not in (None, known[0]):
+            yield "the second method finds {}/{} at a sample".format(*known)
+
+
+def _by_doubles(parameters: Mapping[str, Expression], places: Iterable[Sequence[Fraction]]) -> list[int]:
+    """The stable counts of double precision at each of the places."""
+    return [_counts(double_poses(_values(parameters, at)))[1] for at in places]
+
+
+def _values(parameters: Mapping[str, Expression], at: Sequence[Fraction]) -> Mapping[str, Fraction]:
+    return {name: e.evaluate(at[0], at[1]) for name, e in parameters.items()}
 
 
 def _middles(low: Fraction, high: Fraction, number: int) -> list[Fraction]:
@@ -233,8 +245,8 @@ def _middles(low: Fraction, high: Fraction, number: int) -> list[Fraction]:
     return [low + (high - low) * Fraction(2 * k + 1, 2 * number) for k in range(number)]
 
 
-def _judge_line(case: Case, found: CountIntervals) -> Verdict:
-    remarks = []
+def _judge_line(case: Case, found: CountIntervals) -> Row:
+    remarks, zero = [], Fraction(0)
     # neighbours that differ in the total alone are one interval of stable counts
     groups = [list(group) for _, group in groupby(found.intervals, lambda interval: interval.stable)]
     stable, ends = [group[0].stable for group in groups], [group[0].low for group in groups[1:]]
@@ -243,26 +255,21 @@ def _judge_line(case: Case, found: CountIntervals) -> Verdict:
     elif not all(lower(e) <= high and upper(e) >= low for e, (low, high) in zip(ends, case.ends, strict=True)):
         remarks.append("an end is not where it should be")
 
-    def at(x: Fraction) -> Mapping[str, Fraction]:
-        return {name: e.evaluate(x, Fraction(0)) for name, e in found.parameters.items()}
-
-    for interval in found.intervals:
-        if _counts(sextic_poses(at(interval.sample))) != (interval.total, interval.stable):
-            remarks.append("the second method finds other counts at an interval's sample")
+    remarks += _contradicted(found.parameters, [((i.sample, zero), i.total, i.stable) for i in found.intervals])
     width = found.along.high - found.along.low
     places = _middles(found.along.low, found.along.high, STEPS)
-    counts = [(_counts(double_poses(at(x)))[1], x - width / STEPS / 2) for x in places]
+    counts = zip(_by_doubles(found.parameters, [(x, zero) for x in places]), places, strict=True)
     runs = [next(group) for _, group in groupby(counts, lambda pair: pair[0])]
-    double, changes = [count for count, _ in runs], [x for _, x in runs[1:]]
+    double, changes = [count for count, _ in runs], [x - width / STEPS / 2 for _, x in runs[1:]]
     double_error = None
     if len(changes) == len(ends):
         middles = [(lower(e) + upper(e)) / 2 for e in ends]
         double_error = max((as_float(abs(a - b) / width) for a, b in zip(changes, middles, strict=True)), default=0.0)
-    return Verdict(
+    return verdict(
         expected=case.expected,
         found=_text(stable),
         double=_text(double),
-        remarks=tuple(remarks),
+        remarks=remarks,
         double_right=double == stable,
         error=max((as_float((upper(e) - lower(e)) / 2 / width) for e in ends), default=0.0),
         double_error=double_error,

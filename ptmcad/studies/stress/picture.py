@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ptmcad.show.render.printing import settings
-from ptmcad.studies.stress.campaign import Outcome
+from ptmcad.studies.stress.judgement import Row
 from ptmcad.text.numerals import magnitude
 
 MIN_DRAWN_ERROR = 1e-20
@@ -24,22 +24,22 @@ COLUMNS = 4
 RIGHT, WRONG, OURS = "#385880", "#c1440e", "#45917d"
 
 
-def draw_stress(outcomes: Sequence[Outcome]) -> Figure:
+def draw_stress(outcomes: Sequence[Row]) -> Figure:
     """One small plot for each family of points; the figure's label is its description."""
-    points = [o for o in outcomes if o.verdict.condition is not None or o.verdict.error is not None]
-    families = list(dict.fromkeys(o.case.family for o in points))
+    points = [o for o in outcomes if o["condition"] is not None or o["error"] is not None]
+    families = list(dict.fromkeys(o["family"] for o in points))
     rows = max(1, -(-len(families) // COLUMNS))
     with settings():
         figure = Figure(figsize=(12, 2.6 * rows + 1.1), layout="constrained")
-        wrong = sum(not o.verdict.double_right for o in points)
+        wrong = sum(not o["double_right"] for o in points)
         title = "Error of double precision against what is extreme"
-        ours = sum(not o.verdict.right for o in points)
+        ours = sum(not o["right"] for o in points)
         summary = f"{len(points)} cases; the count of double precision is wrong in {wrong}, ptmcad's in {ours}."
         figure.set_label(f"{title}\n{summary}")
         figure.suptitle(title, fontsize=13)
         axes = [figure.add_subplot(rows, COLUMNS, k + 1) for k in range(len(families))]
         for k, (family, place) in enumerate(zip(families, axes, strict=True)):
-            _family(place, family, [o for o in points if o.case.family == family])
+            _family(place, family, [o for o in points if o["family"] == family])
             if k % COLUMNS == 0:
                 place.set_ylabel("error", fontsize=8)
         if axes:
@@ -48,15 +48,15 @@ def draw_stress(outcomes: Sequence[Outcome]) -> Figure:
         return figure
 
 
-def _family(axes: Axes, family: str, outcomes: Sequence[Outcome]) -> None:
-    right, wrong = ([o for o in outcomes if o.verdict.double_right is good] for good in (True, False))
+def _family(axes: Axes, family: str, outcomes: Sequence[Row]) -> None:
+    right, wrong = ([o for o in outcomes if o["double_right"] is good] for good in (True, False))
     for chosen, error, label, style in (
         (right, "double_error", "double precision, count right", {"marker": "o", "color": RIGHT}),
         (wrong, "double_error", "double precision, count wrong", {"marker": "X", "color": WRONG}),
         (outcomes, "error", "ptmcad, middle of the enclosure", {"marker": "_", "color": OURS}),
     ):
-        heights = [_drawn(getattr(o.verdict, error)) for o in chosen]
-        axes.semilogy([exponent(o.case.stiffness) for o in chosen], heights, linestyle="none", markersize=6.5,
+        heights = [_drawn(o[error]) for o in chosen]
+        axes.semilogy([exponent(Fraction(o["stiffness"])) for o in chosen], heights, linestyle="none", markersize=6.5,
                       label=label, **style)  # fmt: skip
     axes.set_ylim(MIN_DRAWN_ERROR / 10, 30)
     axes.set_yticks([1e-20, 1e-15, 1e-10, 1e-5, 1], ["1e-20", "1e-15", "1e-10", "1e-5", "1"])

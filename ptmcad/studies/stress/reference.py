@@ -50,9 +50,7 @@ def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...]:
 
 def _candidates(p: Mapping[str, fmpq]) -> list[tuple[arb, arb]] | None:
     """The angles that belong to the real roots of N; None when the precision is too low for a sign."""
-    by_hand = sextic(p)
-    parts = (by_hand.coefficients, by_hand.v, by_hand.w, by_hand.square)
-    polynomial, v, w, square = (fmpq_poly(list(c)) for c in parts)
+    polynomial, v, w, square = (fmpq_poly(list(c)) for c in sextic(p))
     missing = 6 - polynomial.degree()
     if missing > 6:
         raise Degenerate("the sextic vanishes")

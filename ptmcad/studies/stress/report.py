@@ -10,75 +10,79 @@ import io
 import json
 from collections.abc import Iterable, Sequence
 from math import isfinite
-from typing import Any
 
-from ptmcad.studies.stress.campaign import MAX_COST, Campaign, Outcome
+from ptmcad.studies.stress.campaign import MAX_COST
 from ptmcad.studies.stress.case import Case
+from ptmcad.studies.stress.judgement import Row
 from ptmcad.studies.tables import columns, page
 from ptmcad.studies.tables import markdown as table_of
-from ptmcad.text.numerals import shortest_text
 
-_OF_VERDICT = (
-    "expected", "found", "right", "remarks", "double", "double_right", "error", "double_error", "condition", "bits"
-)  # fmt: skip
-_OF_COST = ("calls", "sibling_calls", "seconds", "sibling_seconds", "ratio", "ratio_low", "ratio_high")
 HEADINGS = ("case", "known", "ptmcad", "double", "double's error", "condition", "bits")
 TIMES = ("ms", "x tame")
 
 
-def cells(outcome: Outcome) -> tuple[str, ...]:
+def cells(row: Row) -> tuple[str, ...]:
     """A row of the table, in the order of `HEADINGS`."""
-    v = outcome.verdict
-    numbers = ("-" if value is None else f"{value:.2g}" for value in (v.double_error, v.condition))
+    numbers = ("-" if row[name] is None else f"{row[name]:.2g}" for name in ("double_error", "condition"))
     return (
-        outcome.case.name,
-        v.expected,
-        v.found if v.right else f"{v.found} WRONG",
-        v.double if v.double_right else f"{v.double} wrong",
+        row["name"],
+        row["expected"],
+        row["found"] if row["right"] else f"{row['found']} WRONG",
+        row["double"] if row["double_right"] else f"{row['double']} wrong",
         *numbers,
-        str(v.bits or "-"),
+        str(row["bits"] or "-"),
     )
 
 
-def table(campaign: Campaign) -> str:
+def table(campaign: Row, wanted: int) -> str:
     """The campaign as a table for a terminal, with a summary below."""
-    rows = [(*cells(o), f"{1000 * o.seconds:.3g}", f"{o.ratio:.2g}") for o in campaign.outcomes]
-    return "\n".join([*columns([(*HEADINGS, *TIMES), *rows]), "", *summary(campaign)])
+    rows = [(*cells(row), f"{1000 * row['seconds']:.3g}", f"{row['ratio']:.2g}") for row in campaign["cases"]]
+    return "\n".join([*columns([(*HEADINGS, *TIMES), *rows]), "", *summary(campaign, wanted)])
 
 
-def markdown(campaign: Campaign) -> str:
+def markdown(campaign: Row) -> str:
     """The campaign as a Markdown page, one table for each family.
 
     Times are left out, so that the same versions write the same page; the work beside its sibling's stands for them.
     """
-    names = [*HEADINGS, "work x tame"]
-    wrong, total = len(campaign.double_wrong), len(campaign.outcomes)
+    names, rows = [*HEADINGS, "work x tame"], campaign["cases"]
     blocks: list[str | list[str]] = []
-    for family in dict.fromkeys(o.case.family for o in campaign.outcomes):
-        rows = [[*cells(o), f"{o.work_ratio:.2g}"] for o in campaign.outcomes if o.case.family == family]
-        blocks += [f"## {family[0].upper()}{family[1:]}", table_of(names, rows)]
+    for family in dict.fromkeys(row["family"] for row in rows):
+        shown = [
+            [*cells(row), f"{row['calls'] / max(row['sibling_calls'], 1):.2g}"]
+            for row in rows
+            if row["family"] == family
+        ]
+        blocks += [f"## {family[0].upper()}{family[1:]}", table_of(names, shown)]
     written = (
-        f"Written by `ptmcad stress` with seed {campaign.seed}. ptmcad is right in {total - len(campaign.wrong)} of "
-        f"{total} cases; double precision is wrong in {wrong}."
+        f"Written by `ptmcad stress` with seed {campaign['seed']}. ptmcad is right in "
+        f"{sum(row['right'] for row in rows)} of {len(rows)} cases; double precision is wrong in "
+        f"{sum(not row['double_right'] for row in rows)}."
     )
     return page("# The stress cases, one by one", written, *blocks)
 
 
-def summary(campaign: Campaign) -> Iterable[str]:
-    """What the campaign says, line by line."""
-    total = len(campaign.outcomes)
-    yield f"ptmcad is right in {total - len(campaign.wrong)} of {total} cases"
-    for outcome in campaign.wrong:
-        yield f"  {outcome.case.name}: {'; '.join(outcome.verdict.remarks)}"
-    yield f"double precision is wrong in {len(campaign.double_wrong)} of {total}"
-    if campaign.outcomes:
-        worst = max(campaign.outcomes, key=lambda o: o.ratio)
+def summary(campaign: Row, wanted: int) -> Iterable[str]:
+    """What the campaign says, line by line.
+
+    Parameters
+    ----------
+    wanted : how many cases were to be run.
+    """
+    rows = campaign["cases"]
+    yield f"ptmcad is right in {sum(row['right'] for row in rows)} of {len(rows)} cases"
+    for row in rows:
+        if not row["right"]:
+            yield f"  {row['name']}: {'; '.join(row['remarks'])}"
+    yield f"double precision is wrong in {sum(not row['double_right'] for row in rows)} of {len(rows)}"
+    if rows:
+        worst = max(rows, key=lambda row: float(row["ratio"]))
         yield (
-            f"an extreme case costs at most {worst.ratio:.2g} times its tame sibling ({worst.case.name}); "
-            f"more than {MAX_COST:g} times: {len(campaign.expensive)}"
+            f"an extreme case costs at most {worst['ratio']:.2g} times its tame sibling ({worst['name']}); "
+            f"more than {MAX_COST:g} times: {sum(row['ratio'] > MAX_COST for row in rows)}"
         )
-    if not campaign.complete:
-        yield f"stopped: {campaign.wanted - total} cases were not run"
+    if wanted > len(rows):
+        yield f"stopped: {wanted - len(rows)} cases were not run"
 
 
 def listing(cases: Sequence[Case]) -> str:
@@ -86,20 +90,16 @@ def listing(cases: Sequence[Case]) -> str:
     return "\n".join(columns([(c.name, c.family, c.question.kind, c.source) for c in cases]))
 
 
-def to_json(campaign: Campaign) -> str:
+def to_json(campaign: Row) -> str:
     """Everything about a campaign."""
-    document = {
-        "kind": "ptmcad stress",
-        **{name: getattr(campaign, name) for name in ("complete", "seed", "repeats", "machine", "versions")},
-        "cases": [record(outcome) for outcome in campaign.outcomes],
-    }
+    document = {**campaign, "cases": [_plain(row) for row in campaign["cases"]]}
     return json.dumps(document, indent=1, allow_nan=False) + "\n"
 
 
-def to_csv(campaign: Campaign) -> str:
+def to_csv(campaign: Row) -> str:
     """The same, one row for each case."""
     text = io.StringIO()
-    rows = [record(outcome) for outcome in campaign.outcomes]
+    rows = [_plain(row) for row in campaign["cases"]]
     if rows:
         writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
         writer.writeheader()
@@ -107,16 +107,6 @@ def to_csv(campaign: Campaign) -> str:
     return text.getvalue()
 
 
-def record(outcome: Outcome) -> dict[str, Any]:
-    """A case and what came out, as plain data; None for a number that JSON does not have."""
-    case = outcome.case
-    values = {
-        "name": case.name,
-        "family": case.family,
-        "asked": case.question.kind,
-        "stiffness": shortest_text(case.stiffness),
-        "source": case.source,
-        **{name: getattr(outcome.verdict, name) for name in _OF_VERDICT},
-        **{name: getattr(outcome, name) for name in _OF_COST},
-    }
-    return {n: None if isinstance(value, float) and not isfinite(value) else value for n, value in values.items()}
+def _plain(row: Row) -> Row:
+    """A row with None for a number that JSON does not have."""
+    return {n: None if isinstance(value, float) and not isfinite(value) else value for n, value in row.items()}
