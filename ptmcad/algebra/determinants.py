@@ -83,9 +83,7 @@ def _primitive_determinant(matrix: list[list[Coefficient]]) -> Coefficient:
     return characteristic(matrix)[0]
 
 
-def characteristic(
-    matrix: Sequence[Sequence[Coefficient]], scales: Sequence[Coefficient] = ()
-) -> list[Coefficient]:
+def characteristic(matrix: Sequence[Sequence[Coefficient]], scales: Sequence[Coefficient] = ()) -> list[Coefficient]:
     """The coefficients of T^0, ..., T^(n-1) in det (T S - A) over Z[x, y]; without S det A alone.
 
     They come from values at integer points modulo primes of one word. Their degree in x, in y, and in both is at most
@@ -117,13 +115,14 @@ def characteristic(
         on_line, scales_on_line = ([fmpz_poly([c(x) for c in p]) for p in ps] for ps in (entries, diagonal))
         for j, y in enumerate(ys[: triangle - i]):
             values[i, j] = _whole([p(y) for p in on_line], [int(p(y)) for p in scales_on_line])
+    newton = [_newton(points) for points in (xs, ys)]
     modulus, found = 1, [dict.fromkeys(values, 0) for _ in scales or [0]]
     for prime in primes():
         if modulus > most:
             break
         if any(common % prime == 0 for _, common, _ in values.values()):
             continue
-        bases = [_newton(points, prime) for points in (xs, ys)]
+        bases = [(nmod_mat(a, prime).inv(), nmod_mat(b, prime)) for a, b in newton]
         images = [_modulo(prime, *value) for value in values.values()]
         inverse = pow(modulus, -1, prime)
         for coefficient, image in zip(found, zip(*images, strict=True), strict=True):
@@ -169,33 +168,33 @@ def _modulo(prime: int, matrix: fmpz_mat, common: int, scale: int) -> list[int]:
     return coefficients[::-1]
 
 
-_Newton = tuple[nmod_mat, nmod_mat]
+def _newton(points: Sequence[int]) -> tuple[fmpz_mat, fmpz_mat]:
+    """Newton's polynomials for these points, one in each column: their values at the points, and their coefficients."""
+    polynomials = list(accumulate(points[:-1], lambda p, x: p * fmpz_poly([-x, 1]), initial=fmpz_poly([1])))
+    values = [[p(x) for p in polynomials] for x in points]
+    return fmpz_mat(values), fmpz_mat([[p[k] for p in polynomials] for k in range(len(points))])
 
 
-def _newton(points: Sequence[int], prime: int) -> _Newton:
-    """The matrices from values to coefficients in Newton's form, and from these to those of powers."""
-    size = len(points)
-    products = [accumulate(points[:-1], lambda c, y, x=x: c * (x - y) % prime, initial=1) for x in points]
-    values = nmod_mat(size, size, [c for row in products for c in row], prime)
-    powers = nmod_mat(size, size, [pow(x, k, prime) for x in points for k in range(size)], prime)
-    return values.inv(), powers.inv() * values
+_Basis = tuple[nmod_mat, nmod_mat]
+"""From values to coefficients in Newton's form, and from these to those of powers, modulo a prime."""
 
 
-def _expanded(values: Mapping[tuple[int, int], int], across: _Newton, up: _Newton) -> nmod_mat:
+def _expanded(values: Mapping[tuple[int, int], int], across: _Basis, up: _Basis) -> nmod_mat:
     """The coefficients of the polynomial with exponents among the places of the values, which are a lower set.
 
     In Newton's form a coefficient depends on values at smaller places only, so that those at others may be anything.
     """
-    (to_newton, powers), (to_newton_up, powers_up) = across, up
-    rows, columns = to_newton.nrows(), to_newton_up.nrows()
-    grid = nmod_mat(rows, columns, to_newton.modulus())
+    rows, columns = across[0].nrows(), up[0].nrows()
+    found = nmod_mat(rows, columns, across[0].modulus())
     for place, value in values.items():
-        grid[place] = value
-    newton = to_newton * grid * to_newton_up.transpose()
+        found[place] = value
+    found = across[0] * found * up[0].transpose()
     for place in product(range(rows), range(columns)):
         if place not in values:
-            newton[place] = 0
-    return powers * newton * powers_up.transpose()
+            found[place] = 0
+    return across[1] * found * up[1].transpose()
+
+
 def _bareiss(matrix: list[list[Coefficient]]) -> Coefficient:
     size, previous, sign = len(matrix), constant_like(matrix[0][0], 1), 1
     for k in range(size - 1):

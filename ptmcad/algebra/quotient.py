@@ -207,9 +207,7 @@ def multiplication_denominator(algebra: QuotientAlgebra) -> Coefficient:
     return lcm(algebra.table[shifted(m, k)][1] for m in algebra.basis for k in range(len(m)))
 
 
-def poles(
-    algebra: QuotientAlgebra, suspects: Sequence[Coefficient], coordinates: Sequence[int]
-) -> list[Coefficient]:
+def poles(algebra: QuotientAlgebra, suspects: Sequence[Coefficient], coordinates: Sequence[int]) -> list[Coefficient]:
     """Those of the irreducible polynomials on which the characteristic polynomial of some coordinate has a pole.
 
     Near these points of the plane the coordinate is unbounded on the solutions. Often the entries' orders tell that

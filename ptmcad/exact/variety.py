@@ -111,9 +111,9 @@ def discriminant_variety(
     tried = visible if settles(equations) and "infinity" not in without else []
     proved = harmless(equations, rows, jacobian_norm, tried)
     doubtful = [f for f in visible if f not in proved]
-    found = poles(algebra, suspects, equations.unbounded)
+    unbounded = poles(algebra, suspects, equations.unbounded)
     for factors, why in ((hidden, NO_POINT), (proved, HARMLESS), (doubtful, "")):
-        seen.adopt([f for f in factors if f in found], Kind.INFINITY, why)
+        seen.adopt([f for f in factors if f in unbounded], Kind.INFINITY, why)
     if "sign-curve" in without:
         for minor in leading_minors(system, parameters) if system.has_index else ():
             seen.adopt(irreducible_factors(norm(algebra, lifted(minor, equations))[0]), Kind.AUXILIARY)
