@@ -99,7 +99,7 @@ def characteristic(matrix: Sequence[Sequence[Coefficient]], scales: Sequence[Coe
     for k, scale in enumerate(scales):
         sizes[k][k] = sizes[k][k] + _moduli(scale)
     degrees = [[None if p.is_zero() else (*p.degrees(), p.total_degree()) for p in row] for row in sizes]
-    bounds = [least_assignment([[d and -int(d[k]) for d in row] for row in degrees]) for k in range(3)]
+    bounds = [least_assignment([[None if d is None else -int(d[k]) for d in row] for row in degrees]) for k in range(3)]
     if None in bounds:
         return [ring.constant(0)]
     across, up, triangle = (1 - (bound or 0) for bound in bounds)
@@ -116,7 +116,7 @@ def characteristic(matrix: Sequence[Sequence[Coefficient]], scales: Sequence[Coe
         for j, y in enumerate(ys[: triangle - i]):
             values[i, j] = _whole([p(y) for p in on_line], [int(p(y)) for p in scales_on_line])
     newton = [_newton(points) for points in (xs, ys)]
-    modulus, found = 1, [dict.fromkeys(values, 0) for _ in scales or [0]]
+    modulus, found = 1, [dict.fromkeys(values, 0) for _ in range(max(len(scales), 1))]
     for prime in primes():
         if modulus > most:
             break
