@@ -1,4 +1,4 @@
-"""Determinants of matrices over Q(x, y), by fraction-free elimination, or of one variable by values at integers.
+"""Determinants of matrices over Q(x, y), by fraction-free elimination or by values at integers modulo primes.
 
 Guarantee: exact.
 
@@ -9,10 +9,11 @@ by evaluation and interpolation).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from itertools import accumulate, count, islice, product
 from typing import Any
 
-from flint import fmpz_mat, fmpz_poly, nmod_mat
+from flint import fmpz, fmpz_mat, fmpz_poly, nmod_mat
 
 from ptmcad.algebra.assignment import least_assignment
 from ptmcad.algebra.polynomials import (
@@ -79,44 +80,119 @@ def _primitive_determinant(matrix: list[list[Coefficient]]) -> Coefficient:
     degrees = [max(d) for d in zip(*(entry.degrees() for row in matrix for entry in row), strict=True)]
     if len(degrees) != 2 or len(matrix) < MIN_INTERPOLATED or (min(degrees) > 0 and len(matrix) * terms < MANY_TERMS):
         return _bareiss(matrix)
-    return _interpolated(matrix)
+    return characteristic(matrix)[0]
 
 
-def _interpolated(matrix: Sequence[Sequence[Coefficient]]) -> Coefficient:
-    """The determinant from its values at integer points modulo primes of one word.
+def characteristic(matrix: Sequence[Sequence[Coefficient]], scales: Sequence[Coefficient] = ()) -> list[Coefficient]:
+    """The coefficients of T^0, ..., T^(n-1) in det (T S - A) over Z[x, y]; without S det A alone.
 
-    Its degree in either variable is at most that of a product of entries, one of each row and column; the sum of its
-    coefficients' moduli is at most the product over the rows of these sums.
+    They come from values at integer points modulo primes of one word. Their degree in x, in y, and in both is at most
+    that of a product of entries, one of each row and column; the sum of their coefficients' moduli is at most the
+    product over the rows of these sums.
+
+    Parameters
+    ----------
+    scales : the diagonal of S; none is zero.
     """
-    zero = constant_like(matrix[0][0], 0)
-    costs = [[[None if e.is_zero() else -int(e.degrees()[k]) for e in row] for row in matrix] for k in (0, 1)]
-    bounds = [bound for cost in costs if (bound := least_assignment(cost)) is not None]
-    if len(bounds) < len(costs):
-        return zero
-    across, up = (range(1 - bound) for bound in bounds)
-    entries = [coefficients_in(entry, 1) for row in matrix for entry in row]
-    values = []
-    for x in across:
-        on_line = [fmpz_poly([c(x) for c in entry]) for entry in entries]
-        values += [fmpz_mat(len(matrix), len(matrix), [entry(y) for entry in on_line]) for y in up]
-    most = 2 * math.prod(sum(abs(int(c)) for entry in row for c in entry.coeffs()) for row in matrix)
-    modulus, found = 1, [0] * len(values)
+    ring = matrix[0][0].context()
+    sizes = [[_moduli(entry) for entry in row] for row in matrix]
+    for k, scale in enumerate(scales):
+        sizes[k][k] = sizes[k][k] + _moduli(scale)
+    degrees = [[None if p.is_zero() else (*p.degrees(), p.total_degree()) for p in row] for row in sizes]
+    bounds = [least_assignment([[None if d is None else -int(d[k]) for d in row] for row in degrees]) for k in range(3)]
+    if None in bounds:
+        return [ring.constant(0)]
+    across, up, triangle = (1 - (bound or 0) for bound in bounds)
+    most = 2 * math.prod(int(sum(p(1, 1) for p in row)) for row in sizes)
+    leading = coefficients_in(math.prod(scales, start=ring.constant(1)), 1)
+    xs = _integers(across, lambda x: any(c(x) for c in leading))
+    products = [fmpz_poly([c(x) for c in leading]) for x in xs]
+    ys = _integers(up, lambda y: all(p(y) for p in products))
+    entries = [coefficients_in(p, 1) for row in matrix for p in row]
+    diagonal = [coefficients_in(p, 1) for p in scales]
+    values = {}
+    for i, x in enumerate(xs):
+        on_line, scales_on_line = ([fmpz_poly([c(x) for c in p]) for p in ps] for ps in (entries, diagonal))
+        for j, y in enumerate(ys[: triangle - i]):
+            values[i, j] = _whole([p(y) for p in on_line], [int(p(y)) for p in scales_on_line])
+    newton = [_newton(points) for points in (xs, ys)]
+    modulus, found = 1, [dict.fromkeys(values, 0) for _ in range(max(len(scales), 1))]
     for prime in primes():
         if modulus > most:
             break
-        dets = nmod_mat(len(across), len(up), [int(nmod_mat(v, prime).det()) for v in values], prime)
-        image = _powers(across, prime).inv() * dets * _powers(up, prime).transpose().inv()
+        if any(common % prime == 0 for _, common, _ in values.values()):
+            continue
+        bases = [(nmod_mat(a, prime).inv(), nmod_mat(b, prime)) for a, b in newton]
+        images = [_modulo(prime, *value) for value in values.values()]
         inverse = pow(modulus, -1, prime)
-        found = [a + modulus * ((int(b) - a) * inverse % prime) for a, b in zip(found, image.entries(), strict=True)]
+        for coefficient, image in zip(found, zip(*images, strict=True), strict=True):
+            residues = _expanded(dict(zip(values, image, strict=True)), *bases)
+            for place, known in coefficient.items():
+                coefficient[place] = known + modulus * ((int(residues[place]) - known) * inverse % prime)
         modulus *= prime
-    balanced = (c - modulus if 2 * c > modulus else c for c in found)
-    places = ((i, j) for i in across for j in up)
-    return zero.context().from_dict({place: c for place, c in zip(places, balanced, strict=True) if c})
+    return [
+        ring.from_dict({place: c - modulus if 2 * c > modulus else c for place, c in coefficient.items() if c})
+        for coefficient in found
+    ]
 
 
-def _powers(points: range, prime: int) -> nmod_mat:
-    """Vandermonde's matrix."""
-    return nmod_mat(len(points), len(points), [pow(x, k, prime) for x in points for k in points], prime)
+def _moduli(p: Coefficient) -> Coefficient:
+    """The polynomial with its coefficients' moduli: in sums of such no term is lost."""
+    return p.context().from_dict({powers: abs(c) for powers, c in p.terms()})
+
+
+def _integers(number: int, allowed: Callable[[int], bool]) -> list[int]:
+    """The first ones that are allowed."""
+    return list(islice(filter(allowed, count()), number))
+
+
+def _whole(matrix: Sequence[fmpz], diagonal: Sequence[int]) -> tuple[fmpz_mat, int, int]:
+    """S^-1 A times a common denominator, this number, and det S."""
+    size = math.isqrt(len(matrix))
+    common = math.lcm(*diagonal)
+    if diagonal:
+        matrix = [c * (common // diagonal[k // size]) for k, c in enumerate(matrix)]
+    return fmpz_mat(size, size, matrix), common, math.prod(diagonal) if diagonal else 0
+
+
+def _modulo(prime: int, matrix: fmpz_mat, common: int, scale: int) -> list[int]:
+    """What is looked for at a point, modulo a prime that does not divide the common denominator."""
+    image = nmod_mat(matrix, prime)
+    if not scale:  # there is no S
+        return [int(image.det())]
+    found, factor, inverse = image.charpoly(), scale, pow(common, -1, prime)
+    coefficients = []
+    for k in reversed(range(image.nrows())):
+        factor = factor * inverse % prime
+        coefficients.append(int(found[k]) * factor % prime)
+    return coefficients[::-1]
+
+
+def _newton(points: Sequence[int]) -> tuple[fmpz_mat, fmpz_mat]:
+    """Newton's polynomials for these points, one in each column: their values at the points, and their coefficients."""
+    polynomials = list(accumulate(points[:-1], lambda p, x: p * fmpz_poly([-x, 1]), initial=fmpz_poly([1])))
+    values = [[p(x) for p in polynomials] for x in points]
+    return fmpz_mat(values), fmpz_mat([[p[k] for p in polynomials] for k in range(len(points))])
+
+
+_Basis = tuple[nmod_mat, nmod_mat]
+"""From values to coefficients in Newton's form, and from these to those of powers, modulo a prime."""
+
+
+def _expanded(values: Mapping[tuple[int, int], int], across: _Basis, up: _Basis) -> nmod_mat:
+    """The coefficients of the polynomial with exponents among the places of the values, which are a lower set.
+
+    In Newton's form a coefficient depends on values at smaller places only, so that those at others may be anything.
+    """
+    rows, columns = across[0].nrows(), up[0].nrows()
+    found = nmod_mat(rows, columns, across[0].modulus())
+    for place, value in values.items():
+        found[place] = value
+    found = across[0] * found * up[0].transpose()
+    for place in product(range(rows), range(columns)):
+        if place not in values:
+            found[place] = 0
+    return across[1] * found * up[1].transpose()
 
 
 def _bareiss(matrix: list[list[Coefficient]]) -> Coefficient:

@@ -14,7 +14,7 @@ from operator import add
 from typing import NamedTuple
 
 from ptmcad.algebra.assignment import least_assignment
-from ptmcad.algebra.determinants import determinant
+from ptmcad.algebra.determinants import characteristic, determinant
 from ptmcad.algebra.groebner import GroebnerBasis, Monomial, shifted
 from ptmcad.algebra.polynomials import (
     Coefficient,
@@ -207,33 +207,22 @@ def multiplication_denominator(algebra: QuotientAlgebra) -> Coefficient:
     return lcm(algebra.table[shifted(m, k)][1] for m in algebra.basis for k in range(len(m)))
 
 
-def poles(
-    algebra: QuotientAlgebra, suspects: Sequence[Coefficient], coordinates: Sequence[int], values: int | None = None
-) -> list[Coefficient]:
+def poles(algebra: QuotientAlgebra, suspects: Sequence[Coefficient], coordinates: Sequence[int]) -> list[Coefficient]:
     """Those of the irreducible polynomials on which the characteristic polynomial of some coordinate has a pole.
 
-    Near these points of the plane the coordinate is unbounded on the solutions. As many values of the polynomial as its
-    degree have together the poles of its coefficients, since Vandermonde's matrix is one of constants. Often the
-    entries' orders tell that there is none.
-
-    Parameters
-    ----------
-    values : fewer are as good but where poles cancel in them by chance: what is returned has a pole in any case.
+    Near these points of the plane the coordinate is unbounded on the solutions. Often the entries' orders tell that
+    there is none.
     """
-    number = algebra.dimension if values is None else min(values, algebra.dimension)
     found: list[Coefficient] = []
     for k in coordinates:
         rows = [algebra.table[shifted(m, k)] for m in algebra.basis]
+        scales = [denominator for _, denominator in rows]
         open_ones = [f for f in suspects if f not in found and (_least_order(rows, f) or 0) < 0]
-        for value in range(2, 2 + number):
-            if all(f in found for f in open_ones):
-                break
-            matrix = [
-                [ratio(denominator * value - c if i == j else -c, denominator) for j, c in enumerate(row)]
-                for i, (row, denominator) in enumerate(rows)
-            ]
-            below = determinant(matrix)[1]
-            found += [f for f in open_ones if f not in found and (below % f).is_zero()]
+        coefficients = characteristic([row for row, _ in rows], scales) if open_ones else []
+        for f in open_ones:
+            power = f ** sum(multiplicity(scale, f) for scale in scales)
+            if any(not (c % power).is_zero() for c in coefficients):
+                found.append(f)
     return found
 
 

@@ -111,9 +111,9 @@ def discriminant_variety(
     tried = visible if settles(equations) and "infinity" not in without else []
     proved = harmless(equations, rows, jacobian_norm, tried)
     doubtful = [f for f in visible if f not in proved]
-    for factors, why in ((hidden, NO_POINT), (proved, HARMLESS)):  # left out, so that none need be listed
-        seen.adopt(poles(algebra, factors, equations.unbounded, _LISTED), Kind.INFINITY, why)
-    seen.adopt(poles(algebra, doubtful, equations.unbounded), Kind.INFINITY)
+    unbounded = poles(algebra, suspects, equations.unbounded)
+    for factors, why in ((hidden, NO_POINT), (proved, HARMLESS), (doubtful, "")):
+        seen.adopt([f for f in factors if f in unbounded], Kind.INFINITY, why)
     if "sign-curve" in without:
         for minor in leading_minors(system, parameters) if system.has_index else ():
             seen.adopt(irreducible_factors(norm(algebra, lifted(minor, equations))[0]), Kind.AUXILIARY)
@@ -256,10 +256,6 @@ def sign_changes(equations: SliceSystem, algebra: QuotientAlgebra) -> Iterator[C
                 )
             product = norm(others, {(*m, 0): c for m, c in p.items()})[0]
         yield product
-
-
-_LISTED = 2
-"""Values of characteristic polynomials from which poles are listed on curves that are not used."""
 
 
 def settles(equations: SliceSystem) -> bool:
