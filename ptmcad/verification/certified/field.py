@@ -12,6 +12,8 @@ Where u is on a line that turns by n_j with the unknowns, c_j/|d| is n_j.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 from math import inf
 from types import MappingProxyType
@@ -36,38 +38,76 @@ class Spring(NamedTuple):
     Attributes
     ----------
     number : of the cone.
-    length : |d|.
+    squared : |d|^2.
     slopes : g_i.
     weights : w_i, which are the g_i but with closed loops.
     part : K u.w_i.
-    bends : K times an upper bound of |g_ii|.
-    is_short : whether it may have no length.
+    bends : the derivatives of the weights by the unknowns, row by row.
+    turns : the spring's direction and how the Jacobian follows from it; None where it may have no length.
+    shape : where its parts are not nothing.
     """
 
     number: int
     pull: arb
-    length: arb
+    squared: arb
     slopes: tuple[Vector, ...]
     weights: tuple[Vector, ...]
-    part: tuple[arb, ...]
-    bends: tuple[arb, ...]
-    is_short: bool
+    part: list[arb]
+    bends: tuple[Vector, ...]
+    turns: _Turns | None
+    shape: _Shape
+
+    @property
+    def length(self) -> arb:
+        """|d|; an upper bound where it may be nothing."""
+        return (self.squared if self.squared > 0 else self.squared.abs_upper()).sqrt()
+
+    @property
+    def is_short(self) -> bool:
+        """Whether it may have no length."""
+        return self.turns is None
 
 
-class Jet(NamedTuple):
+class _Shape(NamedTuple):
+    """The equations that have a part of a spring, and the entries of the Jacobian; in a symmetric one each pair once."""
+
+    equations: tuple[int, ...]
+    entries: tuple[tuple[int, int], ...]
+
+
+class _Turns(NamedTuple):
+    """The direction u, 1/|d|, and on one line how fast that turns with the unknowns, then with 1 for 1/|d|."""
+
+    unit: Vector
+    inverse: arb
+    spins: list[arb] | None
+
+
+@dataclass(frozen=True)
+class Jet:
     """The equations and their derivatives; these without the parts of springs that may have no length.
 
     Attributes
     ----------
-    smooth : the equations without the springs' parts.
+    smooth, linear : the equations and their derivatives without the springs' parts.
     conditions : what is positive at solutions that count.
     """
 
     values: list[arb]
-    jacobian: Matrix
     smooth: list[arb]
+    linear: list[arb]
     springs: tuple[Spring, ...]
     conditions: list[arb]
+
+    @cached_property
+    def jacobian(self) -> Matrix:
+        """The derivatives, which most boxes are discarded without."""
+        n = len(self.values)
+        found = [self.linear[n * i : n * i + n] for i in range(n)]
+        for s in self.springs:
+            if s.turns is not None:
+                _take_off(found, s, s.turns)
+        return found
 
     @property
     def short(self) -> list[Spring]:
@@ -102,11 +142,11 @@ class Jet(NamedTuple):
         yy = sum((square(b) for _, b in s.slopes), arb(0))
         # Lagrange's identity: no difference of large numbers
         gram = sum((square(a * d - b * c) for (a, b), (c, d) in combinations(s.slopes, 2)), arb(0))
-        trace = sum((self.jacobian[i][i] + s.bends[i] for i in range(len(s.slopes))), arb(0))
-        size = xx + yy
-        if not (gram > 0 and size > 0):
+        n = len(s.slopes)
+        trace = sum((self.jacobian[i][i] + s.pull * size(*s.bends[i * n + i]) for i in range(n)), arb(0))
+        if not (gram > 0 and xx + yy > 0):
             return False
-        return bool(trace.upper() - (s.pull * gram / size).lower() / s.length.upper() < 0)
+        return bool(trace.upper() - (s.pull * gram / (xx + yy)).lower() / s.length.upper() < 0)
 
 
 class Field:
@@ -151,6 +191,7 @@ class Field:
             for pair in (cone.vector, *cone.slopes, *(cone.weights if form.closing else ()), *cone.bends):
                 rows += pair
         rows += conditions
+        self._shapes = {number: _shape(form, cone) for number, cone, _ in self.cones}
         found = sorted({(turned, raised) for row in rows for turned, raised, _ in row})
         self.basis = found
         place = {key: 2 * k for k, key in enumerate(found)}
@@ -159,7 +200,8 @@ class Field:
             for (turned, raised, sine), terms in row.items():
                 entries[n * 2 * len(found) + place[turned, raised] + sine] = ball(terms, values)
         self._matrix = arb_mat(len(rows), 2 * len(found), entries)
-        self._turned = sorted({turned for turned, _ in found if any(turned)})
+        self._turned = {turned: _nonzero(turned) for turned, _ in found if any(turned)}
+        self._columns = [(turned, _nonzero(raised)) for turned, raised in found]
 
     @property
     def circles(self) -> tuple[bool, ...]:
@@ -169,20 +211,18 @@ class Field:
 
     def _waves(self, at: Sequence[arb]) -> arb_mat:
         waves = {}
-        for turned in self._turned:
-            angle = arb(0)
-            for multiple, x in zip(turned, at, strict=True):
-                if multiple:
-                    angle = angle + (x if multiple == 1 else multiple * x)
+        for turned, multiples in self._turned.items():
+            angle = _ZERO
+            for k, multiple in multiples:
+                angle = angle + (at[k] if multiple == 1 else multiple * at[k])
             sine, cosine = angle.sin_cos()
             waves[turned] = cosine, sine
         column = []
-        for turned, raised in self.basis:
+        for turned, exponents in self._columns:
             cosine, sine = waves.get(turned, (_ONE, _ZERO))
-            for exponent, x in zip(raised, at, strict=True):
-                if exponent:
-                    factor = power(x, exponent)
-                    cosine, sine = cosine * factor, sine * factor
+            for k, exponent in exponents:
+                factor = power(at[k], exponent)
+                cosine, sine = cosine * factor, sine * factor
             column += [cosine, sine]
         return arb_mat(len(column), 1, column)
 
@@ -191,23 +231,29 @@ class Field:
         n = self.form.size
         rows: list[arb] = (self._matrix * self._waves(at)).entries()
         smooth, place = rows[:n], n + n * n
-        values, jacobian = list(smooth), [rows[n + n * i : n + n * i + n] for i in range(n)]
+        values, linear = list(smooth), rows[n:place]
         springs, ahead = [], list[arb]()
         length = 2 + (4 if self.form.closing else 2) * n + 2 * n * n
         for number, _, pull in self.cones:
             line = self._lines[number].at(at) if number in self._lines else None
-            new = _spring(number, pull, rows[place : place + length], jacobian, line)
+            new = _spring(number, pull, rows[place : place + length], n, self._shapes[number], line)
             if line is not None:
                 ahead.append(line.unit[0] * rows[place] + line.unit[1] * rows[place + 1])
-            values = [value - part for value, part in zip(values, new.part, strict=True)]
+            for k in new.shape.equations:
+                values[k] = values[k] - new.part[k]
             springs.append(new)
             place += length
         conditions = [*ahead, *rows[len(rows) - self._conditions :]]
+        jet = Jet(values, smooth, linear, tuple(springs), conditions)
         if self._with_determinant:
-            known = not any(s.is_short for s in springs)
-            ordered = [[row[k] for k in self.form.closing] for row in jacobian]
-            conditions = [*conditions, determinant(ordered) if known else arb(0, inf)]
-        return Jet(values, jacobian, smooth, tuple(springs), conditions)
+            ordered = [[row[k] for k in self.form.closing] for row in jet.jacobian]
+            conditions.append(arb(0, inf) if jet.short else determinant(ordered))
+        return jet
+
+
+def _nonzero(numbers: Sequence[int]) -> list[tuple[int, int]]:
+    """The numbers that are not zero, each after its place."""
+    return [(k, number) for k, number in enumerate(numbers) if number]
 
 
 def value_of(row: Waves, values: Mapping[str, arb], at: Sequence[arb]) -> arb:
@@ -255,39 +301,55 @@ def _pointed(cone: Cone, values: Mapping[str, arb], side: int) -> _Pointed:
     return _Pointed((x / squared.sqrt(), y / squared.sqrt()), line.twice)
 
 
-def _spring(number: int, pull: arb, rows: list[arb], jacobian: Matrix, line: _Pointed | None) -> Spring:
-    """A spring from its vector and its derivatives; its part is taken off the Jacobian if it surely has a direction.
+def _shape(form: Form, cone: Cone) -> _Shape:
+    n = form.size
+    turned = [cone.line is not None or any(pair) for pair in cone.slopes]
+    equations = tuple(i for i in range(n) if any(cone.weights[i]))
+    entries = tuple(
+        (i, j)
+        for i in range(n)
+        for j in range(0 if form.closing else i, n)
+        if (i in equations and turned[j]) or any(cone.bends[i * n + j])
+    )
+    return _Shape(equations, entries)
+
+
+def _spring(number: int, pull: arb, rows: list[arb], n: int, shape: _Shape, line: _Pointed | None) -> Spring:
+    """A spring from its vector, n slopes, with closed loops n weights, and n^2 bends.
 
     Parameters
     ----------
     line : its direction, where it is on one line: then it turns as that does.
     """
-    n = len(jacobian)
-    a, b = rows[:2]
-    slopes = tuple((rows[2 + 2 * i], rows[3 + 2 * i]) for i in range(n))
-    bends = rows[len(rows) - 2 * n * n :]
-    is_gradient = len(rows) == 2 + 2 * n + 2 * n * n
-    weights = slopes if is_gradient else tuple((rows[2 * (n + i) + 2], rows[2 * (n + i) + 3]) for i in range(n))
-    q = square(a) + square(b)
-    outer = tuple(pull * size(*bends[2 * i * (n + 1) : 2 * i * (n + 1) + 2]) for i in range(n))
-    reach = (square(a).upper() + square(b).upper()).sqrt()
-    if line is None and not q > 0:
-        part = tuple(pull * _ANY * size(*w) for w in weights)
-        return Spring(number, pull, reach, slopes, weights, part, outer, True)
-    inverse = _ONE if line else q.rsqrt()
-    u, v = line.unit if line else (unit(a * inverse), unit(b * inverse))
-    cross = line.spins if line else [u * gy - v * gx for gx, gy in slopes]
-    lean = cross if is_gradient and not line else [u * wy - v * wx for wx, wy in weights]
-    for i in range(n):
-        for j in range(i if is_gradient else 0, n):
-            across, up = bends[2 * (i * n + j)], bends[2 * (i * n + j) + 1]
-            turning = square(cross[i]) if is_gradient and i == j and not line else lean[i] * cross[j]
-            entry = pull * (turning * inverse + u * across + v * up)
-            jacobian[i][j] = jacobian[i][j] - entry
-            if is_gradient and i != j:
-                jacobian[j][i] = jacobian[j][i] - entry
-    part = tuple(pull * (u * x + v * y) for x, y in weights)
-    return Spring(number, pull, q.sqrt() if q > 0 else reach, slopes, weights, part, outer, False)
+    pairs = tuple(zip(rows[::2], rows[1::2], strict=True))
+    (a, b), slopes, bends = pairs[0], pairs[1 : n + 1], pairs[-n * n :]
+    weights = slopes if len(pairs) == 1 + n + n * n else pairs[n + 1 : 2 * n + 1]
+    q, part = square(a) + square(b), [_ZERO] * n
+    turns = None
+    if line is not None:
+        turns = _Turns(line.unit, _ONE, line.spins)
+    elif q > 0:
+        inverse = q.rsqrt()
+        turns = _Turns((unit(a * inverse), unit(b * inverse)), inverse, None)
+    for i in shape.equations:
+        x, y = weights[i]
+        part[i] = pull * (_ANY * size(x, y) if turns is None else turns.unit[0] * x + turns.unit[1] * y)
+    return Spring(number, pull, q, slopes, weights, part, bends, turns, shape)
+
+
+def _take_off(jacobian: Matrix, s: Spring, turns: _Turns) -> None:
+    """Take a spring's part off the Jacobian."""
+    n, (u, v) = len(jacobian), turns.unit
+    is_gradient = s.weights is s.slopes
+    for i, j in s.shape.entries:
+        (gx, gy), (wx, wy), (across, up) = s.slopes[j], s.weights[i], s.bends[i * n + j]
+        cross = turns.spins[j] if turns.spins else u * gy - v * gx
+        is_square = is_gradient and i == j and not turns.spins
+        turning = square(cross) if is_square else (u * wy - v * wx) * cross
+        entry = s.pull * (turning * turns.inverse + u * across + v * up)
+        jacobian[i][j] = jacobian[i][j] - entry
+        if is_gradient and i != j:
+            jacobian[j][i] = jacobian[j][i] - entry
 
 
 _ZERO, _ONE = arb(0), arb(1)

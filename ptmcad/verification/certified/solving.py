@@ -83,8 +83,10 @@ def zeros(
         used += 1
         if used > budget:
             raise Spent(f"{budget} boxes were not enough")
+        if any(inside(box, zero, circles) for zero in found):
+            continue
         jet = field(_balls(box))
-        if _excluded(jet, box, minima) or any(inside(box, zero, circles) for zero in found):
+        if _excluded(jet, box, minima):
             continue
         image = None if jet.short else image_of(field, box, jet)
         if image is not None:
@@ -118,9 +120,9 @@ def _excluded(jet: Jet, box: Box, minima: bool) -> bool:
     short = jet.short
     if minima and not short and is_no_minimum(jet.jacobian):
         return True
-    for s in jet.springs:
+    for s in jet.springs if max(box[1]) < 1 else ():
         change = sum((abs(a) + abs(b)).upper() * r for (a, b), r in zip(s.slopes, box[1], strict=True))
-        if max(box[1]) < 1 and not s.length > _NEAR * change and any(not b.contains(0) for b in jet.balances(s)):
+        if not s.length > _NEAR * change and any(not b.contains(0) for b in jet.balances(s)):
             return True
     return minima and len(short) == 1 and jet.bends_down(short[0])
 
