@@ -95,7 +95,7 @@ class Part(NamedTuple):
     Attributes
     ----------
     tried : whether this part has been the whole of what was tried; else it is what was left of something longer, and
-        its integral is known by the window's edges only.
+        its integral is known by two heights only.
     """
 
     left: fmpq
@@ -114,17 +114,17 @@ def integrals_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort) -> l
     low, high = effort.heights
     middle, half = (left + right) / 2, (right - left) / 2
     height = branch.height(middle, low, high)
-    if height is not None:
-        found = _more_precisely(branch, middle, half, height, effort)
-        if found is not None:
-            integral, proved = found
-            ends = (left, middle - proved, middle + proved, right)
-            sides = [_known_by_edges(a, b, effort, False) for a, b in (ends[:2], ends[2:]) if a < b]
-            return [Part(ends[1], ends[2], integral - low * (2 * proved), True), *sides]
-        if 2 * half < effort.shut:
-            bottom, top = _enclosed(branch, middle, half, height, effort)
-            return [Part(left, right, arb(bottom - low).union(arb(top - low)) * (2 * half), True)]
-    return [_known_by_edges(left, right, effort, True)]
+    if height is None:
+        return [_known_by_edges(left, right, effort, True)]
+    found = _more_precisely(branch, middle, half, height, effort)
+    proved = fmpq(0) if found is None else found[1]
+    narrow = proved < half and 2 * half < effort.shut
+    within = _enclosed(branch, middle, half, height, effort) if narrow else None
+    if found is None:
+        return [_known_by_edges(left, right, effort, True, within)]
+    ends = (left, middle - proved, middle + proved, right)
+    sides = [_known_by_edges(a, b, effort, False, within) for a, b in (ends[:2], ends[2:]) if a < b]
+    return [Part(ends[1], ends[2], found[0] - low * (2 * proved), True), *sides]
 
 
 def _more_precisely(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> tuple[arb, fmpq] | None:
@@ -146,9 +146,13 @@ def _more_precisely(branch: Branch, middle: fmpq, half: fmpq, height: arb, effor
     raise PrecisionTooLow
 
 
-def _known_by_edges(left: fmpq, right: fmpq, effort: Effort, tried: bool) -> Part:
-    low, high = effort.heights
-    return Part(left, right, arb(0).union(arb((right - left) * (high - low))), tried)
+def _known_by_edges(
+    left: fmpq, right: fmpq, effort: Effort, tried: bool, within: tuple[fmpq, fmpq] | None = None
+) -> Part:
+    """A part of which nothing is known but two heights that it lies between, the window's edges or closer ones."""
+    low = effort.heights[0]
+    bottom, top = within or effort.heights
+    return Part(left, right, arb(bottom - low).union(arb(top - low)) * (right - left), tried)
 
 
 _POOR = 4
@@ -230,7 +234,7 @@ def _enclosed(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Eff
         # and shorter ones back when a height was found
         while leap and start * 2**tried < direction * (edge - center):
             margin = start * 2**tried
-            candidate = _simple(center + direction * margin, margin / 8)
+            candidate = simple(center + direction * margin, margin / 8)
             # the height over the middle shows on which side of the candidate the branch is
             clear = arb(candidate) < height if direction < 0 else arb(candidate) > height
             if clear and _misses(branch, middle, half, candidate):
@@ -253,7 +257,7 @@ def _misses(branch: Branch, middle: fmpq, half: fmpq, v: fmpq) -> bool:
     return bool(along) and total < abs(along[0])
 
 
-def _simple(value: fmpq, error: fmpq) -> fmpq:
+def simple(value: fmpq, error: fmpq) -> fmpq:
     """A dyadic number near a value."""
     scale = 1 << max(0, int(1 / error).bit_length())
     return fmpq((value * scale).floor(), scale)

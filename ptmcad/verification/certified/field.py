@@ -69,7 +69,7 @@ class Spring(NamedTuple):
 
 
 class _Shape(NamedTuple):
-    """The equations that have a part of a spring, and the entries of the Jacobian; in a symmetric one each pair once."""
+    """Equations with a part of a spring, and entries of the Jacobian; in a symmetric one each pair once."""
 
     equations: tuple[int, ...]
     entries: tuple[tuple[int, int], ...]
