@@ -339,9 +339,9 @@ def test_curves_of_the_certified_engine() -> None:
         }
 
     slice = record("free02")
-    assert list(found(slice)) == ["fold of a stable equilibrium", "fold of a stable equilibrium with spring k3 short"]
-    assert {"fold", "fold with spring k3 short"} <= found(slice, "folds-of-saddles").keys()
-    assert {"point where spring k3 has no length", "point where spring k1 has no length"} <= found(
+    assert list(found(slice)) == ["fold of a stable equilibrium", "fold of a stable equilibrium with spring A3A4 short"]
+    assert {"fold", "fold with spring A3A4 short"} <= found(slice, "folds-of-saddles").keys()
+    assert {"point where spring A3A4 has no length", "point where spring A1A4 has no length"} <= found(
         slice, "cones-and-creases"
     ).keys() - found(slice).keys()
     assert {v[2] for name, v in found(slice, *CERTIFIED).items() if name.startswith("fold")} == {0}

@@ -110,7 +110,7 @@ def test_all_of_a_true_map_is_proved(name: str) -> None:
 
 
 def test_more_effort_proves_more(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(check, "BOXES_AT_FIRST", 2_500)
+    monkeypatch.setattr(check, "BOXES_AT_FIRST", 3_000)
     claims = CertifiedClaims(a_map("truss"))
     assert isinstance(check_free_area(0, claims), Unchecked)
     found = [check_free_area(effort, claims) for effort in (1, 2)]
@@ -210,7 +210,7 @@ def test_a_piece_of_a_billionth_of_the_window_is_found() -> None:
 @pytest.mark.slow_cases("admissible")
 def test_all_of_a_map_of_the_paper_s_mechanism_is_proved(count: str) -> None:
     stored = a_map(count, 0.05)
-    assert len(stored.regions) == 2
+    assert len({region.stable for region in stored.regions}) == 2
     assert check_free_area(MAX_EFFORT, CertifiedClaims(stored)).startswith("100 % of the free area")
 
 

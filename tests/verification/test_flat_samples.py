@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -28,8 +29,8 @@ from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.claims import Claims
 
 UNLOADED = {"L1": "1", "k": "1", "l0": "1/2"}
-SUM = {"rho": ["11/10", "13/10"], "L2": ["1/10", "3/10"]}
 PI = Fraction(math.pi)
+DATA = Path(__file__).resolve().parents[1] / "data" / "samples"
 DIFFERENCE = {"rho": ["49/100", "51/100"], "L2": ["149/100", "151/100"]}
 
 
@@ -72,8 +73,8 @@ def counted(r: RegionMap) -> bool | None:
 
 @pytest.fixture(scope="module", name="flat")
 def flat_map() -> RegionMap:
-    """One cell, whose sample has rho = L1 + L2."""
-    true = map_of(SUM)
+    """One cell, whose sample has rho = L1 + L2, which an earlier version took."""
+    true = ptmcad.RegionMap.from_json((DATA / "flat.json").read_text(encoding="utf-8"))
     (cell,) = true.cells
     assert tuple(cell.sample) == (Fraction(6, 5), Fraction(1, 5))
     assert cell.stable == len(cell.solutions) == 2
