@@ -219,5 +219,5 @@ def test_admissible_counts_have_the_same_curves() -> None:
     assert [name.split()[0] for name in names[:3]] == ["fold", "pitchfork", "fold"]
     assert len(names) == 9
     assert [c.name for c in curves(slice_of(), Count.STABLE, frozenset({"mirror-images"}))] == [
-        "fold of a stable equilibrium", "fold of a stable equilibrium with spring k3 short",
+        "fold of a stable equilibrium", "fold of a stable equilibrium with spring A3A4 short",
     ]  # fmt: skip

@@ -52,7 +52,7 @@ def test_stress_needs_numba_for_free_lengths_only() -> None:
     plain = Case("plain", "units", Fraction(1), point(), point(), "none")
     assert not plain.has_free_lengths
     done = campaign.campaign((plain,), seed=1, repeats=1)
-    assert len(done.outcomes) == 1
+    assert len(done["cases"]) == 1
 
 
 @pytest.mark.parametrize(
