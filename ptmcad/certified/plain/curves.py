@@ -133,9 +133,14 @@ def _quotient(search: _Search, change: Involution, whole: Chart) -> Iterator[Cur
 
 
 def _solved(search: _Search, vanishing: Sequence[Formula]) -> tuple[Quotient, ...]:
-    """Formulas that vanish at solutions, solved for axes; for none that springs' directions depend on."""
+    """Formulas that vanish at solutions, solved for axes; for none that springs' directions depend on.
+
+    With one unknown that costs more boxes than it saves.
+    """
     ends = [c for cone in search.problem.cones for d in cone.difference for pair in d.terms.values() for c in pair]
-    return quotients(vanishing, [k for k in (0, 1) if search.dependent and ends and not any(c.uses(k) for c in ends)])
+    if not (search.dependent and ends) or len(search.problem.unknowns) == 1:
+        return ()
+    return quotients(vanishing, [k for k in (0, 1) if not any(c.uses(k) for c in ends)])
 
 
 def _charted(search: _Search, at: Chart) -> list[int]:
