@@ -21,7 +21,7 @@ def clean_up(reports: Reports, temporaries: Sequence[str]) -> None:
         report(_CLEAR_LINE)
     for path in filter(os.path.lexists, temporaries):
         try:
-            os.unlink(path)
+            (os.rmdir if os.path.isdir(path) else os.unlink)(path)
         except OSError as error:
             report(f"error: {error}\n")
 
