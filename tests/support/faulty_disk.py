@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import shutil
 from collections.abc import Callable, Collection
 from pathlib import Path
 
@@ -13,7 +14,7 @@ class Killed(BaseException):
 
 
 class FaultyDisk:
-    """Steps are counted from 1 on, also those that fail.
+    """What renames and removes while it is entered. Steps are counted from 1 on, also those that fail.
 
     Parameters
     ----------
@@ -45,10 +46,22 @@ class FaultyDisk:
 
     def replace(self, source: Path, target: Path) -> None:
         self._step(target)
-        os.replace(source, target)
+        self._replace(source, target)
         self.look()
 
-    def unlink(self, path: Path) -> None:
-        self._step(path)
-        os.unlink(path)
+    def rmtree(self, path: Path, ignore_errors: bool = False) -> None:
+        try:
+            self._step(path)
+        except OSError:
+            if not ignore_errors:
+                raise
+        else:
+            self._rmtree(path, ignore_errors)
         self.look()
+
+    def __enter__(self) -> None:
+        self._replace, self._rmtree = os.replace, shutil.rmtree
+        os.replace, shutil.rmtree = self.replace, self.rmtree  # type: ignore[assignment]
+
+    def __exit__(self, *_: object) -> None:
+        os.replace, shutil.rmtree = self._replace, self._rmtree
