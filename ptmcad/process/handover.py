@@ -9,7 +9,7 @@ It is imported before everything else of the program, so it imports nothing that
 import os
 import signal
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from enum import Enum
 
 LAST_SECONDS = 10.0
@@ -21,7 +21,7 @@ class Topic(Enum):
     """What a message is about, and the texts it consists of."""
 
     TEMPORARY = b"T"  # paths of hidden folders or files that are about to be made, of no use once the process is gone
-    RENAMES = b"R"  # the last file of a set about to be put into place, and that file's identity
+    SAVED = b"R"  # the last file of a set, which is in place now
     DEADLINE = b"D"  # reading of time.monotonic() at which the time is over, the limit in words
     MEMORY = b"M"  # the memory limit in bytes, and in words
     LOADING = b"L"  # the libraries that are about to be loaded, or nothing when they are
@@ -29,7 +29,6 @@ class Topic(Enum):
     RESULT = b"P"  # "partial" or "complete", the result's text as it is by now, and a remark on how far it is, or ""
     RESUMABLE = b"S"  # the results handed over can be gone on from: they are worth saving when a signal ends the work;
     # with the reason why there is none as long as none has been handed over; empty where a signal is the usual end
-    WAITING = b"W"  # the folder on whose lock, which another process holds, this one has waited for some time
     PROGRESS = b"B"  # the progress bar stands in the terminal's line
     EXHAUSTED = b"X"  # memory has run out
     DONE = b"E"  # the program has come to its end and exits with its status
@@ -62,12 +61,10 @@ def send(topic: Topic, *texts: str) -> None:
         return
     body = "\0".join(texts).encode("utf-8", "surrogateescape")
     rest = memoryview(topic.value + len(body).to_bytes(_HEAD - 1, "big") + body)
-    try:
-        with undisturbed():
-            while rest:
-                rest = rest[os.write(Own.pipe, rest) :]
-    except BrokenPipeError:
-        os._exit(1)  # the watching process is gone, and this one has to go with it
+    # where the watching process is gone this one goes with it, at the end of what nothing may disturb
+    with undisturbed(), suppress(BrokenPipeError):
+        while rest:
+            rest = rest[os.write(Own.pipe, rest) :]
 
 
 def received(data: bytearray) -> Iterator[tuple[Topic, list[str]]]:
@@ -84,15 +81,6 @@ def received(data: bytearray) -> Iterator[tuple[Topic, list[str]]]:
         topic, body = Topic(bytes(data[:1])), data[_HEAD:end].decode("utf-8", "surrogateescape")
         del data[:end]
         yield topic, body.split("\0")
-
-
-def identity(path: str | os.PathLike[str]) -> str:
-    """What distinguishes a file from all others wherever it is renamed to; empty when there is none."""
-    try:
-        found = os.lstat(path)
-    except OSError:
-        return ""
-    return f"{found.st_dev}:{found.st_ino}:{found.st_size}:{found.st_mtime_ns}"
 
 
 @contextmanager

@@ -33,7 +33,7 @@ from pathlib import Path
 from typing import Any
 
 from ptmcad.errors import ConfigError, OutputError
-from ptmcad.process.handover import Topic, identity, send, undisturbed
+from ptmcad.process.handover import Topic, send, undisturbed
 from ptmcad.text.textfile import json_data, read_text
 
 Writer = Callable[[Path], None]
@@ -45,8 +45,6 @@ LOCK_PATIENCE = 1.0
 UNCHANGED = "earlier files are as they were"
 _HIDDEN = re.compile(r"\.(.*)\.[0-9a-f]{8}\.tmp", re.DOTALL)
 _PAUSE = 0.01
-_SILENCE = 1.0
-"""Seconds after which a process that waits for the lock as long as it takes says so."""
 
 
 def text_writer(text: str) -> Writer:
@@ -64,7 +62,7 @@ def reason(error: OSError | ValueError) -> str:
 
 
 @contextmanager
-def locked(folder: Path, patience: float | None = None) -> Iterator[bool]:
+def locked(folder: Path, patience: float = math.inf) -> Iterator[bool]:
     """Keep other processes of this program from renaming files in the folder.
 
     Yields whether they are kept out: False where the file system has no locks, the folder may be written to but not
@@ -72,7 +70,7 @@ def locked(folder: Path, patience: float | None = None) -> Iterator[bool]:
 
     Parameters
     ----------
-    patience : seconds to wait for the lock; None for as long as it takes. A signal's handler runs meanwhile.
+    patience : seconds to wait for the lock. A signal's handler runs meanwhile.
 
     Raises
     ------
@@ -85,27 +83,22 @@ def locked(folder: Path, patience: float | None = None) -> Iterator[bool]:
         yield False
         return
     try:
-        yield _lock(descriptor, folder, patience)
+        yield _lock(descriptor, time.monotonic() + patience)
     finally:
         os.close(descriptor)
 
 
-def _lock(descriptor: int, folder: Path, patience: float | None) -> bool:
-    until = time.monotonic() + (_SILENCE if patience is None else patience)
+def _lock(descriptor: int, until: float) -> bool:
     while True:
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return True
         except BlockingIOError:
             if time.monotonic() >= until:
-                if patience is not None:
-                    raise
-                send(Topic.WAITING, str(folder))
-                until = math.inf
+                raise
             time.sleep(_PAUSE)
         except OSError:  # a file system without locks
             return False
-        else:
-            return True
 
 
 @contextmanager
@@ -237,7 +230,6 @@ def _put_into_place(files: Mapping[Path, Path]) -> None:
     *others, (voucher, new) = files.items()
     old = [(target, path.with_name(f".old-{path.name}")) for target, path in others if os.path.lexists(target)]
     with undisturbed():
-        send(Topic.RENAMES, str(voucher), identity(new))
         try:
             for source, target in (*old, (new, voucher)):
                 os.replace(source, target)
@@ -246,10 +238,9 @@ def _put_into_place(files: Mapping[Path, Path]) -> None:
             state = f"earlier files that cannot be put back: {lost}" if lost else UNCHANGED
             place = voucher if source == new else source
             raise OutputError(f"{place} cannot be written: {reason(error)}; {state}") from error
+        send(Topic.SAVED, str(voucher))
         missing = _rename((path, target) for target, path in others)
-        shutil.rmtree(
-            new.parent, ignore_errors=True
-        )  # now: without its program this process ends with the signals' block
+        shutil.rmtree(new.parent, ignore_errors=True)  # before a signal that has come meanwhile ends this process
         if missing:
             raise OutputError(f"cannot be put into place: {missing}; {voucher} itself is saved")
 
@@ -312,13 +303,13 @@ def _why_not(target: Path, text: str, beside: Iterable[str] = ()) -> str:
     return f", because {pictures[0]} shows an older result" if pictures else ""
 
 
-def _put_at_new_name(hidden: Path, names: Iterable[Path]) -> Path:
-    for name in names:
-        send(Topic.RENAMES, str(name), identity(hidden))
-        with suppress(FileExistsError):
-            os.link(hidden, name)
-            return name
-    raise AssertionError("there are infinitely many names")
+def _put_at_new_name(hidden: Path, names: Iterator[Path]) -> Path:
+    with undisturbed():
+        while os.path.lexists(name := next(names)):
+            pass
+        os.link(hidden, name)
+        send(Topic.SAVED, str(name))
+    return name
 
 
 def how_to_go_on(place: Path) -> str:

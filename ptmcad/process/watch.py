@@ -12,7 +12,7 @@ import sys
 import time
 from collections.abc import Sequence
 
-from ptmcad.process.handover import LAST_SECONDS, Topic, identity, received
+from ptmcad.process.handover import LAST_SECONDS, Topic, received
 from ptmcad.process.streams import report
 
 GRACE_SECONDS = 0.3
@@ -50,8 +50,7 @@ class Watch:
         self.received, self.text = bytearray(), bytearray()
         self.reports: dict[Topic, list[str]] = {}
         """What the child has said last on each topic."""
-        self.temporaries: list[str] = []
-        self.placed: list[list[str]] = []
+        self.temporaries, self.saved = list[str](), list[str]()
         self.out_of_time = False
         self.used: resource.struct_rusage
         """By the child, once it has ended."""
@@ -134,11 +133,8 @@ class Watch:
                     self.reports[topic] = texts
                     if topic is Topic.TEMPORARY:
                         self.temporaries += texts
-                    if topic is Topic.RENAMES:
-                        self.placed.append(texts)
-                    if topic is Topic.WAITING:
-                        clear = _CLEAR_LINE if Topic.PROGRESS in self.reports else ""
-                        report(f"{clear}waiting   another process is writing in {texts[0]}\n")
+                    if topic is Topic.SAVED:
+                        self.saved += texts
             elif end == self.printed:
                 self.text += data
             elif self.asked == math.inf:  # afterwards it is the child's echo of what asked it
@@ -148,7 +144,7 @@ class Watch:
         """Leave nothing behind, say what there is to say, and return the exit status."""
         # a library may call exit() when memory runs out: then the child has not said that it was done
         deserted = 0 <= ended <= 128 and Topic.DONE not in self.reports
-        if ended < 0 or deserted or self.caught or self.out_of_time or Topic.EXHAUSTED in self.reports:
+        if Topic.DONE not in self.reports:
             self._clean_up()
         resumable = self.reports.get(Topic.RESUMABLE)
         if self.caught and resumable != [""]:  # otherwise it is the usual end
@@ -156,7 +152,7 @@ class Watch:
             if resumable or self.reports.get(Topic.RESULT, [""])[0] == "complete":
                 self._save_last(how)
             elif Topic.DONE not in self.reports:
-                report(f"{how}; {what_is_there(self.placed)}\n")
+                report(f"{how}; {what_is_there(self.saved)}\n")
         if self.caught:
             return 128 + self.caught[0]
         text = self.text.decode(errors="replace")
@@ -214,11 +210,11 @@ class Watch:
 
     def _clean_up(self) -> None:
         """Do what the child would have done: clear its line, remove its files."""
-        import shutil
-
         if Topic.PROGRESS in self.reports:
             report(_CLEAR_LINE)
         for path in filter(os.path.lexists, self.temporaries):
+            import shutil
+
             try:
                 shutil.rmtree(path)
             except OSError as error:
@@ -245,10 +241,9 @@ class Watch:
 
         target, beside = Path(self.reports[Topic.TARGET][0]), self.reports[Topic.TARGET][1:]
         state, text, remark = self.reports[Topic.RESULT]
-        placed = _still_there(self.placed[-1:])
         try:
-            if placed:
-                place, where = Path(placed[0]), ""
+            if self.saved:
+                place, where = Path(self.saved[-1]), ""
             else:
                 place, where = save_stopped(target, text, whole=state == "complete", beside=beside)
         except OutputError as error:
@@ -259,18 +254,9 @@ class Watch:
         return 3
 
 
-def _still_there(placed: Sequence[Sequence[str]]) -> list[str]:
-    return [path for path, mark in placed if identity(path) == mark]
-
-
-def what_is_there(placed: Sequence[Sequence[str]]) -> str:
-    """Which files a stopped command has written, in words.
-
-    Parameters
-    ----------
-    placed : for each set of files that was put into place, or was to be, its last file and that file's identity.
-    """
-    found = _still_there(placed)
+def what_is_there(saved: Sequence[str]) -> str:
+    """In words, what a stopped command has saved: the last file of each set that was put into place."""
+    found = list(filter(os.path.lexists, saved))
     if not found:
         return "nothing was saved"
     if len(found) == 1:
