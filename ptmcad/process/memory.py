@@ -13,15 +13,11 @@ import os
 import resource
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple
 
 from ptmcad.errors import ConfigError
 from ptmcad.process.handover import Topic, send
-
-DEFAULT_SHARE = Fraction(9, 10)
-"""The part of the machine's memory that is the bound where none is asked for."""
 
 MIN_BOUND = 64 << 20
 """The exact engine's libraries alone need about half of this."""
@@ -61,7 +57,7 @@ def default_bound() -> Bound:
         with suppress(OSError, ValueError):  # no such kind of container, or "max"
             sizes.append((int(path.read_text(encoding="ascii")), "container"))
     least, whose = min(sizes)
-    size = int(least * DEFAULT_SHARE)
+    size = least * 9 // 10
     return Bound(size, f"{size / (1 << 30):.3g}G, nine tenths of this {whose}'s (--max-memory sets another),")
 
 
