@@ -5,12 +5,13 @@ can stop or save anything there. So the computation runs in a forked child, and 
 
 Guarantee: a signal to either process, or the time limit, ends the child within a second whatever it does: it is asked
 to leave first and killed after `ptmcad.process.watch.GRACE_SECONDS`. After a signal, one that searches a certified map
-has up to `ptmcad.process.handover.LAST_SECONDS` to hand over what it knows; a second signal ends that. What the
-caller has made of signals, masks and standard streams is no obstacle. No temporary file that the child has reported stays. When a limit ends it (time; the
-caller's on processor time; memory, also where a library aborts on a failed allocation or the system kills the child),
-the last result that it handed over is saved and the status is 3. When a signal or a crash ends it, such a result is
-saved if one can go on from it, and where there is none yet the message says why; where there is nothing to go on from
-it says which files had been written before, or that nothing was saved. A parent that is killed takes the child with it.
+has up to `ptmcad.process.handover.LAST_SECONDS` to hand over what it knows; a second signal ends that. What the caller
+has made of signals, masks and standard streams is no obstacle. No temporary file that the child has reported stays.
+When a limit ends it (time; the caller's on processor time; memory, also where a library aborts on a failed allocation
+or the system kills the child), the last result that it handed over is saved and the status is 3. When a signal or a
+crash ends it, such a result is saved if one can go on from it, and where there is none yet the message says why; where
+there is nothing to go on from it says which files had been written before, or that nothing was saved. A parent that is
+killed takes the child with it.
 
 Not guaranteed: the last sentence on a system whose pipes send no signal (it is tested on Linux).
 """
