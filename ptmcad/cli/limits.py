@@ -106,6 +106,5 @@ def held(limits: Limits) -> Iterator[None]:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     if bound is not None:
         send(Topic.MEMORY, str(bound.size), bound.text)
-    send(Topic.LOADING, "")  # the program itself is there
     with nullcontext() if bound is None else bounded(bound):
         yield

@@ -24,7 +24,6 @@ class Topic(Enum):
     SAVED = b"R"  # the last file of a set, which is in place now
     DEADLINE = b"D"  # reading of time.monotonic() at which the time is over, the limit in words
     MEMORY = b"M"  # the memory limit in bytes, and in words
-    LOADING = b"L"  # the libraries that are about to be loaded, or nothing when they are
     TARGET = b"F"  # path of the result file, names of the other files that are to be written
     RESULT = b"P"  # "partial" or "complete", the result's text as it is by now, and a remark on how far it is, or ""
     RESUMABLE = b"S"  # the results handed over can be gone on from: they are worth saving when a signal ends the work;

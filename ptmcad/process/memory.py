@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ptmcad.errors import ConfigError
-from ptmcad.process.handover import Topic, send
 
 MIN_BOUND = 64 << 20
 """The exact engine's libraries alone need about half of this."""
@@ -91,19 +90,21 @@ def bounded(bound: Bound) -> Iterator[None]:
 
 
 @contextmanager
-def loading(what: str) -> Iterator[None]:
+def loading(what: str = "") -> Iterator[None]:
     """Load libraries inside, without the bound, which holds again afterwards.
 
-    The watching process is informed: so it knows that a failure here under a low limit of the caller's, which cannot be
-    put off, is that limit's.
+    Parameters
+    ----------
+    what : what they are for, if a bound is to be refused that leaves too little room beside them.
 
     Raises
     ------
     MemoryError
         When a library says that it cannot be loaded for lack of memory, whatever it raises, or just that it cannot be
         loaded, under a small limit of the caller's.
+    ConfigError
+        That names the least bound that would do.
     """
-    send(Topic.LOADING, what)
     kept = resource.getrlimit(resource.RLIMIT_DATA)
     resource.setrlimit(resource.RLIMIT_DATA, _in_force[-1][1] if _in_force else kept)
     try:
@@ -116,7 +117,13 @@ def loading(what: str) -> Iterator[None]:
         raise
     finally:
         resource.setrlimit(resource.RLIMIT_DATA, kept)
-    send(Topic.LOADING, "")
+    least = missing_room()
+    if what and least is not None:
+        raise ConfigError(
+            f"{_in_force[-1][0].text} is too little for {what}, which has {in_units(least - MIN_ROOM)} when its "
+            f"libraries are loaded: at least {-(-least // (1 << 20))}M",
+            key="--max-memory",
+        )
 
 
 def private_memory() -> int | None:
@@ -129,23 +136,6 @@ def missing_room(room: int = MIN_ROOM) -> int | None:
     """The least bound that would do, in bytes, if the libraries that are loaded by now leave less room; else None."""
     used = private_memory()
     return used + room if used is not None and _in_force and used + room > _in_force[-1][0].size else None
-
-
-def check_room(what: str) -> None:
-    """Refuse a bound below what is needed beside the libraries that are loaded by now.
-
-    Raises
-    ------
-    ConfigError
-        That names the least bound that would do.
-    """
-    least = missing_room()
-    if least is not None:
-        raise ConfigError(
-            f"{_in_force[-1][0].text} is too little for {what}, which has {in_units(least - MIN_ROOM)} when its "
-            f"libraries are loaded: at least {-(-least // (1 << 20))}M",
-            key="--max-memory",
-        )
 
 
 def speaks_of_memory(text: str) -> bool:

@@ -189,8 +189,8 @@ class Watch:
     def _why_of_memory(self, crash: str, deserted: bool, text: str) -> str:
         """Whether lack of memory has ended the child, in words, which name the lowest limit; empty if not.
 
-        Where nothing says so it is most likely when libraries were loaded under a small limit of the caller's, or half
-        of a limit had been used.
+        Where nothing says so it is most likely under a small limit of the caller's, or when half of a limit had been
+        used.
         """
         if not crash and not deserted and Topic.EXHAUSTED not in self.reports:
             return ""
@@ -201,9 +201,8 @@ class Watch:
         reached = f"the memory limit of {min(limits, default=(0, 'the system'))[1]} was reached"
         if Topic.EXHAUSTED in self.reports or speaks_of_memory(text):
             return reached
-        loading = self.reports.get(Topic.LOADING, ["the program"])[0] and any(size < LOW_LIMIT for size, _ in callers)
         most = self.used.ru_maxrss << (0 if sys.platform == "darwin" else 10)
-        if not loading and all(2 * most < size for size, _ in limits):
+        if all(size >= LOW_LIMIT for size, _ in callers) and all(2 * most < size for size, _ in limits):
             return ""
         last = text.rstrip().rpartition("\n")[2][:200] or "without a word"
         return f"most likely {reached} ({crash or last})"
