@@ -82,6 +82,13 @@ def received(data: bytearray) -> Iterator[tuple[Topic, list[str]]]:
         yield topic, body.split("\0")
 
 
+def remove(folder: str | os.PathLike[str]) -> None:
+    """Remove a folder in which there are files alone; what else lies in it is not ours."""
+    for name in os.listdir(folder):
+        os.unlink(os.path.join(folder, name))
+    os.rmdir(folder)
+
+
 @contextmanager
 def undisturbed() -> Iterator[None]:
     """A few steps between which no signal gets in, except one that cannot be blocked."""

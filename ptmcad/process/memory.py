@@ -11,12 +11,14 @@ from __future__ import annotations
 
 import os
 import resource
+import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, redirect_stderr, suppress
 from pathlib import Path
 from typing import NamedTuple
 
 from ptmcad.errors import ConfigError
+from ptmcad.process.handover import watched
 
 MIN_BOUND = 64 << 20
 """The exact engine's libraries alone need about half of this."""
@@ -107,8 +109,11 @@ def loading(what: str = "") -> Iterator[None]:
     """
     kept = resource.getrlimit(resource.RLIMIT_DATA)
     resource.setrlimit(resource.RLIMIT_DATA, _in_force[-1][1] if _in_force else kept)
+    # what they print meanwhile the process that watches shows, unless it comes of a limit
+    printed = open(2, "w", 1, closefd=False) if watched() else sys.stderr
     try:
-        yield
+        with redirect_stderr(printed):
+            yield
     except (ImportError, OSError) as error:
         missing = isinstance(error, ModuleNotFoundError)
         small = any(size < LOW_LIMIT for size, _ in caller_limits())  # of which many loaders say nothing, as LLVM's

@@ -22,7 +22,6 @@ import json
 import math
 import os
 import re
-import shutil
 import stat
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -33,7 +32,7 @@ from pathlib import Path
 from typing import Any
 
 from ptmcad.errors import ConfigError, OutputError
-from ptmcad.process.handover import Topic, send, undisturbed
+from ptmcad.process.handover import Topic, remove, send, undisturbed
 from ptmcad.text.textfile import json_data, read_text
 
 Writer = Callable[[Path], None]
@@ -114,7 +113,8 @@ def _hidden_folder(target: Path) -> Iterator[Path]:
                     yield path
                     return
         finally:
-            shutil.rmtree(path, ignore_errors=True)  # what cannot be removed is hidden, and removed by a later run
+            with suppress(OSError):  # what cannot be removed is hidden, and removed by a later run
+                remove(path)
 
 
 def _remove_stale(folder: Path, names: Iterable[str]) -> None:
@@ -127,7 +127,7 @@ def _remove_stale(folder: Path, names: Iterable[str]) -> None:
                 continue
             with suppress(OSError), locked(Path(entry.path), patience=0) as alone:
                 if alone:
-                    shutil.rmtree(entry.path)
+                    remove(entry)
 
 
 def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
@@ -240,7 +240,8 @@ def _put_into_place(files: Mapping[Path, Path]) -> None:
             raise OutputError(f"{place} cannot be written: {reason(error)}; {state}") from error
         send(Topic.SAVED, str(voucher))
         missing = _rename((path, target) for target, path in others)
-        shutil.rmtree(new.parent, ignore_errors=True)  # before a signal that has come meanwhile ends this process
+        with suppress(OSError):  # before a signal that has come meanwhile ends this process
+            remove(new.parent)
         if missing:
             raise OutputError(f"cannot be put into place: {missing}; {voucher} itself is saved")
 

@@ -12,7 +12,7 @@ import sys
 import time
 from collections.abc import Sequence
 
-from ptmcad.process.handover import LAST_SECONDS, Topic, received
+from ptmcad.process.handover import LAST_SECONDS, Topic, received, remove
 from ptmcad.process.streams import report
 
 GRACE_SECONDS = 0.3
@@ -212,10 +212,8 @@ class Watch:
         if Topic.PROGRESS in self.reports:
             report(_CLEAR_LINE)
         for path in filter(os.path.lexists, self.temporaries):
-            import shutil
-
             try:
-                shutil.rmtree(path)
+                remove(path)
             except OSError as error:
                 report(f"error: {error}\n")
 

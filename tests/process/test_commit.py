@@ -23,7 +23,7 @@ pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="without locks n
 
 NAMES = ("fig2.png", "fig2.svg", "fig2.json")
 VOUCHER = NAMES[-1]
-STEPS = 8
+STEPS = 10
 """More than putting three files into place over three others, or taking that back, and tidying up take."""
 Files = dict[str, str]
 

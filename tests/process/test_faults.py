@@ -493,7 +493,6 @@ def test_a_killed_program_takes_its_computation_along(tmp_path: Path) -> None:
 
 
 KILLER = """
-import shutil
 program, steps = os.getpid(), 0
 def killing(work):
     def step(*given, **named):
@@ -508,10 +507,10 @@ def killing(work):
         return work(*given, **named)
     return step
 def engine(progress, partial):
-    os.replace, shutil.rmtree = killing(os.replace), killing(shutil.rmtree)
+    os.replace, os.unlink, os.rmdir = map(killing, (os.replace, os.unlink, os.rmdir))
 """
 OLD = {"fig2.json": "old", "fig2.png": "old picture", "fig2.svg": "old picture"}
-"""Six steps: two old pictures are hidden, JSON, two pictures, and the hidden folder is removed."""
+"""Eight steps: two old pictures are hidden, JSON, two pictures; then what is hidden is removed, and its folder."""
 NEW = {
     "fig2.json": '{"status": "exact", "stage": "variety"}',
     "fig2.png": "half a picture",
@@ -533,7 +532,7 @@ def killed_before_step(folder: Path, step: int, victims: str) -> tuple[Running, 
 
 
 @linux
-@pytest.mark.parametrize("step", [2, 4, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 3, 5, 6))])
+@pytest.mark.parametrize("step", [2, 4, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 3, 5, 6, 7, 8))])
 def test_a_killed_computation_between_two_steps(tmp_path: Path, step: int) -> None:
     """The result is in place, or the program saves it beside the older one, and says which; pictures may be missing."""
     running, status, errors = killed_before_step(tmp_path, step, "os.getpid(),")
@@ -553,7 +552,7 @@ def visible_before(step: int) -> dict[str, str]:
 
 
 @linux
-@pytest.mark.parametrize("step", [3, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2, 4, 5, 6))])
+@pytest.mark.parametrize("step", [3, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2, 4, 5, 6, 7, 8))])
 def test_a_killed_program_between_two_steps(tmp_path: Path, step: int) -> None:
     """The computation completes what was begun, and ends then."""
     running, _, _ = killed_before_step(tmp_path, step, "os.getppid(),")
@@ -561,7 +560,7 @@ def test_a_killed_program_between_two_steps(tmp_path: Path, step: int) -> None:
 
 
 @linux
-@pytest.mark.parametrize("step", [2, 4, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 3, 5, 6))])
+@pytest.mark.parametrize("step", [2, 4, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 3, 5, 6, 7, 8))])
 def test_a_kill_of_both_between_two_steps(tmp_path: Path, step: int) -> None:
     """Never a picture beside the JSON of another run; and who comes next removes what is hidden."""
     running, _, _ = killed_before_step(tmp_path, step, "os.getppid(), os.getpid()")

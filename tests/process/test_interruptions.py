@@ -31,7 +31,6 @@ import fcntl, os, pathlib, signal, stat, sys, time, types
 signal.signal(signal.SIGINT, lambda *_: os._exit(130))  # the interpreter's own start is not the program's
 here, step, engine = pathlib.Path(sys.argv.pop(1)), int(sys.argv.pop(1)), sys.argv.pop(1)
 program = os.getpid()
-import shutil
 from ptmcad.process import handover
 def arrived(name):
     (here / "writing").write_text(str(os.getpid()))
@@ -49,7 +48,7 @@ def waiting_before(work):
                 time.sleep(0.001)
         return work(*given, **named)
     return counted
-rename, remove = os.replace, shutil.rmtree
+disk = os.replace, os.unlink, os.rmdir
 flock, tell = fcntl.flock, handover.send
 def waiting(file, operation):
     if step == 0 and (here / "drawn").exists() and isinstance(file, int) and stat.S_ISDIR(os.fstat(file).st_mode):
@@ -66,7 +65,7 @@ handover.send = telling
 def draw(result, path, **how):
     path.write_text(result.slice.count.value)
     (here / "drawn").touch()
-    os.replace, shutil.rmtree = waiting_before(rename), waiting_before(remove)
+    os.replace, os.unlink, os.rmdir = map(waiting_before, disk)
 sys.modules["ptmcad.show.render"] = render = types.ModuleType("ptmcad.show.render")
 render.draw = draw
 if engine != "real":
@@ -137,7 +136,7 @@ class Campaign:
         """One run, ended so; what it has left is checked, and what it has saved is cleared away."""
         before = self.counts()[f"{NAME}.json"]
         count = "total" if before == "stable" else "stable"
-        step = {"a step": choose.randint(1, 7), "the lock": 0}.get(moment, -1)
+        step = {"a step": choose.randint(1, 8), "the lock": 0}.get(moment, -1)
         held = os.open(self.out, os.O_RDONLY)
         process = self.start(count, step)
         if moment == "a random moment":

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import os
-import shutil
 from collections.abc import Callable, Collection
 from pathlib import Path
 
@@ -46,22 +45,22 @@ class FaultyDisk:
 
     def replace(self, source: Path, target: Path) -> None:
         self._step(target)
-        self._replace(source, target)
+        self._real[0](source, target)
         self.look()
 
-    def rmtree(self, path: Path, ignore_errors: bool = False) -> None:
-        try:
-            self._step(path)
-        except OSError:
-            if not ignore_errors:
-                raise
-        else:
-            self._rmtree(path, ignore_errors)
+    def unlink(self, path: Path) -> None:
+        self._step(path)
+        self._real[1](path)
+        self.look()
+
+    def rmdir(self, path: Path) -> None:
+        self._step(path)
+        self._real[2](path)
         self.look()
 
     def __enter__(self) -> None:
-        self._replace, self._rmtree = os.replace, shutil.rmtree
-        os.replace, shutil.rmtree = self.replace, self.rmtree  # type: ignore[assignment]
+        self._real = os.replace, os.unlink, os.rmdir
+        os.replace, os.unlink, os.rmdir = self.replace, self.unlink, self.rmdir  # type: ignore[assignment]
 
     def __exit__(self, *_: object) -> None:
-        os.replace, shutil.rmtree = self._replace, self._rmtree
+        os.replace, os.unlink, os.rmdir = self._real
