@@ -20,17 +20,14 @@ _ROOM = [bytearray(96 << 10)]
 _YOUNG_OBJECTS = 100_000
 """More than a short run makes: the collector looks at those made since its last look when they are so many."""
 
-_NAMES = ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT", "SIGUSR1", "SIGUSR2", "SIGALRM")
-STOPPING = tuple(getattr(signal, name) for name in _NAMES if hasattr(signal, name))
+STOPPING = (
+    signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGUSR1, signal.SIGUSR2, signal.SIGALRM,
+)  # fmt: skip
 """The signals that people and batch systems send to end a program, and whose default is to do so."""
 
 
 def main() -> "NoReturn":
     """Run the command line in a process of its own, watched by this one, and exit with its status."""
-    if not hasattr(os, "fork"):
-        from ptmcad.cli import main as run_here
-
-        run_here()
     heeded = tuple(number for number in STOPPING if signal.getsignal(number) is not signal.SIG_IGN)
     for number in heeded:
         signal.signal(number, lambda caught, _frame: os._exit(128 + caught))  # there is nothing to tidy up yet
@@ -66,7 +63,7 @@ def _low_memory_limits() -> str:
     for line in lines:
         for option, name in (("-d", "Max data size"), ("-v", "Max address space")):
             soft = line[len(name) :].split()[0] if line.startswith(name) else "unlimited"
-            if soft != "unlimited" and int(soft) < 1 << 30:  # `ptmcad.process.shortage.LOW_LIMIT`
+            if soft != "unlimited" and int(soft) < 1 << 30:  # `ptmcad.process.memory.LOW_LIMIT`
                 named += f", with the memory limit of {int(soft) >> 10}K that the caller has set (ulimit {option})"
     return named
 

@@ -130,12 +130,9 @@ def test_json_needs_no_picture_or_symbolic_library(tmp_path: Path) -> None:
     record = str(ROOT / "configs" / "fig4.yaml")
     code = (
         "import sys\n"
-        "from ptmcad.cli import main\n"
+        "from ptmcad.cli import run\n"
         f"sys.argv = ['ptmcad', 'classify', {record!r}, '--format', 'json', '--out', '.']\n"
-        "try:\n"
-        "    main()\n"
-        "except SystemExit as end:\n"
-        "    assert not end.code, end.code\n"
+        "assert run() == 0\n"
     )
     loaded = loaded_after(code, tmp_path)
     assert "flint" in loaded

@@ -22,7 +22,7 @@ from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached, expect, quoted
 from ptmcad.mechanism import ClosedMechanism, ptm
 from ptmcad.options import Options, Progress
-from ptmcad.process.memory import check_room, loading
+from ptmcad.process.memory import loading
 from ptmcad.question.config import slice_from
 from ptmcad.question.savings import load_all, switched_off
 from ptmcad.question.slice import NOTHING_ADMISSIBLE, Count, Slice, without_free_lengths
@@ -195,7 +195,6 @@ def load_certified(progress: Progress | None = None, options: Options | None = N
     with loading("the certified engine"):
         import_module("ptmcad.certified.compiled")  # first: where numba is missing, it says so
         from ptmcad.certified.loading import load
-    check_room("the certified engine")
     return load(progress, options)
 
 

@@ -19,7 +19,7 @@ from ptmcad.answer.counts import Counts
 from ptmcad.answer.poses import Poses
 from ptmcad.errors import LimitReached
 from ptmcad.mechanism import Mechanism, Model, System
-from ptmcad.process.memory import check_room, loading
+from ptmcad.process.memory import loading
 from ptmcad.question.slice import Count
 
 if TYPE_CHECKING:
@@ -71,7 +71,6 @@ def counts_by_search(model: Model, point: Mapping[str, Fraction], timeout: float
         from ptmcad.certified.plain.points import plain_counter
         from ptmcad.certified.plain.poses import point_slice
         from ptmcad.certified.plain.problem import MAX_UNKNOWNS_AT_POINTS
-    check_room("the certified engine")
     tried = "the Groebner basis of the equations grows beyond what is computed at a point"
     if len(model.unknowns) > MAX_UNKNOWNS_AT_POINTS:
         raise LimitReached(f"{tried}, and the certified engine takes up to {MAX_UNKNOWNS_AT_POINTS} unknowns there")
@@ -102,5 +101,4 @@ def poses_by_search(mechanism: Mechanism, point: Mapping[str, Fraction], digits:
     """All equilibria at a point, by the certified engine; UNDECIDED where they were not all told apart."""
     with loading("the certified engine"):
         from ptmcad.certified.plain.poses import plain_poses
-    check_room("the certified engine")
     return plain_poses(mechanism, point, digits)

@@ -13,7 +13,7 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.ask.manyangles import poses_by_search, work_by_msolve, work_for
 from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
 from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, ptm
-from ptmcad.process.memory import check_room, loading
+from ptmcad.process.memory import loading
 from ptmcad.question.config import point_from, point_from_mapping, units_of
 from ptmcad.question.slice import Slice, have_free_lengths
 from ptmcad.text.expressions import constant
@@ -83,7 +83,6 @@ def poses_at(model: Model, parameters: Mapping[str, Fraction], digits: int) -> P
         assert isinstance(model, Mechanism | ClosedMechanism)  # no other has springs
         with loading("the certified engine"):
             from ptmcad.certified.plain.poses import plain_poses
-        check_room("the certified engine")
         return plain_poses(model, parameters, digits)
     from ptmcad.exact.poses import exact_poses
 

@@ -36,7 +36,7 @@ from ptmcad.cover.rectangles import MAX_STEPS, Cover
 from ptmcad.cover.simplification import combined, gathered
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import DEFAULTS, Options
-from ptmcad.process.handover import LAST_SECONDS, Leaving
+from ptmcad.process.handover import LAST_SECONDS, leave_if_asked
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice
 from ptmcad.text.bounds import percent
@@ -289,7 +289,7 @@ class _Run:
 
     def _must_end(self, boxes: int) -> bool:
         """Whether the search has to end for the last map of so many boxes; a process that is to leave ends here."""
-        Leaving.check()
+        leave_if_asked()
         return self.pace.late(boxes)
 
     def _late(self) -> bool:

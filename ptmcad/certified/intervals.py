@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.intervals import CertifiedChange, CertifiedInterval, CertifiedIntervals
-from ptmcad.process.memory import check_room, loading
+from ptmcad.process.memory import loading
 from ptmcad.question.domain import prove
 from ptmcad.question.line import restricted, varying_axis
 from ptmcad.question.slice import Axis, Slice
@@ -41,7 +41,6 @@ def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits:
     """
     with loading("the certified engine"):
         from ptmcad.certified.line import line_counts
-    check_room("the certified engine")
     varying, other, value = varying_axis(slice, along, at)
     on_line = {name: restricted(e, varying, value) for name, e in slice.parameters.items()}
     prove(slice.model, on_line, (slice.axes[varying], Axis(other, value, value)))

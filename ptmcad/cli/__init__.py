@@ -10,15 +10,13 @@ SIGHUP; bad input gets one message on standard error, no traceback.
 from __future__ import annotations
 
 import os
-import signal
 import sys
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from errno import ENOMEM
 from importlib import import_module
-from types import FrameType
-from typing import Any, NoReturn
+from typing import Any
 
 import click
 
@@ -101,14 +99,8 @@ def _show_version(context: click.Context, wanted: bool) -> None:
         context.exit()
 
 
-def main(arguments: Sequence[str] | None = None) -> NoReturn:
-    """Run the command line in this process and exit with its status; `ptmcad.__main__` runs it in a watched one."""
-    signal.signal(signal.SIGTERM, _terminate)
-    sys.exit(run(arguments))
-
-
 def run(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit status."""
+    """Run the command line in this process and return its exit status; `ptmcad.__main__` runs it in a watched one."""
     given = len(sys.argv) - 1 if arguments is None else len(arguments)
     if given > MAX_ARGUMENTS:
         click.echo(f"error: {given} arguments are given, more than {MAX_ARGUMENTS}: write a problem record", err=True)
@@ -187,8 +179,3 @@ def _one_line(error: click.ClickException) -> str:
         text = f"{key}: {'is missing' if isinstance(error, click.MissingParameter) else error.message}"
     text = shown(text[:1].lower() + text[1:] if " " in text.partition(":")[0] else text).rstrip(".")
     return text if text.endswith("?") else f"{text}; see {command} --help"
-
-
-def _terminate(_number: int, _frame: FrameType | None) -> NoReturn:
-    """Leave through every ``finally``, so that temporary files are removed."""
-    raise SystemExit(143)

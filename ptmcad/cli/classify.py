@@ -26,14 +26,7 @@ from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.mechanism import ptm
 from ptmcad.options import Options
 from ptmcad.process.handover import Topic, send, watched
-from ptmcad.process.output import (
-    check_writable,
-    how_to_go_on,
-    save_stopped,
-    text_writer,
-    where_saved,
-    write_files,
-)
+from ptmcad.process.output import check_writable, how_to_go_on, save_stopped, text_writer, write_files
 from ptmcad.question.config import Family
 from ptmcad.question.savings import check_names, switched_off
 from ptmcad.question.slice import Count, Slice
@@ -128,8 +121,8 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
             if stopped.partial is None or "json" not in output.formats:
                 raise
             text = _hand_over(output, stopped.partial)  # first: if this process is ended now, the other one has it
-            place = save_stopped(target, text, beside=beside)
-            where = f"partial map{_open_share(stopped.partial)} saved to {place}{where_saved(target, place, beside)}"
+            place, why = save_stopped(target, text, beside=beside)
+            where = f"partial map{_open_share(stopped.partial)} saved to {place}{why}"
             further = "" if getattr(stopped.partial, "cover", None) is None else how_to_go_on(place)
             raise LimitReached(f"{stopped}; {where}{further}") from stopped
         _save(result, slice.name, output)

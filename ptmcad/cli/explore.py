@@ -66,7 +66,7 @@ def _open(address: str, folder: Path) -> None:
     What a program is started with is seen by every user of the machine, and the address has the token.
     """
     path = folder / "explore.html"
-    send(Topic.TEMPORARY, str(path), str(path.parent))
+    send(Topic.TEMPORARY, str(folder))
     path.touch(0o600, exist_ok=False)
     path.write_text(f'<!DOCTYPE html><meta http-equiv="refresh" content="0; url={address}">')
     if click.launch(path.as_uri()):  # there is no program of the desktop for that

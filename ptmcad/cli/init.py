@@ -10,7 +10,7 @@ import click
 from ptmcad.cli.mechanisms import known_starter
 from ptmcad.cli.values import mechanisms
 from ptmcad.errors import ConfigError, OutputError
-from ptmcad.process.commit import reason
+from ptmcad.process.output import reason
 from ptmcad.question.config.starters import NAMES, starter_text
 from ptmcad.question.shipped import shipped_records
 

@@ -105,7 +105,6 @@ def held(limits: Limits) -> Iterator[None]:
     # NumPy's linear algebra would reserve memory for every processor; the small matrices here are no faster on several
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     if bound is not None:
-        send(Topic.MEMORY, str(bound.size), bound.text, "default" if limits.max_memory is None else "asked")
-    send(Topic.LOADING, "")  # the program itself is there
+        send(Topic.MEMORY, str(bound.size), bound.text)
     with nullcontext() if bound is None else bounded(bound):
         yield

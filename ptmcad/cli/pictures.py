@@ -12,7 +12,7 @@ from pathlib import Path
 import click
 
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown_path
-from ptmcad.process.output import Writer, save_stopped, where_saved, write_files
+from ptmcad.process.output import Writer, save_stopped, write_files
 from ptmcad.show.style import Style
 
 
@@ -71,6 +71,5 @@ def write_result(folder: Path, writers: Mapping[str, Writer], name: str, text: s
         return write_files(folder, writers)
     except PictureError as error:
         beside = tuple(other for other in writers if other != name)
-        place = save_stopped(folder / name, text, whole=True, beside=beside)
-        why = where_saved(folder / name, place, beside)
+        place, why = save_stopped(folder / name, text, whole=True, beside=beside)
         raise PictureError(f"{error}; the result, without pictures, is in {place}{why}") from error

@@ -4,14 +4,9 @@ Guarantee: on a system whose pipes send signals (Linux) the kernel ends this pro
 the other one holds the pipe is closed. Elsewhere nothing is promised.
 """
 
+import fcntl
 import os
 import signal
-import sys
-
-if sys.platform != "win32":
-    import fcntl
-
-PIPE_SIGNAL = (signal.SIGIO,) if hasattr(signal, "SIGIO") else ()
 
 
 def end_with(lifeline: int, parent: int) -> None:
@@ -22,9 +17,8 @@ def end_with(lifeline: int, parent: int) -> None:
     lifeline : the end at which the pipe is read; nobody writes to it.
     parent : the parent's number: it may have ended before.
     """
-    if hasattr(os, "O_ASYNC"):
-        signal.signal(signal.SIGIO, signal.SIG_DFL)  # the caller may have had it ignored
-        fcntl.fcntl(lifeline, fcntl.F_SETOWN, os.getpid())
-        fcntl.fcntl(lifeline, fcntl.F_SETFL, os.O_ASYNC)  # sends SIGIO, whose default is to end the process
+    signal.signal(signal.SIGIO, signal.SIG_DFL)  # the caller may have had it ignored
+    fcntl.fcntl(lifeline, fcntl.F_SETOWN, os.getpid())
+    fcntl.fcntl(lifeline, fcntl.F_SETFL, os.O_ASYNC)  # sends SIGIO, whose default is to end the process
     if os.getppid() != parent:
         os._exit(1)

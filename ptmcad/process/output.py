@@ -1,42 +1,49 @@
-"""The files of a result: all of them written under hidden names first, then put into place together.
+"""The files of a result: written under hidden names first, then put into place together, under a lock on their folder.
 
-Guarantee: every file under its own name is whole, and the files of one run replace those of another as
-`ptmcad.process.commit` says. Nothing is put into place before everything is written and on disk. Whatever stops the
-writing (an error, Ctrl-C, a signal that raises) leaves no temporary file; a process that is killed outright may leave
-hidden ``.NAME.*.tmp.*`` and ``.NAME.*.old.*`` files and nothing else, and the next `check_writable` for the same name
-removes them. Files of live processes are recognised by the lock that these hold. A result that a limit has stopped
-replaces no complete one.
+The last file of a set is its *voucher* (the JSON); the others are pictures of what it says.
+
+Guarantee: every file under its own name is whole. Whatever ends the process, at every moment the files that can be seen
+are of one set: the voucher is the old one or the new one, and the others are of the same set or missing. Nothing is put
+into place before everything is written and on disk; then the old pictures are hidden, the new voucher is renamed over
+the old one, and the new pictures are renamed. An error before the voucher is in place restores the older set; one after
+it costs the pictures that it concerns. What is hidden lies in a folder ``.NAME.*.tmp`` that its process locks and
+removes; one that a killed process has left is removed by the next `check_writable` for the same name. No file in a
+folder says what to do. A result that a limit has stopped replaces no complete one.
+
+Not guaranteed: the order of the steps on disk when the machine loses power; that two processes that write the same
+set at once, on a file system without locks, do not mix theirs.
 """
 
 from __future__ import annotations
 
+import errno
+import fcntl
 import json
+import math
 import os
+import re
 import stat
-import sys
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from fractions import Fraction
 from itertools import chain, count
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 from ptmcad.errors import ConfigError, OutputError
-from ptmcad.process import commit
-from ptmcad.process.commit import HIDDEN, UNCHANGED, hidden, locked, put_into_place, reason
-from ptmcad.process.handover import Topic, identity, send
+from ptmcad.process.handover import Topic, remove, send, undisturbed
 from ptmcad.text.textfile import json_data, read_text
 
-if sys.platform != "win32":
-    import fcntl
-
 Writer = Callable[[Path], None]
-Placing = Callable[[Path, Mapping[Path, Path]], tuple[Path, ...]]
 
 MAX_BYTES = 60_000_000
 """Of an older result that is looked at."""
 LOCK_PATIENCE = 1.0
 """Seconds that the parts of a program that must come to an end wait for the lock."""
+UNCHANGED = "earlier files are as they were"
+_HIDDEN = re.compile(r"\.(.*)\.[0-9a-f]{8}\.tmp", re.DOTALL)
+_PAUSE = 0.01
 
 
 def text_writer(text: str) -> Writer:
@@ -46,6 +53,81 @@ def text_writer(text: str) -> Writer:
         path.write_text(text, encoding="utf-8", newline="\n")
 
     return write
+
+
+def reason(error: OSError | ValueError) -> str:
+    """What the system says."""
+    return getattr(error, "strerror", None) or str(error)
+
+
+@contextmanager
+def locked(folder: Path, patience: float = math.inf) -> Iterator[bool]:
+    """Keep other processes of this program from renaming files in the folder.
+
+    Yields whether they are kept out: False where the file system has no locks, the folder may be written to but not
+    read, or is gone.
+
+    Parameters
+    ----------
+    patience : seconds to wait for the lock. A signal's handler runs meanwhile.
+
+    Raises
+    ------
+    BlockingIOError
+        When another process has held the lock all the time.
+    """
+    try:
+        descriptor = os.open(folder, os.O_RDONLY)
+    except (PermissionError, FileNotFoundError):
+        yield False
+        return
+    try:
+        yield _lock(descriptor, time.monotonic() + patience)
+    finally:
+        os.close(descriptor)
+
+
+def _lock(descriptor: int, until: float) -> bool:
+    while True:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return True
+        except BlockingIOError:
+            if time.monotonic() >= until:
+                raise
+            time.sleep(_PAUSE)
+        except OSError:  # a file system without locks
+            return False
+
+
+@contextmanager
+def _hidden_folder(target: Path) -> Iterator[Path]:
+    """A new folder beside the target, locked while it is used, and removed in the end with what is in it."""
+    while True:
+        path = target.with_name(f".{target.stem}.{os.urandom(4).hex()}.tmp")
+        send(Topic.TEMPORARY, str(path))
+        path.mkdir()
+        try:
+            with locked(path):
+                if path.exists():  # otherwise another process has taken it for a stale one before it was locked
+                    yield path
+                    return
+        finally:
+            with suppress(OSError):  # what cannot be removed is hidden, and removed by a later run
+                remove(path)
+
+
+def _remove_stale(folder: Path, names: Iterable[str]) -> None:
+    """Remove hidden folders for these names whose process has ended: one that lives holds a lock on its own."""
+    stems = {Path(name).stem for name in names}
+    with suppress(OSError):  # a folder one may write to but not list
+        for entry in list(os.scandir(folder)):
+            match = _HIDDEN.fullmatch(entry.name)
+            if match is None or match[1] not in stems or not entry.is_dir(follow_symlinks=False):
+                continue
+            with suppress(OSError), locked(Path(entry.path), patience=0) as alone:
+                if alone:
+                    remove(entry)
 
 
 def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
@@ -63,14 +145,12 @@ def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
     except (OSError, ValueError) as error:
         raise OutputError(f"the folder {folder} cannot be made: {reason(error)}; choose another with --out") from error
     _check_kinds(folder / name for name in names)
-    names = (*names, "probe")
+    names = ("probe", *names)
     try:
-        with suppress(BlockingIOError), locked(folder, LOCK_PATIENCE) as alone:
-            if alone:  # otherwise what is left of a dead process cannot be distinguished from what a live one uses
-                _remove_stale(folder, names)
-        for name in names:
-            with _temporary(folder / name) as probe:
-                probe.write_bytes(b"writable")
+        _remove_stale(folder, names)
+        with _hidden_folder(folder / names[-1]) as hidden:
+            for name in names:
+                (hidden / name).write_bytes(b"writable")
     except OSError as error:
         raise OutputError(
             f"the folder {folder} cannot be written to: {reason(error)}; choose another with --out"
@@ -93,17 +173,8 @@ def _check_kinds(targets: Iterable[Path]) -> None:
         except (OSError, ValueError):  # nothing there; or a name that writing will refuse, with the reason
             continue
         if not stat.S_ISREG(mode):
-            kind = _KINDS.get(stat.S_IFMT(mode), "no regular file")
+            kind = "a folder" if stat.S_ISDIR(mode) else "no regular file"
             raise OutputError(f"{target} is {kind}, so no file can be written there; choose another --out")
-
-
-_KINDS = {
-    stat.S_IFDIR: "a folder",
-    stat.S_IFIFO: "a pipe",
-    stat.S_IFSOCK: "a socket",
-    stat.S_IFCHR: "a device",
-    stat.S_IFBLK: "a device",
-}
 
 
 def write_files(folder: Path, writers: Mapping[str, Writer], *, new: bool = False) -> tuple[Path, ...]:
@@ -121,50 +192,75 @@ def write_files(folder: Path, writers: Mapping[str, Writer], *, new: bool = Fals
     OutputError
         If a file cannot be written or renamed; the message says what there is then.
     """
-    return _write(folder, writers, _under_new_names if new else _under_own_names)
+    with _written(folder, writers) as files, locked(folder):
+        _check_kinds(files)
+        for target in files if new else ():
+            if os.path.lexists(target):
+                raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST))
+        _put_into_place(files)
+        return tuple(files)
 
 
-def _under_new_names(folder: Path, temporaries: Mapping[Path, Path]) -> tuple[Path, ...]:
-    """Take the names first, as one process alone can do, so that what is replaced is nobody else's."""
-    taken: dict[Path, str] = {}
-    try:
-        for target in temporaries:
-            target.open("x").close()
-            taken[target] = identity(target)
-        return _under_own_names(folder, temporaries)
-    except BaseException:
-        for target, mark in taken.items():
-            if identity(target) == mark:  # not what has been saved there since
-                target.unlink()
-        raise
-
-
-def _under_own_names(folder: Path, temporaries: Mapping[Path, Path]) -> tuple[Path, ...]:
-    with locked(folder):
-        _check_kinds(temporaries)
-        put_into_place(temporaries)
-    return tuple(temporaries)
-
-
-def _write(folder: Path, writers: Mapping[str, Writer], place: Placing) -> tuple[Path, ...]:
-    """Write the files under hidden names, have them put into place, and return where they are."""
-    temporaries: dict[Path, Path] = {}
+@contextmanager
+def _written(folder: Path, writers: Mapping[str, Writer]) -> Iterator[dict[Path, Path]]:
+    """For each target, where the whole file is that is to be there, hidden and on disk."""
+    files: dict[Path, Path] = {}
     current = folder
-    with ExitStack() as needed:
-        try:
+    try:
+        with _hidden_folder(folder / [*writers][-1]) as hidden:
             for name, write in writers.items():
                 current = folder / name
-                temporaries[current] = needed.enter_context(_temporary(current))
-                write(temporaries[current])
-                with temporaries[current].open("rb+") as file:
+                files[current] = hidden / name
+                write(files[current])
+                with files[current].open("rb+") as file:
                     os.fsync(file)
-            return place(folder, temporaries)
+            yield files
+    except OSError as error:
+        raise OutputError(f"{current} cannot be written: {reason(error)}; {UNCHANGED}") from error
+
+
+def _put_into_place(files: Mapping[Path, Path]) -> None:
+    """Put a set into place, while no signal gets in. The caller holds the folder's lock.
+
+    Raises
+    ------
+    OutputError
+        When a file cannot be renamed; the message says what there is now.
+    """
+    *others, (voucher, new) = files.items()
+    old = [(target, path.with_name(f".old-{path.name}")) for target, path in others if os.path.lexists(target)]
+    with undisturbed():
+        try:
+            for source, target in (*old, (new, voucher)):
+                os.replace(source, target)
         except OSError as error:
-            raise OutputError(f"{current} cannot be written: {reason(error)}; {UNCHANGED}") from error
+            lost = _rename((path, target) for target, path in old if os.path.lexists(path))
+            state = f"earlier files that cannot be put back: {lost}" if lost else UNCHANGED
+            place = voucher if source == new else source
+            raise OutputError(f"{place} cannot be written: {reason(error)}; {state}") from error
+        send(Topic.SAVED, str(voucher))
+        missing = _rename((path, target) for target, path in others)
+        with suppress(OSError):  # before a signal that has come meanwhile ends this process
+            remove(new.parent)
+        if missing:
+            raise OutputError(f"cannot be put into place: {missing}; {voucher} itself is saved")
 
 
-def save_stopped(target: Path, text: str, *, whole: bool = False, beside: Iterable[str] = ()) -> Path:
-    """Save the result of a computation that a limit has stopped, and return where.
+def _rename(moves: Iterable[tuple[Path, Path]]) -> str:
+    """Rename every file that can be renamed; return which cannot, and why."""
+    failures = []
+    for source, target in moves:
+        try:
+            os.replace(source, target)
+        except OSError as error:
+            failures.append(f"{target} ({reason(error)})")
+    return ", ".join(failures)
+
+
+def save_stopped(target: Path, text: str, *, whole: bool = False, beside: Iterable[str] = ()) -> tuple[Path, str]:
+    """Save the result of a computation that a limit has stopped.
+
+    Returns where, and why not in the file that was asked for, as the end of a sentence; empty if there.
 
     Guarantee: a whole older result stays, and so do its pictures. Only a file that is marked as partial is replaced,
     and only where none of the pictures is there that the run would have replaced. Otherwise the result goes to
@@ -184,42 +280,44 @@ def save_stopped(target: Path, text: str, *, whole: bool = False, beside: Iterab
     label = "complete" if whole else "partial"
     further = chain([""], (f"-{number}" for number in count(2)))
     names = (target.with_name(f"{target.stem}.{label}{end}{target.suffix}") for end in further)
-
-    def place(folder: Path, temporaries: Mapping[Path, Path]) -> tuple[Path, ...]:
-        (temporary,) = temporaries.values()
+    with _written(target.parent, {target.name: text_writer(text)}) as files:
         try:
-            with locked(folder, LOCK_PATIENCE):
-                free = not any(os.path.lexists(folder / name) for name in beside) and _replaceable(target, text)
-                chosen = target if free else next(name for name in names if _replaceable(name, text))
-                put_into_place({chosen: temporary})
-                return (chosen,)
+            with locked(target.parent, LOCK_PATIENCE):
+                why = _why_not(target, text, beside)
+                place = next(name for name in names if not _why_not(name, text)) if why else target
+                _put_into_place({place: files[target]})
         except BlockingIOError:  # a process that does not move on has it: a name that nothing has needs no lock
-            return (_put_at_new_name(temporary, names),)
-
-    return _write(target.parent, {target.name: text_writer(text)}, place)[0]
-
-
-def _put_at_new_name(temporary: Path, names: Iterable[Path]) -> Path:
-    for name in names:
-        send(Topic.RENAMES, str(name), identity(temporary))
-        with suppress(FileExistsError):
-            os.link(temporary, name)
-            return name
-    raise AssertionError("there are infinitely many names")
+            why = _why_not(target, text, beside) or f", because another process is writing {target.name}"
+            place = _put_at_new_name(files[target], names)
+    return place, why
 
 
-def where_saved(target: Path, place: Path, beside: Iterable[str] = ()) -> str:
-    """Why a stopped result is not in the file that was asked for, as the end of a sentence."""
-    if place == target:
-        return ""
-    if not _replaceable(target):
-        return f", because {target.name} holds an older result that is not partial"
+def _why_not(target: Path, text: str, beside: Iterable[str] = ()) -> str:
+    """Why a stopped result may not take this place, as the end of a sentence; empty where it may."""
+    if os.path.lexists(target):
+        stored = _stored(target)
+        if stored is None or stored.get("status") != "partial":  # what is no result is not ours to replace unasked
+            return f", because {target.name} holds an older result that is not partial"
+        if _leaves_less_open(stored, json.loads(text)):
+            return f", because less is undetermined in the older partial result {target.name}"
     pictures = [name for name in beside if os.path.lexists(target.with_name(name))]
-    if pictures:
-        return f", because {pictures[0]} shows an older result"
-    if _leaves_less_open(_stored(target) or {}, _stored(place)):
-        return f", because less is undetermined in the older partial result {target.name}"
-    return f", because another process is writing {target.name}"
+    return f", because {pictures[0]} shows an older result" if pictures else ""
+
+
+def _put_at_new_name(hidden: Path, names: Iterator[Path]) -> Path:
+    with undisturbed():
+        while os.path.lexists(name := next(names)):
+            pass
+        os.link(hidden, name)
+        send(Topic.SAVED, str(name))
+    return name
+
+
+def how_to_go_on(place: Path) -> str:
+    """What goes on from a stopped result that can be gone on from, as the end of a sentence."""
+    import shlex  # which a run that ends well does not need
+
+    return f"; go on with --resume {shlex.quote(str(place))}"
 
 
 def _stored(path: Path) -> dict[str, Any] | None:
@@ -231,23 +329,6 @@ def _stored(path: Path) -> dict[str, Any] | None:
     return found if isinstance(found, dict) else None
 
 
-def how_to_go_on(place: Path) -> str:
-    """What goes on from a stopped result that can be gone on from, as the end of a sentence."""
-    import shlex  # which a run that ends well does not need
-
-    return f"; go on with --resume {shlex.quote(str(place))}"
-
-
-def _replaceable(target: Path, text: str | None = None) -> bool:
-    """Whether there is no such file, or only a partial result; with a text: one that leaves no less open than it."""
-    if not os.path.lexists(target):
-        return True
-    stored = _stored(target)
-    if stored is None or stored.get("status") != "partial":  # what is no result is not ours to replace unasked
-        return False
-    return text is None or not _leaves_less_open(stored, json.loads(text))
-
-
 def _leaves_less_open(stored: dict[str, Any], new: Any) -> bool:
     """Whether an older certified map has less undetermined than a new result: then it is worth more than that."""
     if stored.get("cover") is None or not isinstance(new, dict) or new.get("cover") is None:
@@ -256,48 +337,3 @@ def _leaves_less_open(stored: dict[str, Any], new: Any) -> bool:
         return Fraction(stored["undetermined"]) < Fraction(new["undetermined"])
     except (KeyError, TypeError, ValueError, ZeroDivisionError):  # no map that this program has made
         return False
-
-
-def _remove_stale(folder: Path, names: Iterable[str]) -> None:
-    """Remove hidden files for these names whose process has ended: one that lives holds a lock on its files.
-
-    The caller holds the folder's lock: hidden old files are used under it only.
-    """
-    kinds = {(Path(name).stem, Path(name).suffix) for name in names}
-    with suppress(OSError):  # a folder one may write to but not list
-        for entry in list(os.scandir(folder)):
-            match = HIDDEN.fullmatch(entry.name)
-            if match is None or match.groups() not in kinds or not entry.is_file(follow_symlinks=False):
-                continue
-            # it may be gone meanwhile, another user's, or of a process that lives; or there are no locks
-            with suppress(OSError), open(entry.path, "rb+", buffering=0) as file:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                os.unlink(entry.path)
-
-
-@contextmanager
-def _temporary(target: Path) -> Iterator[Path]:
-    """A hidden file in the target's folder with the target's suffix and the permissions that the umask gives.
-
-    It is locked, and removed in the end if it still has its hidden name.
-    """
-    while True:
-        path = hidden(target)
-        send(Topic.TEMPORARY, str(path))
-        with path.open("xb") as file:
-            if sys.platform == "win32" or _locked(file):
-                try:
-                    yield path
-                finally:
-                    with suppress(OSError):  # it is hidden, and removed by a later run
-                        commit.disk.unlink(path)
-                return
-
-
-def _locked(file: BinaryIO) -> bool:
-    """Lock a new file; False when another process has taken it for a stale one and removed it before."""
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX)
-    except OSError:  # a file system without locks: there nothing is taken for stale either
-        return True
-    return os.fstat(file.fileno()).st_nlink > 0

@@ -30,33 +30,24 @@ class _Pipe(io.FileIO):
             null = os.open(os.devnull, os.O_WRONLY)
             os.dup2(null, self.fileno(), inheritable=True)
             os.close(null)
-            return memoryview(data).nbytes
         except OSError:
             if not self.for_messages:
                 raise
-            return memoryview(data).nbytes
+        return memoryview(data).nbytes
 
 
 def quiet_stream(descriptor: int, like: TextIO, for_messages: bool = False) -> TextIO:
     """A text stream for the descriptor with the encoding and the line buffering of another."""
     raw = _Pipe(descriptor, "w", closefd=False)
     raw.for_messages = for_messages
-    return io.TextIOWrapper(
-        io.BufferedWriter(raw), like.encoding, like.errors, line_buffering=bool(like.line_buffering)
-    )
+    buffer = io.BufferedWriter(raw)
+    return io.TextIOWrapper(buffer, like.encoding, like.errors, line_buffering=bool(like.line_buffering))
 
 
 def reader_left(stream: TextIO) -> bool:
     """Whether nobody reads any more what is written to the stream."""
     raw = getattr(getattr(stream, "buffer", None), "raw", None)
     return isinstance(raw, _Pipe) and raw.reader_left
-
-
-def open_standard_streams() -> None:
-    """Occupy descriptors 0 to 2 where the caller has closed them, so that no pipe is taken for a standard stream."""
-    while (descriptor := os.open(os.devnull, os.O_RDWR)) < 3:
-        pass
-    os.close(descriptor)
 
 
 def report(text: str) -> None:

@@ -5,37 +5,37 @@ can stop or save anything there. So the computation runs in a forked child, and 
 
 Guarantee: a signal to either process, or the time limit, ends the child within a second whatever it does: it is asked
 to leave first and killed after `ptmcad.process.watch.GRACE_SECONDS`. After a signal, one that searches a certified map
-has up to `ptmcad.process.handover.LAST_SECONDS` to hand over what it knows; a second signal ends that. A library that
-waits for memory in vain (`ptmcad.process.shortage`) is ended in seconds. What the caller has made of signals, masks and
-standard streams is no obstacle. No temporary file that the child has reported stays. When a limit ends it (time; the
-caller's on processor time; memory, also where a library aborts on a failed allocation or the system kills the child),
-the last result that it handed over is saved and the status is 3. When a signal or a crash ends it, such a result is
-saved if one can go on from it, and where there is none yet the message says why; where there is nothing to go on from
-it says which files had been written before, or that nothing was saved. A parent that is killed takes the child with it.
+has up to `ptmcad.process.handover.LAST_SECONDS` to hand over what it knows; a second signal ends that. What the caller
+has made of signals, masks and standard streams is no obstacle. No temporary file that the child has reported stays.
+When a limit ends it (time; the caller's on processor time; memory, also where a library aborts on a failed allocation
+or the system kills the child), the last result that it handed over is saved and the status is 3. When a signal or a
+crash ends it, such a result is saved if one can go on from it, and where there is none yet the message says why; where
+there is nothing to go on from it says which files had been written before, or that nothing was saved. A parent that is
+killed takes the child with it.
 
 Not guaranteed: the last sentence on a system whose pipes send no signal (it is tested on Linux).
 """
 
 import atexit
+import fcntl
 import gc
 import os
+import resource
 import signal
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import redirect_stderr
 from threading import Timer
-from types import FrameType, TracebackType
-from typing import NoReturn, TextIO
+from types import FrameType
+from typing import Any, NoReturn
 
-from ptmcad.process.handover import Leaving, Topic, connect, send
-from ptmcad.process.lifeline import PIPE_SIGNAL, end_with
-from ptmcad.process.streams import open_standard_streams, quiet_stream, report
+from ptmcad.process.handover import Own, Topic, send
+from ptmcad.process.lifeline import end_with
+from ptmcad.process.streams import quiet_stream, report
 from ptmcad.process.watch import Watch
 
-if sys.platform != "win32":
-    import fcntl
-
-SPARE_DESCRIPTORS = 16
-"""Descriptors that there must be beside the open ones: for pipes, for imports, for the files of a result."""
+DESCRIPTORS = 24
+"""That there must be: for pipes, for imports, for the files of a result."""
 
 AGAIN_SECONDS = 0.001
 """Seconds until a signal comes again that came where nothing may be raised."""
@@ -49,36 +49,37 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     work : what to compute; it returns an exit status.
     heeded : the signals that stop it.
     """
-    open_standard_streams()
-    _check_descriptors()
+    if resource.getrlimit(resource.RLIMIT_NOFILE)[0] < DESCRIPTORS:
+        report(f"error: Too many open files: ptmcad needs {DESCRIPTORS} (ulimit -n)\n")
+        os._exit(2)
+    while (descriptor := os.open(os.devnull, os.O_RDWR)) < 3:  # the caller has closed a standard stream
+        pass
+    os.close(descriptor)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)  # where it is ignored, nobody learns how a child has ended
-    messages, printed, lifeline, wake = os.pipe(), os.pipe(), os.pipe(), os.pipe()
-    os.set_blocking(wake[1], False)
     gc.freeze()  # what there is by now is not looked through again, which would copy its pages in the child
     parent = os.getpid()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, (*heeded, signal.SIGCHLD))
-    before -= {*heeded, signal.SIGCHLD, *PIPE_SIGNAL}  # of a caller that has blocked them, too: this waits for them
+    before -= {*heeded, signal.SIGCHLD, signal.SIGIO}  # of a caller that has blocked them, too: this waits for them
     try:
+        messages, printed, lifeline, wake = os.pipe(), os.pipe(), os.pipe(), os.pipe()
         child = os.fork()
-    except OSError:  # no more processes allowed: better unwatched than not at all
-        child = -1
-    if child > 0:
-        os.close(messages[1])
-        os.close(printed[1])
-        os.close(lifeline[0])
+    except OSError as error:  # no more files or processes allowed
+        report(f"error: ptmcad cannot start: {error.strerror}\n")
+        os._exit(2)
+    os.set_blocking(wake[1], False)
+    if child:
+        for descriptor in (messages[1], printed[1], lifeline[0]):
+            os.close(descriptor)
         os._exit(Watch(child, messages[0], printed[0], heeded).run(wake, before))
     for number in heeded:
         signal.signal(number, _terminate)
-    if child == 0:
-        for descriptor in (messages[0], printed[0], lifeline[1], wake[0]):
-            os.close(descriptor)
-        # a signal to this process alone is the parent's to answer, too, which hears of it whatever code runs here
-        signal.set_wakeup_fd(wake[1], warn_on_full_buffer=False)
-        end_with(lifeline[0], parent)
-        connect(messages[1])
-        _redirect(printed[1])
-    elif sys.stderr is not None:
-        sys.stderr = quiet_stream(2, sys.stderr, for_messages=True)
+    for descriptor in (messages[0], printed[0], lifeline[1], wake[0]):
+        os.close(descriptor)
+    # a signal to this process alone is the parent's to answer, too, which hears of it whatever code runs here
+    signal.set_wakeup_fd(wake[1], warn_on_full_buffer=False)
+    end_with(lifeline[0], parent)
+    Own.pipe = messages[1]
+    _redirect(printed[1])
     signal.pthread_sigmask(signal.SIG_SETMASK, before)
     asked = False
     try:
@@ -110,34 +111,21 @@ def _terminate(number: int, frame: FrameType | None) -> None:
     for other in signal.valid_signals():
         if signal.getsignal(other) is _terminate:
             signal.signal(other, signal.SIG_IGN)
+    null = os.open(os.devnull, os.O_WRONLY)
     for stream in (sys.stderr, sys.__stderr__):  # libraries that are being loaded have one of their own
         if stream is not None:
-            null = os.open(os.devnull, os.O_WRONLY)
             os.dup2(null, stream.fileno())
-            os.close(null)
-    Leaving.status = 128 + number
-    raise SystemExit(Leaving.status)
-
-
-def _check_descriptors() -> None:
-    """Refuse a limit on open files that would be met somewhere on the way."""
-    spare: list[int] = []
-    try:
-        while len(spare) < SPARE_DESCRIPTORS:
-            spare.append(os.dup(0))
-    except OSError as error:
-        report(f"error: {error.strerror}: ptmcad needs {SPARE_DESCRIPTORS} more than are open (ulimit -n)\n")
-        os._exit(2)
-    finally:
-        for descriptor in spare:
-            os.close(descriptor)
+    Own.status = 128 + number
+    raise SystemExit(Own.status)
 
 
 def _redirect(printed: int) -> None:
     """Give the parent what libraries print themselves, which knows what to make of it; keep Python's own streams.
 
-    FLINT prints its last words on standard output, GMP on standard error.
+    FLINT prints its last words on standard output, GMP on standard error. Errors that nobody handles Python prints to
+    the parent too, which knows whether they are a limit's.
     """
+    os.set_blocking(printed, False)  # a flood of messages must not stop the computation
     if sys.stdout is not None:
         sys.stdout = quiet_stream(fcntl.fcntl(1, fcntl.F_DUPFD_CLOEXEC, 3), sys.stdout)
         sys.__stdout__ = sys.stdout  # type: ignore[misc, assignment]  # of which one asks for the terminal's size
@@ -145,25 +133,17 @@ def _redirect(printed: int) -> None:
         unexpected = quiet_stream(fcntl.fcntl(printed, fcntl.F_DUPFD_CLOEXEC, 3), sys.stderr, for_messages=True)
         sys.stderr = quiet_stream(fcntl.fcntl(2, fcntl.F_DUPFD_CLOEXEC, 3), sys.stderr, for_messages=True)
         sys.__stderr__ = sys.stderr  # type: ignore[misc, assignment]
-        _redirect_tracebacks(unexpected)
-    os.set_blocking(printed, False)  # a flood of messages must not stop the computation
+
+        def to_the_parent(hook: Callable[..., None]) -> Callable[..., None]:
+            def print_there(*what: Any) -> None:
+                with redirect_stderr(unexpected):
+                    hook(*what)
+                    unexpected.flush()
+
+            return print_there
+
+        sys.excepthook = to_the_parent(sys.__excepthook__)
+        sys.unraisablehook = to_the_parent(sys.__unraisablehook__)
     os.dup2(printed, 1)
     os.dup2(printed, 2)
     os.close(printed)
-
-
-def _redirect_tracebacks(unexpected: TextIO) -> None:
-    """Let Python print errors that nobody handles to the parent too, which knows whether they are a limit's."""
-
-    def uncaught(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-        sys.stderr = unexpected
-        sys.__excepthook__(kind, error, trace)
-        unexpected.flush()
-
-    def unraisable(what: "sys.UnraisableHookArgs", /) -> None:
-        sys.stderr, usual = unexpected, sys.stderr
-        sys.__unraisablehook__(what)
-        unexpected.flush()
-        sys.stderr = usual
-
-    sys.excepthook, sys.unraisablehook = uncaught, unraisable

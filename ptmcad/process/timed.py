@@ -2,22 +2,29 @@
 
 C code that does not return to the interpreter cannot be stopped in any other way.
 
-Guarantee: the other process ends in time, or with this one.
+Guarantee: the other process ends in time, by the system's own clock, also where this one has been killed before.
 """
 
-import os
 import pickle
-import signal
 import subprocess
 import sys
 from collections.abc import Callable
 
-from ptmcad.process.lifeline import end_with
-
-_PROGRAM = (
-    "import sys; sys.path[:] = sys.argv[3:]; from ptmcad.process.timed import answer; "
-    "answer(int(sys.argv[1]), int(sys.argv[2]))"
-)
+_PROGRAM = """
+import pickle, signal, sys
+seconds, sys.path[:] = pickle.load(sys.stdin.buffer)
+signal.signal(signal.SIGINT, signal.SIG_IGN)
+signal.signal(signal.SIGALRM, signal.SIG_DFL)
+signal.setitimer(signal.ITIMER_REAL, seconds)
+error = None
+work, arguments = pickle.load(sys.stdin.buffer)
+try:
+    work(*arguments)
+except Exception as raised:
+    error = raised
+pickle.dump(error, sys.stdout.buffer)
+"""
+"""SIGALRM ends it, whatever code it is in; Ctrl-C is the other process's, which ends this one."""
 
 
 def returns_within(seconds: float, work: Callable[..., object], *arguments: object) -> bool:
@@ -33,39 +40,15 @@ def returns_within(seconds: float, work: Callable[..., object], *arguments: obje
     Exception
         What the function raises.
     """
-    lifeline, ours = os.pipe()
-    command = [sys.executable, "-P", "-c", _PROGRAM, str(lifeline), str(os.getpid()), *sys.path]
+    given = pickle.dumps((seconds, sys.path)) + pickle.dumps((work, arguments))
+    command = [sys.executable, "-P", "-c", _PROGRAM]
     try:
-        done = subprocess.run(
-            command,
-            input=pickle.dumps((work, arguments)),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            pass_fds=(lifeline,),
-            timeout=seconds,
-            check=False,
-        )
+        done = subprocess.run(command, input=given, capture_output=True, timeout=seconds, check=False)
     except (subprocess.TimeoutExpired, OSError):
         return False
-    finally:
-        os.close(lifeline)
-        os.close(ours)
-    if done.returncode < 0 or not done.stdout:  # what a library prints before it aborts is no answer
+    if done.returncode != 0 or not done.stdout:  # what a library prints before it aborts is no answer
         return False
     error = pickle.loads(done.stdout)
     if error is not None:
         raise error
     return True
-
-
-def answer(lifeline: int, parent: int) -> None:
-    """Call the function that standard input names, and write what it raises to standard output; None for nothing."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the other process's, which ends this one
-    end_with(lifeline, parent)
-    work, arguments = pickle.load(sys.stdin.buffer)
-    try:
-        work(*arguments)
-    except BaseException as error:
-        sys.stdout.buffer.write(pickle.dumps(error))
-        raise
-    sys.stdout.buffer.write(pickle.dumps(None))

@@ -26,7 +26,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import CountedArea, Member, State, Summary, Sweep, Widest
 from ptmcad.answer.widths import Attainment
 from ptmcad.errors import ConfigError, OutputError
-from ptmcad.process.commit import hidden, locked, reason
+from ptmcad.process.output import locked, reason
 from ptmcad.sweeping.member import Failed, Found, Outcome, Refused
 from ptmcad.text.numerals import fraction_of
 from ptmcad.text.textfile import read_bytes
@@ -193,7 +193,7 @@ class Index:
         """Put a result's file into place, whole and on disk; its name below the folder."""
         name = _name(number)
         path = self.folder / name
-        temporary = hidden(path)
+        temporary = path.with_name(f".{path.stem}.{os.urandom(4).hex()}.tmp")
         try:
             _inside(self.folder, path.parent).mkdir(exist_ok=True)
             with temporary.open("xb") as file:

@@ -29,7 +29,7 @@ from ptmcad.cli.progress import ProgressBar
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import Options
-from ptmcad.process.handover import Receiver, Topic, connect, disconnect
+from ptmcad.process.handover import Own, Topic, received
 from ptmcad.process.watch import OVERRUN_SECONDS, Watch
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -312,14 +312,16 @@ def test_compiling_is_no_part_of_the_time_limit(
     monkeypatch.setattr(sys.modules["ptmcad.certified.loading"], "load", load)
     begun, counted = monotonic(), counter()
     read, write = os.pipe()
-    connect(write)
+    Own.pipe = write
     try:
         assert run(["classify", *HAND, "--out", str(tmp_path), "--timeout", "600"]) == 0
     finally:
-        disconnect()
+        Own.pipe = None
         os.close(write)
     with open(read, "rb") as pipe:
-        told = [(topic, float(texts[0])) for topic, texts in Receiver().feed(pipe.read()) if topic is Topic.DEADLINE]
+        told = [
+            (topic, float(texts[0])) for topic, texts in received(bytearray(pipe.read())) if topic is Topic.DEADLINE
+        ]
     first, stopped, again = (at for _, at in told)
     taken = monotonic() - begun
     assert 600 <= first - begun <= 600 + taken
@@ -329,7 +331,7 @@ def test_compiling_is_no_part_of_the_time_limit(
     assert 2600 <= engine["options"].deadline - counted <= 2600 + taken
     watch = Watch(0, 0, 0, ())
     watch.reports[Topic.DEADLINE] = [repr(stopped), ""]
-    assert watch._deadline() is None
+    assert watch._deadline() == math.inf
     watch.reports[Topic.DEADLINE] = [repr(again), "600 s"]
     assert watch._deadline() == again + OVERRUN_SECONDS
 

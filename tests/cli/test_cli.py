@@ -228,19 +228,20 @@ def test_sigterm_removes_the_temporary_files(tmp_path: Path) -> None:
         "pipeline.region_map, pipeline.prepare = lambda slice, options: Result(), lambda *_: None\n"
         "render.draw = draw\n"
         "sys.modules.update({'ptmcad.ask.classification': pipeline, 'ptmcad.show.render': render})\n"
-        "from ptmcad.cli import main\n"
-        f"main(['classify', {str(FIG4)!r}, '--out', {str(tmp_path)!r}])\n"
+        "from ptmcad.__main__ import main\n"
+        f"sys.argv = ['ptmcad', 'classify', {str(FIG4)!r}, '--out', {str(tmp_path)!r}, '--format', 'png']\n"
+        "main()\n"
     )
     (tmp_path / "fig4.json").write_text("old")
     process = subprocess.Popen([sys.executable, "-c", program], cwd=ROOT, stderr=subprocess.PIPE, text=True)
     deadline = time.monotonic() + 30
-    while not any(path.read_text() == "half" for path in tmp_path.glob("*.png")):
+    while not any(path.read_text() == "half" for path in tmp_path.glob("*/*.png")):
         assert time.monotonic() < deadline, "nothing was drawn"
         time.sleep(0.01)
     process.send_signal(signal.SIGTERM)
     _, errors = process.communicate(timeout=30)
     assert process.returncode == 143
-    assert errors == ""
+    assert errors == "terminated (SIGTERM); nothing was saved\n"
     assert names(tmp_path) == ["fig4.json"]
     assert (tmp_path / "fig4.json").read_text() == "old"
 
@@ -256,7 +257,7 @@ def test_what_is_no_file_is_not_replaced(tmp_path: Path) -> None:
             lambda name=name: check_writable(tmp_path, ("c.json", name)),
             lambda name=name: write_files(tmp_path, {name: text_writer("new")}),
         ):
-            with pytest.raises(OutputError, match=rf"{name} is a pipe, so no file can be written there"):
+            with pytest.raises(OutputError, match=rf"{name} is no regular file, so no file can be written there"):
                 attempt()
     write_files(tmp_path, {"c.json": text_writer("new")})
     assert names(tmp_path) == ["a.json", "b.json", "c.json"]

@@ -31,10 +31,10 @@ import ptmcad
 from ptmcad.cli import run
 from ptmcad.cli.limits import bound_of
 from ptmcad.errors import ConfigError
-from ptmcad.process.handover import Receiver, Topic, connect, disconnect, identity, send
+from ptmcad.process.handover import Own, Topic, received, send
 from ptmcad.process.memory import default_bound
 from ptmcad.process.output import check_writable, save_stopped, text_writer, write_files
-from ptmcad.process.salvage import what_is_there
+from ptmcad.process.watch import what_is_there
 
 ROOT = Path(__file__).resolve().parents[2]
 FIG2 = ROOT / "configs" / "fig2.yaml"
@@ -138,7 +138,7 @@ class Running:
         return self.process.returncode, (errors or b"").decode()
 
     def files(self) -> dict[str, str]:
-        return {path.name: path.read_text() for path in sorted(self.out.iterdir())}
+        return {path.name: path.read_text() if path.is_file() else "" for path in sorted(self.out.iterdir())}
 
 
 def until(condition: Callable[[], bool]) -> None:
@@ -297,12 +297,12 @@ def test_an_interrupted_command_says_so(command: str, tmp_path: Path) -> None:
 def test_what_had_been_written_before_is_told(tmp_path: Path) -> None:
     first, second = tmp_path / "a.json", tmp_path / "b.json"
     first.write_text("a")
-    placed = [(str(first), identity(first))]
-    assert what_is_there([*placed, (str(second), "0:1:2:3")]) == f"{first} had been written before and is whole"
+    saved = [str(first), str(second)]
+    assert what_is_there(saved) == f"{first} had been written before and is whole"
     second.write_text("b")
-    assert what_is_there([*placed, (str(second), identity(second))]).startswith("2 results had been written before")
+    assert what_is_there(saved).startswith("2 results had been written before")
     first.unlink()
-    assert what_is_there(placed) == what_is_there([]) == "nothing was saved"
+    assert what_is_there(saved[:1]) == what_is_there([]) == "nothing was saved"
 
 
 @linux
@@ -493,24 +493,24 @@ def test_a_killed_program_takes_its_computation_along(tmp_path: Path) -> None:
 
 
 KILLER = """
-from ptmcad.process import commit
-program = os.getpid()
-class Killing:
-    steps = 0
-    def __getattr__(self, name):
-        Killing.steps += 1
-        if Killing.steps == {step}:
+program, steps = os.getpid(), 0
+def killing(work):
+    def step(*given, **named):
+        global steps
+        steps += 1
+        if steps == {step}:
             arrived()
             for process in ({victims}):
                 os.kill(process, signal.SIGKILL)
             while os.getppid() == program:  # it closes its pipes, by which this one hears of it, before it is gone
                 time.sleep(0.001)
-        return getattr(os, name)
+        return work(*given, **named)
+    return step
 def engine(progress, partial):
-    commit.disk = Killing()
+    os.replace, os.unlink, os.rmdir = map(killing, (os.replace, os.unlink, os.rmdir))
 """
 OLD = {"fig2.json": "old", "fig2.png": "old picture", "fig2.svg": "old picture"}
-"""Seven steps: two old pictures are hidden, JSON, two pictures, and two removals; then the hidden names are free."""
+"""Eight steps: two old pictures are hidden, JSON, two pictures; then what is hidden is removed, and its folder."""
 NEW = {
     "fig2.json": '{"status": "exact", "stage": "variety"}',
     "fig2.png": "half a picture",
@@ -532,7 +532,7 @@ def killed_before_step(folder: Path, step: int, victims: str) -> tuple[Running, 
 
 
 @linux
-@pytest.mark.parametrize("step", [2, 4, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 3, 5, 6, 7, 8, 10))])
+@pytest.mark.parametrize("step", [2, 4, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 3, 5, 6, 7, 8))])
 def test_a_killed_computation_between_two_steps(tmp_path: Path, step: int) -> None:
     """The result is in place, or the program saves it beside the older one, and says which; pictures may be missing."""
     running, status, errors = killed_before_step(tmp_path, step, "os.getpid(),")
@@ -552,7 +552,7 @@ def visible_before(step: int) -> dict[str, str]:
 
 
 @linux
-@pytest.mark.parametrize("step", [3, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2, 4, 5, 6, 7, 8, 10))])
+@pytest.mark.parametrize("step", [3, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2, 4, 5, 6, 7, 8))])
 def test_a_killed_program_between_two_steps(tmp_path: Path, step: int) -> None:
     """The computation completes what was begun, and ends then."""
     running, _, _ = killed_before_step(tmp_path, step, "os.getppid(),")
@@ -560,7 +560,7 @@ def test_a_killed_program_between_two_steps(tmp_path: Path, step: int) -> None:
 
 
 @linux
-@pytest.mark.parametrize("step", [2, 4, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 3, 5, 6, 7, 8, 10))])
+@pytest.mark.parametrize("step", [2, 4, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 3, 5, 6, 7, 8))])
 def test_a_kill_of_both_between_two_steps(tmp_path: Path, step: int) -> None:
     """Never a picture beside the JSON of another run; and who comes next removes what is hidden."""
     running, _, _ = killed_before_step(tmp_path, step, "os.getppid(), os.getpid()")
@@ -638,14 +638,19 @@ def test_killed_at_50_random_moments_with_pictures(tmp_path: Path) -> None:
 
 
 def test_stale_temporary_files_go_and_live_ones_stay(tmp_path: Path) -> None:
-    stale = [".fig2.0123abcd.tmp.json", ".probe.0123abcd.tmp"]
-    others = [".fig3.0123abcd.tmp.json", ".fig2.0123abcd.tmp.yaml", ".fig2.mine.tmp.json", "fig2.json"]
-    for name in (*stale, *others, ".fig2.00000000.tmp.json"):
-        (tmp_path / name).touch()
-    with (tmp_path / ".fig2.00000000.tmp.json").open() as live:
-        fcntl.flock(live, fcntl.LOCK_EX)
-        check_writable(tmp_path, ("fig2.json",))
-    assert set(os.listdir(tmp_path)) == {*others, ".fig2.00000000.tmp.json"}
+    stale = [".fig2.0123abcd.tmp", ".probe.0123abcd.tmp"]
+    others = [".fig3.0123abcd.tmp", ".fig2.0123abcd.old", ".fig2.mine.tmp", "fig2.json", ".fig2.00000000.tmp"]
+    for name in (*stale, *others):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "fig2.png").touch()
+    (tmp_path / ".fig2.1234abcd.tmp").symlink_to(tmp_path / "fig2.json")
+    (tmp_path / ".fig2.2345abcd.tmp").touch()
+    live = os.open(tmp_path / ".fig2.00000000.tmp", os.O_RDONLY)
+    fcntl.flock(live, fcntl.LOCK_EX)
+    check_writable(tmp_path, ("fig2.png",))
+    os.close(live)
+    assert set(os.listdir(tmp_path)) == {*others, ".fig2.1234abcd.tmp", ".fig2.2345abcd.tmp"}
+    assert all((tmp_path / name / "fig2.png").exists() for name in others)
 
 
 def test_a_live_writer_keeps_its_file(tmp_path: Path) -> None:
@@ -947,27 +952,29 @@ def test_a_reader_that_leaves_ends_an_endless_table(shipped: Callable[..., Any],
 def test_messages_arrive_whole_or_not_at_all(messages: list[tuple[Topic, list[str]]], chunk: int, lost: int) -> None:
     """In whatever pieces they come, and wherever the sender was killed."""
     with tempfile.TemporaryFile() as file:
-        connect(file.fileno())
+        Own.pipe = file.fileno()
         try:
             for topic, texts in messages:
                 send(topic, *texts)
         finally:
-            disconnect()
+            Own.pipe = None
         file.seek(0)
         data = file.read()
-    receiver = Receiver()
     kept = data[: max(0, len(data) - lost)]
-    received = [m for k in range(0, len(kept), chunk) for m in receiver.feed(kept[k : k + chunk])]
-    assert received == messages[: len(received)]
+    waiting, found = bytearray(), list[tuple[Topic, list[str]]]()
+    for k in range(0, len(kept), chunk):
+        waiting += kept[k : k + chunk]
+        found += received(waiting)
+    assert found == messages[: len(found)]
     if lost == 0:
-        assert received == messages
+        assert found == messages
 
 
 @pytest.mark.parametrize("old", [{}, {"fig2.json": "old"}, {"fig2.json": PARTIAL}])
 def test_where_a_stopped_result_goes(tmp_path: Path, old: Mapping[str, str]) -> None:
     for name, text in old.items():
         write_files(tmp_path, {name: text_writer(text)})
-    place = save_stopped(tmp_path / "fig2.json", PARTIAL + " ")
+    place, _ = save_stopped(tmp_path / "fig2.json", PARTIAL + " ")
     assert place.name == ("fig2.partial.json" if "old" in old.values() else "fig2.json")
     assert place.read_text() == PARTIAL + " "
 

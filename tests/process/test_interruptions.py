@@ -31,21 +31,24 @@ import fcntl, os, pathlib, signal, stat, sys, time, types
 signal.signal(signal.SIGINT, lambda *_: os._exit(130))  # the interpreter's own start is not the program's
 here, step, engine = pathlib.Path(sys.argv.pop(1)), int(sys.argv.pop(1)), sys.argv.pop(1)
 program = os.getpid()
-from ptmcad.process import commit, handover
+from ptmcad.process import handover
 def arrived(name):
     (here / "writing").write_text(str(os.getpid()))
     (here / "writing").rename(here / name)
-class Waiting:
-    steps = 0
-    def __getattr__(self, name):
-        Waiting.steps += 1
-        if Waiting.steps == step:
+steps = 0
+def waiting_before(work):
+    def counted(*given, **named):
+        global steps
+        steps += 1
+        if steps == step:
             arrived("arrived")
             # the end of this process, or of the program, which closes its pipes before it is gone
             deadline = time.monotonic() + 10
             while os.getppid() == program and time.monotonic() < deadline:
                 time.sleep(0.001)
-        return getattr(os, name)
+        return work(*given, **named)
+    return counted
+disk = os.replace, os.unlink, os.rmdir
 flock, tell = fcntl.flock, handover.send
 def waiting(file, operation):
     if step == 0 and (here / "drawn").exists() and isinstance(file, int) and stat.S_ISDIR(os.fstat(file).st_mode):
@@ -62,7 +65,7 @@ handover.send = telling
 def draw(result, path, **how):
     path.write_text(result.slice.count.value)
     (here / "drawn").touch()
-    commit.disk = Waiting()
+    os.replace, os.unlink, os.rmdir = map(waiting_before, disk)
 sys.modules["ptmcad.show.render"] = render = types.ModuleType("ptmcad.show.render")
 render.draw = draw
 if engine != "real":

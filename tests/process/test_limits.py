@@ -25,7 +25,7 @@ from test_faults import FIG2, IN_C, PARTIAL, ROOT, Running, classified, linux
 from ptmcad.cli import run
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.errors import ConfigError, PictureError
-from ptmcad.process.memory import MIN_ROOM, Bound, bounded, check_room, loading, private_memory
+from ptmcad.process.memory import MIN_ROOM, Bound, bounded, loading, private_memory
 from ptmcad.process.output import text_writer
 from ptmcad.process.streams import quiet_stream
 
@@ -156,17 +156,14 @@ def test_what_waiting_for_the_child_needs_is_loaded_before_there_is_one() -> Non
 def test_a_bound_that_the_libraries_exceed_is_refused() -> None:
     used = private_memory()
     assert used is not None
-    with bounded(Bound(used + 4 * MIN_ROOM, "100M")):
-        check_room("the engine")
     before = resource.getrlimit(resource.RLIMIT_DATA)
+    with bounded(Bound(used + 4 * MIN_ROOM, "100M")), loading("the engine"):
+        assert resource.getrlimit(resource.RLIMIT_DATA) == before
+    refused = pytest.raises(ConfigError, match=r"100M is too little for the engine, which has .*: at least [0-9]+M")
     with bounded(Bound(used + MIN_ROOM // 2, "100M")):
-        with loading("the engine"):
+        with refused as caught, loading("the engine"):
             assert resource.getrlimit(resource.RLIMIT_DATA) == before
         assert resource.getrlimit(resource.RLIMIT_DATA) != before
-        with pytest.raises(
-            ConfigError, match=r"100M is too little for the engine, which has .*: at least [0-9]+M"
-        ) as caught:
-            check_room("the engine")
     least = int(re.findall("at least ([0-9]+)M", str(caught.value))[0])
     assert used + MIN_ROOM <= least * MIB < used + MIN_ROOM + 8 * MIB
 
@@ -325,7 +322,7 @@ def test_what_the_caller_made_of_signals(tmp_path: Path, caller: Callable[[], No
 
 def test_few_descriptors(tmp_path: Path) -> None:
     status, errors = classified(tmp_path, preexec_fn=limited(resource.RLIMIT_NOFILE, 8))
-    assert (status, errors) == (2, "error: Too many open files: ptmcad needs 16 more than are open (ulimit -n)\n")
+    assert (status, errors) == (2, "error: Too many open files: ptmcad needs 24 (ulimit -n)\n")
     assert not list(tmp_path.iterdir())
 
 

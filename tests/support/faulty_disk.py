@@ -13,7 +13,7 @@ class Killed(BaseException):
 
 
 class FaultyDisk:
-    """Steps are counted from 1 on, also those that fail.
+    """What renames and removes while it is entered. Steps are counted from 1 on, also those that fail.
 
     Parameters
     ----------
@@ -45,10 +45,22 @@ class FaultyDisk:
 
     def replace(self, source: Path, target: Path) -> None:
         self._step(target)
-        os.replace(source, target)
+        self._real[0](source, target)
         self.look()
 
     def unlink(self, path: Path) -> None:
         self._step(path)
-        os.unlink(path)
+        self._real[1](path)
         self.look()
+
+    def rmdir(self, path: Path) -> None:
+        self._step(path)
+        self._real[2](path)
+        self.look()
+
+    def __enter__(self) -> None:
+        self._real = os.replace, os.unlink, os.rmdir
+        os.replace, os.unlink, os.rmdir = self.replace, self.unlink, self.rmdir  # type: ignore[assignment]
+
+    def __exit__(self, *_: object) -> None:
+        os.replace, os.unlink, os.rmdir = self._real

@@ -34,7 +34,7 @@ def load_matplotlib() -> None:
     log.setLevel(logging.ERROR)  # of a settings file that is not used, of a folder for caches that is not there
     os.environ[_BACKEND] = "agg"  # another may not exist here: a notebook's, in an environment of its own
     try:
-        with loading("matplotlib"):
+        with loading():
             import matplotlib.backends.backend_agg
             import matplotlib.figure
             import numpy as np
