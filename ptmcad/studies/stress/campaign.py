@@ -56,11 +56,12 @@ def campaign(
         if progress is not None:
             progress(case.name, k, len(cases))
         rows.append(run(case, 1 if case.slow else repeats))
-    machine = {"system": platform.system(), "processor": platform.machine(), "python": platform.python_version()}
-    versions = {"ptmcad": __version__, **installed(PACKAGES)}
     return {
         "kind": "ptmcad stress", "complete": len(rows) == len(cases), "seed": seed, "repeats": repeats,
-        "machine": machine, "versions": versions, "cases": rows,
+        "machine": {
+            "system": platform.system(), "processor": platform.machine(), "python": platform.python_version(),
+        },
+        "versions": {"ptmcad": __version__, **installed(PACKAGES)}, "cases": rows,
     }  # fmt: skip
 
 
@@ -71,16 +72,17 @@ def run(case: Case, repeats: int) -> Row:
     time, medians of runs that take turns; ``ratio`` is of the medians, and ``ratio_low`` and ``ratio_high`` are the
     smallest and the largest of the runs.
     """
+    both = (case.question, case.sibling)
     verdict = judge(case, answer(case.question, case.name))
-    calls, sibling_calls = work_of(case.question), work_of(case.sibling)
-    pairs = [(_seconds(case.question), _seconds(case.sibling)) for _ in range(repeats)]
-    ratios = [a / max(b, 1e-9) for a, b in pairs]
+    calls, sibling_calls = map(work_of, both)
+    pairs = [tuple(map(_seconds, both)) for _ in range(repeats)]
     mine, its = (median(times) for times in zip(*pairs, strict=True))
+    ratio, *ratios = (a / max(b, 1e-9) for a, b in ((mine, its), *pairs))
     return {
         "name": case.name, "family": case.family, "asked": case.question.kind,
         "stiffness": shortest_text(case.stiffness), "source": case.source, **verdict,
         "calls": calls, "sibling_calls": sibling_calls, "seconds": mine, "sibling_seconds": its,
-        "ratio": mine / max(its, 1e-9), "ratio_low": min(ratios), "ratio_high": max(ratios),
+        "ratio": ratio, "ratio_low": min(ratios), "ratio_high": max(ratios),
     }  # fmt: skip
 
 
@@ -93,9 +95,8 @@ def answer(question: Question, name: str = "case") -> Any:
     slice = ptm_slice(name, question.axes, **question.parameters)
     if question.along:
         return ptmcad.intervals(slice, question.along, question.fixed)
-    if question.tolerance is not None:
-        return ptmcad.classify(slice, tolerance=question.tolerance, jobs=1)
-    return ptmcad.classify(slice)
+    options = {} if question.tolerance is None else {"tolerance": question.tolerance, "jobs": 1}
+    return ptmcad.classify(slice, **options)
 
 
 def work_of(question: Question) -> int:

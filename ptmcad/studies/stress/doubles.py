@@ -8,14 +8,14 @@ of starts. Deciding which roots are real, which are one, and what is zero takes 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from fractions import Fraction
 
 import numpy as np
 
 from ptmcad.mechanism import ptm
-from ptmcad.studies.equilibria import SAME_POSE, IndexedPose, angle_error, guesses, in_doubles
-from ptmcad.studies.sextic import sextic
+from ptmcad.studies.equilibria import SAME_POSE, IndexedPose, different, guesses, in_doubles
+from ptmcad.studies.sextic import parts, sextic
 
 REAL_TOLERANCE = 1e-8
 """A root is taken for real when its imaginary part is at most this much of 1 + its modulus."""
@@ -45,28 +45,18 @@ def _companion(p: Mapping[str, float]) -> list[tuple[float, float]] | None:
     largest = float(np.max(np.abs(coefficients), initial=0.0))
     if not np.isfinite(largest) or largest == 0:
         return None
-    leading = 0
-    while leading < 6 and abs(coefficients[leading]) <= ZERO_TOLERANCE * largest:
-        leading += 1
+    leading = int(np.argmax(np.abs(coefficients) > ZERO_TOLERANCE * largest))
     try:
         roots = np.roots(coefficients[leading:])
     except np.linalg.LinAlgError:
         return None
     second = [2 * float(np.arctan(r.real)) for r in roots if abs(r.imag) <= REAL_TOLERANCE * (1 + abs(r))]
-    found: list[tuple[float, float]] = []
-    for th2 in second + [float(np.pi)] * leading:
-        for th1 in _first_angles(p, th2):
-            if not any(angle_error(a, th1) <= SAME_POSE and angle_error(b, th2) <= SAME_POSE for a, b in found):
-                found.append((th1, th2))
-    return found
+    return different([(th1, th2) for th2 in second + [float(np.pi)] * leading for th1 in _first_angles(p, th2)])
 
 
-def _first_angles(p: Mapping[str, float], th2: float) -> Iterator[float]:
+def _first_angles(p: Mapping[str, float], th2: float) -> list[float]:
     """The angles th1 that belong to th2: both where the mechanism is flat."""
-    a1, a2 = (p["k2"] + p["k3"]) * p["rho"] + p["F3x"], (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
-    c2, s2 = float(np.cos(th2)), float(np.sin(th2))
-    v, w = p["F3"] * c2 + a1 * s2, a2 * s2 - p["F4"] * c2
-    x, y = a1 - p["k3"] * p["L2"] * c2, p["F3"] + p["k3"] * p["L2"] * s2
+    v, w, x, y = parts(p, np.cos(th2), np.sin(th2))
+    a1, a2, *_ = parts(p, 0.0, 1.0)
     flat = abs(v) <= SAME_POSE * abs(a1) and abs(w) <= SAME_POSE * abs(a2)
-    for sign in (1.0, -1.0) if flat else (float(np.sign(v * w)),):
-        yield float(np.arctan2(sign * y, sign * x))
+    return [float(np.arctan2(sign * y, sign * x)) for sign in ((1.0, -1.0) if flat else (np.sign(v * w),))]

@@ -5,8 +5,8 @@ length all equilibria are there; with free lengths those to which some start lea
 
 Without free lengths: the real roots of the sextic (`ptmcad.studies.sextic`) are isolated with proof; th2 = pi counts as
 a root for each degree that is missing. Where V and W vanish both signs hold, elsewhere that of V W. Nothing is lost, as
-multiplicities are compared. With free lengths no more is known than where to start. From either Newton's method in
-balls goes on, and Krawczyk's operator proves the pose.
+multiplicities are compared. With free lengths no more is known than where to start. From either
+`ptmcad.studies.equilibria.newton_pose` goes on.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
+from flint import arb, ctx, fmpq, fmpq_poly
 
-from ptmcad.studies.equilibria import IndexedPose, balls, in_balls, inverse, proved, sign
-from ptmcad.studies.sextic import sextic
+from ptmcad.studies.equilibria import IndexedPose, newton_pose, sign
+from ptmcad.studies.sextic import parts, sextic
 from ptmcad.text.flint_numbers import from_fraction
 
 BITS = (600, 2400, 9600)
-"""Of precision, tried in turn; a pose is proved within 2^(-2/3 bits) of its angles."""
+"""Of precision, tried in turn."""
 
 
 class Degenerate(ArithmeticError):
@@ -41,15 +41,15 @@ def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...]:
     for bits in BITS:
         with ctx.workprec(bits):
             candidates = _candidates(p)
-        poses = [None] if candidates is None else [newton_pose(parameters, c, bits) for c in candidates]
+        poses = [newton_pose(parameters, c, bits) if c else None for c in candidates]
         found = tuple(pose for pose in poses if pose is not None)
         if len(found) == len(poses):
             return found
     raise ArithmeticError(f"{BITS[-1]} bits do not settle the equilibria")
 
 
-def _candidates(p: Mapping[str, fmpq]) -> list[tuple[arb, arb]] | None:
-    """The angles that belong to the real roots of N; None when the precision is too low for a sign."""
+def _candidates(p: Mapping[str, fmpq]) -> list[tuple[arb, arb] | None]:
+    """The angles that belong to the real roots of N, None where the precision is too low for a sign."""
     polynomial, v, w, square = (fmpq_poly(list(c)) for c in sextic(p))
     missing = 6 - polynomial.degree()
     if missing > 6:
@@ -58,9 +58,7 @@ def _candidates(p: Mapping[str, fmpq]) -> list[tuple[arb, arb]] | None:
     flat = p["F3"] == 0 and p["F4"] == 0
     if missing not in ((0, 2) if flat else (0, 1)) or (missing == 1 and p["F3"] == 0):
         raise Degenerate("th2 = pi is a multiple solution")
-    found: list[tuple[arb | None, int]] = [(None, side) for side in (1, -1)[:missing]] if flat else []
-    if missing == 1:
-        found.append((None, 1 if -p["F3"] * p["F4"] > 0 else -1))
+    found = _angles(p, None, flat) if missing else []
     for factor, multiplicity in polynomial.numer().factor()[1]:
         v_zero, w_zero, square_zero = ((q % fmpq_poly(factor)).degree() < 0 for q in (v, w, square))
         both = v_zero and w_zero
@@ -70,44 +68,14 @@ def _candidates(p: Mapping[str, fmpq]) -> list[tuple[arb, arb]] | None:
                 raise Degenerate("the sextic has a multiple root")
             if both and square_zero:
                 raise Degenerate("the first equation leaves th1 free")
-            signs = (1, -1) if both else (sign(arb_poly(v)(root) * arb_poly(w)(root)),)
-            if 0 in signs:
-                return None
-            found += [(root, side) for side in signs]
-    return [_angles(p, t, side) for t, side in found]
+            found += _angles(p, root, both)
+    return found
 
 
-def _angles(p: Mapping[str, fmpq], t: arb | None, side: int) -> tuple[arb, arb]:
-    """th1 and th2 of a root (None for th2 = pi) with the sign of (cos th1, sin th1)."""
+def _angles(p: Mapping[str, fmpq], t: arb | None, both: bool) -> list[tuple[arb, arb] | None]:
+    """th1 and th2 of a root (None for th2 = pi), with both signs of (cos th1, sin th1), or with that of V W."""
+    c2, s2 = (arb(-1), arb(0)) if t is None else ((1 - t * t) / (1 + t * t), 2 * t / (1 + t * t))
+    v, w, x, y = parts({name: arb(value) for name, value in p.items()}, c2, s2)
     th2 = arb.pi() if t is None else 2 * t.atan()
-    g = arb(p["k3"] * p["L2"])
-    x = arb((p["k2"] + p["k3"]) * p["rho"] + p["F3x"]) - g * (-1 if t is None else (1 - t * t) / (1 + t * t))
-    y = arb(p["F3"]) + g * (0 if t is None else 2 * t / (1 + t * t))
-    return arb.atan2(arb((y * side).mid()), arb((x * side).mid())), th2
-
-
-def newton_pose(
-    parameters: Mapping[str, Fraction], start: tuple[arb | float, arb | float], bits: int = BITS[0]
-) -> IndexedPose | None:
-    """The equilibrium that Newton's method finds from a start, proved; None when it finds none.
-
-    Parameters
-    ----------
-    start : th1, th2 in radians.
-    """
-    with ctx.workprec(bits):
-        p, radius = balls(parameters), arb(2) ** (-2 * bits // 3)
-        angles = [arb(arb(a).mid()) for a in start]
-        for _ in range(60):
-            value, hessian, _ = in_balls(p, angles)
-            rough = inverse(hessian)
-            if rough is None:
-                return None
-            y11, y12, y22 = rough
-            step = (y11 * value[0] + y12 * value[1], y12 * value[0] + y22 * value[1])
-            if not all(s.is_finite() for s in step):
-                return None
-            angles = [arb((a - s).mid()) for a, s in zip(angles, step, strict=True)]
-            if all(abs(s) < radius for s in step):
-                break
-        return proved(p, angles, radius)
+    sides = (1, -1) if both else (sign(v * w),)
+    return [(arb.atan2(arb((y * side).mid()), arb((x * side).mid())), th2) if side else None for side in sides]
