@@ -65,7 +65,7 @@ def derivatives(
     circles : cosine and sine of th1 and of th2, elements of the parameters' field, or arrays.
     root : the field's square root, of either sign; asked for the springs with a free length only, in their order.
     """
-    p = dict.fromkeys(ptm().parameters, 0) | parameters
+    p: dict[str, Any] = {**dict.fromkeys(ptm().parameters, 0), **parameters}
     rho, first, second = p["rho"], p["L1"], p["L2"]
     (c1, s1), (c2, s2) = circles
     x, y, z = rho * first * c1, rho * second * c2, first * second * (c1 * c2 - s1 * s2)
@@ -186,9 +186,9 @@ def newton_pose(
             inverse = hessian.mid().inv().mid()
         except ZeroDivisionError:  # a Hessian that is singular, or not finite
             return None
-        step, rest = inverse * gradient, arb_mat(2, 2, 1) - inverse * hessian
-        reaches = [abs(step[n, 0]) + (abs(rest[n, 0]) + abs(rest[n, 1])) * radius for n in (0, 1)]
+        at, rest = inverse * gradient, arb_mat(2, 2, 1) - inverse * hessian
+        reaches = [abs(at[n, 0]) + (abs(rest[n, 0]) + abs(rest[n, 1])) * radius for n in (0, 1)]
         determinant, first = sign(hessian.det()), sign(hessian[0, 0])
         if not all(reach < radius for reach in reaches) or not determinant or (determinant > 0 and not first):
             return None
-        return IndexedPose(*box, 1 if determinant < 0 else 0 if first > 0 else 2)
+        return IndexedPose(box[0], box[1], 1 if determinant < 0 else 0 if first > 0 else 2)

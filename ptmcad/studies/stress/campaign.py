@@ -95,8 +95,9 @@ def answer(question: Question, name: str = "case") -> Any:
     slice = ptm_slice(name, question.axes, **question.parameters)
     if question.along:
         return ptmcad.intervals(slice, question.along, question.fixed)
-    options = {} if question.tolerance is None else {"tolerance": question.tolerance, "jobs": 1}
-    return ptmcad.classify(slice, **options)
+    if question.tolerance is not None:
+        return ptmcad.classify(slice, tolerance=question.tolerance, jobs=1)
+    return ptmcad.classify(slice)
 
 
 def work_of(question: Question) -> int:

@@ -66,10 +66,11 @@ def judge(case: Case, found: Any) -> Row:
     with ctx.workprec(_BITS):
         checks, row = judgement(case, found)
     remarks = [remark for holds, remark in checks if not holds]
-    return {
+    nothing = {
         "expected": case.expected, "found": "", "right": not remarks, "remarks": remarks, "double": "",
         "double_right": False, "error": None, "double_error": None, "condition": None, "bits": 0,
-    } | row  # fmt: skip
+    }  # fmt: skip
+    return {**nothing, **row}
 
 
 Checks = list[tuple[bool, str]]
