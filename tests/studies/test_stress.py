@@ -19,16 +19,14 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.cli import run
 from ptmcad.studies.equilibria import angle_error, newton_pose
 from ptmcad.studies.stress import campaign as campaign_module
-from ptmcad.studies.stress.campaign import answer, campaign, work_of
+from ptmcad.studies.stress.campaign import answer, campaign, markdown, to_csv, to_json, work_of
 from ptmcad.studies.stress.case import Case, Question, chosen, named_cases, point
 from ptmcad.studies.stress.constructions import FEW, NAMED, Degenerate
-from ptmcad.studies.stress.doubles import double_poses
 from ptmcad.studies.stress.judgement import Row, judge
+from ptmcad.studies.stress.methods import Degenerate as DegeneratePoint
+from ptmcad.studies.stress.methods import double_poses, sextic_poses
 from ptmcad.studies.stress.picture import draw_stress, exponent
 from ptmcad.studies.stress.random_cases import KINDS, changed, random_case, stiffened, stretched
-from ptmcad.studies.stress.reference import Degenerate as DegeneratePoint
-from ptmcad.studies.stress.reference import sextic_poses
-from ptmcad.studies.stress.report import markdown, to_csv, to_json
 from ptmcad.text.flint_numbers import from_fraction
 
 CASES = named_cases()

@@ -22,7 +22,7 @@ import yaml
 
 from ptmcad.errors import ConfigError, shown
 from ptmcad.mechanism import ptm
-from ptmcad.studies.stress.constructions import NAMED, Pose
+from ptmcad.studies.stress.constructions import NAMED
 from ptmcad.text.expressions import constant
 from ptmcad.text.parsing import parse
 from ptmcad.text.syntax import did_you_mean
@@ -73,7 +73,6 @@ class Case:
     source : where the expected answer comes from.
     expected : as it is shown: 6/2 of a point (all and stable equilibria), 1 2 1 of maps and lines (stable counts, of
         regions in increasing order, of intervals in theirs); empty where a second method alone knows it.
-    pose : of a point, cosines and sines of one of the equilibria, where one is known exactly.
     bounds : of a map, for the area where two equilibria are stable; of a line, for the ends between intervals of
         different counts.
     slow : whether it takes more than about a second.
@@ -86,7 +85,6 @@ class Case:
     sibling: Question
     source: str
     expected: str = ""
-    pose: Pose | None = None
     bounds: tuple[Span, ...] = ()
     slow: bool = False
 
@@ -115,14 +113,11 @@ def named_cases() -> tuple[Case, ...]:
 
 def _case(entry: Mapping[str, Any], e: int) -> Case:
     known = {"s": Fraction(10) ** e, "digits": DIGITS, "node": NODE}
-    # beside a cusp the pose stays an equilibrium
-    kept = NAMED.get(entry["question"].get("at")) if "axes" not in entry["question"] else None
     return Case(
         name=entry["name"].format(e=e),
         stiffness=known["s"],
         question=_question(entry["question"], known),
         sibling=_question(entry["tame"], known),
-        pose=kept.pose if kept and kept.cusp else None,
         bounds=_numbers(entry.get("bounds", []), known),
         slow=e in entry.get("slow", ()),
         **{key: entry[key] for key in ("family", "source", "expected") if key in entry},

@@ -13,8 +13,8 @@ from ptmcad.mechanism import ptm
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.studies.stress.case import Case, Question
 from ptmcad.studies.stress.constructions import FEW, Degenerate, degenerate
-from ptmcad.studies.stress.reference import Degenerate as DegeneratePoint
-from ptmcad.studies.stress.reference import sextic_poses
+from ptmcad.studies.stress.methods import Degenerate as DegeneratePoint
+from ptmcad.studies.stress.methods import sextic_poses
 
 KINDS = ("scaled", "mirrored", "swapped", "fold", "cusp")
 MAX_EXPONENT = 30
