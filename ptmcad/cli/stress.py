@@ -35,7 +35,7 @@ def save(found: Row, folder: Path, formats: tuple[str, ...]) -> tuple[str, ...]:
     OutputError
         When a file cannot be written.
     """
-    from ptmcad.studies.stress.report import markdown, to_csv, to_json
+    from ptmcad.studies.stress.campaign import markdown, to_csv, to_json
 
     name = NAME if found["complete"] else f"{NAME}.partial"
     writers: dict[str, Writer] = {}
@@ -109,15 +109,14 @@ def command(
     with held(limits._replace(timeout=limit)):
         cases = _cases(names, number, seed, everything=only_list)
         if only_list:
-            from ptmcad.studies.stress.report import listing
+            from ptmcad.studies.stress.campaign import listing
 
             click.echo(listing(cases if names or number else chosen(())))
             return 0
         files = [kind for kind in formats if kind != "table"]
         if files:
             check_writable(out, tuple(f"{NAME}.{kind}" for kind in files))
-        from ptmcad.studies.stress.campaign import campaign
-        from ptmcad.studies.stress.report import summary, table
+        from ptmcad.studies.stress.campaign import campaign, summary, table
 
         if any(case.has_free_lengths for case in cases):
             from ptmcad.ask.classification import load_certified

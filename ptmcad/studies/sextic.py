@@ -34,6 +34,13 @@ def sextic(p: Mapping[str, Any]) -> tuple[Coefficients, Coefficients, Coefficien
     return tuple(a - b for a, b in zip(left, right, strict=True)), v, w, square
 
 
+def parts(p: Mapping[str, Any], c2: Any, s2: Any) -> tuple[Any, Any, Any, Any]:
+    """V, W, X and Y at cosine and sine of th2."""
+    b1, b2 = (p["k2"] + p["k3"]) * p["rho"] + p["F3x"], (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
+    v, w = p["F3"] * c2 + b1 * s2, b2 * s2 - p["F4"] * c2
+    return v, w, b1 - p["k3"] * p["L2"] * c2, p["F3"] + p["k3"] * p["L2"] * s2
+
+
 def product(left: Sequence[Any], right: Sequence[Any]) -> tuple[Any, ...]:
     """The product of two polynomials in t."""
     total: list[Any] = [0] * (len(left) + len(right) - 1)

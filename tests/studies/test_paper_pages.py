@@ -8,30 +8,33 @@ import subprocess
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 import sympy as sp
 
 from ptmcad.studies.paper import equations
-from ptmcad.studies.paper.claim import Claim, Outcome, Verdict, all_claims, judged
-from ptmcad.studies.paper.pages import Illustration, claims_html, claims_json, claims_markdown, index_html
+from ptmcad.studies.paper.claim import Claim, Verdict, judged, texts
+from ptmcad.studies.paper.pages import claims_html, claims_json, claims_markdown, figure_html, index_html
 from ptmcad.studies.paper.reproduce import FILES, Reproduction
 
 NASTY = 'a <b>&"quoted"</b> | * _x_'
 
 
-def made_up() -> tuple[tuple[Claim, Outcome], ...]:
+def made_up() -> tuple[Claim, ...]:
     """One claim of each verdict, with text that has to be escaped."""
-    outcomes = [
-        Outcome(Verdict.CONFIRMED, (NASTY,), {"n": 1}),
-        Outcome(Verdict.CORRECTED, ("e",), {"t": ("a", "b")}, right=NASTY),
-        Outcome(Verdict.REFUTED, ("e",), {"flag": True}, witness=NASTY),
-        Outcome(Verdict.NOT_CHECKED, (), {}, reason=NASTY),
-        Outcome(Verdict.UNDECIDED, (), {}, reason=NASTY),
+    said: list[dict[str, Any]] = [
+        {"evidence": (NASTY,), "facts": {"n": 1}},
+        {"evidence": ("e",), "facts": {"t": ("a", "b")}, "right": NASTY},
+        {"evidence": ("e",), "facts": {"flag": True}, "witness": NASTY},
+        {"reason": NASTY},
+        {"reason": NASTY},
     ]
+    sections = ("abstract", "2", "3", "3", "conclusions")
     return tuple(
-        (Claim(f"{s}-{n}", {"quotation": NASTY, "statement": f"statement {n}", "reason": "unused"}), o)
-        for n, (s, o) in enumerate(zip(("a", "2", "3", "3", "c"), outcomes, strict=True))
+        Claim(f"{section[0]}-{n}", section, NASTY, f"statement {n}", verdict, **more)
+        for n, (section, verdict, more) in enumerate(zip(sections, Verdict, said, strict=True))
     )
 
 
@@ -58,14 +61,15 @@ def test_pages_escape_what_they_show() -> None:
     page = claims_html(made_up())
     assert "<b>&" not in page
     assert page.count("a &lt;b&gt;&amp;&quot;quoted&quot;&lt;/b&gt;") == 10
-    assert set(Links(page).names) == {claim.name for claim, _ in made_up()}
+    assert set(Links(page).names) == {claim.name for claim in made_up()}
     text = claims_markdown(made_up())
     assert r"\_x\_" in text and "&lt;b>" in text
     assert re.findall(r"^## (.*)$", text, re.MULTILINE) == ["Abstract", "Section 2", "Section 3", "Conclusions"]
 
 
 def test_index_is_self_contained_and_names_what_is_not_confirmed() -> None:
-    figure = Illustration("fig2", "A title", "fig. 2, right", {"rho": "1"}, b"\x89PNG1", b"\x89PNG2", "table")
+    result: Any = SimpleNamespace(slice=SimpleNamespace(heading="A title"), table=lambda: "table")
+    figure = figure_html("fig2", result, {"fig2.png": b"\x89PNG1", "fig2-poses.png": b"\x89PNG2"})
     page = index_html(made_up(), [figure], equations.equations()[:2])
     links = Links(page)
     assert "script" not in links.tags and "link" not in links.tags
@@ -93,8 +97,8 @@ def test_summary_counts_and_shows_what_is_not_confirmed() -> None:
 
 
 def test_claims_run_in_the_order_given() -> None:
-    claims = [claim for claim, _ in made_up()]
-    assert [c.name for c, _ in judged(claims)] == [c.name for c in claims]
+    claims = {name: {"quotation": "q", "statement": "s", "reason": "unused"} for name in ("3-b", "a-a", "2-c")}
+    assert [c.name for c in judged(claims)] == [*claims]
 
 
 def test_equations_are_the_right_ones() -> None:
@@ -110,14 +114,13 @@ def test_equations_are_the_right_ones() -> None:
         return sp.sympify(right.replace("^", "**"), locals=names)
 
     k = names["k"]
-    texts = {claim.name: claim.text for claim in all_claims()}
 
     def stated(name: str, key: str = "printed") -> sp.Expr:
-        return sp.sympify(texts[name][key][0].partition(" = ")[2].replace("^", "**"), locals=names)
+        return sp.sympify(texts()[name][key][0].partition(" = ")[2].replace("^", "**"), locals=names)
 
     fifteen, sixteen = (
         sp.sympify(text.replace("^", "**"), locals=names | {"F": names["F4"]})
-        for text in texts["4.2-eq15-16"]["with"]["texts"]
+        for text in texts()["4.2-eq15-16"]["with"]["texts"]
     )
     assert sp.expand(k * read("(5)") - stated("3-eq5")) == 0
     assert sp.expand(k * read("(6)") - stated("3-eq6", "shown")) == 0

@@ -17,19 +17,16 @@ from support.examples import examples
 import ptmcad
 from ptmcad.answer.regionmap import Status
 from ptmcad.cli import run
-from ptmcad.studies.equilibria import angle_error
+from ptmcad.studies.equilibria import angle_error, newton_pose
 from ptmcad.studies.stress import campaign as campaign_module
-from ptmcad.studies.stress.campaign import answer, campaign, work_of
+from ptmcad.studies.stress.campaign import answer, campaign, markdown, to_csv, to_json, work_of
 from ptmcad.studies.stress.case import Case, Question, chosen, named_cases, point
 from ptmcad.studies.stress.constructions import FEW, NAMED, Degenerate
-from ptmcad.studies.stress.doubles import double_poses
 from ptmcad.studies.stress.judgement import Row, judge
-from ptmcad.studies.stress.judgement import verdict as a_verdict
+from ptmcad.studies.stress.methods import Degenerate as DegeneratePoint
+from ptmcad.studies.stress.methods import double_poses, sextic_poses
 from ptmcad.studies.stress.picture import draw_stress, exponent
 from ptmcad.studies.stress.random_cases import KINDS, changed, random_case, stiffened, stretched
-from ptmcad.studies.stress.reference import Degenerate as DegeneratePoint
-from ptmcad.studies.stress.reference import newton_pose, sextic_poses
-from ptmcad.studies.stress.report import markdown, to_csv, to_json
 from ptmcad.text.flint_numbers import from_fraction
 
 CASES = named_cases()
@@ -343,7 +340,7 @@ def test_a_wrong_answer_gives_exit_status_1(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def wrong(_case: Case, _found: object) -> Row:
-        return a_verdict("6/2", "4/1", "6/2", ("total 4, but 6 by construction",), True, 0.0, 0.0, 1.0, 112)
+        return judged("stiffness-1e4") | {"found": "4/1", "right": False, "remarks": ["total 4, but 6 by construction"]}
 
     monkeypatch.setattr(campaign_module, "judge", wrong)
     assert run(["stress", "stiffness-1e4", "--repeats", "1", "--format", "table"]) == 1

@@ -93,11 +93,14 @@ def save(figure: Figure, path: Path, *, dpi: int = 150, style: Style = DEFAULT) 
     OSError
         When the file cannot be written.
     """
-    suffix = suffix_of(path)
+    path.write_bytes(content(figure, suffix_of(path), dpi=dpi, style=style))
+
+
+def content(figure: Figure, suffix: str, *, dpi: int = 150, style: Style = DEFAULT) -> bytes:
+    """What `save` writes."""
     title, _, description = str(figure.get_label()).partition("\n")
     with settings(style):
-        data = printed(figure, suffix, dpi, title, description)
-    path.write_bytes(data)
+        return printed(figure, suffix, dpi, title, description)
 
 
 def printed(figure: Figure, suffix: str, dpi: int, title: str, description: str) -> bytes:

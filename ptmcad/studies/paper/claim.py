@@ -1,20 +1,15 @@
 """Claims of the paper and what computation says of them, with the rule that turns what was computed into a verdict.
 
-Guarantee: a verdict is reached only through `outcome`; a printed statement that fails is called corrected only when the
-right one was shown to hold, and refuted only with a witness. What no computation can decide says why.
-
-``claims.yaml`` has for each claim a few words of the paper (quotation) and the claim in other words (statement). What
-is computed of it are statements of `ptmcad.studies.paper.statements` that hold if the claim does (printed), or if what
-is called right does (shown), and a check, a function of `ptmcad.studies.paper.maps` or `ptmcad.studies.paper.free` with
-what it is called with; ``needs`` names the optional group of packages that it takes. The rest is what is said of it:
-evidence, the right statement, a witness, with names of computed values in braces. A claim that says the same as
-another is ``like`` it; one that no computation decides has a reason.
+Guarantee: a verdict is reached only through `judge`; a printed statement that fails is called corrected only when the
+right one was shown to hold, and refuted only with a witness. What no computation can decide says why. The claims are
+data, ``claims.yaml``, whose head says how they are written.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cache, partial
 from importlib import import_module
@@ -28,11 +23,9 @@ from ptmcad.process.extras import Extra
 from ptmcad.studies.paper.statements import holds
 
 TEXTS = Path(__file__).with_name("claims.yaml")
-_HERE = "ptmcad.studies.paper"
 
-Values = Mapping[str, Any]
-"""What a check computed, by name: facts, and under ``printed`` and ``corrected`` whether the statement holds as it is
-printed and whether the right one does in its place; under ``missing`` why the check cannot be made here."""
+Text = Mapping[str, Any]
+"""A claim as it is written."""
 
 
 class Verdict(Enum):
@@ -47,122 +40,119 @@ class Verdict(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """One statement of the paper.
+    """One statement of the paper, and what was computed of it.
 
     Attributes
     ----------
     name : unique, such as ``3.1-parallelogram``; it begins with the section.
-    text : of ``claims.yaml``.
-    """
-
-    name: str
-    text: Mapping[str, Any]
-
-    @property
-    def section(self) -> str:
-        """Of the paper; ``abstract`` and ``conclusions`` are sections too."""
-        section = self.name.partition("-")[0]
-        return {"a": "abstract", "c": "conclusions"}.get(section, section)
-
-    @property
-    def quotation(self) -> str:
-        """A few words by which a reader finds the place."""
-        return str(self.text["quotation"])
-
-    @property
-    def statement(self) -> str:
-        """The claim in other words."""
-        return str(self.text["statement"])
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """What was computed of a claim.
-
-    Attributes
-    ----------
-    evidence : sentences, each stating something that was computed.
-    facts : the computed values behind them.
+    section : of the paper; ``abstract`` and ``conclusions`` are sections too.
+    quotation : a few words by which a reader finds the place.
+    statement : the claim in other words.
     right : the right formula or statement where the verdict is CORRECTED.
     witness : where the statement fails.
     reason : why it was NOT_CHECKED or stayed UNDECIDED.
+    evidence : sentences, each stating something that was computed.
+    facts : the computed values behind them.
     """
 
+    name: str
+    section: str
+    quotation: str
+    statement: str
     verdict: Verdict
-    evidence: tuple[str, ...] = ()
-    facts: Values | None = None
     right: str = ""
     witness: str = ""
     reason: str = ""
-
-
-Judged = tuple[Claim, Outcome]
+    evidence: tuple[str, ...] = ()
+    facts: Mapping[str, Any] | None = None
 
 
 @cache
-def all_claims() -> tuple[Claim, ...]:
-    """Every claim, in the order of the paper's sections."""
-    texts: dict[str, dict[str, Any]] = yaml.safe_load(TEXTS.read_text(encoding="utf-8"))
-    return tuple(Claim(name, {**texts.get(text.get("like", ""), {}), **text}) for name, text in texts.items())
+def texts() -> Mapping[str, Text]:
+    """Every claim as it is written, in the order of the paper's sections."""
+    found: dict[str, Text] = yaml.safe_load(TEXTS.read_text(encoding="utf-8"))
+    return {name: {**found.get(text.get("like", ""), {}), **text} for name, text in found.items()}
 
 
-def outcome(claim: Claim) -> Outcome:
-    """Compute what is to be computed of a claim, and judge it."""
-    text = claim.text
-    values: dict[str, Any] = dict(_check(text) if "check" in text else {})
-    for key, name in (("printed", "printed"), ("shown", "corrected")):
-        if key in text:
-            facts = {statement: holds(statement) for statement in text[key]}
-            values |= facts
-            values[name] = bool(values.get(name, True)) and all(facts.values())
-    told = partial(_named, text, values)
-    if reason := values.get("missing") or text.get("reason", ""):
-        evidence = told("evidence") if values.get("corrected") else ()
-        return Outcome(Verdict.NOT_CHECKED, tuple(evidence), {}, reason=reason)
-    # a witness proves nothing while what is said of it was not shown
-    witness = "" if "shown" in text and not values["corrected"] else "".join(told("witness"))
-    return judge(values, told("evidence"), "".join(told("right")), witness)
+def judged(claims: Mapping[str, Text]) -> Iterator[Claim]:
+    """The claims with their verdicts, one after the other; what one shares with another is computed once."""
+    known: dict[str, Claim] = {}
+    for name, text in claims.items():
+        shared = known.get(text.get("like", ""))
+        known[name] = replace(shared, **_place(name, text)) if shared else judge(name, text)
+        yield known[name]
 
 
-def _check(text: Mapping[str, Any]) -> Values:
-    if "needs" in text and find_spec((extra := Extra[text["needs"]]).package) is None:
-        return {"missing": f"it cannot be computed here: {extra.message}"}
-    module, function = text["check"].split(".")
-    found: Values = getattr(import_module(f"{_HERE}.{module}"), function)(**text.get("with", {}))
-    return found
-
-
-def _named(text: Mapping[str, Any], values: Values, key: str) -> Iterable[str]:
-    """The sentences under a key; one that is nothing but the name of several sentences is these."""
-    told = text.get(key, ())
-    for sentence in (told,) if isinstance(told, str) else told:
-        several = values.get(sentence.strip("{}"))
-        yield from several if isinstance(several, tuple) else (sentence.format_map(values),)
-
-
-def judge(values: Values, evidence: Iterable[str] = (), right: str = "", witness: str = "") -> Outcome:
-    """The outcome of a claim of which something was computed.
+def judge(name: str, text: Text) -> Claim:
+    """Compute what is to be computed of a claim, and judge it.
 
     Guarantee
     ---------
     CONFIRMED if it holds as it is printed; else CORRECTED if the statement ``right`` was shown to hold in its place;
     else REFUTED if there is a witness; else UNDECIDED.
     """
-    if values.get("printed"):
-        return Outcome(Verdict.CONFIRMED, tuple(evidence), values)
-    if values.get("corrected") and right:
-        return Outcome(Verdict.CORRECTED, tuple(evidence), values, right, witness)
+    claim = partial(Claim, **_place(name, text))
+    extra = Extra[text["needs"]] if "needs" in text else None
+    if extra is not None and find_spec(extra.package) is None:
+        return claim(verdict=Verdict.NOT_CHECKED, reason=f"it cannot be computed here: {extra.message}")
+    facts = dict(_facts(text))
+    printed, shown = (_hold(text, key, facts) for key in ("printed", "shown"))
+    evidence, right = _sentences(text, "evidence", facts), "".join(_sentences(text, "right", facts))
+    # a witness proves nothing while what is said of it was not shown
+    witness = "".join(_sentences(text, "witness", facts)) if shown or "shown" not in text else ""
+    if reason := text.get("reason"):
+        return claim(verdict=Verdict.NOT_CHECKED, reason=reason, evidence=evidence if shown else ())
+    if printed:
+        return claim(verdict=Verdict.CONFIRMED, evidence=evidence, facts=facts)
+    if shown and right:
+        return claim(verdict=Verdict.CORRECTED, right=right, witness=witness, evidence=evidence, facts=facts)
     if witness:
-        return Outcome(Verdict.REFUTED, tuple(evidence), values, witness=witness)
-    reason = "neither the printed statement nor a corrected one was shown to hold"
-    return Outcome(Verdict.UNDECIDED, (), values, reason=reason)
+        return claim(verdict=Verdict.REFUTED, witness=witness, evidence=evidence, facts=facts)
+    return claim(
+        verdict=Verdict.UNDECIDED,
+        reason="neither the printed statement nor a corrected one was shown to hold",
+        facts=facts,
+    )
 
 
-def judged(claims: Sequence[Claim]) -> Iterable[Judged]:
-    """The claims with their outcomes, one after the other; what one claim shares with another is computed once."""
-    known: dict[str, Outcome] = {}
-    for claim in claims:
-        shared = claim.text.get("like", claim.name)
-        if shared not in known:
-            known[shared] = outcome(claim)
-        yield claim, known[shared]
+def _place(name: str, text: Text) -> dict[str, Any]:
+    """The claim without what is computed of it."""
+    section = name.partition("-")[0]
+    section = {"a": "abstract", "c": "conclusions"}.get(section, section)
+    return {"name": name, "section": section, "quotation": text["quotation"], "statement": text["statement"]}
+
+
+def _facts(text: Text) -> Mapping[str, Any]:
+    """What the claim's check computes."""
+    if "check" not in text:
+        return {}
+    module, function = text["check"].split(".")
+    found: Mapping[str, Any] = getattr(import_module(f"ptmcad.studies.paper.{module}"), function)(
+        **text.get("with", {})
+    )
+    return found
+
+
+def _hold(text: Text, key: str, facts: dict[str, Any]) -> bool:
+    """Whether there are statements under a key and all of them hold; what they say becomes facts."""
+    for statement in text.get(key, ()):
+        if isinstance(statement, str):
+            facts[statement] = holds(statement)
+    return key in text and all(
+        facts[s] if isinstance(s, str) else _plain({name: facts[name] for name in s}) == s for s in text[key]
+    )
+
+
+def _plain(value: Any) -> Any:
+    """As it would be read from a file."""
+    return json.loads(json.dumps(value, default=str))
+
+
+def _sentences(text: Text, key: str, facts: Mapping[str, Any]) -> tuple[str, ...]:
+    """The sentences under a key; one that is nothing but the name of several sentences is these."""
+    said = text.get(key, ())
+    found: list[str] = []
+    for sentence in (said,) if isinstance(said, str) else said:
+        several = facts.get(sentence.strip("{}"))
+        found += several if isinstance(several, list) else (sentence.format_map(facts),)
+    return tuple(found)

@@ -25,18 +25,17 @@ def critical_system(design: Design) -> tuple[str, ...]:
     """Polynomials in `UNKNOWNS` as text that vanish at the degenerate solutions; l0 of the design is left out."""
     at = {name: sp.Rational(x) for name, x in zip(NAMES, design, strict=True) if name != l0} | {k: 1}
     at |= {length: 1 / v for length, v in zip(LENGTHS, INVERSES, strict=True)}
-    h11, h12, h22 = (without(h, *HORIZONTAL).subs(at) for h in hessian())
+    g1, g2, h11, h12, h22 = (without(e, *HORIZONTAL).subs(at) for e in (*gradient(), *hessian()))
     equations = [c**2 + s**2 - 1 for c, s in CIRCLES]
     equations += [v**2 * q.subs(at) - 1 for v, q in zip(INVERSES, squares(), strict=True)]
-    equations += [without(g, *HORIZONTAL).subs(at) for g in gradient()]
-    equations.append(h11 * h22 - h12**2)
+    equations += [g1, g2, h11 * h22 - h12**2]
     polynomials = (sp.Poly(e, *UNKNOWNS).clear_denoms()[1].primitive()[1] for e in equations)
     return tuple(str(p.as_expr()).replace("**", "^").replace(" ", "") for p in polynomials)
 
 
 def critical_free_lengths(
     design: Design, timeout: float | None = None
-) -> tuple[tuple[Enclosure, tuple[int, int, int]], ...]:
+) -> tuple[tuple[Enclosure, tuple[int, ...]], ...]:
     """All critical free lengths with the signs of l1, l2 and l3, ascending; those with positive signs are folds.
 
     Raises
@@ -47,13 +46,7 @@ def critical_free_lengths(
     """
     found = []
     for box in real_solutions([str(u) for u in UNKNOWNS], critical_system(design), timeout):
-        first, second, third, free = (_sign(*box[n]) for n in (0, 1, 2, -1))
-        found.append((Enclosure(*box[-1]), (first, second, third)))
-        assert free  # at l0 = 0 the signs have no meaning
+        if any(low <= 0 <= high for low, high in (*box[:3], box[-1])):  # at l0 = 0 the signs have no meaning
+            raise MsolveError("msolve's boxes do not settle a sign")
+        found.append((Enclosure(*box[-1]), tuple(1 if low > 0 else -1 for low, _ in box[:3])))
     return tuple(sorted(found, key=lambda c: c[0].center))
-
-
-def _sign(low: sp.Rational, high: sp.Rational) -> int:
-    if low <= 0 <= high:
-        raise MsolveError("msolve's boxes do not settle a sign")
-    return 1 if low > 0 else -1

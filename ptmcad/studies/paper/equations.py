@@ -6,6 +6,7 @@ and elimination (`ptmcad.studies.paper.statements`), or is a curve of a computed
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import cache
 
@@ -19,7 +20,7 @@ from ptmcad.studies.tables import page
 _OVER_K = {force: k * sp.Symbol(str(force).lower()) for force in (F3, F4, *HORIZONTAL)}
 _THETA1, _THETA2 = sp.symbols("theta_1 theta_2", real=True)
 _ANGLES = {c1: sp.cos(_THETA1), s1: sp.sin(_THETA1), c2: sp.cos(_THETA2), s2: sp.sin(_THETA2)}
-_LATEX = {"U": "U", "cos(theta_1)": r"\cos\theta_1", "cos(theta_2)": r"\cos\theta_2", "det(H)": r"\det H"}
+_LATEX = {"cos(theta_1)": r"\cos\theta_1", "cos(theta_2)": r"\cos\theta_2", "det(H)": r"\det H"}
 
 _EQUATIONS = (
     ("(2)", "potential", "U", "U"),
@@ -37,7 +38,7 @@ _EQUATIONS = (
     ("(10)", "equal rods and forces: k/2 times the difference of (5) and (6)", "0", "factor(symmetric(k*(E1 - E2)/2))"),
     ("(11)", "equal rods and forces: k times (6)", "0", "symmetric(k*E2)"),
     ("(10')", "t1 from the second factor of (10)", "t1", "OTHER"),
-    ("(12)", "t2 where th1 and th2 differ", "0", "eliminated_12()"),
+    ("(12)", "t2 where th1 and th2 differ", "0", "eliminated_12"),
     ("(13)", "where th1 and th2 differ", "det(H)", "unequal(detH)"),
     ("(15)", "boundary of fig. 3, L1 = L2 = 1, k = 100", "0", "curve 0"),
     ("(16)", "boundary of fig. 3, L1 = L2 = 1, k = 100", "0", "curve 1"),
@@ -57,6 +58,8 @@ _EQUATIONS = (
 _NAMES = {sp.Symbol(f"f{n}x"): f"f_{{{n}x}}" for n in (3, 4)}
 _IN_FORCES = {"(2)", "H(1,1)", "H(2,2)", "(9)", "(10)", "(11)", "(10')", "(12)", "(13)", "(15)", "(16)"}
 """Those in which forces stay what they are; in the others they are over k."""
+INTRODUCTION = """Derived from the potential of the model. Here f3 = F3/k (the paper's F3'), f4 = F4/k, f3x = F3x/k,
+f4x = F4x/k; t1 and t2 are the tangents of the half angles; in (10) to (13) L1 is the length of both rods."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,35 +99,27 @@ def _shown(expression: Expr) -> Expr:
     return (compact if compact.has(total) else expression).subs(_ANGLES)
 
 
-_INTRODUCTION = """
-Derived from the potential of the model. Here f3 = F3/k (the paper's F3'), f4 = F4/k, f3x = F3x/k, f4x = F4x/k;
-t1 and t2 are the tangents of the half angles; L1 stands for the common rod length L in (10) to (13).
-"""
-
-
 def as_markdown() -> str:
     """The equations as a page of text."""
     blocks = [text for e in equations() for text in (f"{e.number}: {e.what}", f"    {e.text}")]
-    return page("# The paper's equations, corrected", _INTRODUCTION, *blocks)
-
-
-_DOCUMENT = r"""\documentclass{article}
-\usepackage[a4paper,margin=2cm]{geometry}
-\usepackage{amsmath,breqn}
-\begin{document}
-\section*{The equations of the planar tensegrity mechanism, corrected}
-Here $f_3 = F_3/k$, $f_4 = F_4/k$, $f_{3x} = F_{3x}/k$, $f_{4x} = F_{4x}/k$; in (10) to (13) $L_1$ is the
-length of both rods.\par
-"""
+    return page("# The paper's equations, corrected", INTRODUCTION, *blocks)
 
 
 def as_latex() -> str:
     """The equations as a LaTeX document; long ones are set by the breqn package, which breaks lines."""
-    blocks = (
-        rf"\noindent {_escaped(f'{e.number}: {e.what}')}" + "\n\\begin{dmath*}\n" + e.latex + "\n\\end{dmath*}\n"
+    blocks = [
+        rf"\noindent {_escaped(f'{e.number}: {e.what}')}" + "\n\\begin{dmath*}\n" + e.latex + "\n\\end{dmath*}"
         for e in equations()
-    )
-    return "".join([_DOCUMENT, *blocks, "\\end{document}\n"])
+    ]
+    names = re.sub(r"\b([fFLt])(\dx?)\b", r"$\1_{\2}$", INTRODUCTION)
+    return "\n".join([_HEAD, rf"{names}\par", *blocks, "\\end{document}\n"])
+
+
+_HEAD = r"""\documentclass{article}
+\usepackage[a4paper,margin=2cm]{geometry}
+\usepackage{amsmath,breqn}
+\begin{document}
+\section*{The equations of the planar tensegrity mechanism, corrected}"""
 
 
 def _escaped(text: str) -> str:

@@ -1,6 +1,6 @@
 """What the claims on figures 2 to 5 rest on: the exact maps of their slices, and ranges along lines in them.
 
-Guarantee: verdicts follow from the exact answers of `ptmcad.classify`, `ptmcad.solve` and `ptmcad.intervals`, and from
+Guarantee: facts follow from the exact answers of `ptmcad.classify`, `ptmcad.solve` and `ptmcad.intervals`, and from
 the theorem that a Morse function on the torus has as many saddles as minima and maxima together. Signs of heights are
 those of boxes around equilibria; that they cannot change inside a cell is shown by statements of the claims.
 
@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
-from itertools import pairwise, product
+from itertools import groupby, pairwise
 from random import Random
 from typing import Any
 
@@ -27,7 +27,6 @@ from ptmcad.ask.ranges import intervals, operation_widths
 from ptmcad.question.config import load
 from ptmcad.question.slice import Count, Slice
 from ptmcad.studies.paper import statements
-from ptmcad.studies.paper.claim import Values
 from ptmcad.text.enclosure import Enclosure
 
 POINTS: Mapping[str, tuple[str, Mapping[str, str]]] = {
@@ -41,6 +40,9 @@ POINTS: Mapping[str, tuple[str, Mapping[str, str]]] = {
 FIGURES = tuple(POINTS)
 SEED, RANDOM_POINTS = 2018, 40
 FINE = Fraction(1, 10**9)
+
+Facts = Mapping[str, Any]
+"""What a check computed, by name."""
 
 
 @cache
@@ -78,184 +80,118 @@ def widths_at(figure: str, values: Sequence[str]) -> list[Enclosure]:
     return [operation(figure, "rho", value).width for value in values]
 
 
+def fall(widths: Sequence[Enclosure]) -> bool:
+    """Whether each is smaller than the one before it."""
+    return all(a.low > b.high for a, b in pairwise(widths))
+
+
 # ------------------------------------------------------------------------------------------------------------- counts
-
-
-def possible_counts(most: int) -> set[tuple[int, int]]:
-    """(total, stable) for every Morse function on the torus with at most that many critical points."""
-    return {
-        (minima + saddles + maxima, minima)
-        for minima, saddles, maxima in product(range(most + 1), repeat=3)
-        if minima - saddles + maxima == 0 and minima >= 1 and maxima >= 1
-        and minima + saddles + maxima <= most
-    }  # fmt: skip
 
 
 @cache
 def seen_counts() -> frozenset[tuple[int, int]]:
     """(total, stable) in the cells of the maps and at random points."""
-    seen = {(c.total, c.stable) for f in FIGURES for c in region_map(f).cells}
+    seen = {(c.total or 0, c.stable or 0) for f in FIGURES for c in region_map(f).cells}
     draw = Random(SEED)
     for _ in range(RANDOM_POINTS):
         at = {n: Fraction(draw.randint(1, 300), 100) for n in ("L2", "rho")}
         at |= {n: Fraction(draw.randint(-20000, 20000), 100) for n in ("F3", "F4", "F3x", "F4x")}
         seen.add((statements.total(**at), statements.stable(**at)))
-    return frozenset((total or 0, stable or 0) for total, stable in seen)
+    return frozenset(seen)
 
 
-def stable_counts(general: bool = False) -> Values:
-    """How many equilibria there are, and how many stable ones, by theorem 1 where they are nondegenerate."""
-    most = statements.expression("degree(sextic, t2)")
-    allowed, seen = possible_counts(int(most)), seen_counts()
-    # half of the equilibria are saddles; that there is no general result can only be refuted, by giving one
-    listed = "; ".join(
-        f"of {t} equilibria {s} stable, {t // 2} saddles, {t - t // 2 - s} of maximal energy"
-        for t, s in sorted(allowed)
-    )
+def counts() -> Facts:
+    """How many equilibria, and stable ones, there may be by theorem 1 where they are nondegenerate, and are."""
+    half = int(statements.expression("degree(sextic, t2)")) // 2
+    # as many saddles as minima and maxima, of which there is one each at least
+    allowed = [(2 * n, minima) for n in range(2, half + 1) for minima in range(1, n)]
+    seen = sorted(seen_counts())
     return {
-        "printed": not general and {s for _, s in allowed} == {1, 2} and seen <= allowed,
-        "corrected": general and allowed == {(4, 1), (6, 1), (6, 2)} and seen <= allowed,
-        "allowed": tuple(f"{t},{s}" for t, s in sorted(allowed)),
-        "pairs": f"{sorted(allowed)}",
-        "seen pairs": f"{sorted(seen)}",
-        "listed": listed,
+        "pairs": allowed,
+        "stable": sorted({minima for _, minima in allowed}),
+        "seen pairs": seen,
+        "all seen allowed": {*seen} <= {*allowed},
+        "attained": seen[-1][0],
         "points": RANDOM_POINTS,
-        "attained": max(t for t, _ in seen),
+        "listed": "; ".join(
+            f"of {t} equilibria {s} stable, {t // 2} saddles, {t // 2 - s} of maximal energy" for t, s in allowed
+        ),
     }
 
 
-def most_equilibria() -> Values:
-    attained = max(t for t, _ in seen_counts())
-    return {"printed": attained == 6, "attained": attained}
-
-
-def both_kinds() -> Values:
-    found = [(c.total or 0, c.stable or 0) for f in ("fig2", "fig3", "fig4") for c in region_map(f).cells]
-    return {"printed": all(0 < stable < total for total, stable in found), "cells": len(found)}
-
-
-def three_flat(designs: Mapping[str, Mapping[str, str]]) -> Values:
-    """Which flat equilibrium is stable at designs without loads, one in each part of the plane."""
-    found = {}
-    for name, at in designs.items():
-        poses = statements.equilibria(**at).equilibria
-        good = [tuple(0 if c.center > 0 else 1 for c in p.cosines_sines[::2]) for p in poses if p.flat and p.stable]
-        found[name] = ", ".join(f"({', '.join('0' if a == 0 else 'pi' for a in pair)})" for pair in good) or "none"
-    never = [n for n in ("(0, 0)", "(0, pi)", "(pi, 0)", "(pi, pi)") if n not in " ".join(found.values())]
-    return {
-        "printed": len(never) == 3,
-        "corrected": all("), (" not in s for s in found.values()) and never == ["(pi, pi)"],
-        "stable": tuple(found.values()),
-        "never": tuple(never),
-        "stable by design": "; ".join(f"{n}: {s}" for n, s in found.items()),
-    }
-
-
-def regions(figure: str) -> Values:
-    """That one region has two stable equilibria, and the others one."""
+def regions(figure: str) -> Facts:
+    """The stable counts of a figure's regions, and by cells the total ones and those by minima, saddles and maxima."""
     found = [(r.stable, r.total) for r in region_map(figure).regions]
-    counts = sorted({stable for stable, _ in found if stable is not None})
-    twos = sum(stable == 2 for stable, _ in found)
+    cells = region_map(figure).cells
     return {
-        "printed": counts == [1, 2] and twos == 1,
-        "stable": tuple(counts),
-        "regions with two": twos,
-        "regions": f"{found}",
-        "by index": f"{sorted({c.index for c in region_map(figure).cells if c.index is not None})}",
+        "stable": sorted({stable for stable, _ in found if stable is not None}),
+        "regions with two": sum(stable == 2 for stable, _ in found),
+        "regions": found,
+        "totals": tuple(sorted({c.total for c in cells if c.total is not None})),
+        "by index": sorted({c.index for c in cells if c.index is not None}),
     }
 
 
-def merging() -> Values:
-    """Whether cells that only the decomposition parts have the same numbers of minima, saddles and maxima."""
-    kept = all(
-        m.cells[link.first].index == m.cells[link.second].index or link.merge is not Merge.PROVEN
-        for m in map(region_map, FIGURES) for link in m.adjacencies
-    )  # fmt: skip
-    return {"printed": kept}
-
-
-def computer_algebra() -> Values:
+def cells() -> Facts:
+    """How the maps' cells were counted, and whether those parted by no change have the same indices."""
     maps = {figure: region_map(figure) for figure in FIGURES}
-    exact = sum(m.status is Status.EXACT and m.undetermined == 0 for m in maps.values())
-    counted = all(c.total is not None and c.stable is not None for m in maps.values() for c in m.cells)
+    first = [c for figure in FIGURES[:3] for c in maps[figure].cells]
     return {
-        "printed": exact == len(FIGURES) and counted,
-        "exact maps": exact,
+        "exact maps": sum(m.status is Status.EXACT and m.undetermined == 0 for m in maps.values()),
         "figures": len(FIGURES),
+        "all counted": all(c.total is not None and c.stable is not None for m in maps.values() for c in m.cells),
         "cells": ", ".join(f"{len(m.cells)} of {figure}" for figure, m in maps.items()),
-    }
-
-
-def unsymmetric() -> Values:
-    """Totals over the cells of fig. 3."""
-    totals = sorted({c.total for c in region_map("fig3").cells if c.total is not None})
-    return {"printed": totals == [6], "corrected": totals == [4, 6], "totals": tuple(totals)}
+        "cells of figures 2 to 4": len(first),
+        "both kinds": all(0 < (c.stable or 0) < (c.total or 0) for c in first),
+        "indices kept": all(
+            m.cells[link.first].index == m.cells[link.second].index or link.merge is not Merge.PROVEN
+            for m in maps.values() for link in m.adjacencies
+        ),
+    }  # fmt: skip
 
 
 # ------------------------------------------------------------------------------------------------------------- curves
 
 
-def curves_are(figure: str, texts: Sequence[str]) -> Values:
-    """Whether the curves of a figure's variety are those given by polynomials, up to factors."""
-    names = slice_of(figure).axis_names
-    plain = {name: sp.Symbol(name) for name in names}
-    wanted = [sp.sympify(text, locals=plain) for text in texts]
-    found = [c.polynomial.to_sympy(names) for c in curves(figure)]
-    matched = tuple(sum(bool(sp.cancel(f / w).is_number) for f in found) for w in wanted)
+def curves_of(figures: Sequence[str], texts: Sequence[str] = ()) -> Facts:
+    """The curves of figures, and how many of them each of the polynomials that are given is, up to a factor."""
+    found = [(c.polynomial, slice_of(figure).axis_names) for figure in figures for c in curves(figure)]
+    wanted = [sp.sympify(text, locals={n: sp.Symbol(n) for n in slice_of(figures[0]).axis_names}) for text in texts]
+    even = [[all(powers[n] % 2 == 0 for powers in p.terms) for n in (0, 1)] for p, _ in found]
     return {
-        "printed": matched == (1,) * len(found),
-        "matched": matched,
         "curves": len(found),
-        "listed": ", ".join(sorted(c.polynomial.text(names) for c in curves(figure))),
+        "degrees": [p.degrees for p, _ in found],
+        "even": even,
+        "terms": [len(p.terms) for p, _ in found],
+        "found": [(p.degrees, rho, len(p.terms)) for (p, _), (rho, _) in zip(found, even, strict=True)],
+        "matched": [sum(bool(sp.cancel(p.to_sympy(n) / w).is_number) for p, n in found) for w in wanted],
+        "listed": ", ".join(sorted(p.text(names) for p, names in found)),
     }
 
 
-def one_curve(figures: Sequence[str], printed: int) -> Values:
-    """Whether there are that many curves of degree 12 in each axis, or one of degree 12 in rho^2 and in the other."""
-    found = [
-        (c.polynomial.degrees, all(i % 2 == 0 for i, _, _ in c.polynomial.terms), len(c.polynomial.terms))
-        for figure in figures for c in curves(figure)
-    ]  # fmt: skip
-    squared = len(found) == len(figures) and all(d == (24, 12) and even for d, even, _ in found)
-    as_printed = len(found) == printed and all(d == (12, 12) for d, _, _ in found)
-    return {
-        "printed": as_printed if printed else squared,
-        "corrected": squared,
-        "curves": len(found),
-        "degrees": found[0][0],
-        "terms": tuple(n for _, _, n in found),
-        "found": f"{found}",
-    }
-
-
-def even(figure: str, axis: int) -> Values:
-    """Whether all curves have only even powers of an axis."""
-    return {"printed": all(powers[axis] % 2 == 0 for c in curves(figure) for powers in c.polynomial.terms)}
-
-
-def same_at(figure: str, axis: str, value: int, text: str) -> Values:
+def same_at(figure: str, axis: str, value: int, text: str) -> Facts:
     """Whether a figure's curve at a value of an axis is a product, and its range along rho that of fig. 3."""
     names = slice_of(figure).axis_names
     cut = curves(figure)[0].polynomial.to_sympy(names).subs(sp.Symbol(axis), value)
     ratio = sp.cancel(cut / sp.sympify(text, locals={"rho": sp.Symbol("rho")}))
-    left, right = line(figure, "rho", str(value)).operation, line("fig3", "rho", "-10").operation
-    (mine,), (other,) = left, right
+    mine, other = operation(figure, "rho", str(value)), operation("fig3", "rho", "-10")
     ends = ((mine.low, other.low), (mine.high, other.high))
-    close = all(lower(a) <= upper(b) and lower(b) <= upper(a) for a, b in ends)
     return {
-        "printed": bool(ratio.is_number) and close,
+        "factor": bool(ratio.is_number),
+        "same ends": all(lower(a) <= upper(b) and lower(b) <= upper(a) for a, b in ends),
         "ratio": str(ratio),
         "low": float(mine.low),
         "high": float(mine.high),
     }
 
 
-def two_slices() -> Values:
+def two_slices() -> Facts:
     """Whether text and caption of fig. 5 have the same curve."""
-    text, caption = ([c.polynomial for c in curves(f)] for f in ("fig5-text", "fig5-caption"))
-    spans = [operation(f, "rho", "-20") for f in ("fig5-text", "fig5-caption")]
-    shown = tuple(f"{float(s.low):.6f} to {float(s.high):.6f}" for s in spans)
-    return {"printed": text == caption, "corrected": text != caption, "text": shown[0], "caption": shown[1]}
+    text, caption = FIGURES[3:]
+    spans = [operation(figure, "rho", "-20") for figure in (text, caption)]
+    shown = [f"{float(s.low):.6f} to {float(s.high):.6f}" for s in spans]
+    same = [c.polynomial for c in curves(text)] == [c.polynomial for c in curves(caption)]
+    return {"same": same, "text": shown[0], "caption": shown[1]}
 
 
 # ------------------------------------------------------------------------------------------------------------ heights
@@ -267,66 +203,52 @@ def heights(solution: Solution) -> tuple[int, int]:
     return first, second
 
 
-def patterns(figure: str) -> dict[int, set[tuple[tuple[int, int], ...]]]:
+def patterns(figure: str) -> Facts:
     """For each stable count, the signs of (y3, y4) of the stable equilibria over a figure's cells."""
-    found: dict[int, set[tuple[tuple[int, int], ...]]] = {}
+    found: dict[int | None, set[tuple[tuple[int, int], ...]]] = {}
     for cell in region_map(figure).cells:
         signs = tuple(sorted(heights(s) for s in cell.solutions if s.signs == "++"))
-        found.setdefault(cell.stable or 0, set()).add(signs)
-    return found
+        found.setdefault(cell.stable, set()).add(signs)
+    return {"counts": sorted(found, key=str), "one": sorted(found[1]), "two": sorted(found[2])}
 
 
-def range_is_region(figure: str) -> Values:
-    """Whether poses with y3, y4 > 0 last exactly over the two-solution region, and the others are reversed."""
-    found = patterns(figure)
-    return {
-        "printed": found == {1: {((-1, -1),)}, 2: {((-1, -1), (1, 1))}},
-        "one": f"{sorted(found[1])}",
-        "two": f"{sorted(found[2])}",
-    }
-
-
-def mirrored() -> Values:
-    """Without loads: one stable equilibrium is flat; two are mirror images."""
-    flat = images = True
+def mirrored() -> Facts:
+    """Whether without loads one stable equilibrium is flat, and two are mirror images."""
+    images = []
     for cell in region_map("fig2").cells:
-        stable = [s for s in cell.solutions if s.signs == "++"]
-        signs = [heights(s) for s in stable]
-        if cell.stable == 1:
-            flat &= signs == [(0, 0)]
-        else:
-            (a, b), near = stable, sum(s.radius for s in stable)
-            images &= {*signs} == {(1, 1), (-1, -1)} and all(
-                abs(x - sign * y) <= near for x, y, sign in zip(a.center, b.center, (1, -1, 1, -1), strict=True)
-            )
-    return {"printed": flat and images, "one: flat": flat, "two: mirror images": images}
+        if cell.stable == 2:
+            a, b = (s for s in cell.solutions if s.signs == "++")
+            turned = zip(a.center, b.center, (1, -1, 1, -1), strict=True)
+            images.append(all(abs(x - sign * y) <= a.radius + b.radius for x, y, sign in turned))
+    return {**patterns("fig2"), "mirror images": all(images)}
 
 
 # ------------------------------------------------------------------------------------------------------------- ranges
 
 
-def unloaded_widths(lengths: Sequence[str], constant: bool) -> Values:
+def unloaded_widths(lengths: Sequence[str]) -> Facts:
     """Whether the range without loads has the width min(L1, L2), or the same one at all lengths, at some L2."""
     found = widths_at("fig2", lengths)
-    right = all(abs(w.center - min(Fraction(x), Fraction(1))) < FINE for x, w in zip(lengths, found, strict=True))
-    equal = all(abs(w.center - found[0].center) < FINE for w in found)
     return {
-        "printed": equal if constant else right,
-        "corrected": right and mirrored()["two: mirror images"],
+        "min(L1, L2)": all(
+            abs(w.center - min(Fraction(x), Fraction(1))) < FINE for x, w in zip(lengths, found, strict=True)
+        ),
+        "equal": all(abs(w.center - found[0].center) < FINE for w in found),
+        "mirror images": mirrored()["mirror images"],
         "lengths": ", ".join(lengths),
         "widths": ", ".join(f"{float(w.center):.9g} at L2 = {x}" for x, w in zip(lengths, found, strict=True)),
-    }
+    }  # fmt: skip
 
 
-def falling(figure: str, values: Sequence[str], limit: Mapping[str, Any] | None = None) -> Values:
+def falling(figure: str, values: Sequence[str], limit: Mapping[str, Any] | None = None) -> Facts:
     """Whether the range along rho gets narrower from each value of the other axis to the next."""
     found = widths_at(figure, values)
-    falls = all(a.low > b.high for a, b in pairwise(found))
+    near = True
     if limit is not None:  # before the first value the range is that of another slice
         whole = operation(**limit).width
-        falls = falls and found[0].high < whole.low + FINE and found[0].low > Fraction(99, 100) and whole.center == 1
+        near = found[0].high < whole.low + FINE and found[0].low > Fraction(99, 100) and whole.center == 1
     listed = ", ".join(f"{x}: {float(w.center):.9f}" for x, w in zip(values, found, strict=True))
-    return {"printed": falls, "widths": listed}
+    return {"falls": fall(found), "near the limit": near, "widths": listed}
 
 
 @cache
@@ -340,37 +262,27 @@ def row_widths() -> dict[Fraction, Enclosure]:
     return {row.value: row.operation[0].width for row in over_length().rows if row.operation}
 
 
-def widest_at_one() -> Values:
+def widths_over_length() -> Facts:
+    """Where the range of fig. 4 is widest, and how it falls from there: from L2 = 1 on, and to 3/2 and to 1/2."""
     found, maxima = row_widths(), over_length().maxima
-    larger = [x for x, w in found.items() if w.low > found[Fraction(1)].high]
+    best = found[Fraction(1)]
+    larger = [x for x, w in found.items() if w.low > best.high]
+    up, down, *near = (float(best.center - w.center) for w in widths_at("fig4", ["3/2", "1/2", "99/100", "101/100"]))
     return {
-        "printed": len(maxima) == 1 and maxima[0].at.low == maxima[0].at.high == 1 and not larger,
+        "places": [str(m.at.low) for m in maxima if m.at.low == m.at.high],
+        "number": len(maxima),
         "maxima": "; ".join(m.words("L2") for m in maxima),
-        "widths": ", ".join(
-            f"{float(x):g}: {float(w.center):.9f}" for x, w in found.items() if x % Fraction(1, 4) == 0
-        ),
+        "wider": larger,
         "witness": f"L2 = {larger[0]} is wider" if larger else "",
-    }
-
-
-def slow_and_fast() -> Values:
-    """Whether the width falls from L2 = 1 on, and much less to 3/2 than to 1/2."""
-    found = row_widths()
-    later = [found[x] for x in sorted(found) if x >= 1]
-    falls = all(a.low > b.high for a, b in pairwise(later))
-    best = found[Fraction(1)].center
-    up, down = (float(best - found[Fraction(x)].center) for x in ("3/2", "1/2"))
-    near = {x: float(best - widths_at("fig4", [x])[0].center) for x in ("99/100", "101/100")}
-    return {
-        "printed": falls and up > 0 and down > 5 * up,
-        "decreasing above 1": falls,
+        "widths": ", ".join(f"{float(x):g}: {float(w.center):.9f}" for x, w in found.items() if 4 * x % 1 == 0),
+        "falls above 1": fall([w for x, w in sorted(found.items()) if x >= 1]),
+        "down over 5 up": down > 5 * up > 0,
         "up": up,
         "down": down,
-        "near": ", ".join(f"{v:.6f} at {x}" for x, v in near.items()),
-    }
+        "near": ", ".join(f"{v:.6f} at {x}" for x, v in zip(("99/100", "101/100"), near, strict=True)),
+    }  # fmt: skip
 
 
-def one_interval() -> Values:
-    counts = [i.stable for i in line("fig4", "rho", "1").intervals]
-    joined = [n for n, before in zip(counts, [None, *counts], strict=False) if n != before]
-    return {"printed": joined == [1, 2, 1], "counts": tuple(joined), "counts list": f"{joined}"}
+def along_one() -> Facts:
+    """The stable counts along L2 = 1 in fig. 4."""
+    return {"counts": [count for count, _ in groupby(i.stable for i in line("fig4", "rho", "1").intervals)]}

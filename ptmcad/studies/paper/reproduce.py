@@ -9,18 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from time import perf_counter
 from typing import Any
 
-from ptmcad.answer.poses import Poses
-from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.solving import solve
-from ptmcad.process.output import Writer, check_writable, text_writer, write_files
+from ptmcad.process.output import check_writable, write_files
 from ptmcad.studies.paper import equations, pages
-from ptmcad.studies.paper.claim import Judged, Verdict, all_claims, judged
+from ptmcad.studies.paper.claim import Claim, Verdict, judged, texts
 from ptmcad.studies.paper.maps import FIGURES, POINTS, region_map
 
 Progress = Callable[[str, int, int], None]
@@ -36,28 +32,26 @@ FILES = (
 
 @dataclass(frozen=True, slots=True)
 class Reproduction:
-    """What was computed: every claim with its outcome, and the seconds by part."""
+    """What was computed: every claim with its verdict, and the seconds by part."""
 
-    judged: tuple[Judged, ...]
+    claims: tuple[Claim, ...]
     seconds: Mapping[str, float]
 
     def number(self, verdict: Verdict) -> int:
         """How many claims have a verdict."""
-        return sum(outcome.verdict is verdict for _, outcome in self.judged)
+        return sum(claim.verdict is verdict for claim in self.claims)
 
     def table(self) -> str:
         """The summary for the terminal: numbers of verdicts, what was not confirmed, and the time."""
-        lines = [pages.summary(self.judged)]
-        for verdict in pages.NOT_AS_PRINTED:
-            for claim, outcome in self.judged:
-                if outcome.verdict is verdict:
-                    what = outcome.witness if verdict is Verdict.REFUTED else outcome.right or outcome.reason
-                    lines.append(f"{verdict.value:10} {claim.name}: {what}")
+        lines = [pages.summary(self.claims)]
+        for c in sorted(self.claims, key=lambda c: [*pages.NOT_AS_PRINTED, c.verdict].index(c.verdict)):
+            if c.verdict in pages.NOT_AS_PRINTED:
+                lines.append(f"{c.verdict.value:10} {c.name}: {c.right or c.witness or c.reason}")
         parts = ", ".join(f"{part} {seconds:.1f} s" for part, seconds in self.seconds.items())
         return "\n".join([*lines, f"time       {sum(self.seconds.values()):.1f} s: {parts}"])
 
 
-def reproduce(folder: Path, progress: Progress | None = None) -> Reproduction:
+def reproduce(folder: Path, progress: Progress = lambda _part, _done, _total: None) -> Reproduction:
     """Compute everything and write it into a folder, which is made if it is missing.
 
     Raises
@@ -66,61 +60,49 @@ def reproduce(folder: Path, progress: Progress | None = None) -> Reproduction:
         When a file cannot be written; then none is.
     """
     check_writable(folder, FILES)
-    times = [("", perf_counter())]
+    started, seconds = perf_counter(), dict[str, float]()
 
     def done(part: str) -> None:
-        times.append((part, perf_counter()))
+        seconds[part] = perf_counter() - started - sum(seconds.values())
 
     maps = {figure: region_map(figure) for figure in FIGURES}
     done("maps")
-    claims, found = all_claims(), []
-    for number, one in enumerate(judged(claims)):
-        found.append(one)
-        if progress is not None:
-            progress("claims", number + 1, len(claims))
+    claims: list[Claim] = []
+    for claim in judged(texts()):
+        claims.append(claim)
+        progress("claims", len(claims), len(texts()))
     done("claims")
-    texts = {"equations.md": equations.as_markdown(), "equations.tex": equations.as_latex()}
+    files = {"equations.md": equations.as_markdown(), "equations.tex": equations.as_latex()}
     done("equations")
     pictures: dict[str, bytes] = {}
     for number, figure in enumerate(FIGURES):
-        if progress is not None:
-            progress("figures", number, len(FIGURES))
-        at: dict[str, Any] = dict(POINTS[figure][1])
-        pictures |= _pictures(figure, maps[figure], solve(figure, **at))
+        progress("figures", number, len(FIGURES))
+        pictures |= _pictures(figure)
     done("figures")
-    figures = [
-        pages.Illustration(figure, maps[figure].slice.heading, *POINTS[figure], pictures[f"{figure}.png"],
-                           pictures[f"{figure}-poses.png"], maps[figure].table())
-        for figure in FIGURES
-    ]  # fmt: skip
-    texts |= {f"{figure}.json": maps[figure].to_json(timings=False) for figure in FIGURES}
-    texts["claims.md"] = pages.claims_markdown(found)
-    texts["claims.html"] = pages.claims_html(found)
-    texts["claims.json"] = pages.claims_json(found)
-    texts["index.html"] = pages.index_html(found, figures, equations.equations())
-    writers: dict[str, Writer] = {name: text_writer(text) for name, text in texts.items()}
-    writers |= {name: partial(_write_bytes, data) for name, data in pictures.items()}
-    write_files(folder, {name: writers[name] for name in FILES})
+    figures = [pages.figure_html(figure, result, pictures) for figure, result in maps.items()]
+    files |= {f"{figure}.json": result.to_json(timings=False) for figure, result in maps.items()}
+    files |= {
+        "claims.md": pages.claims_markdown(claims), "claims.html": pages.claims_html(claims),
+        "claims.json": pages.claims_json(claims),
+        "index.html": pages.index_html(claims, figures, equations.equations()),
+    }  # fmt: skip
+    contents = pictures | {name: text.encode() for name, text in files.items()}
+    write_files(folder, {name: partial(_write, contents[name]) for name in FILES})
     done("files")
-    seconds = {part: after - before for (_, before), (part, after) in pairwise(times)}
-    return Reproduction(tuple(found), seconds)
+    return Reproduction(tuple(claims), seconds)
 
 
-def _pictures(figure: str, result: RegionMap, poses: Poses) -> dict[str, bytes]:
+def _pictures(figure: str) -> dict[str, bytes]:
     """Names, such as ``fig4.png`` (the map beside the stable poses) and ``fig4-poses.svg``, and contents."""
     from ptmcad.show.render.figure import draw_figure
     from ptmcad.show.render.poses import draw_poses
-    from ptmcad.show.render.printing import save
+    from ptmcad.show.render.printing import content
 
-    found = {}
-    with TemporaryDirectory() as folder:
-        for suffix in PICTURES:
-            for part, draw in (("", partial(draw_figure, result, poses)), ("-poses", partial(draw_poses, poses))):
-                path = Path(folder) / f"{figure}{part}.{suffix}"
-                save(draw(), path)
-                found[path.name] = path.read_bytes()
-    return found
+    at: dict[str, Any] = dict(POINTS[figure][1])
+    poses = solve(figure, **at)
+    drawn = {figure: draw_figure(region_map(figure), poses), f"{figure}-poses": draw_poses(poses)}
+    return {f"{name}.{kind}": content(picture, kind) for name, picture in drawn.items() for kind in PICTURES}
 
 
-def _write_bytes(data: bytes, path: Path) -> None:
+def _write(data: bytes, path: Path) -> None:
     path.write_bytes(data)

@@ -12,9 +12,10 @@ lengths, where they choose the same sign of l3; with all signs positive it is an
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from fractions import Fraction
+from functools import cache, partial
 from itertools import product
 from typing import Any
 
@@ -23,107 +24,71 @@ from flint import acb, acb_poly, arb, ctx, fmpz_poly
 
 from ptmcad.algebra.polynomials import PLANE, Coefficient, coefficients_in
 from ptmcad.algebra.resultants import resultant
-from ptmcad.studies.paper.symbolic import (
-    CLEAR,
-    F3,
-    F4,
-    HORIZONTAL,
-    L1,
-    L2,
-    LENGTHS,
-    gradient,
-    half_angles,
-    k,
-    l0,
-    rho,
-    squares,
-    t1,
-    t2,
-    without,
-)
+from ptmcad.studies.equilibria import derivatives
+from ptmcad.studies.paper import symbolic
+from ptmcad.studies.paper.symbolic import CLEAR, HORIZONTAL, LENGTHS, k, l0, t1, t2, without
+from ptmcad.text.balls import ball_of
 
 Design = tuple[str, str, str, str, str, str]
 """rho, L1, L2, l0, F3/k and F4/k as decimals or fractions."""
-NAMES = (rho, L1, L2, l0, F3, F4)
+NAMES = (symbolic.rho, symbolic.L1, symbolic.L2, l0, symbolic.F3, symbolic.F4)
 CIRCLE = fmpz_poly([1, 0, 1])
 BITS = 400
 TOLERANCE = arb(10) ** -60
 """Radius of the balls; roots that are not distinguished at it are unsettled."""
-SPRINGS = ((1, t1), (0, t2))
-"""For each equation its own spring, of A2A3 and of A1A4, whose length depends on one angle."""
 
 
 @dataclass(frozen=True)
-class Squared:
-    """Both equations at a design: by terms, squared, and with t1 eliminated.
+class Elimination:
+    """Both equations at a design, squared, and what eliminating t1 leaves.
 
     Attributes
     ----------
-    terms : of each equation a, b and c times (1 + t1^2)(1 + t2^2), q of its own spring times 1 + t^2, q3 times both.
+    degree : of the eliminated polynomial.
+    circle : the exponent of its factor 1 + t2^2.
+    factors : its other squarefree factors by their multiplicities.
     """
 
-    terms: tuple[tuple[Coefficient, ...], ...]
-    equations: tuple[Coefficient, Coefficient]
+    equations: Sequence[Coefficient]
+    degree: int
+    circle: int
+    factors: Mapping[int, fmpz_poly]
 
-    @cached_property
-    def eliminated(self) -> fmpz_poly:
-        """What eliminating t1 leaves."""
-        first, second = (coefficients_in(p, 0) for p in self.equations)
-        return resultant(first, second)
-
-    @cached_property
-    def circle(self) -> int:
-        """The exponent of the factor 1 + t2^2."""
-        return sum(e for p, e in self._factors if p == CIRCLE)
-
-    @cached_property
-    def _factors(self) -> list[tuple[fmpz_poly, int]]:
-        """The irreducible factors with their multiplicities."""
-        return [(p, e) for p, e in self.eliminated.factor()[1]]
-
-    @cached_property
-    def factors(self) -> tuple[tuple[fmpz_poly, int], ...]:
-        """The squarefree factors but for 1 + t2^2, with their multiplicities."""
-        found: dict[int, fmpz_poly] = {}
-        for p, e in self._factors:
-            if p != CIRCLE:
-                found[e] = found.get(e, fmpz_poly([1])) * p
-        return tuple((found[e], e) for e in sorted(found))
-
-    @cached_property
+    @property
     def real_roots(self) -> int:
         """The number of different real roots."""
-        return sum(root.imag == 0 for p, _ in self.factors for root in complex_roots(p))
+        return sum(root.imag == 0 for p in self.factors.values() for root in _complex_roots(p))
 
 
 @cache
-def squared(design: Design) -> Squared:
-    """The equations at a design, after two squarings."""
+def squared(design: Design) -> Elimination:
+    """The equations at a design, after two squarings and elimination."""
     numbers = [sp.Rational(x) for x in design]
     # all are lengths, loads over k too: scaling them leaves the angles as they are
-    unit = sp.ilcm(*(x.q for x in numbers))
-    at = dict(zip(NAMES, (x * unit for x in numbers), strict=True)) | {k: 1}
-    d, e = (sp.Poly(1 + t**2, t1, t2, domain="QQ") for t in (t1, t2))
-    top = _cleared(squares()[2].subs(at), CLEAR)
-    terms, equations = [], []
-    for slope, length, (spring, t), own in zip(gradient(), (L1, L2), SPRINGS, (d, e), strict=True):
-        g = sp.expand(without(slope, *HORIZONTAL).subs(at) / length.subs(at))
-        by_length = [g.coeff(LENGTHS[n], -1) for n in (spring, 2)]
-        rest = sp.expand(g - sum(c / LENGTHS[n] for c, n in zip(by_length, (spring, 2), strict=True)))
-        a, b, c = (_cleared(part, CLEAR) for part in (rest, *by_length))
-        diagonal = _cleared(squares()[spring].subs(at), 1 + t**2)
-        inner = a**2 * diagonal * top - b**2 * own * top - c**2 * d * e * diagonal
-        terms.append(tuple(map(_in_plane, (a, b, c, diagonal, top))))
-        equations.append(_in_plane(inner**2 - 4 * b**2 * c**2 * own * d * e * diagonal * top))
-    return Squared(tuple(terms), (equations[0], equations[1]))
+    at = dict(zip(NAMES, (x * sp.ilcm(*(x.q for x in numbers)) for x in numbers), strict=True)) | {k: 1}
+    squares, whole = symbolic.squares(), _cleared(CLEAR, 1)
+    equations = []
+    for slope, own, other in zip(symbolic.gradient(), (1, 0), (t2, t1), strict=True):
+        g = without(slope, *HORIZONTAL)
+        parts = (without(g, l0), g.coeff(LENGTHS[own], -1), g.coeff(LENGTHS[2], -1), squares[own], squares[2])
+        a, b, c, q, q3 = (_cleared(part.subs(at), CLEAR) for part in parts)
+        inner = a**2 * q * q3 - whole * (b**2 * q3 + c**2 * q)
+        # the angle that a and the own spring's length have not in common was cleared once too often
+        norm = (inner**2 - 4 * whole**2 * b**2 * c**2 * q * q3).exquo(_cleared((1 + other**2) ** 2, 1))
+        equations.append(PLANE.from_dict({powers: int(x) for powers, x in norm.terms()}))
+    first, second = (coefficients_in(p, 0) for p in equations)
+    polynomial = resultant(first, second)
+    circle, factors = 0, dict[int, fmpz_poly]()
+    for p, exponent in polynomial.factor()[1]:
+        if p == CIRCLE:
+            circle = exponent
+        else:
+            factors[exponent] = factors.get(exponent, fmpz_poly([1])) * p
+    return Elimination(equations, int(polynomial.degree()), circle, dict(sorted(factors.items())))
 
 
 def _cleared(expression: Any, factor: Any) -> Any:
-    return sp.Poly(sp.cancel(half_angles(expression) * factor), t1, t2, domain="QQ")
-
-
-def _in_plane(p: Any) -> Coefficient:
-    return PLANE.from_dict({powers: int(c) for powers, c in p.terms()})
+    return sp.Poly(sp.cancel(symbolic.half_angles(expression) * factor), t1, t2, domain="QQ")
 
 
 # ---------------------------------------------------------------------------------------------- which roots solve both
@@ -166,10 +131,12 @@ def signed_solutions(design: Design) -> SignedSolutions:
     system = squared(design)
     found, opposed, unsettled = [], 0, 0
     with ctx.workprec(BITS):
+        values = dict(zip(map(str, NAMES), (ball_of(Fraction(x)) for x in design), strict=True))
+        values |= {f"{name}{n}": x for name, x in (("k", arb(1)), ("l0_", values["l0"])) for n in (1, 2, 3)}
         rows = [coefficients_in(p, 0) for p in system.equations]
-        for t2 in complex_roots(next((p for p, e in system.factors if e == 1), fmpz_poly([1]))):
+        for t2 in _complex_roots(system.factors.get(1, fmpz_poly([1]))):
             t1 = _common_root(*([acb_poly(c)(t2) for c in row] for row in rows))
-            own, other = (_signs(parts, n, t1, t2) for n, parts in enumerate(system.terms))
+            own, other = (None, None) if t1 is None else _signs(values, (t1, t2))
             if t1 is None or own is None or other is None:
                 unsettled += 1
                 if t2.imag == 0:
@@ -181,9 +148,9 @@ def signed_solutions(design: Design) -> SignedSolutions:
     return SignedSolutions(tuple(found), opposed, unsettled)
 
 
-def complex_roots(p: fmpz_poly) -> list[acb]:
+def _complex_roots(p: fmpz_poly) -> list[acb]:
     """Disjoint balls around the roots, without multiplicities; the imaginary part of a real one is exactly 0."""
-    pairs: Any = p.complex_roots()  # pairs; FLINT's stub says otherwise
+    pairs: Any = p.complex_roots()  # FLINT's stub says otherwise
     return [root for root, _ in pairs]
 
 
@@ -199,20 +166,18 @@ def _common_root(first: Sequence[acb], second: Sequence[acb]) -> acb | None:
     return common[0] if len(common) == 1 else None
 
 
-def _signs(parts: Sequence[Coefficient], number: int, t1: acb | None, t2: acb) -> tuple[int, int] | None:
-    """The only signs of the two lengths at which an equation can hold; None when it is not clear."""
-    if t1 is None:
-        return None
-    a, b, c, diagonal, top = (_value(p, t1, t2) for p in parts)
-    d, e = 1 + t1 * t1, 1 + t2 * t2
-    own, third = diagonal / (e if number else d), top / (d * e)
-    if any(not q.is_finite() or q.contains(0) for q in (own, third)):
-        return None
-    b, c = b / own.sqrt(), c / third.sqrt()  # any continuous choice of the roots serves: both signs are tried
-    zero = [(i, j) for i, j in product((1, -1), repeat=2) if (a + i * b + j * c).contains(0)]
-    return zero[0] if len(zero) == 1 else None
+def _signs(values: Mapping[str, Any], tangents: Sequence[acb]) -> list[tuple[int, int] | None]:
+    """For each equation the only signs of its own length and l3 at which it can hold; None when it is not clear."""
+    circles = [((1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)) for t in tangents]
+    zero: tuple[set[tuple[int, int]], ...] = (set(), set())
+    for signs in product((1, -1), repeat=3):
+        # any continuous choice of the roots serves: both signs are tried
+        gradient = derivatives(values, circles, partial(_root, iter(signs))).gradient
+        for n, slope in enumerate(gradient):
+            if slope.contains(0):
+                zero[n].add((signs[1 - n], signs[2]))
+    return [next(iter(found)) if len(found) == 1 else None for found in zero]
 
 
-def _value(p: Coefficient, t1: acb, t2: acb) -> acb:
-    by_t1: list[acb] = [acb_poly(row)(t2) for row in coefficients_in(p, 0)]
-    return acb_poly(by_t1)(t1)
+def _root(signs: Iterator[int], square: acb) -> acb:
+    return next(signs) * square.sqrt()

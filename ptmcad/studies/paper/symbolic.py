@@ -9,7 +9,7 @@ All stiffnesses are k here and all free lengths l0.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cache
 from types import SimpleNamespace
 from typing import Any
@@ -28,23 +28,16 @@ c1, s1, c2, s2, t1, t2 = sp.symbols("c1 s1 c2 s2 t1 t2", real=True)
 LENGTHS = sp.symbols("l1 l2 l3", positive=True)
 CIRCLES = ((c1, s1), (c2, s2))
 HORIZONTAL = (F3x, F4x)
-
-HALF: Mapping[Expr, Expr] = {
-    x: value
-    for (c, s), t in zip(CIRCLES, (t1, t2), strict=True)
-    for x, value in ((c, (1 - t**2) / (1 + t**2)), (s, 2 * t / (1 + t**2)))
-}
+HALF = {c1: (1 - t1**2) / (1 + t1**2), s1: 2 * t1 / (1 + t1**2)}
+HALF |= {c2: (1 - t2**2) / (1 + t2**2), s2: 2 * t2 / (1 + t2**2)}
 CLEAR = (1 + t1**2) * (1 + t2**2)
 
 _MECHANISM = ptm()
-_PARAMETERS = (
-    {str(s): s for s in (L1, L2, rho, F3, F4, F3x, F4x)}
-    | dict.fromkeys(_MECHANISM.stiffnesses, k)
-    | dict.fromkeys(_MECHANISM.free_lengths, l0)
-)
+PARAMETERS = {str(s): s for s in (L1, L2, rho, k, l0, F3, F4, F3x, F4x)}
+_ALIASES = dict.fromkeys(_MECHANISM.stiffnesses, k) | dict.fromkeys(_MECHANISM.free_lengths, l0)
 _RING: Any = SimpleNamespace(
     constant=lambda value: sp.Rational(value.numerator, value.denominator),
-    parameter=_PARAMETERS.__getitem__,
+    parameter=(PARAMETERS | _ALIASES).__getitem__,
     cos=lambda angle: CIRCLES[_MECHANISM.angles.index(angle)][0],
     sin=lambda angle: CIRCLES[_MECHANISM.angles.index(angle)][1],
 )
@@ -58,10 +51,10 @@ def points() -> Mapping[str, tuple[Expr, Expr]]:
 
 @cache
 def squares() -> tuple[Expr, ...]:
-    """The springs' squared lengths."""
-    ends = [(points()[s.start], points()[s.end]) for s in _MECHANISM.springs]
-    found = (sp.expand(sum((b - a) ** 2 for a, b in zip(*pair, strict=True))) for pair in ends)
-    return tuple(sp.expand(q.subs({s**2: 1 - c**2 for c, s in CIRCLES})) for q in found)
+    """The squares of the springs' lengths, the sines' squares being eliminated."""
+    ends = ((points()[spring.start], points()[spring.end]) for spring in _MECHANISM.springs)
+    found = (sum((b - a) ** 2 for a, b in zip(*pair, strict=True)) for pair in ends)
+    return tuple(sp.expand(sp.expand(q).subs({s**2: 1 - c**2 for c, s in CIRCLES})) for q in found)
 
 
 @cache
@@ -102,43 +95,6 @@ def half_angles(expression: Expr) -> Expr:
     return sp.sympify(expression).subs(HALF)
 
 
-def vanishes(expression: Expr) -> bool:
-    """Whether a rational function of all symbols is zero wherever c^2 + s^2 = 1 for both angles."""
-    return bool(sp.expand(sp.numer(sp.together(half_angles(expression)))) == 0)
-
-
 def without(expression: Expr, *symbols: Expr) -> Expr:
     """An expression with some parameters zero."""
     return sp.sympify(expression).subs(dict.fromkeys(symbols, 0))
-
-
-@cache
-def half_angle_equations() -> tuple[Expr, Expr]:
-    """The gradient without free lengths in half angles, divided by L1 k and L2 k and times (1 + t1^2)(1 + t2^2)."""
-    first, second = (
-        sp.expand(sp.cancel(half_angles(without(g, l0)) * CLEAR / (length * k)))
-        for g, length in zip(gradient(), (L1, L2), strict=True)
-    )
-    return first, second
-
-
-def quadratic_elimination(equations: Sequence[Expr]) -> tuple[Expr, Expr, Expr]:
-    """Two polynomials of degree 2 in t1: their resultant, and a and b of their combination a t1 + b."""
-    (p0, p1, p2), (q0, q1, q2) = ([p.coeff(t1, e) for e in range(3)] for p in equations)
-    a, b = sp.expand(p2 * q1 - q2 * p1), sp.expand(p2 * q0 - q2 * p0)
-    return sp.expand(b**2 - a * (p1 * q0 - q1 * p0)), a, b
-
-
-def divided(expression: Expr) -> Expr:
-    """A polynomial in t2 divided by 1 + t2^2.
-
-    Raises
-    ------
-    ArithmeticError
-        When it has not this factor exactly once.
-    """
-    factor = sp.Poly(1 + t2**2, t2)
-    quotient, remainder = sp.div(sp.Poly(expression, t2), factor)
-    if not remainder.is_zero or sp.div(quotient, factor)[1].is_zero:
-        raise ArithmeticError("the polynomial has not the factor 1 + t2^2 once")
-    return quotient.as_expr()

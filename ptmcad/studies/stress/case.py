@@ -22,7 +22,7 @@ import yaml
 
 from ptmcad.errors import ConfigError, shown
 from ptmcad.mechanism import ptm
-from ptmcad.studies.stress.constructions import NAMED, Pose
+from ptmcad.studies.stress.constructions import NAMED
 from ptmcad.text.expressions import constant
 from ptmcad.text.parsing import parse
 from ptmcad.text.syntax import did_you_mean
@@ -60,11 +60,6 @@ class Question:
             return "point"
         return "line" if self.along else "map" if self.tolerance is None else "certified map"
 
-    @property
-    def has_free_lengths(self) -> bool:
-        """Whether it is for the certified engine."""
-        return any(name.startswith("l0") and value for name, value in self.parameters.items())
-
 
 @dataclass(frozen=True, slots=True)
 class Case:
@@ -78,9 +73,8 @@ class Case:
     source : where the expected answer comes from.
     expected : as it is shown: 6/2 of a point (all and stable equilibria), 1 2 1 of maps and lines (stable counts, of
         regions in increasing order, of intervals in theirs); empty where a second method alone knows it.
-    pose : of a point, cosines and sines of one of the equilibria, where one is known exactly.
-    area : of a map, bounds for the area where two equilibria are stable.
-    ends : of a line, bounds for the ends between intervals of different counts.
+    bounds : of a map, for the area where two equilibria are stable; of a line, for the ends between intervals of
+        different counts.
     slow : whether it takes more than about a second.
     """
 
@@ -91,27 +85,23 @@ class Case:
     sibling: Question
     source: str
     expected: str = ""
-    pose: Pose | None = None
-    area: Span | None = None
-    ends: tuple[Span, ...] = ()
+    bounds: tuple[Span, ...] = ()
     slow: bool = False
 
     @property
     def has_free_lengths(self) -> bool:
         """Whether a question is for the certified engine."""
-        return self.question.has_free_lengths or self.sibling.has_free_lengths
+        given = (*self.question.parameters.items(), *self.sibling.parameters.items())
+        return any(name.startswith("l0") and value for name, value in given)
 
 
 def point(**given: Fraction | int | str) -> Question:
     """A point of the paper's mechanism: L1 = 1, L2 = 3/2, rho = 7/10, k = 100 and no load unless given."""
-    values = {name: Fraction(value) for name, value in given.items()}
-    p = {"L1": Fraction(1), "L2": Fraction(3, 2), "rho": Fraction(7, 10)}
-    p |= dict.fromkeys(ptm().stiffnesses, values.pop("k", Fraction(100))) | dict.fromkeys(ptm().forces, Fraction(0))
-    if free := values.pop("l0", Fraction(0)):
-        p |= dict.fromkeys(ptm().free_lengths, free)
-    if unknown := sorted(values.keys() - p.keys()):
-        raise ValueError(f"unknown parameters {unknown}")
-    return Question(p | values)
+    values = {"L1": "1", "L2": "3/2", "rho": "7/10", "k": 100, "l0": 0, **dict.fromkeys(ptm().forces, 0), **given}
+    p = {name: Fraction(value) for name, value in values.items()}
+    springs, free = dict.fromkeys(ptm().stiffnesses, p.pop("k")), p.pop("l0")
+    lengths = dict.fromkeys(ptm().free_lengths, free) if free else {}
+    return Question(springs | lengths | p)
 
 
 @cache
@@ -123,48 +113,37 @@ def named_cases() -> tuple[Case, ...]:
 
 def _case(entry: Mapping[str, Any], e: int) -> Case:
     known = {"s": Fraction(10) ** e, "digits": DIGITS, "node": NODE}
-    at = entry["question"].get("at")
     return Case(
-        entry["name"].format(e=e),
-        entry["family"],
-        known["s"],
-        _question(entry["question"], known),
-        _question(entry["tame"], known),
-        entry["source"],
-        entry.get("expected", ""),
-        NAMED[at].pose if at in NAMED and NAMED[at].cusp and "axes" not in entry["question"] else None,
-        _span(entry["area"], known) if "area" in entry else None,
-        tuple(_span(end, known) for end in entry.get("ends", ())),
-        e in entry.get("slow", ()),
+        name=entry["name"].format(e=e),
+        stiffness=known["s"],
+        question=_question(entry["question"], known),
+        sibling=_question(entry["tame"], known),
+        bounds=_numbers(entry.get("bounds", []), known),
+        slow=e in entry.get("slow", ()),
+        **{key: entry[key] for key in ("family", "source", "expected") if key in entry},
     )
 
 
 def _question(entry: Mapping[str, Any], known: Mapping[str, Fraction]) -> Question:
-    axes = entry.get("axes", {})
     base: Mapping[str, Fraction] = {}
     if "at" in entry:
-        base = NAMED[entry["at"]].beside(_number(entry.get("beside", 0), known))
-        known = {**known, **base}
-    given = {name: _number(text, known) for name, text in entry.get("parameters", {}).items()}
-    values = {name: value for name, value in {**base, **given}.items() if name not in axes}
-    if not axes:
+        base = NAMED[entry["at"]].beside(_numbers(entry.get("beside", 0), known))
+    names = ("parameters", "axes", "tolerance", "fixed")
+    given = {name: _numbers(entry[name], {**known, **base}) for name in names if name in entry}
+    values = {**base, **given.pop("parameters", {})}
+    if "axes" not in given:
         return point(**values)
-    return Question(
-        values,
-        {name: _span(ends, known) for name, ends in axes.items()},
-        _number(entry["tolerance"], known) if "tolerance" in entry else None,
-        entry.get("along", ""),
-        {name: _number(text, known) for name, text in entry.get("fixed", {}).items()},
-    )
+    values = {name: value for name, value in values.items() if name not in given["axes"]}
+    return Question(values, along=entry.get("along", ""), **given)
 
 
-def _span(ends: Sequence[object], known: Mapping[str, Fraction]) -> Span:
-    low, high = (_number(end, known) for end in ends)
-    return low, high
-
-
-def _number(text: object, known: Mapping[str, Fraction]) -> Fraction:
-    return parse(str(text), {name: constant(value) for name, value in known.items()}).constant()
+def _numbers(node: Any, known: Mapping[str, Fraction]) -> Any:
+    """What has expressions for numbers, with their values."""
+    if isinstance(node, dict):
+        return {key: _numbers(value, known) for key, value in node.items()}
+    if isinstance(node, list):
+        return tuple(_numbers(value, known) for value in node)
+    return parse(str(node), {name: constant(value) for name, value in known.items()}).constant()
 
 
 def chosen(names: Sequence[str]) -> tuple[Case, ...]:
@@ -176,7 +155,7 @@ def chosen(names: Sequence[str]) -> tuple[Case, ...]:
         For a name that is neither.
     """
     cases = named_cases()
-    known = {case.name for case in cases} | {case.family for case in cases} | {ALL}
+    known = {ALL, *(name for case in cases for name in (case.name, case.family))}
     for name in names:
         if name not in known:
             raise ConfigError(
@@ -184,4 +163,4 @@ def chosen(names: Sequence[str]) -> tuple[Case, ...]:
                 f"{did_you_mean(name, tuple(sorted(known)))}",
                 key="NAMES",
             )
-    return tuple(c for c in cases if not names or ALL in names or c.name in names or c.family in names)
+    return tuple(c for c in cases if not names or {ALL, c.name, c.family} & set(names))

@@ -22,7 +22,7 @@ On the torus there are 4 or 6 equilibria in all (minima - saddles + maxima = 0),
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -64,24 +64,23 @@ class Degenerate:
         return {**p, "F4x": p["F4x"] - shift, "F4": p["F4"] + shift * s2 / c2}
 
 
-def rational_pose(t1: Fraction, t2: Fraction) -> Pose:
-    """The pose whose half angles have these tangents."""
-    return (1 - t1**2) / (1 + t1**2), 2 * t1 / (1 + t1**2), (1 - t2**2) / (1 + t2**2), 2 * t2 / (1 + t2**2)
-
-
 def degenerate(
-    lengths: tuple[Fraction, Fraction], rho: Fraction, springs: tuple[Fraction, ...], pose: Pose, *, cusp: bool
+    tangents: Sequence[Fraction],
+    *,
+    cusp: bool,
+    lengths: Sequence[Fraction] = (Fraction(1), Fraction(3, 2)),
+    rho: Fraction = Fraction(7, 10),
+    springs: Sequence[Fraction] = (Fraction(100),) * 3,
 ) -> Degenerate:
-    """Loads under which a pose is an equilibrium on a fold, with F3x zero, or at a cusp of the folds.
+    """Loads under which a pose, by its half angles' tangents, lies on a fold, with F3x zero, or at a cusp of the folds.
 
     Raises
     ------
     ValueError
         When there are none: a cosine, h11, h12 or the derivative that tells the sides is zero.
     """
-    first, second = lengths
-    k1, k2, k3 = springs
-    c1, s1, c2, s2 = pose
+    (first, second), (k1, k2, k3) = lengths, springs
+    (c1, s1), (c2, s2) = (((1 - t**2) / (1 + t**2), 2 * t / (1 + t**2)) for t in tangents)
     c12, s12 = c1 * c2 - s1 * s2, s1 * c2 + c1 * s2
     if c1 == 0 or c2 == 0:
         raise ValueError("no vertical load balances a vertical bar")
@@ -103,22 +102,14 @@ def degenerate(
         "F3x": a1 - (k2 + k3) * rho,
         "F4x": (k1 + k3) * rho - a2,
     }
-    return Degenerate(parameters, pose, cusp, (6, 2) if h11 > 0 else (6, 1), 1 if towards > 0 else -1)
+    return Degenerate(parameters, (c1, s1, c2, s2), cusp, (6, 2) if h11 > 0 else (6, 1), 1 if towards > 0 else -1)
 
 
-def _named() -> dict[str, Degenerate]:
-    lengths, springs = (Fraction(1), Fraction(3, 2)), (Fraction(100),) * 3
-    tangents = {
+NAMED = {
+    name: degenerate([Fraction(t) for t in tangents], cusp="cusp" in name)
+    for name, tangents in {
         "fold": ("1/3", "2/5"), "other fold": ("3/2", "1/5"), "fold of maxima": ("-2", "3"),
         "cusp": ("1/2", "3/7"), "cusp of maxima": ("1/3", "2/5"),
-    }  # fmt: skip
-    return {
-        name: degenerate(
-            lengths, Fraction(7, 10), springs, rational_pose(Fraction(t1), Fraction(t2)), cusp="cusp" in name
-        )
-        for name, (t1, t2) in tangents.items()
-    }
-
-
-NAMED = _named()
+    }.items()
+}  # fmt: skip
 """Those that the named cases lie beside."""

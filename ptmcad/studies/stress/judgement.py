@@ -11,9 +11,9 @@ share e, the pose turns by at most about 2 e S |H^-1| radians. A point's is the 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
-from itertools import groupby
+from itertools import groupby, product
 from typing import Any
 
 from flint import arb, ctx
@@ -21,12 +21,11 @@ from flint import arb, ctx
 from ptmcad.answer.intervals import CountIntervals, lower, upper
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.studies.equilibria import IndexedPose, angle_error, scale
-from ptmcad.studies.stress.case import Case, Question
-from ptmcad.studies.stress.doubles import double_poses
-from ptmcad.studies.stress.reference import newton_pose, sextic_poses
+from ptmcad.mechanism import ptm
+from ptmcad.studies.equilibria import IndexedPose, angle_error, newton_pose, scale
+from ptmcad.studies.stress.case import Case
+from ptmcad.studies.stress.methods import double_poses, sextic_poses
 from ptmcad.text.balls import ball_of, exact
-from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.expressions import Expression
 
 GRID = 16
@@ -34,67 +33,60 @@ GRID = 16
 STEPS = 200
 """Points along a line."""
 _BITS = 512
+DECIDED = (Status.EXACT, Status.CERTIFIED)
 
 Row = dict[str, Any]
+"""What came out of a case.
 
-
-def verdict(
-    expected: str,
-    found: str,
-    double: str,
-    remarks: Sequence[str],
-    double_right: bool,
-    error: float | None = None,
-    double_error: float | None = None,
-    condition: float | None = None,
-    bits: int = 0,
-) -> Row:
-    """What came out of a case, without its cost; ``right`` says whether ptmcad's answer is, by all checks.
-
-    Parameters
-    ----------
-    expected, found, double : the answers as text.
-    remarks : what is not right of ptmcad's answer; a decided wrong one is as wrong as an undecided one.
-    double_right : whether the double-precision method's answer is right.
-    error : largest error of ptmcad's angles (the middles of its enclosures) in radians; for lines, of the ends relative
-        to the window. None where nothing is compared.
-    double_error : the same of the double-precision method, over the poses that it has; for maps the share of the
-        grid's points with a wrong count.
-    condition : see the module; None for maps and lines.
-    bits : of precision that ptmcad needed; the largest over its stages.
-    """
-    return {
-        "expected": expected, "found": found, "right": not remarks, "remarks": list(remarks), "double": double,
-        "double_right": double_right, "error": error, "double_error": double_error, "condition": condition,
-        "bits": bits,
-    }  # fmt: skip
+- ``expected``, ``found``, ``double``: the answers as text.
+- ``right``: whether ptmcad's answer is, by all checks; a decided wrong one is as wrong as an undecided one.
+- ``remarks``: what is not right of it.
+- ``double_right``: whether the double-precision method's answer is right.
+- ``error``: largest error of ptmcad's angles (the middles of its enclosures) in radians; for lines, of the ends
+  relative to the window. None where nothing is compared.
+- ``double_error``: the same of the double-precision method, over the poses that it has; for maps the share of the
+  grid's points with a wrong count.
+- ``condition``: see the module; None for maps and lines.
+- ``bits``: of precision that ptmcad needed; the largest over its stages.
+"""
 
 
 def judge(case: Case, found: Any) -> Row:
-    """The verdict on an answer to the case.
+    """The verdict on an answer to the case, without its cost.
 
     Raises
     ------
     TypeError
         When the answer is of another kind than the question.
     """
-    kind = case.question.kind
+    if not isinstance(found, {"point": Poses, "line": CountIntervals}.get(case.question.kind, RegionMap)):
+        raise TypeError(f"{case.name}: the answer is of another kind than the question")
+    judgement: Any = {Poses: _point, CountIntervals: _line, RegionMap: _map}[type(found)]
     with ctx.workprec(_BITS):
-        if kind == "point" and isinstance(found, Poses):
-            return _judge_point(case, found)
-        if kind == "line" and isinstance(found, CountIntervals):
-            return _judge_line(case, found)
-        if kind.endswith("map") and isinstance(found, RegionMap):
-            return _judge_map(case, found)
-    raise TypeError(f"{case.name}: the answer is of another kind than the question")
+        checks, row = judgement(case, found)
+    remarks = [remark for holds, remark in checks if not holds]
+    nothing = {
+        "expected": case.expected, "found": "", "right": not remarks, "remarks": remarks, "double": "",
+        "double_right": False, "error": None, "double_error": None, "condition": None, "bits": 0,
+    }  # fmt: skip
+    return {**nothing, **row}
 
 
-def _counts(poses: Sequence[Any] | None) -> tuple[int, int]:
-    """How many poses there are, and how many stable ones; -1 where there is no answer."""
-    return (-1, -1) if poses is None else (len(poses), sum(pose.index == 0 for pose in poses))
+Checks = list[tuple[bool, str]]
+"""What has to hold, and what is remarked where it does not."""
 
 
-def _text(counts: Sequence[object]) -> str:
+def _stable(poses: Sequence[IndexedPose] | None) -> int:
+    """How many poses are stable; -1 where there is no answer."""
+    return -1 if poses is None else sum(pose.index == 0 for pose in poses)
+
+
+def _shown(poses: Sequence[IndexedPose] | None) -> str:
+    """How many poses there are, and how many stable ones."""
+    return "none" if poses is None else f"{len(poses)}/{_stable(poses)}"
+
+
+def _text(counts: Iterable[object]) -> str:
     return " ".join(map(str, counts))
 
 
@@ -109,52 +101,45 @@ def as_float(value: Fraction) -> float:
 # ----------------------------------------------------------------------------------------------------------- points
 
 
-def _judge_point(case: Case, found: Poses) -> Row:
+def _point(case: Case, found: Poses) -> tuple[Checks, Row]:
     parameters, poses = case.question.parameters, found.equilibria
     double = double_poses(parameters)
-    reference = _reference(case.question, found, double or ())
-    text, known = (f"{total}/{stable}" for total, stable in ((len(poses), found.stable), _counts(reference)))
-    remarks = []
-    if found.status not in (Status.EXACT, Status.CERTIFIED):
-        remarks.append(f"status {found.status.value}: {found.remark}")
-    if text != known:
-        remarks.append(f"the second method finds {known}")
-    if case.expected not in ("", text):
-        remarks.append(f"{text} equilibria and stable ones, but {case.expected} by construction")
-    error = _error(found, reference)
-    if error is None:
-        remarks.append("an enclosure does not contain the reference to 100 digits")
-    pose = case.pose or ()
-    if pose and not any(all(e.low <= x <= e.high for e, x in zip(p.cosines_sines, pose, strict=True)) for p in poses):
-        remarks.append("no pose is the one that was constructed")
-    angles = [(float(r.th1.mid()), float(r.th2.mid())) for r in reference]
-    errors = [
-        min(max(angle_error(p.th1, a), angle_error(p.th2, b)) for a, b in angles) for p in double or () if angles
-    ]  # fmt: skip
-    smallest = min((abs(e.center) for pose in poses for e in pose.eigenvalues), default=Fraction(0))
+    known = _reference(parameters, found, double or ())
+    text, other = f"{len(poses)}/{found.stable}", _shown(known)
+    error = _error(found, known)
+    checks = [
+        (found.status in DECIDED, f"status {found.status.value}: {found.remark}"),
+        (text == other, f"the second method finds {other}"),
+        (case.expected in ("", text), f"{text} equilibria and stable ones, but {case.expected} by construction"),
+        (error is not None, "an enclosure does not contain the reference to 100 digits"),
+    ]
+    angles = [(float(r.th1.mid()), float(r.th2.mid())) for r in known]
+    errors = [min(max(angle_error(p.th1, a), angle_error(p.th2, b)) for a, b in angles) for p in double or () if angles]
+    smallest = min((abs(e.center) for p in poses for e in p.eigenvalues), default=Fraction(0))
     largest = Fraction(scale({name: float(value) for name, value in parameters.items()}))
-    return verdict(
-        expected=case.expected or known,
-        found=text if poses else "undecided",
-        double="none" if double is None else "/".join(map(str, _counts(double))),
-        remarks=remarks,
-        double_right=_counts(double) == _counts(reference),
-        error=0.0 if error is None else as_float(error),
-        double_error=max(errors, default=None),
-        condition=as_float(largest / smallest) if smallest else None,
-        bits=found.bits,
-    )
+    return checks, {
+        "expected": case.expected or other,
+        "found": text if poses else "undecided",
+        "double": _shown(double),
+        "double_right": _shown(double) == other,
+        "error": as_float(error or Fraction(0)),
+        "double_error": max(errors, default=None),
+        "condition": as_float(largest / smallest) if smallest else None,
+        "bits": found.bits,
+    }
 
 
-def _reference(question: Question, found: Poses, double: Sequence[IndexedPose]) -> tuple[IndexedPose, ...]:
+def _reference(
+    parameters: Mapping[str, Fraction], found: Poses, double: Sequence[IndexedPose]
+) -> tuple[IndexedPose, ...]:
     """The equilibria to 100 digits; with free lengths those from the starts of either method, each proved anew."""
-    if not question.has_free_lengths:
-        return sextic_poses(question.parameters)
+    if not any(parameters.get(name) for name in ptm().free_lengths):
+        return sextic_poses(parameters)
     starts = [(pose.th1, pose.th2) for pose in double]
     starts += [(float(pose.angles[0]), float(pose.angles[1])) for pose in found.equilibria]
     known: list[IndexedPose] = []
     for start in starts:
-        pose = newton_pose(question.parameters, start)
+        pose = newton_pose(parameters, start)
         if pose is not None and not any(_apart((pose.th1, pose.th2), other).contains(0) for other in known):
             known.append(pose)
     return tuple(known)
@@ -162,15 +147,16 @@ def _reference(question: Question, found: Poses, double: Sequence[IndexedPose]) 
 
 def _apart(angles: Sequence[arb], pose: IndexedPose) -> arb:
     """The larger of the distances of two angles, on the unit circle."""
-    chords = [abs(2 * ((a - b) / 2).sin()) for a, b in zip(angles, (pose.th1, pose.th2), strict=True)]
-    return arb(chords[0].max(chords[1]))
+    first, second = (abs(2 * ((a - b) / 2).sin()) for a, b in zip(angles, (pose.th1, pose.th2), strict=True))
+    return arb(first.max(second))
 
 
 def _error(found: Poses, reference: Sequence[IndexedPose]) -> Fraction | None:
     """The largest error of an angle; None unless each pose encloses one of the references, with its index."""
     left, largest = list(reference), Fraction(0)
     for pose in found.equilibria:
-        inside = [r for r in left if r.index == pose.index and _apart([_ball(a) for a in pose.angles], r).contains(0)]
+        boxes = [ball_of(angle.low).union(ball_of(angle.high)) for angle in pose.angles]
+        inside = [r for r in left if r.index == pose.index and _apart(boxes, r).contains(0)]
         if not inside:
             return None
         left.remove(inside[0])
@@ -179,98 +165,91 @@ def _error(found: Poses, reference: Sequence[IndexedPose]) -> Fraction | None:
     return None if left else largest
 
 
-def _ball(enclosure: Enclosure) -> arb:
-    return ball_of(enclosure.low).union(ball_of(enclosure.high))
-
-
 # ------------------------------------------------------------------------------------------------------ maps, lines
 
 
-def _judge_map(case: Case, found: RegionMap) -> Row:
-    certified = case.question.tolerance is not None
-    regions = sorted(r.stable for r in found.regions if r.stable is not None)
-    # what a certified map leaves open may part a region
-    stable = sorted(set(regions)) if certified else regions
-    remarks = []
-    if found.status not in (Status.EXACT, Status.CERTIFIED):
-        remarks.append(f"status {found.status.value}")
-    if _text(stable) != case.expected or len(regions) != len(found.regions):
-        remarks.append(f"regions with {regions} stable equilibria, but {case.expected} are expected")
-    if found.undetermined > (case.question.tolerance or 0):
-        remarks.append("more is undetermined than was allowed")
-    low, high = (sum((r.area[k] for r in found.regions if r.stable == 2), Fraction(0)) for k in (0, 1))
+def _map(case: Case, found: RegionMap) -> tuple[Checks, Row]:
+    tolerance, parameters = case.question.tolerance, found.slice.parameters
+    counts = [r.stable for r in found.regions]
+    # what a certified map leaves open may part a region, and belong to any
+    stable = sorted(counts if tolerance is None else set(counts), key=str)
     (a, b), (c, d) = case.question.axes.values()
-    high += found.undetermined * (b - a) * (d - c)  # which may belong to any region
-    if case.area is not None and not (low <= case.area[1] and high >= case.area[0]):
-        remarks.append(f"two are stable on an area of {as_float(low):.10g} to {as_float(high):.10g}")
-    parameters = found.slice.parameters
-    remarks += _contradicted(parameters, () if certified else [(r.sample, None, r.stable) for r in found.regions])
-    places = [(x, y) for x in _middles(a, b, GRID) for y in _middles(c, d, GRID)]
-    truths = [found.locate(**dict(zip(found.slice.axis_names, at, strict=True))).stable for at in places]
-    decided = [(at, truth) for at, truth in zip(places, truths, strict=True) if truth is not None]
-    counts = _by_doubles(parameters, [at for at, _ in decided])
-    wrong, seen = sum(count != truth for count, (_, truth) in zip(counts, decided, strict=True)), set(counts)
-    return verdict(
-        expected=case.expected,
-        found=_text(stable),
-        double=_text(sorted(seen)),
-        remarks=remarks,
-        double_right=wrong == 0 and seen == set(stable),
-        double_error=wrong / max(len(decided), 1),
-        bits=max(found.precision.values(), default=0),
+    left = found.undetermined * (b - a) * (d - c)
+    area = [sum((r.area[k] for r in found.regions if r.stable == 2), k * left) for k in (0, 1)]
+    checks = [
+        (found.status in DECIDED, f"status {found.status.value}"),
+        (found.undetermined <= (tolerance or 0), "more is undetermined than was allowed"),
+        *_expected(case, stable, [area] * len(case.bounds)),
+    ]
+    if tolerance is None:
+        checks += [_confirmed(parameters, r.sample, r.stable) for r in found.regions]
+    places = [dict(zip(found.slice.axis_names, at, strict=True)) for at in product(_middles(a, b), _middles(c, d))]
+    pairs = [(_double(parameters, tuple(at.values())), found.locate(**at).stable) for at in places]
+    decided = [count == truth for count, truth in pairs if truth is not None]
+    seen = sorted({count for count, truth in pairs if truth is not None})
+    return checks, {
+        "found": _text(stable),
+        "double": _text(seen),
+        "double_right": all(decided) and seen == sorted(set(stable), key=str),
+        "double_error": decided.count(False) / max(len(decided), 1),
+        "bits": max(found.precision.values(), default=0),
+    }
+
+
+def _line(case: Case, found: CountIntervals) -> tuple[Checks, Row]:
+    parameters, low, high = found.parameters, found.along.low, found.along.high
+    # neighbours that differ in the total alone are one interval of stable counts
+    runs = [next(group) for _, group in groupby(found.intervals, lambda interval: interval.stable)]
+    stable, ends = [i.stable for i in runs], [(lower(i.low), upper(i.low)) for i in runs[1:]]
+    checks = [*_expected(case, stable, ends)]
+    checks += [_confirmed(parameters, (i.sample, Fraction(0)), i.stable, i.total) for i in found.intervals]
+    counts = [(_double(parameters, (x, Fraction(0))), x) for x in _middles(low, high, STEPS)]
+    changes = [next(group) for _, group in groupby(counts, lambda pair: pair[0])]
+    double = [count for count, _ in changes]
+    # a change is half a step before the first place behind it
+    errors = [
+        abs(x - (high - low) / STEPS / 2 - (a + b) / 2)
+        for (_, x), (a, b) in zip(changes[1:], ends, strict=False)
+    ]  # fmt: skip
+    return checks, {
+        "found": _text(stable),
+        "double": _text(double),
+        "double_right": double == stable,
+        "error": as_float(max(((b - a) / 2 for a, b in ends), default=Fraction(0)) / (high - low)),
+        "double_error": as_float(max(errors, default=Fraction(0)) / (high - low)) if len(double) == len(runs) else None,
+    }
+
+
+def _expected(case: Case, stable: Sequence[int | None], numbers: Sequence[Sequence[Fraction]]) -> Checks:
+    """The counts and the enclosed numbers against those that are known."""
+    met = len(numbers) == len(case.bounds) and all(
+        low <= most and high >= least for (low, high), (least, most) in zip(numbers, case.bounds, strict=True)
     )
+    shown = "; ".join(f"{as_float(low):.10g} to {as_float(high):.10g}" for low, high in numbers)
+    return [
+        (_text(stable) == case.expected, f"stable counts {_text(stable)}, but {case.expected} are expected"),
+        (met, f"the ends, or the area on which two are stable, are not where they should be: {shown}"),
+    ]
 
 
-def _contradicted(
-    parameters: Mapping[str, Expression], samples: Iterable[tuple[Sequence[Fraction], int | None, int | None]]
-) -> Iterator[str]:
-    """What the second method finds elsewise: each sample has its place, its total, None for any, and stable count."""
-    for at, total, stable in samples:
-        known = _counts(sextic_poses(_values(parameters, at)))
-        if stable != known[1] or total not in (None, known[0]):
-            yield "the second method finds {}/{} at a sample".format(*known)
+def _confirmed(
+    parameters: Mapping[str, Expression], at: Sequence[Fraction], stable: int | None, total: int | None = None
+) -> tuple[bool, str]:
+    """Whether the second method finds as many at a sample; a total is compared where it is given."""
+    known = sextic_poses(_values(parameters, at))
+    right = stable == _stable(known) and total in (None, len(known))
+    return right, f"the second method finds {_shown(known)} at a sample"
 
 
-def _by_doubles(parameters: Mapping[str, Expression], places: Iterable[Sequence[Fraction]]) -> list[int]:
-    """The stable counts of double precision at each of the places."""
-    return [_counts(double_poses(_values(parameters, at)))[1] for at in places]
+def _double(parameters: Mapping[str, Expression], at: Sequence[Fraction]) -> int:
+    """The stable count of double precision at a place."""
+    return _stable(double_poses(_values(parameters, at)))
 
 
 def _values(parameters: Mapping[str, Expression], at: Sequence[Fraction]) -> Mapping[str, Fraction]:
     return {name: e.evaluate(at[0], at[1]) for name, e in parameters.items()}
 
 
-def _middles(low: Fraction, high: Fraction, number: int) -> list[Fraction]:
+def _middles(low: Fraction, high: Fraction, number: int = GRID) -> list[Fraction]:
     """The middles of so many equal parts."""
     return [low + (high - low) * Fraction(2 * k + 1, 2 * number) for k in range(number)]
-
-
-def _judge_line(case: Case, found: CountIntervals) -> Row:
-    remarks, zero = [], Fraction(0)
-    # neighbours that differ in the total alone are one interval of stable counts
-    groups = [list(group) for _, group in groupby(found.intervals, lambda interval: interval.stable)]
-    stable, ends = [group[0].stable for group in groups], [group[0].low for group in groups[1:]]
-    if _text(stable) != case.expected:
-        remarks.append(f"stable counts {stable}")
-    elif not all(lower(e) <= high and upper(e) >= low for e, (low, high) in zip(ends, case.ends, strict=True)):
-        remarks.append("an end is not where it should be")
-
-    remarks += _contradicted(found.parameters, [((i.sample, zero), i.total, i.stable) for i in found.intervals])
-    width = found.along.high - found.along.low
-    places = _middles(found.along.low, found.along.high, STEPS)
-    counts = zip(_by_doubles(found.parameters, [(x, zero) for x in places]), places, strict=True)
-    runs = [next(group) for _, group in groupby(counts, lambda pair: pair[0])]
-    double, changes = [count for count, _ in runs], [x - width / STEPS / 2 for _, x in runs[1:]]
-    double_error = None
-    if len(changes) == len(ends):
-        middles = [(lower(e) + upper(e)) / 2 for e in ends]
-        double_error = max((as_float(abs(a - b) / width) for a, b in zip(changes, middles, strict=True)), default=0.0)
-    return verdict(
-        expected=case.expected,
-        found=_text(stable),
-        double=_text(double),
-        remarks=remarks,
-        double_right=double == stable,
-        error=max((as_float((upper(e) - lower(e)) / 2 / width) for e in ends), default=0.0),
-        double_error=double_error,
-    )

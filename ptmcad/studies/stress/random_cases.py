@@ -12,9 +12,9 @@ from fractions import Fraction
 from ptmcad.mechanism import ptm
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.studies.stress.case import Case, Question
-from ptmcad.studies.stress.constructions import FEW, Degenerate, degenerate, rational_pose
-from ptmcad.studies.stress.reference import Degenerate as DegeneratePoint
-from ptmcad.studies.stress.reference import sextic_poses
+from ptmcad.studies.stress.constructions import FEW, Degenerate, degenerate
+from ptmcad.studies.stress.methods import Degenerate as DegeneratePoint
+from ptmcad.studies.stress.methods import sextic_poses
 
 KINDS = ("scaled", "mirrored", "swapped", "fold", "cusp")
 MAX_EXPONENT = 30
@@ -84,11 +84,10 @@ def _tame(dice: random.Random) -> tuple[Values, str]:
 def _degenerate(dice: random.Random, *, cusp: bool) -> Degenerate:
     """A random fold or cusp."""
     while True:
-        pose = rational_pose(Fraction(dice.randint(-30, 30), 10), Fraction(dice.randint(-30, 30), 10))
-        lengths = (Fraction(dice.randint(5, 20), 10), Fraction(dice.randint(5, 20), 10))
-        springs = tuple(Fraction(dice.choice([50, 100, 100, 100, 150])) for _ in range(3))
+        tangents, lengths = ([Fraction(dice.randint(*ends), 10) for _ in range(2)] for ends in ((-30, 30), (5, 20)))
+        springs = [Fraction(dice.choice([50, 100, 100, 100, 150])) for _ in range(3)]
         rho = Fraction(dice.randint(2, 20), 10)
         try:
-            return degenerate(lengths, rho, springs, pose, cusp=cusp)
+            return degenerate(tangents, cusp=cusp, lengths=lengths, rho=rho, springs=springs)
         except ValueError:
             continue
