@@ -80,12 +80,11 @@ def command(
     slices = _slices(configs)
     require(Extra.bench, key="bench")
     from ptmcad.studies.bench.measuring import measure
-    from ptmcad.studies.bench.methods import Method
+    from ptmcad.studies.bench.methods import RIVALS
     from ptmcad.studies.bench.report import PAGE, SUFFIXES, save, save_page, terminal
     from ptmcad.verification import verify
 
     check_writable(out, (*(f"{slice.name}.{suffix}" for slice, _ in slices for suffix in SUFFIXES), PAGE))
-    chosen = tuple(Method(name) for name in methods) or tuple(Method)
     for number, (slice, path) in enumerate(slices):
         with ProgressBar() as progress:
 
@@ -93,7 +92,7 @@ def command(
                 shown(f"{stage} ...", 0, 1)
 
             study = measure(
-                slice, path, lambda m: verify(m).ok, methods=chosen, rounds=rounds, seed=seed,
+                slice, path, lambda m: verify(m).ok, methods=methods or tuple(RIVALS), rounds=rounds, seed=seed,
                 time_limit=time_limit, quick=quick, warm_up=number == 0, report=report,
             )  # fmt: skip
             save(study, out)
@@ -115,6 +114,7 @@ def _slices(configs: tuple[Path, ...]) -> list[tuple[Slice, Path]]:
 
 
 def _compare(old: Path, new: Path) -> int:
+    require(Extra.bench, key="bench")
     from ptmcad.studies.bench.study import BAD, compare, comparison_table, read_study
 
     changes = compare(read_study(old), read_study(new))

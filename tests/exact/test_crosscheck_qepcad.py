@@ -16,7 +16,7 @@ from support.singular_slice import SHIPPED, axes, counting_formulas
 
 from ptmcad import RegionMap
 from ptmcad.answer.regionmap import CriticalValue, Kind, Stack, Status, Wall
-from ptmcad.studies.bench.qepcad import Question, Task, Terms, question
+from ptmcad.studies.bench.programs import Question, Task, Terms, question
 from ptmcad.text.plane import PlanePolynomial
 
 pytestmark = needs_qepcad
@@ -27,7 +27,7 @@ LIFTED = ("fig2", "fig3", "forces", "rods")
 """Slices on which QEPCAD lifts over the sections of the base axis too in seconds; fig. 4 takes it over a minute."""
 WITH_SEXTIC = tuple(name for name in SHIPPED if name != "fig2")
 """On fig. 2 theta2 = pi is an equilibrium everywhere, which t2 = tan(theta2/2) loses: see
-`ptmcad.studies.bench.qepcad`."""
+`ptmcad.studies.bench.programs`."""
 
 
 def slow_unless(names: tuple[str, ...], quick: tuple[str, ...]) -> list[object]:

@@ -46,8 +46,7 @@ from ptmcad.exact.models.system import on_slice
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.savings import ALL, SAVINGS, Engine, switched_off
 from ptmcad.question.slice import Slice
-from ptmcad.studies.bench.methods import exchanged
-from ptmcad.studies.bench.records import difference
+from ptmcad.studies.bench.records import difference, exchanged
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = tuple(s.name for s in SAVINGS if s.engine is Engine.EXACT)

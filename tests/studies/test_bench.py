@@ -11,13 +11,14 @@ from random import Random
 from types import SimpleNamespace
 from typing import Any
 
+import pandas as pd
 import pytest
 from support.shipped_records import EXACT
 
 from ptmcad.question import config
 from ptmcad.studies.bench import __main__ as command
-from ptmcad.studies.bench import qepcad, records
-from ptmcad.studies.bench.harness import Job, ratio, table, take_turns
+from ptmcad.studies.bench import programs, records
+from ptmcad.studies.bench.harness import Job, summary, table, take_turns
 from ptmcad.studies.bench.process import Outcome, Usage, run
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
@@ -37,11 +38,11 @@ def test_maps_with_free_lengths_are_not_timed_by_default(
     assert "not run" in capsys.readouterr().out
 
 
-def value(terms: qepcad.Terms, x: float, y: float, t: float) -> float:
+def value(terms: programs.Terms, x: float, y: float, t: float) -> float:
     return math.fsum(c * x**i * y**j * t**n for i, j, n, c in terms)
 
 
-def roots(terms: qepcad.Terms, x: float, y: float) -> list[float]:
+def roots(terms: programs.Terms, x: float, y: float) -> list[float]:
     """The real roots in t, in floating point: good enough for points far from the variety."""
     numpy = pytest.importorskip("numpy")
     coefficients = [0.0] * 7
@@ -67,8 +68,8 @@ def roots(terms: qepcad.Terms, x: float, y: float) -> list[float]:
 def test_sextic_has_the_known_counts(name: str, point: dict[str, float], total: int, stable: int) -> None:
     """Counts of the reference, from the sextic and from the sign conditions that QEPCAD is given."""
     slice = config.load(CONFIGS / f"{name}.yaml")
-    asked = qepcad.question(slice)
-    assert isinstance(asked, qepcad.Question)
+    asked = programs.question(slice)
+    assert isinstance(asked, programs.Question)
     x, y = (point.get(axis, point.get("F")) for axis in slice.axis_names)
     assert x is not None and y is not None
     found = roots(asked.sextic, x, y)
@@ -78,25 +79,25 @@ def test_sextic_has_the_known_counts(name: str, point: dict[str, float], total: 
 
 
 def test_unloaded_slice_has_no_sextic() -> None:
-    assert "theta2 = pi" in str(qepcad.question(config.load(CONFIGS / "fig2.yaml")))
+    assert "theta2 = pi" in str(programs.question(config.load(CONFIGS / "fig2.yaml")))
 
 
 def test_text_for_qepcad() -> None:
-    asked = qepcad.Question(
+    asked = programs.Question(
         sextic=((0, 0, 2, 3), (1, 2, 0, -1)),
         slope=((0, 0, 1, 1),),
         v=((0, 0, 1, 1),),
         w=((1, 0, 1, -2),),
         axes=config.slice_from_mapping({"axes": {"rho": ["1/2", 2], "F3": [-30, 0]}}).axes,
     )
-    lines = asked.text(qepcad.Task.SIX, swapped=True).splitlines()
+    lines = asked.problem(programs.Task.SIX, swapped=True).splitlines()
     assert lines[1:5] == [
         "(y,x,t)",
         "2",
         "(X6 t)[ 3 t^2 - x y^2 = 0 ].",
         r"assume [ 2 x - 1 > 0 /\ x - 2 < 0 /\ y + 30 > 0 /\ y < 0 ]",
     ]
-    stable = asked.text(qepcad.Task.TWO_STABLE)
+    stable = asked.problem(programs.Task.TWO_STABLE)
     assert r"(X2 t)[ 3 t^2 - x y^2 = 0 /\ [[t > 0 /\ -2 x t > 0 /\ t < 0] \/" in stable
 
 
@@ -109,29 +110,30 @@ def test_process_that_fails_and_process_that_hangs() -> None:
 
 
 def test_qepcad_that_ends_without_an_answer_has_none() -> None:
-    assert qepcad.formula("Failure occurred in: GCSI") == ""
-    assert qepcad.formula("\nAn equivalent quantifier-free formula:\n\nx > 0 /\\\ny < 0\n\n\n") == "x > 0 /\\ y < 0"
+    assert programs.formulas("Failure occurred in: GCSI") == []
+    one = "\nAn equivalent quantifier-free formula:\n\nx > 0 /\\\ny < 0\n\n\n"
+    assert programs.formulas(one + "QEPCAD" + one) == ["x > 0 /\\ y < 0"] * 2
 
 
-def job(code: str, *more: str, answer: Path | None = None, check: Any = lambda usage: "") -> Job:
-    return Job("fig4", "python", code, [([sys.executable, "-c", text], "") for text in (code, *more)], answer, check)
+def job(code: str, answer: Path | None = None, check: Any = lambda usage: "") -> Job:
+    return Job("fig4", "python", code, [sys.executable, "-c", code], answer=answer, check=check)
 
 
 def test_a_job_is_a_row_of_a_table() -> None:
-    measured = job("pass", "pass")
+    measured, double, late = job("pass"), job("pass"), job("pass")
     for seconds, peak in ((3.0, 10.0), (1.0, 30.0), (2.0, 20.0)):
-        measured.record(Usage(Outcome.DONE, seconds, 0.5, peak), 60)
-    row = measured.row()
+        measured.usages.append(Usage(Outcome.DONE, seconds, 0.5, peak))
+        double.usages.append(Usage(Outcome.DONE, 2 * seconds, 0.5, peak))
+    late.usages.append(Usage(Outcome.DONE, 1.0, 1.0, 1.0))
+    late.reason = "not in 60 s"
+    rows = summary([measured, double, late, job("pass")], "one", "seconds")
+    row = rows.iloc[0]
     assert (row["runs"], row["seconds"], row["least"], row["most"]) == (3, 2.0, 1.0, 3.0)
     assert (row["processor"], row["peak MiB"]) == (0.5, 30.0)
-    assert ratio(measured, measured) == 1
-    late = job("pass")
-    late.record(Usage(Outcome.TIMED_OUT, 60.2, 1.0, 1.0), 60)
-    assert late.row()["reason"] == "not in 60 s"
-    assert ratio(measured, late) is None
-    assert job("pass").row()["reason"] == "not run"
-    lines = table([row, late.row()]).splitlines()
-    assert lines[0].split()[-1] == "reason" and lines[2].endswith("not in 60 s")
+    assert rows["over one"].tolist()[:2] == [1.0, 2.0] and rows["over one"].isna().tolist()[2:] == [True, True]
+    assert rows["reason"].tolist()[2:] == ["not in 60 s", "not run"]
+    lines = table(rows).splitlines()
+    assert lines[0].split()[-1] == "reason" and lines[3].endswith("not in 60 s")
 
 
 def test_a_program_that_fails_hangs_or_is_silent(tmp_path: Path) -> None:
@@ -146,10 +148,10 @@ def test_a_program_that_fails_hangs_or_is_silent(tmp_path: Path) -> None:
         assert failing.reason == reason
         take_turns([failing], 2, Random(1), lambda job: pytest.fail("it is not tried again"))
     written = tmp_path / "answer"
-    twice = job("pass", f"open({str(written)!r}, 'w').write('3')", answer=written)
+    writing = job(f"open({str(written)!r}, 'x').write('3')", answer=written)
     written.write_text("of an earlier round")
-    assert twice.attempt(30).outcome is Outcome.DONE
-    assert (written.read_text(), len(twice.usages)) == ("3", 1)
+    assert writing.attempt(30).outcome is Outcome.DONE
+    assert (writing.said(), len(writing.usages)) == ("3", 1)
 
 
 def test_jobs_take_turns() -> None:
@@ -164,10 +166,11 @@ def test_jobs_take_turns() -> None:
 def test_a_study_ends_with_1_where_an_answer_differs(
     difference: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(records, "ablation", lambda options: [{"subject": "fig2", "differs": difference}])
+    rows = pd.DataFrame([{"subject": "fig2", "differs": difference}, {"subject": "fig3"}])
+    monkeypatch.setitem(command.STUDIES, "ablation", ("ablation", lambda options: rows, ""))
     assert command.main(["ablation", "--out", str(tmp_path / "out")]) == bool(difference)
     found = json.loads((tmp_path / "out" / "ablation.json").read_text(encoding="utf-8"))
-    assert found["rows"] == [{"subject": "fig2", "differs": difference}]
+    assert found["rows"] == [{"subject": "fig2", "differs": difference}, {"subject": "fig3"}]
     assert found["machine"]["cores"] and found["versions"]["python-flint"]
 
 
@@ -207,11 +210,11 @@ def test_ablation(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(qepcad.program() is None, reason="qepcad is not installed")
-@pytest.mark.parametrize("task", qepcad.TOTAL)
-def test_qepcad_answers(task: qepcad.Task) -> None:
-    asked = qepcad.question(config.load(CONFIGS / "fig3.yaml"))
-    command = qepcad.command()
-    assert isinstance(asked, qepcad.Question) and command is not None
-    usage = run(command, text=asked.text(task), timeout=60)
-    assert qepcad.formula(usage.output), usage.message
+@pytest.mark.skipif(programs.qepcad_command() is None, reason="qepcad is not installed")
+def test_qepcad_answers() -> None:
+    asked = programs.question(config.load(CONFIGS / "fig3.yaml"))
+    command = programs.qepcad_command()
+    assert isinstance(asked, programs.Question) and command is not None
+    problems = [asked.problem(task) for task in (programs.Task.SIX, programs.Task.FOUR)]
+    usage = run(command, text=programs.qepcad_session(problems), timeout=60)
+    assert len(programs.formulas(usage.output)) == 2, usage.message

@@ -8,7 +8,6 @@ from fractions import Fraction
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -24,9 +23,18 @@ from ptmcad.exact.cad.chains import chains
 from ptmcad.exact.cad.curves import curve
 from ptmcad.exact.cad.polyline import FLAT, Branch, chords
 from ptmcad.studies.bench import rivals
-from ptmcad.studies.bench.error import cover_error, distance, grid_error, shown_areas
+from ptmcad.studies.bench.error import (
+    COUNTS,
+    Truth,
+    Wall,
+    cover_error,
+    distance,
+    grid_error,
+    shown_areas,
+    shown_count,
+    truths,
+)
 from ptmcad.studies.bench.methods import question
-from ptmcad.studies.bench.truth import COUNTS, Truth, Wall, cells_at_centres, shown_count, truths
 from ptmcad.text.plane import PlanePolynomial
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
@@ -52,11 +60,8 @@ def polyline(heights: list[Fraction]) -> Truth:
     """Count 1 below a polygonal line over equal parts of the base, 2 above it."""
     parts = len(heights) - 1
     points = np.array([[k / parts, float(a)] for k, a in enumerate(heights)])
-    area = float(sum((a + b for a, b in pairwise(heights)), ZERO) / (2 * parts))
-    areas = np.array([[area, area], [1 - area, 1 - area]])
-    wall = Wall(points, 0.0, 0, 1)
-    result = SimpleNamespace(base=0)
-    return Truth(result, (0, 1), (1, 2), areas, (wall,), ((0.0, 1.0, 1),), np.zeros((0, 3)), 1e-9, np.full(2, 1e-9))  # type: ignore[arg-type]
+    edge = np.array([[0.0, 1.0], [1.0, 1.0]])
+    return Truth(0, (0, 1), (1, 2), (Wall(points, 0.0, 0, 1), Wall(edge, 0.0, 1, -1)), np.zeros((0, 3)))
 
 
 def wrong_area(truth: Truth, picture: np.ndarray) -> float:
@@ -147,27 +152,10 @@ def test_walls_that_leave_a_cusp_side_by_side_are_shut_in() -> None:
                 assert (low < 0 or low**2 <= x**7) and high > 0 and x**7 <= high**2
 
 
-@pytest.mark.parametrize(("name", "n"), [("fig3", 9), ("fig4", 8), ("fig2", 3), ("fig2", 50)])
-def test_centres_are_where_locate_finds_them(name: str, n: int) -> None:
-    """fig2 with fifty columns has centres on walls."""
-    result = shipped(name, "index")
-    cells = cells_at_centres(result, n)
-    axes, base = result.slice.axes, result.base
-    rows = range(n) if n < 20 else (0, 7, 12, 24, 37)
-    for k in range(0, n, 1 if n < 20 else 6):
-        for j in rows if (cells[k] >= 0).any() else ():  # over a critical value no centre is in a cell
-            place = (k, j) if base == 0 else (j, k)
-            at = {
-                a.name: a.low + (a.high - a.low) * Fraction(2 * i + 1, 2 * n) for a, i in zip(axes, place, strict=True)
-            }
-            cell = result.locate(**at).cell
-            assert cells[k, j] == (-1 if cell is None else cell), at
-
-
 def test_blank_picture_of_fig3_is_wrong_where_two_are_stable() -> None:
     """The reference's area 7.352277514 of 20; the other counts' regions add up to the rest."""
     found, known = exact("fig3")
-    low, high = grid_error(known["stable"], cells_at_centres(found, 4), np.ones((4, 4), dtype=np.int16))["wrong"]
+    low, high = grid_error(known["stable"], found.grid(4).cell.T, np.ones((4, 4), dtype=np.int16))["wrong"]
     assert low <= 7.352277514 / 20 <= high
     assert high - low < 1e-5
     assert len(known["stable"].counts) == 3
@@ -179,7 +167,8 @@ def test_walls_are_within_their_distances() -> None:
     found, known = exact("fig3")
     lines = chains(found, Fraction(1, 2**19))
     assert max(w.distance for w in known["index"].walls) < 2.0**-11
-    assert {len(w.points) for w in known["index"].walls} <= {len(c.points) for walls in lines for c in walls}
+    edge = 2
+    assert {len(w.points) for w in known["index"].walls} <= {edge, *(len(c.points) for walls in lines for c in walls)}
 
 
 def test_error_of_grids_shrinks_with_their_pixels() -> None:
@@ -187,7 +176,7 @@ def test_error_of_grids_shrinks_with_their_pixels() -> None:
     errors = []
     for n in (10, 20, 40):
         stable, total = grid("fig3", n)
-        errors.append(grid_error(known["index"], cells_at_centres(found, n), shown_count(stable, total, "index")))
+        errors.append(grid_error(known["index"], found.grid(n).cell.T, shown_count(stable, total, "index")))
     assert [e["wrong_centres"] for e in errors] == [0, 0, 0]
     assert errors[0]["wrong"][0] > 1.5 * errors[1]["wrong"][1] > 2.25 * errors[2]["wrong"][1]
     assert [e["missed"] for e in errors] == [1, 1, 1]  # the sliver of (6, 1) near rho = 0 is between the centres
@@ -201,7 +190,7 @@ def test_wrong_counts_are_seen() -> None:
     stable, _ = grid("fig3", 20)
     damaged = stable.copy()
     damaged[19, 0] = 5
-    cells = cells_at_centres(found, 20)
+    cells = found.grid(20).cell.T
     before, after = (grid_error(known["stable"], cells, shown) for shown in (stable, damaged))
     assert abs(after["wrong"][0] - before["wrong"][0] - 1 / 400) < 1e-6
     assert (before["wrong_centres"], after["wrong_centres"]) == (0, 1)
@@ -250,13 +239,12 @@ def test_companion_is_right_at_centres(name: str, n: int) -> None:
     """A rival worth beating: where no wall is near, floats do."""
     found = shipped(name, "index")
     stable, total = grid(name, n)
-    cells = cells_at_centres(found, n)
+    cells = found.grid(n).cell.T
     known = cells >= 0
     assert known.mean() > 0.9
     for drawn, what in ((stable, "stable"), (total, "total")):
         truth = np.array([getattr(cell, what) for cell in found.cells])
-        picture = drawn if found.base == 0 else drawn.T
-        assert (truth[cells] == picture)[known].all()
+        assert (truth[cells] == drawn)[known].all()
 
 
 def test_error_of_a_certified_map() -> None:

@@ -12,9 +12,10 @@ from support.maps import CONFIGS, shipped
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.studies.bench import methods, programs
-from ptmcad.studies.bench.methods import Case, Method, jobs
+from ptmcad.studies.bench.harness import Case, Job
+from ptmcad.studies.bench.methods import RIVALS, jobs
 from ptmcad.studies.bench.process import Outcome, Usage
-from ptmcad.studies.bench.programs import Elimination, agreement
+from ptmcad.studies.bench.programs import Elimination
 
 CUBIC = Elimination("x,a,b\n0\n-x*a+x^3+b,\n3*x^2-a\n", ("x",), ("a", "b"))
 
@@ -29,7 +30,7 @@ def cubic() -> RegionMap:
 
 def case(folder: Path, exact: RegionMap | None, name: str = "systems/cubic") -> Case:
     record = CONFIGS / f"{name}.yaml"
-    return Case(ptmcad.load(record), record, exact, folder, True, 1)
+    return Case(ptmcad.load(record), record, exact, None, folder, True, 1)
 
 
 def test_the_question_about_a_slice() -> None:
@@ -41,35 +42,35 @@ def test_the_question_about_a_slice() -> None:
     assert programs.elimination(kuramoto, False).text == ptmcad.slice_variety(kuramoto).text("msolve")
 
 
-@pytest.mark.skipif(methods.qepcad.program() is None, reason="qepcad is not installed")
+@pytest.mark.skipif(programs.qepcad_command() is None, reason="qepcad is not installed")
 @pytest.mark.parametrize("base", [0, 1])
 def test_qepcad_gets_the_axis_first_over_which_the_maps_stacks_stand(base: int, tmp_path: Path) -> None:
-    found = jobs(Method.QEPCAD, case(tmp_path, replace(cubic(), base=base)))
+    found = jobs("qepcad", case(tmp_path, replace(cubic(), base=base)))
     assert not isinstance(found, str)
     (job,) = found
-    assert job.commands[0][1].splitlines()[1] == ("(a, b)" if base == 0 else "(b, a)")
+    assert job.text.splitlines()[1] == ("(a, b)" if base == 0 else "(b, a)")
 
 
 def test_what_cannot_be_asked_has_its_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(methods.shutil, "which", lambda name: None)
-    monkeypatch.setattr(methods.msolve, "program", lambda: None)
+    monkeypatch.setattr(programs.shutil, "which", lambda name: None)
+    monkeypatch.setattr(programs.msolve, "program", lambda: None)
     monkeypatch.setattr(methods, "find_spec", lambda name: None)
     exact = cubic()
-    reasons = {method: jobs(method, case(tmp_path, exact)) for method in Method}
-    assert reasons[Method.SINGULAR] == "Singular is not installed"
-    assert reasons[Method.MSOLVE] == "msolve is not installed"
-    assert reasons[Method.QEPCAD] == "qepcad is not installed"
-    assert str(reasons[Method.GCAD]).startswith("gcad is not installed")
-    assert reasons[Method.COMPANION] == "the sextic is the paper's mechanism's, not that of cubic"
-    assert len(reasons[Method.EXACT]) == 2
+    reasons = {method: jobs(method, case(tmp_path, exact)) for method in RIVALS}
+    assert reasons["singular"] == "Singular is not installed"
+    assert reasons["msolve"] == "msolve is not installed"
+    assert reasons["qepcad"] == "qepcad is not installed"
+    assert str(reasons["gcad"]).startswith("gcad is not installed")
+    assert reasons["companion"] == "the sextic is the paper's mechanism's, not that of cubic"
+    assert len(reasons["exact"]) == 2
     free = case(tmp_path, None, "free02")
-    assert jobs(Method.EXACT, free) == "square roots: springs have a free length"
+    assert jobs("exact", free) == "square roots: springs have a free length"
 
 
 def test_without_a_map_there_are_no_curves_to_decompose(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(methods, "find_spec", lambda name: True)
-    assert jobs(Method.GCAD, case(tmp_path, None)) == "there are no finished curves"
-    assert jobs(Method.QEPCAD, case(tmp_path, None)) == "there are no finished curves"
+    assert jobs("gcad", case(tmp_path, None)) == "there are no finished curves"
+    assert jobs("qepcad", case(tmp_path, None)) == "there are no finished curves"
 
 
 def test_gcad_is_a_process_with_a_script() -> None:
@@ -120,19 +121,25 @@ Quitting the QEPCAD system... Bye!
 """
 
 
-def test_recorded_answers_are_compared() -> None:
-    result = cubic()
+def agreement(program: str, answer: str, folder: Path) -> str:
+    """What is said of an answer to the question about the cubic."""
+    job = Job("cubic", program, programs.CELLS, [], usages=[told(answer)])
+    said: str = RIVALS[program].read(case(folder, cubic()), job)["note"]
+    return said.removeprefix("no counts; ")
+
+
+def test_recorded_answers_are_compared(tmp_path: Path) -> None:
     for program, answer in (("singular", SINGULAR.replace("v1+1\n", "")), ("msolve", MSOLVE)):
-        assert agreement(program, answer, result, CUBIC) == "1 of 1 critical curves, 0 others"
-    assert agreement("singular", SINGULAR, result, CUBIC) == "DIFFERS: 1 of 1 critical curves, 1 others"
-    assert agreement("msolve", "[4*b^3-27*a^2]:", result, CUBIC).startswith("DIFFERS: 0 of 1")
-    assert agreement("msolve", "[4a3-27b2]:", result, CUBIC).startswith("DIFFERS: cannot be read")
-    assert agreement("gcad", '{"cells": 5}', result, CUBIC) == "5 cells, the map has 4"
+        assert agreement(program, answer, tmp_path) == "1 of 1 critical curves, 0 others"
+    assert agreement("singular", SINGULAR, tmp_path) == "DIFFERS: 1 of 1 critical curves, 1 others"
+    assert agreement("msolve", "[4*b^3-27*a^2]:", tmp_path).startswith("DIFFERS: 0 of 1")
+    assert agreement("msolve", "[4a3-27b2]:", tmp_path).startswith("DIFFERS: cannot be read")
+    assert agreement("gcad", '{"cells": 5}', tmp_path) == "5 cells, the map has 4"
     assert programs.qepcad_samples(QEPCAD) == [(Fraction(-1), Fraction(1, 2))]
-    assert agreement("qepcad", QEPCAD, result, CUBIC).startswith("DIFFERS: 1 cells, in 1 of the map's 4")
-    assert agreement("qepcad", QEPCAD.replace(": T", ": F"), result, CUBIC).startswith("DIFFERS: cannot be read")
+    assert agreement("qepcad", QEPCAD, tmp_path).startswith("DIFFERS: 1 cells, in 1 of the map's 4")
+    assert agreement("qepcad", QEPCAD.replace(": T", ": F"), tmp_path).startswith("DIFFERS: cannot be read")
     irrational = QEPCAD.replace("Coordinate 2 = 1/2", "Coordinate 2 = the unique root of x^2 - 2 between 1 and 2")
-    assert agreement("qepcad", irrational, result, CUBIC).startswith("DIFFERS: cannot be read")
+    assert agreement("qepcad", irrational, tmp_path).startswith("DIFFERS: cannot be read")
 
 
 @pytest.mark.parametrize(

@@ -21,13 +21,13 @@ from ptmcad.cli.bench import METHODS
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load
 from ptmcad.show.report.error_curve import read_error_curve
-from ptmcad.studies.bench import measuring
+from ptmcad.studies.bench import harness
 from ptmcad.studies.bench.error import figures, outward
 from ptmcad.studies.bench.harness import Row
-from ptmcad.studies.bench.methods import RIVALS, Method
+from ptmcad.studies.bench.methods import RIVALS
 from ptmcad.studies.bench.picture import draw
 from ptmcad.studies.bench.process import Usage
-from ptmcad.studies.bench.report import curve_file, curves, page, sentences, terminal
+from ptmcad.studies.bench.report import curve_file, page, points, sentences, terminal
 from ptmcad.studies.bench.study import (
     BAD,
     compare,
@@ -55,8 +55,17 @@ def times(seconds: float, runs: int = 3, spread: float = 0.02) -> Row:
 
 
 def pixels(n: int, seconds: float, wrong: float, missed: int, faint: float) -> Row:
-    f = figures((wrong, wrong * 1.001), 0.0, 0, 3, missed, (faint, faint), (0.5 / n, 0.6 / n))
-    return measurement("companion", f"N = {n}", times(seconds), times(seconds / 2), 60.0, figures={"index": f})
+    f = figures(
+        (wrong, wrong * 1.001), 0.0, wrong_centres=0, regions=3, missed=missed, faintest=(faint, faint),
+        distance=(0.5 / n, 0.6 / n),
+    )  # fmt: skip
+    taken = {"seconds": times(seconds), "computing": times(seconds / 2), "peak": 60.0}
+    return measurement("companion", f"N = {n}", **taken, figures={"index": f})
+
+
+def exact(tolerance: str, seconds: float, width: float) -> Row:
+    taken = {"seconds": times(seconds), "computing": times(seconds - 0.1), "peak": 35.0}
+    return measurement("exact", f"area tolerance {tolerance}", **taken, figures={"index": NONE}, area_width=width)
 
 
 STUDY: Row = {
@@ -72,18 +81,18 @@ STUDY: Row = {
     "verified": True,
     "floor": times(0.2),
     "measurements": (
-        measurement(
-            "exact", "area tolerance 1e-2", times(0.3), times(0.2), 35.0, figures={"index": NONE}, area_width=2e-3
-        ),
-        measurement(
-            "exact", "area tolerance 1e-8", times(0.4), times(0.3), 35.0, figures={"index": NONE}, area_width=2e-9
-        ),
+        exact("1e-2", 0.3, 2e-3),
+        exact("1e-8", 0.4, 2e-9),
         pixels(25, 0.2, 0.02, 1, 0.0),
         pixels(400, 1.5, 0.001, 0, 0.4),
         pixels(800, 6.0, 0.0005, 0, 0.992),
         measurement("companion", "N = 1600", reason="left out: the 60 s for each method were used up"),
         measurement(
-            "qepcad", "where 6, where 4", times(3.0), figures={"total": figures((0.0, 0.0), 0.0)}, note="claimed"
+            "qepcad",
+            "where 6, where 4",
+            seconds=times(3.0),
+            figures={"total": figures((0.0, 0.0), 0.0)},
+            note="claimed",
         ),
         measurement("gcad", "", reason="gcad is not installed"),
     ),
@@ -105,7 +114,7 @@ def test_written_and_read_again() -> None:
 @pytest.mark.parametrize(
     ("path", "value", "told"),
     [
-        (("format",), "ptmcad-bench/9", "format is not"),
+        (("format",), "ptmcad-bench/9", "its format is"),
         (("floor", "median"), 0, "floor.median"),
         (("measurements", 0, "seconds", "runs"), 1.5, "measurements[0].seconds.runs"),
         (("measurements", 0, "figures", "index", "wrong"), [1], "wrong has 1 entries"),
@@ -133,9 +142,8 @@ def test_stored_studies_are_valid(path: Path) -> None:
 
 
 def test_the_methods_are_those_of_command_and_schema() -> None:
-    methods = [method.value for method in Method]
     kinds = SCHEMA["$defs"]["measurement"]["properties"]["method"]["enum"]
-    assert methods == list(METHODS) == kinds == [method.value for method in RIVALS]
+    assert list(RIVALS) == list(METHODS) == kinds
 
 
 def test_table_has_a_row_for_each_measurement_and_count() -> None:
@@ -313,10 +321,10 @@ def test_everything_but_the_times_is_repeatable(tmp_path: Path) -> None:
 
 
 def test_a_zero_is_drawn_below_the_logarithms() -> None:
-    figure = draw("fig4", "seconds", "share", curves(STUDY), sentences(STUDY))
+    figure = draw("fig4", "seconds", "share", points(STUDY), sentences(STUDY))
     (axes,) = figure.axes
     marks = [line for line in axes.lines if line.get_marker() in ("o", "P", "X", "D")]
-    zeros = [y for line in marks if line.get_linestyle() == "None" for y in line.get_ydata() if y == 0]
+    zeros = [y for line in marks for y in line.get_ydata() if y == 0]
     assert len(zeros) == 2 + 1  # the exact engine's two and QEPCAD's one
     assert axes.get_ylim()[0] < 0
     assert (
@@ -370,8 +378,8 @@ def test_a_certified_run_that_is_stopped_is_a_point_too(tmp_path: Path, monkeypa
         usage = measured([command[0], "-c", STOPPING, *command[command.index("ptmcad") + 1 :]])
         return replace(usage, seconds=taken[command[command.index("--tolerance") + 1]])
 
-    measured = measuring.run
-    monkeypatch.setattr(measuring, "run", timed)
+    measured = harness.run
+    monkeypatch.setattr(harness, "run", timed)
     arguments = ["bench", str(ROOT / "configs" / "free02.yaml"), "--method", "certified", "--rounds", "1"]
     assert run([*arguments, "--time-limit", "600", "--out", str(tmp_path)]) == 0
     study = study_of((tmp_path / "free02.bench.json").read_text(encoding="utf-8"))

@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import math
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
+import pandas as pd
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -158,8 +158,8 @@ def test_every_size_is_a_record_and_another_seed_draws_another(name: str) -> Non
 # ---------------------------------------------------------------------------------------------------------------- fits
 
 
-def fitted(points: list[tuple[float, float]]) -> dict[str, Any]:
-    found = fit(points)
+def fitted(points: Mapping[float, float]) -> dict[str, float]:
+    found = fit(pd.Series(points))
     assert found is not None
     return found
 
@@ -167,55 +167,31 @@ def fitted(points: list[tuple[float, float]]) -> dict[str, Any]:
 @settings(max_examples=40)
 @given(st.floats(-3, 6), st.floats(1e-6, 1e3), st.sets(st.integers(1, 500), min_size=4, max_size=9))
 def test_an_exact_power_law_gives_its_exponent(p: float, c: float, sizes: set[int]) -> None:
-    found = fitted([(x, c * x**p) for x in sizes])
-    for name in ("exponent", "lower", "upper"):
+    found = fitted({x: c * x**p for x in sizes})
+    for name in ("exponent", "upper"):
         assert math.isclose(found[name], p, rel_tol=1e-3, abs_tol=1e-6)
-    assert found["verdict"] in ("power law", "does not grow")
+    assert found["off by"] < 1 + 1e-6
 
 
 @settings(max_examples=30)
 @given(st.floats(0.7, 5), st.integers(0, 10**6))
 def test_noise_does_not_become_another_law(p: float, seed: int) -> None:
-    """Noise of 5 %, as on a shared machine: the exponent is right to 0.1."""
+    """Noise of 5 %, as on a shared machine: the exponent is right to 0.1, and the line is near."""
     source = random.Random(seed)
-    points = [(x, x**p * math.exp(source.gauss(0, 0.05))) for x in (2, 4, 8, 16, 32, 64) for _ in range(3)]
-    found = fitted(points)
+    found = fitted({x: x**p * math.exp(source.gauss(0, 0.05)) for x in (2, 4, 8, 16, 32, 64)})
     assert abs(found["exponent"] - p) < 0.1
-    assert found["verdict"] == "power law"
+    assert 1 < found["off by"] < 1.3
 
 
-def test_a_fixed_cost_is_no_power_law() -> None:
-    """y = a + x^2: the exponent rises towards 2, and the upper half comes nearer."""
-    found = fitted([(x, 20 + x**2) for x in (2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0)])
-    assert found["verdict"] == "the exponent rises"
-    assert found["lower"] < found["exponent"] < found["upper"] < 2 < found["upper"] + 0.3
+@pytest.mark.parametrize("law", [lambda x: 20 + x**2, lambda x: math.exp(x / 20)], ids=["fixed cost", "exponential"])
+def test_where_the_exponent_rises_the_upper_half_has_a_larger_one(law: Callable[[float], float]) -> None:
+    found = fitted({x: law(x) for x in (2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0)})
+    assert found["exponent"] * 1.03 < found["upper"] and found["off by"] > 1.2
 
 
-@pytest.mark.parametrize(
-    ("law", "verdict"),
-    [
-        pytest.param(lambda x: math.exp(x / 20), "the exponent rises", id="exponential"),
-        pytest.param(lambda x: math.log(x) ** 2, "the exponent falls", id="logarithm squared"),
-        pytest.param(lambda x: 5 + 0.01 * math.sin(x), "does not grow", id="constant"),
-    ],
-)
-def test_what_is_no_power_law_is_not_called_one(law: Callable[[float], float], verdict: str) -> None:
-    assert fitted([(x, law(x)) for x in (2, 4, 8, 16, 32, 64, 128)])["verdict"] == verdict
-
-
-def test_three_sizes_are_too_few() -> None:
-    found = fitted([(1, 1), (2, 4), (4, 16)])
-    assert found["verdict"] == "too few sizes to tell"
-    assert math.isclose(found["exponent"], 2)
-
-
-@pytest.mark.parametrize("points", [[], [(1, 2)], [(1, 2), (1, 3)], [(1, 2), (2, 0)], [(0, 1), (1, 2)]])
-def test_without_two_positive_points_there_is_no_fit(points: list[tuple[float, float]]) -> None:
-    assert fit(points) is None
-
-
-def test_one_slow_run_is_outvoted() -> None:
-    assert fitted([(2, 1.0), (2, 9.0), (2, 1.0), (1, 0.5)])["exponent"] == 1
+@pytest.mark.parametrize("points", [{}, {1: 2}, {1: 2, 2: 0}, {0: 1, 1: 2}])
+def test_without_two_positive_points_there_is_no_fit(points: dict[float, float]) -> None:
+    assert fit(pd.Series(points, dtype=float)) is None
 
 
 # ---------------------------------------------------------------------------------------------------------- the study

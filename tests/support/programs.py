@@ -21,11 +21,11 @@ from pathlib import Path
 
 import pytest
 
-from ptmcad.studies.bench import qepcad
+from ptmcad.studies.bench import programs
 from ptmcad.studies.bench.process import Outcome, run
 
 SINGULAR = shutil.which("Singular")
-QEPCAD = qepcad.command()
+QEPCAD = programs.qepcad_command()
 # the wheel keeps its program inside the environment, off the PATH
 _WHEEL = Path(sysconfig.get_path("purelib")) / "sage_wheels" / "bin" / "msolve"
 MSOLVE = shutil.which("msolve") or (str(_WHEEL) if _WHEEL.is_file() else None)
@@ -36,9 +36,6 @@ needs_qepcad = pytest.mark.skipif(QEPCAD is None, reason="QEPCAD is not installe
 
 _SINGULAR_END = "-- the script was read to its end --"
 _SINGULAR_ERROR = re.compile(r"^\s*\? .*$", re.MULTILINE)
-_QEPCAD_STUCK = "[ 0 = 0 ].\nquit\nquit\n"
-"""Read only by a session that has not understood its formula: at the end of its input it would ask again for ever."""
-_QEPCAD_END = "Quitting the QEPCAD system"
 _QEPCAD_ERROR = re.compile(r"^.*(?:\bError\b|Failure|Reason for|is not an existing cell|expected!).*$", re.MULTILINE)
 
 Monomials = dict[tuple[int, ...], Fraction]
@@ -80,9 +77,9 @@ def qepcad_session(problems: Sequence[str]) -> list[str]:
         When it reports an error (lack of memory is one), or does not come to the end.
     """
     assert QEPCAD is not None
-    output = _run(QEPCAD, "\ncontinue\n".join(problem.rstrip() for problem in problems) + "\nquit\n" + _QEPCAD_STUCK)
+    output = _run(QEPCAD, programs.qepcad_session(problems))
     _refuse("QEPCAD", _QEPCAD_ERROR, output)
-    if _QEPCAD_END not in output:
+    if programs.QUIT not in output:
         raise ProgramError(f"QEPCAD stopped within its script: {output[-300:]}")
     answers = output.split("Enter an informal description")[1:]
     if len(answers) != len(problems):

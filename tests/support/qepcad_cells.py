@@ -15,7 +15,7 @@ from itertools import pairwise
 from ptmcad import RegionMap
 from ptmcad.answer.regionmap import CriticalValue
 from ptmcad.question.slice import Axis
-from ptmcad.studies.bench import qepcad
+from ptmcad.studies.bench.programs import formulas
 from ptmcad.text.plane import PlanePolynomial
 from support import oracle
 from support.programs import ProgramError, monomials, qepcad_session
@@ -295,10 +295,10 @@ def decided(problems: Sequence[str]) -> list[bool]:
 
 
 def _truth(output: str) -> bool:
-    found = qepcad.formula(output)
-    if found not in ("TRUE", "FALSE"):
+    found = formulas(output)
+    if found not in (["TRUE"], ["FALSE"]):
         raise ProgramError(f"QEPCAD does not decide: {output[-300:]}")
-    return found == "TRUE"
+    return found == ["TRUE"]
 
 
 def _dense(p: Sequence[int]) -> str:

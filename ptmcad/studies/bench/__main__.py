@@ -3,41 +3,63 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from ptmcad.studies.bench import records, scaling
-from ptmcad.studies.bench.harness import study
+import pandas as pd
 
-STUDIES: dict[str, tuple[Callable[..., int], str, float]] = {
-    "times": (lambda o: study("bench", o, records.timed), "time and memory of whole processes, and forecasts", 120),
-    "ablation": (lambda o: study("ablation", o, records.ablation), "what each saving is worth", 120),
-    "scaling": (
-        lambda o: study("scaling", o, scaling.measure, scaling.save_picture),
-        f"how cost grows, along the families {', '.join(scaling.FAMILIES)}",
-        300,
-    ),
+from ptmcad.errors import PtmcadError
+from ptmcad.process.output import text_writer, write_files
+from ptmcad.studies.bench import records, scaling
+from ptmcad.studies.bench.harness import made_with, table
+
+STUDIES: dict[str, tuple[str, Callable[[argparse.Namespace], pd.DataFrame], str]] = {
+    "times": ("bench", records.timed, "time and memory of whole processes, and forecasts"),
+    "ablation": ("ablation", records.ablation, "what each saving is worth"),
+    "scaling": ("scaling", scaling.measure, f"how cost grows, along the families {', '.join(scaling.FAMILIES)}"),
 }
+"""The name of the file, the measurement, and what it is."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a study; the exit status is 0, 1 where an answer differs, or 2 for bad input."""
     parser = argparse.ArgumentParser("python -m ptmcad.studies.bench", description="Measure whole processes.")
     chosen = parser.add_subparsers(dest="study", required=True)
-    for name, (_, words, timeout) in STUDIES.items():
+    for name, (_, _, words) in STUDIES.items():
         command = chosen.add_parser(name, help=words, description=words)
         what = "families" if name == "scaling" else "records"
         command.add_argument(what, nargs="*", type=str if what == "families" else Path, help="default: all")
         command.add_argument("--out", type=Path, help="folder for the JSON file and what goes with it")
         command.add_argument("--rounds", type=int, default=3, help="runs of each job (default 3)")
         command.add_argument("--seed", type=int, default=1, help="of all that is drawn (default 1)")
-        command.add_argument("--timeout", type=float, default=timeout, help="seconds for a run (default %(default)g)")
+        command.add_argument("--timeout", type=float, default=300, help="seconds for a run (default %(default)g)")
     options = parser.parse_args(arguments)
     for name in ("rounds", "timeout"):
         if not getattr(options, name) > 0:
             parser.error(f"--{name} must be positive")
-    return STUDIES[options.study][0](options)
+    try:
+        return _study(options)
+    except (PtmcadError, OSError) as error:
+        print(f"{options.study}: {error}", file=sys.stderr)
+        return 2
+
+
+def _study(options: argparse.Namespace) -> int:
+    name, measure, _ = STUDIES[options.study]
+    if options.out is not None:
+        options.out.mkdir(parents=True, exist_ok=True)
+    found = {"format": f"ptmcad-{name}/2", **made_with(), "seed": options.seed, "rounds": options.rounds}
+    rows = measure(options)
+    if options.out is not None:
+        found["rows"] = [row.dropna().to_dict() for _, row in rows.iterrows()]
+        text = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
+        write_files(options.out, {f"{name}.json": text_writer(text)})
+        if options.study == "scaling":
+            scaling.save_picture(rows, options.out)
+    print(table(rows))
+    return int("differs" in rows and any(rows["differs"].dropna()))
 
 
 if __name__ == "__main__":

@@ -1,109 +1,209 @@
 """The error of a drawn map, defined once: share of the window that is wrong, regions missed, distance of the boundary.
 
-Guarantee: shares and distances are between their bounds; nothing is sampled. docs/error.md has the
-definitions.
+Guarantee: nothing is sampled, and figures are between their bounds as far as doubles go: they are computed in floating
+point, with `ROUNDING` allowed for in areas and no proof that this is enough. They are a benchmark's figures, and no
+count rests on them. docs/error.md has the definitions.
 
-A drawn map is made of pieces, rectangles with the count that is shown: pixels of a grid, or the
-parts of a certified map's window that its cover leaves. In a piece the area of a region is the sum
-of the areas below the walls that the region is below, less those below the walls that it is above;
-below a chord that is the integral of a clipped linear function. A wall is within its proved
-distance of its chords, and that is all that is not known.
+The truth is an exact map, whose walls between regions are within proved distances of polylines
+(`ptmcad.exact.cad.chains`). A drawn map is made of pieces, rectangles with the count that is shown: pixels of a grid,
+or the parts of a certified map's window that its cover leaves. In a piece the area of a region is the sum of the areas
+below the walls that the region is below, less those below the walls that it is above; below a chord that is the
+integral of a clipped linear function. Coordinates are shares of the window, along the map's base axis and its fibre.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from typing import Any
+from itertools import chain, pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ptmcad.answer.regionmap import RegionMap
-from ptmcad.cover import components, slanted
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.ask.location import component_cells
+from ptmcad.cover import slanted
 from ptmcad.cover.subdivision import COVERED, FREE
-from ptmcad.studies.bench.truth import UNKNOWN, Counts, Floats, Truth, shown_count
+from ptmcad.errors import LimitReached
+from ptmcad.exact.cad.chains import Chain, chains, critical_shares
+from ptmcad.exact.regions import Link, merge
 from ptmcad.text.numerals import decimal
 
+Floats = NDArray[np.float64]
+MAX_DISTANCE = Fraction(1, 2**19)
+"""Of a wall from its polyline, as a share of the window's side, where it can be had."""
+MAX_PIECES = 20_000
+"""Of all polylines together: some slices have walls too steep for the measurement."""
+ROUNDING = 1e-9
+"""What is allowed for rounding to doubles in an area."""
+COUNTS = ("stable", "total", "index")
+"""The counts for which errors are reported."""
+CODE = 100
 Bounds = tuple[float, float]
 Figures = dict[str, Any]
-"""As of `figures`, by their names."""
+"""How far a drawn map is from the exact one, for one count: what is below, None where there is no such figure."""
+FIGURES = ("wrong", "undetermined", "wrong_centres", "regions", "missed", "faintest", "distance")
+"""Bounds of the share of the window that shows a wrong count or none; the share that shows none; pixels whose centre
+shows a wrong count; regions of the exact map; those in which no pixel that is centred there, or no part, shows the
+region's count; bounds of the smallest share of a region's own area that shows its count; bounds of the Hausdorff
+distance between the drawn boundary and the true one."""
 DIGITS = 6
 DENSITY = 8
-"""Points on the side of a pixel, and on the whole window's side for a certified map."""
+"""Points on the side of a pixel."""
 MAX_PIECE = 2.0**-11
+"""Between points on the boundary of a certified map."""
 NARROW = 2**15
 """Slanted pieces of a cover are in rectangles that are narrower than this part of the window."""
+UNKNOWN = 0.1
+"""A wall whose distance is not proved to be less is left out of what distances are measured to."""
 
 
-def figures(
-    wrong: Bounds,
-    undetermined: float,
-    wrong_centres: int | None = None,
-    regions: int | None = None,
-    missed: int | None = None,
-    faintest: Bounds | None = None,
-    distance: Bounds | None = None,
-) -> Figures:
-    """How far a drawn map is from the exact one, for one count; None where there is no such figure.
+class Wall(NamedTuple):
+    """A polyline of shape (k, 2), its distance from the wall, and the regions below and above it.
 
-    Parameters
-    ----------
-    wrong : bounds of the share of the window's area that shows a wrong count or none.
-    undetermined : share that shows none.
-    wrong_centres : pixels whose centre shows a wrong count.
-    regions : of the exact map.
-    missed : regions in which no pixel that is centred there, or no part, shows the region's count.
-    faintest : bounds of the smallest share of a region's own area that shows its count.
-    distance : bounds of the Hausdorff distance between the drawn boundary and the true one.
+    Over the topmost wall, which is the window's edge, there is no region: `above` is -1.
     """
-    return {
-        "wrong": wrong, "undetermined": undetermined, "wrong_centres": wrong_centres, "regions": regions,
-        "missed": missed, "faintest": faintest, "distance": distance,
-    }  # fmt: skip
+
+    points: Floats
+    distance: float
+    below: int
+    above: int
+
+
+class Truth(NamedTuple):
+    """What separates regions when they are distinguished by a count.
+
+    Attributes
+    ----------
+    base : the number of the axis along the base.
+    region_of : the region of each of the map's cells, numbered from 0.
+    counts : of each region, see `shown_count`.
+    walls : of all stacks, the window's upper edge among them.
+    upright : walls along the fibre, as rows (u, low, high).
+    """
+
+    base: int
+    region_of: Sequence[int]
+    counts: Sequence[int]
+    walls: Sequence[Wall]
+    upright: Floats
+
+    def doubts(self) -> Floats:
+        """For each region the area in which walls may be, beside their polylines."""
+        found = np.full(len(self.counts), ROUNDING)
+        for wall in self.walls:
+            found[[wall.below, wall.above]] += wall.distance * (wall.points[-1, 0] - wall.points[0, 0])
+        return found
+
+
+def shown_count(stable: Any, total: Any, count: str) -> Any:
+    """One number for the count that is asked for, from numbers or arrays; for the index both in one.
+
+    >>> shown_count(2, 6, "index")
+    602
+    """
+    if count == "index":
+        return None if total is None or stable is None else CODE * total + stable
+    return stable if count == "stable" else total
+
+
+def truths(result: RegionMap) -> dict[str, Truth] | None:
+    """The truth for each of `COUNTS` that the map's cells have; None where walls are too steep.
+
+    Raises
+    ------
+    ValueError
+        When the map is not exact.
+    """
+    if result.status is not Status.EXACT:
+        raise ValueError("errors are measured against an exact map")
+    left = iter(range(MAX_PIECES))
+
+    def check() -> None:
+        if next(left, None) is None:
+            raise LimitReached("the walls are too steep")
+
+    try:
+        lines = chains(result, MAX_DISTANCE, check)
+    except LimitReached:
+        return None
+    ends = [0.0, *(float(sum(share)) / 2 for share in critical_shares(result)), 1.0]
+    shown = {count: [shown_count(cell.stable, cell.total, count) for cell in result.cells] for count in COUNTS}
+    return {count: truth(result, of_cells, lines, ends) for count, of_cells in shown.items() if None not in of_cells}
+
+
+def truth(result: RegionMap, shown: list[int], lines: Sequence[Sequence[Chain]], ends: Sequence[float]) -> Truth:
+    """What separates regions when each cell shows a number; `ends` are those of the stacks' parts of the base."""
+    region_of = merge(shown, [Link(a.first, a.second, a.component) for a in result.adjacencies])
+    counts = dict(zip(region_of, shown, strict=True))
+    stacks = []
+    for stack, of_stack, (left, right) in zip(result.stacks, lines, pairwise(ends), strict=True):
+        here = [*(region_of[n] for n in stack.cells), -1]
+        polylines = [(np.array(line.points, dtype=float), float(line.distance)) for line in of_stack]
+        polylines.append((np.array([[left, 1.0], [right, 1.0]]), 0.0))
+        walls = (Wall(*line, *sides) for line, sides in zip(polylines, pairwise(here), strict=True))
+        stacks.append([wall for wall in walls if wall.below != wall.above])
+    upright = [
+        (at, *part)
+        for at, (before, after) in zip(ends[1:-1], pairwise(stacks), strict=True)
+        for part in _between(before, after)
+    ]
+    numbers = [counts[n] for n in range(len(counts))]
+    return Truth(
+        result.base,
+        region_of,
+        numbers,
+        list(chain.from_iterable(stacks)),
+        np.array(upright, dtype=float).reshape(-1, 3),
+    )
+
+
+def _between(left: Sequence[Wall], right: Sequence[Wall]) -> Iterator[tuple[float, float]]:
+    """The parts of the fibre over a critical value on whose sides different regions are."""
+    sides = [(walls, [float(wall.points[end, 1]) for wall in walls]) for walls, end in ((left, -1), (right, 0))]
+    for low, high in pairwise(sorted({0.0, *sides[0][1], *sides[1][1]})):
+        one, other = (walls[int(np.searchsorted(heights, (low + high) / 2))].below for walls, heights in sides)
+        if one != other:
+            yield low, high
+
+
+def figures(wrong: Bounds, undetermined: float, **more: Any) -> Figures:
+    """The figures, see `FIGURES`."""
+    return {**dict.fromkeys(FIGURES), "wrong": wrong, "undetermined": undetermined, **more}
 
 
 def exact_error(truth: Truth) -> Figures:
     """Of an exact map: nothing is wrong, and its boundary is the true curves themselves."""
     zero = (0.0, 0.0)
-    return figures(zero, 0.0, None, len(truth.counts), 0, (1.0, 1.0), zero)
+    return figures(zero, 0.0, regions=len(truth.counts), missed=0, faintest=(1.0, 1.0), distance=zero)
 
 
-def grid_error(truth: Truth, cells: np.ndarray, drawn: Counts) -> Figures:
+def grid_error(truth: Truth, cells: np.ndarray, drawn: np.ndarray) -> Figures:
     """Of a grid.
 
     Parameters
     ----------
-    cells : of the centres, see `ptmcad.studies.bench.truth.cells_at_centres`.
-    drawn : the counts that are shown, of shape (n, n), the first index along the slice's first axis;
-        negative where none is shown.
+    cells : the exact map's cells at the centres, of shape (n, n), the first index along the slice's first axis;
+        negative for none.
+    drawn : the counts that are shown, of the same shape; negative where none is shown.
     """
-    picture = drawn if truth.result.base == 0 else drawn.T
+    picture, there = (drawn, cells) if truth.base == 0 else (drawn.T, cells.T)
     n = len(picture)
     starts = np.ones((n, n + 1), dtype=bool)
     starts[:, 1:-1] = picture[:, 1:] != picture[:, :-1]
     column, row = np.nonzero(starts)
     run = np.flatnonzero(row < n)
     pieces = np.stack([column[run], column[run] + 1, row[run], row[run + 1]], axis=1) / n
-    shown = picture[column[run], row[run]]
-
     upright = np.argwhere(picture[1:] != picture[:-1])[:, [0, 0, 1, 1]] + [1, 1, 0, 1]
     level = np.argwhere(picture[:, 1:] != picture[:, :-1])[:, [0, 0, 1, 1]] + [0, 1, 1, 1]
     sides = np.concatenate([upright, level]) / n
 
-    counts = np.array(truth.counts)
-    region = np.where(cells >= 0, np.array(truth.region_of)[cells], -1)
-    right = (region >= 0) & (counts[region] == picture)
-    seen = np.unique(region[right])
-    undetermined = float((drawn < 0).mean())
-    wrong, by_region = _wrong(truth, pieces, shown, undetermined)
-    return figures(
-        wrong,
-        undetermined,
-        int((region >= 0).sum() - right.sum()),
-        len(counts),
-        len(counts) - len(seen),
-        _faintest(truth, by_region),
-        distance(truth, sides, 1 / n / DENSITY),
-    )
+    region = np.where(there >= 0, np.array(truth.region_of)[there], -1)
+    right = (region >= 0) & (np.array(truth.counts)[region] == picture)
+    found = _error(truth, pieces, picture[column[run], row[run]], (sides, 1 / n / DENSITY), float((drawn < 0).mean()))
+    wrong_centres = int((region >= 0).sum() - right.sum())
+    return found | {"wrong_centres": wrong_centres, "missed": len(truth.counts) - len(np.unique(region[right]))}
 
 
 def cover_error(truth: Truth, result: RegionMap, count: str) -> Figures | None:
@@ -114,75 +214,71 @@ def cover_error(truth: Truth, result: RegionMap, count: str) -> Figures | None:
     ValueError
         When it is no certified map.
     """
-    cover = result.cover
-    if cover is None:
+    if result.cover is None:
         raise ValueError("an exact map has no cover")
-    if any(shown_count(cell.stable, cell.total, count) is None for cell in result.cells):
+    counts = [shown_count(cell.stable, cell.total, count) for cell in result.cells]
+    if None in counts:
         return None
-    parts = components(cover)
-    number = {}
-    for cell in result.cells:
-        at = zip(result.slice.axes, (cell.sample[0], cell.sample[1]), strict=True)
-        place = ((x - axis.low) / (axis.high - axis.low) * cover.steps for axis, x in at)
-        number[parts.locate(*place)] = int(shown_count(cell.stable, cell.total, count))
-    parts = slanted.shown(parts, NARROW)
+    complement, cells = component_cells(result, result.cover)
+    parts = slanted.shown(complement, NARROW)
     tree = parts.subdivision
-    leaves = np.flatnonzero((tree.state == FREE) & (parts.owner >= 0))
-    pieces = tree.bounds[leaves] / cover.steps
-    shown = np.array([number.get(n, -1) for n in parts.owner[leaves].tolist()], dtype=np.int64)
-    drawn = tree.bounds[tree.state == COVERED] / cover.steps
-    undetermined = float(result.undetermined)
-    loose = 1 - float(_areas(pieces).sum()) - undetermined
-    base = truth.result.base
-    wrong, by_region = _wrong(truth, _turned(pieces, base), shown, undetermined, max(loose, 0.0))
-    return figures(
-        wrong,
-        _up(result.undetermined),
-        None,
-        len(truth.counts),
-        int((by_region <= truth.doubts).sum()),
-        _faintest(truth, by_region, max(loose, 0.0)),
-        distance(truth, _turned(drawn, base), MAX_PIECE),
-    )
+    rectangles = tree.bounds / result.cover.steps
+    if truth.base:
+        rectangles = rectangles[:, [2, 3, 0, 1]]
+    free = (tree.state == FREE) & (parts.owner >= 0)
+    pieces = rectangles[free]
+    shown = np.array([counts[cells[n]] if n in cells else -1 for n in parts.owner[free].tolist()], dtype=np.int64)
+    loose = 1 - float(_areas(pieces).sum()) - float(result.undetermined)
+    drawn = rectangles[tree.state == COVERED], MAX_PIECE
+    found = _error(truth, pieces, shown, drawn, float(result.undetermined), max(loose, 0.0))
+    return found | {"undetermined": outward(0, result.undetermined)[1]}
 
 
 def _areas(rectangles: Floats) -> Floats:
     return (rectangles[:, 1] - rectangles[:, 0]) * (rectangles[:, 3] - rectangles[:, 2])
 
 
-def _turned(rectangles: Floats, base: int) -> Floats:
-    return rectangles if base == 0 else rectangles[:, [2, 3, 0, 1]]
-
-
-def _wrong(truth: Truth, pieces: Floats, shown: np.ndarray, least: float, loose: float = 0.0) -> tuple[Bounds, Floats]:
-    """Bounds of the share that is wrong, and the areas in which regions show their counts.
+def _error(
+    truth: Truth, pieces: Floats, shown: np.ndarray, drawn: tuple[Floats, float], least: float, loose: float = 0.0
+) -> Figures:
+    """The figures of pieces that show a count.
 
     Parameters
     ----------
+    drawn : the boundary between them, as of `distance`.
     least : the share that is undetermined.
     loose : the share that no piece holds though something is shown there.
     """
-    by_region = shown_areas(truth, pieces, shown)
-    wrong = 1 - float(by_region.sum())
-    low, high = wrong - truth.doubt - loose, wrong + truth.doubt
-    return outward(max(low, least), min(max(high, least), 1.0)), by_region
+    right, areas = shown_areas(truth, pieces, shown), shown_areas(truth, np.array([[0.0, 1.0, 0.0, 1.0]]))
+    doubts = truth.doubts()
+    wrong, doubt = 1 - float(right.sum()), float(doubts.sum()) / 2 + ROUNDING
+    bounds = (float(np.clip(x, least, 1.0)) for x in (wrong - doubt - loose, wrong + doubt))
+    with np.errstate(divide="ignore"):
+        low = (right - doubts) / (areas + doubts)
+        high = (right + doubts + loose) / (areas - doubts).clip(0)
+    return figures(
+        outward(*bounds),
+        least,
+        regions=len(truth.counts),
+        missed=int((right <= doubts).sum()),
+        faintest=outward(*(float(np.clip(x.min(), 0.0, 1.0)) for x in (low, high))),
+        distance=distance(truth, *drawn),
+    )
 
 
-def shown_areas(truth: Truth, pieces: Floats, shown: np.ndarray) -> Floats:
-    """For each region the area in which pieces show its count, up to `Truth.doubts`.
+def shown_areas(truth: Truth, pieces: Floats, shown: np.ndarray | None = None) -> Floats:
+    """For each region the area in which pieces show its count, up to `Truth.doubts`; its area in all if none is shown.
 
     Parameters
     ----------
     pieces : disjoint rectangles as rows (left, right, bottom, top).
     """
     found = np.zeros(len(truth.counts))
-    for left, right, region in truth.tops:
-        part = pieces[shown == truth.counts[region]]
-        width = np.minimum(part[:, 1], right) - np.maximum(part[:, 0], left)
-        found[region] += (width.clip(0) * (part[:, 3] - part[:, 2])).sum()
     for wall in truth.walls:
         for region, sign in ((wall.below, 1), (wall.above, -1)):
-            found[region] += sign * _below(wall.points, pieces[shown == truth.counts[region]])
+            if region >= 0:
+                own = pieces if shown is None else pieces[shown == truth.counts[region]]
+                found[region] += sign * _below(wall.points, own)
     return found
 
 
@@ -212,14 +308,6 @@ def _numbered(number: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return of, np.arange(len(of)) - np.repeat(np.cumsum(number) - number, number)
 
 
-def _faintest(truth: Truth, by_region: Floats, loose: float = 0.0) -> Bounds:
-    """Bounds of the smallest share of a region that is shown with its count."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        low = np.nan_to_num((by_region - truth.doubts) / truth.areas[:, 1])
-        high = np.nan_to_num((by_region + truth.doubts + loose) / truth.areas[:, 0], nan=1.0)
-    return outward(max(0.0, float(low.min())), min(1.0, max(0.0, float(high.min()))))
-
-
 def distance(truth: Truth, drawn: Floats, spacing: float) -> Bounds | None:
     """The Hausdorff distance between the true walls and rectangles that are drawn, in the unit square.
 
@@ -231,7 +319,7 @@ def distance(truth: Truth, drawn: Floats, spacing: float) -> Bounds | None:
     -------
     None when just one of the two is empty.
     """
-    walls = [w for w in truth.walls if w.distance < UNKNOWN]
+    walls = [w for w in truth.walls if w.above >= 0 and w.distance < UNKNOWN]
     chords = [np.concatenate([w.points[:-1], w.points[1:]], axis=1) for w in walls]
     upright = truth.upright[:, [0, 1, 0, 2]]
     segments = np.concatenate([*chords, upright])
@@ -270,8 +358,5 @@ def _points(segments: Floats, spacing: float, thick: Floats) -> tuple[Floats, Fl
 
 def outward(low: float | Fraction, high: float | Fraction) -> Bounds:
     """Both bounds in six digits, the lower rounded down and the upper rounded up."""
-    return float(decimal(Fraction(low), up=False, digits=DIGITS)), _up(high)
-
-
-def _up(value: float | Fraction) -> float:
-    return float(decimal(Fraction(value), up=True, digits=DIGITS))
+    first, last = (decimal(Fraction(x), up=up, digits=DIGITS) for x, up in ((low, False), (high, True)))
+    return float(first), float(last)

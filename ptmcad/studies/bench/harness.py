@@ -1,33 +1,134 @@
-"""What all measurements have in common: jobs take turns as whole processes, and each becomes a row of a table.
+"""What all measurements have in common: jobs take turns as whole processes, and their runs become a data frame.
 
-Guarantee: in each round every job that is due runs once, in an order drawn from the seed, so that
-a slow minute of the machine hits all alike, and that the i-th figures of two jobs belong together.
-A job that failed or ran out of time has a reason and no figures, and is not tried again.
+Guarantee: in each round every job that is due runs once, in an order drawn from the seed, so that a slow minute of the
+machine hits all alike, and that the figures of one round belong together. A job that failed or ran out of time has a
+reason and no figures, and is not tried again.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import platform
 import random
+import shutil
 import statistics
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from ptmcad.errors import PtmcadError
-from ptmcad.process.output import text_writer, write_files
-from ptmcad.studies.bench import qepcad
+import pandas as pd
+
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.question.slice import Slice
+from ptmcad.studies.bench.error import Truth
 from ptmcad.studies.bench.process import Outcome, Usage, run
 from ptmcad.studies.tables import columns, installed
 
 PACKAGES = ("ptmcad", "python-flint", "numpy", "click", "PyYAML", "matplotlib", "sympy", "numba", "scipy", "gcad")
 PTMCAD = (sys.executable, "-m", "ptmcad")
+GRACE_SECONDS = 1.0
+"""Seconds that an engine has to save what it has when its time is over."""
 Row = dict[str, Any]
+
+
+@dataclass(slots=True)
+class Job:
+    """A process, and what its runs gave so far.
+
+    Attributes
+    ----------
+    text : its standard input.
+    answer : the file that it writes; None where the answer is on standard output.
+    check : what is wrong with a process that is done; empty when nothing is.
+    saves : whether it takes ``--timeout`` and leaves an answer when its time is over, as the certified engine does.
+    reason : why there are no figures; empty while there may be.
+    """
+
+    subject: str
+    what: str
+    setting: str
+    command: Sequence[str]
+    text: str = ""
+    answer: Path | None = None
+    check: Callable[[Usage], str] = lambda usage: ""
+    saves: bool = False
+    usages: list[Usage] = field(default_factory=list)
+    reason: str = ""
+
+    def attempt(self, timeout: float) -> Usage:
+        """Run once, within so many seconds, and take the figures, or the reason why there are none."""
+        if self.answer is not None:
+            self.answer.unlink(missing_ok=True)
+        if self.saves:
+            limit = f"{max(timeout - GRACE_SECONDS, 0.1):.2f}"
+            usage = run((*self.command, "--timeout", limit), text=self.text, timeout=timeout + GRACE_SECONDS)
+            if self.answer is not None and self.answer.exists():
+                usage = replace(usage, outcome=Outcome.DONE)
+            elif "time limit" in usage.message:
+                usage = replace(usage, outcome=Outcome.TIMED_OUT)
+        else:
+            usage = run(self.command, text=self.text, timeout=max(timeout, 0.01))
+        if usage.outcome is Outcome.TIMED_OUT:
+            self.reason = f"not in {timeout:g} s"
+        elif usage.outcome is Outcome.FAILED:
+            self.reason = f"failed: {(usage.message or 'no message').splitlines()[-1]}"
+        elif self.answer is not None and not self.answer.exists():
+            self.reason = "failed: no answer"
+        elif wrong := self.check(usage):
+            self.reason = f"failed: {wrong}"
+        else:
+            self.usages.append(usage)
+        return usage
+
+    def said(self) -> str:
+        """The text of the last answer."""
+        return self.usages[-1].output if self.answer is None else self.answer.read_text(encoding="utf-8")
+
+
+class Case(NamedTuple):
+    """What the methods are asked about.
+
+    Attributes
+    ----------
+    record : the slice's own file.
+    exact : its map; None where there is none.
+    known : what errors are measured against, by count; None where there is none.
+    folder : with the question as ``question.json``; answers go there too.
+    quick : fewer and coarser settings.
+    """
+
+    slice: Slice
+    record: Path
+    exact: RegionMap | None
+    known: dict[str, Truth] | None
+    folder: Path
+    quick: bool
+    seed: int
+
+
+Make = Callable[..., Job]
+"""A job from its command and what else it has."""
+
+
+def take_turns(jobs: Sequence[Job], rounds: int, order: random.Random, attempt: Callable[[Job], object]) -> None:
+    """So many rounds, in each of which every job without a reason is attempted once."""
+    for _ in range(rounds):
+        due = [job for job in jobs if not job.reason]
+        for job in order.sample(due, len(due)):
+            attempt(job)
+
+
+def turns(jobs: Sequence[Job], options: argparse.Namespace) -> None:
+    """All rounds of jobs, which have ``--timeout`` seconds each."""
+
+    def attempt(job: Job) -> None:
+        print(f"{job.subject}, {job.what}, {job.setting}", file=sys.stderr, flush=True)
+        job.attempt(options.timeout)
+
+    take_turns(jobs, options.rounds, random.Random(options.seed), attempt)
 
 
 def times(seconds: Sequence[float]) -> Row:
@@ -36,154 +137,57 @@ def times(seconds: Sequence[float]) -> Row:
     return {"runs": len(seconds)} | {name: round(x, 4) for name, x in spread.items()}
 
 
-@dataclass(slots=True)
-class Job:
-    """Processes whose times are added, and what their runs gave so far.
+def summary(jobs: Sequence[Job], over: str = "", figure: str = "processor") -> pd.DataFrame:
+    """A row for each job: medians over its runs, or the reason why there are none.
 
-    Attributes
+    Parameters
     ----------
-    commands : each with its standard input.
-    answer : the file that the last one writes; None where the answer is on standard output.
-    check : what is wrong with a process that is done; empty when nothing is.
-    reason : why there are no figures; empty while there may be.
+    over : what the first job is: the column "over ..." has medians of the ratios to it within a round. None when empty.
+    figure : of which ratios are taken, "seconds" or "processor".
     """
-
-    subject: str
-    what: str
-    setting: str
-    commands: Sequence[tuple[Sequence[str], str]]
-    answer: Path | None = None
-    check: Callable[[Usage], str] = lambda usage: ""
-    usages: list[Usage] = field(default_factory=list)
-    reason: str = ""
-
-    def attempt(self, timeout: float) -> Usage:
-        """Run once, within so many seconds for all processes, and record it."""
-        if self.answer is not None:
-            self.answer.unlink(missing_ok=True)
-        parts: list[Usage] = []
-        for command, text in self.commands:
-            left = timeout - sum(u.seconds for u in parts)
-            usage = run(command, text=text, timeout=max(left, 0.01))
-            wrong = self.check(usage) if usage.outcome is Outcome.DONE else ""
-            parts.append(replace(usage, outcome=Outcome.FAILED, message=wrong) if wrong else usage)
-            if parts[-1].outcome is not Outcome.DONE:
-                break
-        last = parts[-1]
-        whole = Usage(
-            last.outcome,
-            sum(u.seconds for u in parts),
-            sum(u.processor_seconds for u in parts),
-            max(u.peak_mebibytes for u in parts),
-            last.output,
-            last.message,
-        )
-        self.record(whole, timeout)
-        return whole
-
-    def record(self, usage: Usage, timeout: float) -> None:
-        """Take a run's figures, or the reason why there are none."""
-        if usage.outcome is Outcome.TIMED_OUT:
-            self.reason = f"not in {timeout:g} s"
-        elif usage.outcome is Outcome.FAILED:
-            said = usage.message.strip().splitlines()
-            self.reason = f"failed: {said[-1] if said else 'no message'}"
-        elif self.answer is not None and not self.answer.exists():
-            self.reason = "failed: no answer"
-        else:
-            self.usages.append(usage)
-
-    def row(self) -> Row:
-        """The figures, or the reason, as a row of a table."""
-        found: Row = {"subject": self.subject, "what": self.what, "setting": self.setting}
-        if self.reason or not self.usages:
-            return found | {"reason": self.reason or "not run"}
-        seconds = times([u.seconds for u in self.usages])
-        return found | {
-            "runs": seconds["runs"],
-            "seconds": seconds["median"],
-            "least": seconds["minimum"],
-            "most": seconds["maximum"],
-            "processor": round(statistics.median(u.processor_seconds for u in self.usages), 4),
-            "peak MiB": round(max(u.peak_mebibytes for u in self.usages), 1),
-        }
-
-
-def take_turns(jobs: Sequence[Job], number: int, order: random.Random, attempt: Callable[[Job], object]) -> None:
-    """So many rounds, in each of which every job without a reason is attempted once."""
-    for _ in range(number):
-        due = [job for job in jobs if not job.reason]
-        for job in order.sample(due, len(due)):
-            attempt(job)
-
-
-def ratio(job: Job, other: Job, figure: str = "processor_seconds") -> float | None:
-    """The median of the ratios of the same rounds; None where either was not measured."""
-    pairs = zip(job.usages, other.usages, strict=False)
-    ratios: list[float] = [getattr(a, figure) / getattr(b, figure) for a, b in pairs]
-    return round(statistics.median(ratios), 3) if ratios and not (job.reason or other.reason) else None
+    runs = pd.DataFrame(
+        [
+            (number, turn, usage.seconds, usage.processor_seconds, usage.peak_mebibytes)
+            for number, job in enumerate(jobs)
+            for turn, usage in enumerate(job.usages if not job.reason else ())
+        ],
+        columns=["job", "round", "seconds", "processor", "peak"],
+    )
+    rows = pd.DataFrame([(job.subject, job.what, job.setting) for job in jobs], columns=["subject", "what", "setting"])
+    by_job = runs.groupby("job")
+    rows["runs"] = by_job.size().astype("Int64")
+    rows["seconds"] = by_job["seconds"].median().round(4)
+    rows["least"] = by_job["seconds"].min().round(4)
+    rows["most"] = by_job["seconds"].max().round(4)
+    rows["processor"] = by_job["processor"].median().round(4)
+    rows["peak MiB"] = by_job["peak"].max().round(1)
+    if over:
+        by_round = runs.pivot(index="round", columns="job", values=figure).reindex(columns=range(len(jobs)))
+        rows[f"over {over}"] = by_round.div(by_round[0], axis=0).median().round(3)
+    rows["reason"] = [job.reason or (None if job.usages else "not run") for job in jobs]
+    return rows
 
 
 def made_with() -> dict[str, dict[str, str]]:
     """What figures depend on: the machine, without anything that identifies it, and versions."""
-    processor = platform.processor() or platform.machine()
     cpuinfo = Path("/proc/cpuinfo")
     lines = cpuinfo.read_text().splitlines() if cpuinfo.exists() else []
     models = [line.partition(":")[2].strip() for line in lines if "model name" in line]
     machine = {
-        "processor": models[0] if models else processor,
+        "processor": (models or [platform.processor() or platform.machine()])[0],
         "cores": str(os.cpu_count()),
         "system": f"{platform.system()} {platform.machine()}",
         "load before": " ".join(f"{load:.2f}" for load in os.getloadavg()),
     }
-    where = qepcad.program()
-    said = [] if where is None else run((where, "-v"), timeout=10).output.strip().splitlines() or ["unknown"]
-    versions = {"python": platform.python_version(), **installed(PACKAGES)}
-    return {"machine": machine, "versions": versions | {"qepcad": said[0] if said else "not installed"}}
+    where = shutil.which("qepcad")
+    said = run((where, "-v"), timeout=10).output.strip().splitlines() or ["unknown"] if where else ["not installed"]
+    versions = {"python": platform.python_version(), **installed(PACKAGES), "qepcad": said[0]}
+    return {"machine": machine, "versions": versions}
 
 
-def progress(message: str) -> None:
-    """What is being done, on standard error."""
-    print(message, file=sys.stderr, flush=True)
-
-
-def table(rows: Iterable[Mapping[str, Any]]) -> str:
-    """Rows in columns, by their keys in the order in which they come first; a reason stands at the end."""
-    rows = list(rows)
-    keys = list(dict.fromkeys(key for row in rows for key in row if key != "reason"))
-    header = [*keys, "reason" if any("reason" in row for row in rows) else ""]
-    return "\n".join(columns([header, *([_text(row.get(key)) for key in header] for row in rows)]))
-
-
-def _text(value: Any) -> str:
-    if value is None or value == "":
-        return "-" if value is None else ""
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
-
-
-def study(
-    name: str,
-    options: argparse.Namespace,
-    measure: Callable[[argparse.Namespace], list[Row]],
-    more: Callable[[list[Row], Path], object] = lambda rows, folder: None,
-) -> int:
-    """Measure, print the table, and write NAME.json; 1 where a row differs, 2, with a message, for bad input.
-
-    Parameters
-    ----------
-    more : writes what goes with the file.
-    """
-    try:
-        if options.out is not None:
-            options.out.mkdir(parents=True, exist_ok=True)
-        found = {"format": f"ptmcad-{name}/2", **made_with(), "seed": options.seed, "rounds": options.rounds}
-        rows = measure(options)
-        if options.out is not None:
-            text = json.dumps(found | {"rows": rows}, indent=1, ensure_ascii=False) + "\n"
-            write_files(options.out, {f"{name}.json": text_writer(text)})
-            more(rows, options.out)
-    except (PtmcadError, OSError) as error:
-        print(f"{name}: {error}", file=sys.stderr)
-        return 2
-    print(table(rows))
-    return int(any(row.get("differs") for row in rows))
+def table(rows: pd.DataFrame) -> str:
+    """Rows in columns, without columns in which there is nothing."""
+    shown = rows.dropna(axis=1, how="all").map(
+        lambda x: "-" if pd.isna(x) else f"{x:.4g}" if isinstance(x, float) else str(x)
+    )
+    return "\n".join(columns([list(shown), *shown.to_numpy().tolist()]))

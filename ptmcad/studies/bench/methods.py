@@ -1,54 +1,45 @@
-"""The methods that are compared, each as processes to run at a number of settings.
+"""The rivals that are compared: how each is started as a process at a number of settings, and how its answer is read.
 
-Guarantee: each job gets the same slice, with exact numbers where the method takes them; what a
-method cannot do for a slice, or what is not installed, is reported with its reason.
+Guarantee: each job gets the same slice, with exact numbers where the method takes them; what a method cannot do for a
+slice, or what is not installed, is reported with its reason.
 """
 
 from __future__ import annotations
 
 import json
-import shutil
 import sys
-from dataclasses import dataclass
-from enum import Enum
-from functools import lru_cache, partial
+from collections.abc import Callable
+from fractions import Fraction
+from functools import partial
 from importlib.util import find_spec
-from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import yaml
+import numpy as np
 
-from ptmcad.algebra import msolve
-from ptmcad.answer.regionmap import RegionMap
-from ptmcad.exact.slicevariety import slice_variety
-from ptmcad.question.config import load
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.errors import PtmcadError
 from ptmcad.question.slice import Slice
-from ptmcad.studies.bench import programs, qepcad
-from ptmcad.studies.bench.harness import PTMCAD, Job
-from ptmcad.studies.bench.process import run
+from ptmcad.show.table import area_by_count
+from ptmcad.studies.bench import programs
+from ptmcad.studies.bench.error import cover_error, exact_error, figures, grid_error, outward, shown_count
+from ptmcad.studies.bench.harness import PTMCAD, Case, Job, Make, Row
+from ptmcad.studies.bench.records import difference
 
-
-class Method(Enum):
-    """What is compared."""
-
-    EXACT = "exact"
-    CERTIFIED = "certified"
-    COMPANION = "companion"
-    MULTISTART = "multistart"
-    QEPCAD = "qepcad"
-    SINGULAR = "singular"
-    MSOLVE = "msolve"
-    GCAD = "gcad"
+GRIDS = ("companion", "multistart")
+NO_MAP = "no exact map to compare with: the share is the engine's"
+NO_WALLS = "errors not measured: the true walls are too steep for chains of chords; shares are the engine's"
 
 
 class Rival(NamedTuple):
-    """One of them.
+    """One of the methods.
 
     Attributes
     ----------
     label : of a setting, which goes in the place of the braces.
     settings : from the coarsest.
     quick : how many of them are run when it has to be quick.
+    start : the job at a setting, or why there is none.
+    read : figures and notes of a job that is done, as of a measurement.
     needs : an optional package.
     """
 
@@ -56,118 +47,36 @@ class Rival(NamedTuple):
     label: str
     settings: tuple[str, ...]
     quick: int
+    start: Callable[[Case, str, Make], Job | str]
+    read: Callable[[Case, Job], Row]
     needs: str = ""
 
 
-RIVALS = {
-    Method.EXACT: Rival("ptmcad, exact engine", "area tolerance {}", ("1e-2", "1e-4", "1e-8", "1e-12"), 2),
-    Method.CERTIFIED: Rival("ptmcad, certified engine", "tolerance {}", ("1e-1", "1e-2", "1e-3", "1e-4"), 2, "numba"),
-    Method.COMPANION: Rival(
-        "grid of companion matrices", "N = {}", ("25", "50", "100", "200", "400", "800", "1600"), 4
-    ),
-    Method.MULTISTART: Rival("grid of scipy starts", "N = {}", ("12", "25"), 1, "scipy"),
-    Method.QEPCAD: Rival("QEPCAD", "{}", ("cells of the curves", "where 6, where 4", "where 2 stable"), 3),
-    Method.SINGULAR: Rival("Singular, critical curve alone", "{}", ("critical curve",), 1),
-    Method.MSOLVE: Rival("msolve, critical curve alone", "{}", ("critical curve",), 1),
-    Method.GCAD: Rival("gcad on the finished curves, no counts", "{}", ("curves",), 1, "gcad"),
-}
-GRIDS = (Method.COMPANION, Method.MULTISTART)
-TRIAL_SECONDS = 20.0
-
-
-def question(slice: Slice) -> str:
-    """The slice as JSON for the rivals, in floats."""
-    parameters = {
-        name: [[[i, j, float(c)] for i, j, c in terms] for terms in (value.numerator, value.denominator)]
-        for name, value in slice.parameters.items()
-    }
-    window = [[float(a.low), float(a.high)] for a in slice.axes]
-    return json.dumps({"window": window, "parameters": parameters})
-
-
-@dataclass(frozen=True, slots=True)
-class Case:
-    """What the methods are asked about.
-
-    Attributes
-    ----------
-    record : the slice's own file.
-    exact : its map, for the curves; None where there is none.
-    folder : with the question as ``question.json``; answers go there too.
-    quick : fewer and coarser settings.
-    """
-
-    slice: Slice
-    record: Path
-    exact: RegionMap | None
-    folder: Path
-    quick: bool
-    seed: int
-
-
-def jobs(method: Method, case: Case) -> list[Job] | str:
+def jobs(method: str, case: Case) -> list[Job] | str:
     """A method's jobs, from the shortest, or why there are none."""
     rival, slice = RIVALS[method], case.slice
-    if slice.has_free_lengths and method is not Method.CERTIFIED:
+    if slice.has_free_lengths and method != "certified":
         return "square roots: springs have a free length"
     if method in GRIDS and slice.mechanism != "ptm":
         return f"the sextic is the paper's mechanism's, not that of {slice.mechanism}"
     if rival.needs and find_spec(rival.needs) is None:
         return f"{rival.needs} is not installed (make bench installs it)"
-    found, reason = [], ""
-    for setting in rival.settings[: rival.quick if case.quick else None]:
-        asking = _job(method, case, setting)
-        if isinstance(asking, str):
-            reason = reason or asking
-        else:
-            asking.setting = rival.label.format(setting)
-            found.append(asking)
-    return found or reason
+    settings = rival.settings[: rival.quick if case.quick else None]
+    asked = [
+        rival.start(case, setting, partial(Job, slice.name, method, rival.label.format(setting)))
+        for setting in settings
+    ]
+    return [job for job in asked if isinstance(job, Job)] or str(asked[0])
 
 
-def _job(method: Method, case: Case, setting: str) -> Job | str:
-    """The job at a setting, or why there is none."""
-    name, folder = case.slice.name, case.folder
-    target = folder / f"{method.value}-{setting}"
-    match method:
-        case Method.EXACT | Method.CERTIFIED:
-            option = "--area-tolerance" if method is Method.EXACT else "--tolerance"
-            command = [*PTMCAD, "classify", str(case.record), "--engine", method.value, "--count",
-                       finest_count(case.slice), option, setting, "--format", "json", "--out", str(target)]  # fmt: skip
-            return Job(name, method.value, "", ((command, ""),), target / f"{name}.json")
-        case Method.COMPANION | Method.MULTISTART:
-            target = target.with_suffix(".npy")
-            command = [sys.executable, "-m", "ptmcad.studies.bench.rivals", method.value,
-                       str(folder / "question.json"), setting, str(target), str(case.seed)]  # fmt: skip
-            return Job(name, method.value, "", ((command, ""),), target)
-        case Method.QEPCAD if setting.startswith("where"):
-            return _counts_by_qepcad(case.slice, setting)
-        case Method.SINGULAR:
-            if shutil.which("Singular") is None:
-                return "Singular is not installed"
-            script = programs.singular_script(programs.elimination(case.slice, case.exact is not None))
-            command = ["Singular", "--quiet", "--no-rc"]
-            return Job(name, method.value, "", ((command, script),), None, partial(programs.incomplete, programs.END))
-        case Method.MSOLVE:
-            program = msolve.program()
-            if program is None:
-                return "msolve is not installed"
-            asked = programs.elimination(case.slice, case.exact is not None)
-            (folder / "system.ms").write_text(asked.text, encoding="ascii")
-            command = [program, "-e", str(len(asked.unknowns)), "-g", "2", "-f", str(folder / "system.ms"),
-                       "-o", str(target)]  # fmt: skip
-            return Job(name, method.value, "", ((command, ""),), target)
-    if case.exact is None:
-        return "there are no finished curves"
-    if method is Method.GCAD:
-        script = programs.gcad_script(case.exact)
-        return Job(name, method.value, "", (([sys.executable, "-"], script),))
-    there = qepcad.command()
-    if there is None:
-        return "qepcad is not installed"
-    ordered = load(exchanged(case.record, folder)) if case.exact.base else case.slice
-    session = slice_variety(ordered).text("qepcad") + programs.STUCK
-    return Job(name, method.value, "", ((there, session),), None, partial(programs.incomplete, programs.QUIT))
+# ------------------------------------------------------------------------------------------------- ptmcad and grids
+
+
+def _start_engine(engine: str, option: str, case: Case, setting: str, make: Make) -> Job:
+    target = case.folder / f"{engine}-{setting}"
+    command = [*PTMCAD, "classify", str(case.record), "--engine", engine, "--count", finest_count(case.slice),
+               option, setting, "--format", "json", "--out", str(target)]  # fmt: skip
+    return make(command, answer=target / f"{case.slice.name}.json", saves=engine == "certified")
 
 
 def finest_count(slice: Slice) -> str:
@@ -177,38 +86,72 @@ def finest_count(slice: Slice) -> str:
     return "index" if slice.model.has_potential else "stable" if slice.model.tells_stability else "total"
 
 
-def exchanged(record: Path, folder: Path) -> Path:
-    """The record with its axes exchanged."""
-    data: dict[str, Any] = yaml.safe_load(record.read_text(encoding="utf-8"))
-    data["axes"] = dict(reversed(data["axes"].items()))
-    model = data.get("mechanism")
-    if isinstance(model, str) and (beside := record.resolve().parent / model).is_file():
-        data["mechanism"] = str(beside)
-    target = folder / f"exchanged-{record.name}"
-    target.write_text(yaml.safe_dump(data, sort_keys=False), encoding="utf-8")
-    return target
+def _read_map(case: Case, job: Job) -> Row:
+    result = RegionMap.from_json(job.said())
+    notes = ["stopped at the limit, short of its tolerance"] if result.status is Status.PARTIAL else []
+    if case.exact is not None and result.cover is None and (wrong := difference(case.exact, result)):
+        raise PtmcadError(f"two exact maps of {case.slice.name} differ: {wrong}")
+    if not case.known:
+        notes.append(NO_MAP if case.exact is None else NO_WALLS)
+        share = outward(result.undetermined, result.undetermined)
+        found = {case.slice.count.value: figures(share, share[1])}
+    elif result.cover is None:
+        found = {count: exact_error(truth) for count, truth in case.known.items()}
+    else:
+        errors = {count: cover_error(truth, result, count) for count, truth in case.known.items()}
+        found = {count: error for count, error in errors.items() if error is not None}
+    return {"figures": found, "note": "; ".join(notes), "area_width": outward(0, area_width(result))[1]}
 
 
-def _counts_by_qepcad(slice: Slice, setting: str) -> Job | str:
-    """On the sextic, in the better elimination order, which a trial shows."""
-    command, asked = qepcad.command(), qepcad.question(slice)
-    if command is None or isinstance(asked, str):
-        return "qepcad is not installed" if command is None else str(asked)
-    best = _better_order(command, asked)
-    if best is None:
-        return f"no answer within {TRIAL_SECONDS:.0f} s in either order of the axes"
-    tasks = (qepcad.Task.TWO_STABLE,) if "stable" in setting else qepcad.TOTAL
-    commands = [(command, asked.text(task, swapped=best)) for task in tasks]
-    return Job(slice.name, Method.QEPCAD.value, "", commands, None,
-               lambda usage: "" if qepcad.formula(usage.output) else "no answer")  # fmt: skip
+def area_width(result: RegionMap) -> Fraction:
+    """The widest bounds of the area of all points with one count, as a share of the window's area."""
+    first, second = result.slice.axes
+    window = (first.high - first.low) * (second.high - second.low)
+    return max((high - low for low, high in area_by_count(result).values()), default=window) / window
 
 
-@lru_cache(maxsize=1)
-def _better_order(command: tuple[str, ...], asked: qepcad.Question) -> bool | None:
-    """Whether to exchange the axes; None where neither order ends in time."""
-    trials = []
-    for swapped in (False, True):
-        usage = run(command, text=asked.text(qepcad.Task.SIX, swapped=swapped), timeout=TRIAL_SECONDS)
-        if qepcad.formula(usage.output):
-            trials.append((usage.seconds, swapped))
-    return min(trials)[1] if trials else None
+def question(slice: Slice) -> str:
+    """The slice as JSON for the grids, in floats."""
+    parameters = {
+        name: [[[i, j, float(c)] for i, j, c in terms] for terms in (value.numerator, value.denominator)]
+        for name, value in slice.parameters.items()
+    }
+    return json.dumps({"window": [[float(a.low), float(a.high)] for a in slice.axes], "parameters": parameters})
+
+
+def _start_grid(method: str, case: Case, setting: str, make: Make) -> Job:
+    asked, target = case.folder / "question.json", case.folder / f"{method}-{setting}.npy"
+    asked.write_text(question(case.slice), encoding="utf-8")
+    command = [sys.executable, "-m", "ptmcad.studies.bench.rivals", method, asked, setting, target, case.seed]
+    return make(list(map(str, command)), answer=target)
+
+
+def _read_grid(case: Case, job: Job) -> Row:
+    if case.exact is None or case.known is None:
+        return {"note": NO_MAP if case.exact is None else NO_WALLS}
+    assert job.answer is not None
+    stable, total = np.load(job.answer).astype(np.int16)
+    cells = case.exact.grid(len(stable)).cell.T
+    found = {count: grid_error(truth, cells, shown_count(stable, total, count)) for count, truth in case.known.items()}
+    lost = programs.question(case.slice) == programs.LOSES_PI
+    return {"figures": found, "note": programs.LOSES_PI if lost else ""}
+
+
+RIVALS = {
+    "exact": Rival("ptmcad, exact engine", "area tolerance {}", ("1e-2", "1e-4", "1e-8", "1e-12"), 2,
+                   partial(_start_engine, "exact", "--area-tolerance"), _read_map),
+    "certified": Rival("ptmcad, certified engine", "tolerance {}", ("1e-1", "1e-2", "1e-3", "1e-4"), 2,
+                       partial(_start_engine, "certified", "--tolerance"), _read_map, "numba"),
+    "companion": Rival("grid of companion matrices", "N = {}", ("25", "50", "100", "200", "400", "800", "1600"), 4,
+                       partial(_start_grid, "companion"), _read_grid),
+    "multistart": Rival("grid of scipy starts", "N = {}", ("12", "25"), 1,
+                        partial(_start_grid, "multistart"), _read_grid, "scipy"),
+    "qepcad": Rival("QEPCAD", "{}", (programs.CELLS, "where 6, where 4", "where 2 stable"), 3,
+                    programs.start_qepcad, programs.read_qepcad),
+    "singular": Rival("Singular, critical curve alone", "{}", ("critical curve",), 1,
+                      programs.start_singular, programs.read_singular),
+    "msolve": Rival("msolve, critical curve alone", "{}", ("critical curve",), 1,
+                    programs.start_msolve, programs.read_msolve),
+    "gcad": Rival("gcad on the finished curves, no counts", "{}", ("curves",), 1,
+                  programs.start_gcad, programs.read_gcad, "gcad"),
+}  # fmt: skip

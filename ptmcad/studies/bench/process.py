@@ -1,23 +1,23 @@
 """A process that is run once and measured.
 
-Guarantee: the figures are the kernel's for that process and the descendants it waited for
-(`os.wait4`). It is started by a small process, this file run by itself, because a child's peak is
-at least the size of the process that starts it: so whoever measures may be as large as it likes.
+Guarantee: the figures are the kernel's for that process and the descendants it waited for. It is started by a small
+process, this file run by itself, because a child's peak is at least the size of the process that starts it: so whoever
+measures may be as large as it likes.
 """
 
 from __future__ import annotations
 
 import json
-import os
+import resource
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 _MESSAGE_LENGTH = 300
 
@@ -51,7 +51,7 @@ class Usage:
     message: str = ""
 
 
-def run(command: Sequence[str], *, text: str = "", timeout: float | None = None) -> Usage:
+def run(command: Sequence[str], *, text: str = "", timeout: float = threading.TIMEOUT_MAX) -> Usage:
     """Run a command and measure it.
 
     Parameters
@@ -66,55 +66,37 @@ def run(command: Sequence[str], *, text: str = "", timeout: float | None = None)
     >>> usage.outcome, usage.output, usage.peak_mebibytes > 1
     (<Outcome.DONE: 'done'>, 'desserts\\n', True)
     """
-    with tempfile.TemporaryDirectory() as folder:
-        names = ("figures", "input", "output", "errors")
-        figures, *paths = (os.path.join(folder, name) for name in names)
-        with open(paths[0], "w", encoding="utf-8") as given:
-            given.write(text)
-        with open(paths[0]) as given, open(paths[1], "w") as output, open(paths[2], "w") as errors:
-            limit = "" if timeout is None else str(timeout)
-            subprocess.run(
-                [sys.executable, "-I", "-S", __file__, figures, limit, *command],
-                stdin=given,
-                stdout=output,
-                stderr=errors,
-                check=False,
-            )
-        told, wrong = (Path(path).read_text(encoding="utf-8", errors="replace") for path in paths[1:])
-        if not os.path.exists(figures):
-            return Usage(Outcome.FAILED, 0.0, 0.0, 0.0, told, wrong[-_MESSAGE_LENGTH:].strip())
-        with open(figures) as stream:
-            status, expired, seconds, processor, peak = json.load(stream)
-    outcome = Outcome.DONE if status == 0 else Outcome.TIMED_OUT if expired else Outcome.FAILED
-    message = "" if outcome is Outcome.DONE else wrong[-_MESSAGE_LENGTH:].strip()
-    return Usage(outcome, seconds, processor, peak, told, message)
+    with TemporaryDirectory() as name:
+        figures, given, *said = (Path(name, part) for part in ("figures", "input", "output", "errors"))
+        given.write_text(text, encoding="utf-8")
+        starter = [sys.executable, "-I", "-S", __file__, str(figures), str(timeout), *command]
+        # files, not pipes: a descendant that outlives the process would keep a pipe open
+        with given.open() as stdin, said[0].open("w") as stdout, said[1].open("w") as stderr:
+            subprocess.run(starter, stdin=stdin, stdout=stdout, stderr=stderr, check=False)
+        output, wrong = (path.read_text(encoding="utf-8", errors="replace") for path in said)
+        measured = json.loads(figures.read_text()) if figures.exists() else ("failed", 0.0, 0.0, 0.0)
+    outcome = Outcome(measured[0])
+    return Usage(outcome, *measured[1:], output, "" if outcome is Outcome.DONE else wrong[-_MESSAGE_LENGTH:].strip())
 
 
-def _measure(figures: str, limit: str, *command: str) -> None:
-    """Run the command, and write what it took into a file, in the order that `run` reads."""
-    expired = threading.Event()
+def _measure(figures: str, timeout: str, *command: str) -> None:
+    """Run the command, and write how it ended and what it took into a file."""
     start = time.perf_counter()
-    process = subprocess.Popen(command)
-
-    def expire() -> None:
-        expired.set()
-        process.kill()
-
-    timer = threading.Timer(float(limit or threading.TIMEOUT_MAX), expire)
-    timer.daemon = True
-    timer.start()
-    try:
-        _, status, used = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-    finally:
-        timer.cancel()
-        if process.returncode is None:  # interrupted: it must not outlive its measurement
-            process.kill()
+    with subprocess.Popen(command) as process:
+        timer = threading.Timer(float(timeout), process.kill)
+        timer.daemon = True
+        timer.start()
+        try:
             process.wait()
+        finally:
+            timer.cancel()
+            process.kill()  # where this was interrupted: it must not outlive its measurement
     seconds = time.perf_counter() - start
-    processor, peak = used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
-    with open(figures, "w") as stream:
-        json.dump((process.returncode, expired.is_set(), seconds, processor, peak), stream)
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    late = process.returncode != 0 and seconds >= float(timeout)
+    outcome = "timed out" if late else "failed" if process.returncode else "done"
+    measured = (outcome, seconds, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024)
+    Path(figures).write_text(json.dumps(measured))
 
 
 if __name__ == "__main__":

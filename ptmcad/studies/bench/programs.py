@@ -1,18 +1,28 @@
-"""Programs that do a part of the work on any slice: msolve and Singular the critical curve, QEPCAD and gcad cells.
+"""Programs beside ptmcad: msolve and Singular make the critical curve, gcad and QEPCAD cells; QEPCAD counts, too.
 
-Guarantee: an answer is what a run said that came to the end of its script without an error. It is
-compared exactly with ptmcad's map: curves as sets of irreducible polynomials, and cells by locating
-each sample of QEPCAD's in the map; gcad gives no samples, so only the number of its cells is compared.
+Guarantee: an answer is what a run said that came to the end of its script without an error. It is compared exactly with
+ptmcad's map: curves as sets of irreducible polynomials, and cells by locating each sample of QEPCAD's in the map; gcad
+gives no samples, so only the number of its cells is compared. msolve and Singular are given the system that
+``ptmcad variety --format msolve`` writes; QEPCAD and gcad the finished curves, with the map's base axis first.
 
-msolve and Singular are given the system that ``ptmcad variety --format msolve`` writes; QEPCAD and
-gcad the finished curves, with the map's base axis first.
+QEPCAD counts as an expert would let it, one quantifier elimination for each count, on a sextic made by hand. Where
+`question` returns a `Question`, the sextic's real roots t2 = tan(theta2/2) are, over all parameters outside a set of
+measure zero, in one-to-one correspondence with the equilibria of the slice. On that set QEPCAD is allowed to be wrong
+(it is two to five times faster so); and an equilibrium at theta2 = pi has no t2. The elimination is that of
+`ptmcad.studies.sextic`, with roots t of p = N. Up to positive factors H11 is V W and, where that is positive, the
+second derivative of the energy along the curve E1 = 0 is -V p'(t). So a root is a stable equilibrium exactly if V W > 0
+and V p' < 0.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import re
-from collections.abc import Sequence
+import shutil
+import sys
+from collections.abc import Callable, Sequence
+from enum import Enum
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -22,16 +32,30 @@ from ptmcad.answer.regionmap import Kind, RegionMap
 from ptmcad.exact.models.elimination import elimination_system
 from ptmcad.exact.slicevariety import slice_variety
 from ptmcad.exact.stages import domain_limits, problem_of
-from ptmcad.question.slice import Slice
+from ptmcad.question.config import load
+from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.polynomial_text import Style, symbols
+from ptmcad.studies.bench.error import figures
+from ptmcad.studies.bench.harness import Case, Job, Make, Row
 from ptmcad.studies.bench.process import Usage
+from ptmcad.studies.bench.records import exchanged
+from ptmcad.studies.sextic import sextic
+from ptmcad.text.expressions import Expression
 from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.terms import signed_terms
 
+CELLS = "cells of the curves"
+NO_CURVES = "there are no finished curves"
+LOSES_PI = "an equilibrium at theta2 = pi over the whole window: t2 = tan(theta2/2) loses it"
+FORMULA = "an exact formula by its own claim, up to a set of measure zero; the sextic was given"
 END = "-- the script was read to its end --"
 QUIT = "Quitting the QEPCAD system"
-STUCK = "[ 0 = 0 ].\nquit\nquit\n"
-"""Read only by a session of QEPCAD's that has not understood its formula: it would ask again for ever."""
+_QEPCAD_END = "\nquit\n[ 0 = 0 ].\nquit\nquit\n"
+"""What comes after the first quit is read only by a session that has not understood its formula, and would ask again
+for ever."""
+_GARBAGE_COLLECTED_CELLS = 20_000_000
+_FORMULA = re.compile(r"An equivalent quantifier-free formula:\s*(.*?)\n\s*\n", re.DOTALL)
 _ERROR = re.compile(r"^\s*\? .*$|^.*(?:\bError\b|Failure|Reason for|expected!).*$", re.MULTILINE)
 _CELL = re.compile(r"Information about the cell \(\d+,\d+\) -+$(.*?)^-{50,}$", re.MULTILINE | re.DOTALL)
 _TRUE = re.compile(r"^Truth value\s*: T", re.MULTILINE)
@@ -50,6 +74,9 @@ sides = [gcad.GCAD([*window, side], order) for side in (product > 0, product < 0
 print(json.dumps({{"cells": sum(map(len, sides)), "computing": time.perf_counter() - start}}))
 """
 """For an interpreter of its own: the package has another licence, and is no part of this one."""
+
+
+# ---------------------------------------------------------------------------- the critical curve by elimination
 
 
 class Elimination(NamedTuple):
@@ -96,48 +123,50 @@ quit;
 """
 
 
-def gcad_script(result: RegionMap) -> str:
-    """A script that prints the number of open cells of the window that gcad makes of the map's curves.
-
-    gcad takes inequalities, so the product of the curves is asked to be positive, and then negative.
-    """
-    curves = [c.polynomial.text(("x", "y")) for c in result.components if not c.left_out]
-    product = "*".join(f"({curve.replace('^', '**')})" for curve in curves) or "1"
-    window = [(str(a.low), str(a.high)) for a in result.slice.axes]
-    return _GCAD_SCRIPT.format(product=product, window=window, step=1 if result.base == 0 else -1)
+def start_singular(case: Case, _: str, make: Make) -> Job | str:
+    if shutil.which("Singular") is None:
+        return "Singular is not installed"
+    script = singular_script(elimination(case.slice, case.exact is not None))
+    return make(["Singular", "--quiet", "--no-rc"], script, check=lambda usage: incomplete(END, usage))
 
 
-def incomplete(end: str, usage: Usage) -> str:
-    """What is wrong with a session, which exits with status 0 after most errors; empty when nothing is."""
-    wrong = _ERROR.search(usage.output)
-    if wrong is not None:
-        return " ".join(wrong[0].split())[:100]
-    return "" if end in usage.output else "stopped within its script"
+def read_singular(case: Case, job: Job) -> Row:
+    def compared(result: RegionMap) -> tuple[bool, str]:
+        first = len(elimination(case.slice, True).unknowns)
+        factors = job.said().partition(END)[0].split()
+        return same_curves(result, curves(factors, (f"v{first}", f"v{first + 1}"), factors=True))
+
+    return _beside(case, compared)
 
 
-def agreement(program: str, answer: str, result: RegionMap, asked: Elimination) -> str:
-    """What the answer is beside the map, in words, with "DIFFERS" where it is another.
+def start_msolve(case: Case, _: str, make: Make) -> Job | str:
+    program = msolve.program()
+    if program is None:
+        return "msolve is not installed"
+    asked = elimination(case.slice, case.exact is not None)
+    system, target = case.folder / "system.ms", case.folder / "msolve"
+    system.write_text(asked.text, encoding="ascii")
+    command = [program, "-e", str(len(asked.unknowns)), "-g", "2", "-f", str(system), "-o", str(target)]
+    return make(command, answer=target)
 
-    Parameters
-    ----------
-    program : ``"msolve"``, ``"singular"``, ``"qepcad"`` or ``"gcad"``.
-    answer : its output, or msolve's file.
-    """
+
+def read_msolve(case: Case, job: Job) -> Row:
+    def compared(result: RegionMap) -> tuple[bool, str]:
+        lines = "".join(line for line in job.said().splitlines() if not line.startswith("#"))
+        return same_curves(result, curves(lines.strip("[]: \n").split(","), elimination(case.slice, True).axes))
+
+    return _beside(case, compared)
+
+
+def _beside(case: Case, compared: Callable[[RegionMap], tuple[bool, str]]) -> Row:
+    """What an answer without counts is beside the map, with "DIFFERS" where it is another or cannot be read."""
+    if case.exact is None:
+        return {}
     try:
-        if program == "gcad":
-            return f"{json.loads(answer)['cells']} cells, the map has {len(result.cells)}"
-        if program == "qepcad":
-            same, words = same_cells(result, qepcad_samples(answer))
-        elif program == "singular":
-            first = len(asked.unknowns)
-            found = curves(answer.partition(END)[0].split(), (f"v{first}", f"v{first + 1}"), factors=True)
-            same, words = same_curves(result, found)
-        else:
-            lines = "".join(line for line in answer.splitlines() if not line.startswith("#"))
-            same, words = same_curves(result, curves(lines.strip("[]: \n").split(","), asked.axes))
+        same, words = compared(case.exact)
     except ValueError as error:
         same, words = False, f"cannot be read: {error}"
-    return words if same else f"DIFFERS: {words}"
+    return {"note": f"no counts; {words if same else f'DIFFERS: {words}'}"}
 
 
 def curves(polynomials: Sequence[str], axes: Sequence[str], *, factors: bool = False) -> set[PlanePolynomial]:
@@ -171,6 +200,84 @@ def same_curves(result: RegionMap, found: set[PlanePolynomial]) -> tuple[bool, s
     return not (missing or foreign), words
 
 
+# ------------------------------------------------------------------------------------------------- cells of the curves
+
+
+def gcad_script(result: RegionMap) -> str:
+    """A script that prints the number of open cells of the window that gcad makes of the map's curves.
+
+    gcad takes inequalities, so the product of the curves is asked to be positive, and then negative.
+    """
+    curves = [c.polynomial.text(("x", "y")) for c in result.components if not c.left_out]
+    product = "*".join(f"({curve.replace('^', '**')})" for curve in curves) or "1"
+    window = [(str(a.low), str(a.high)) for a in result.slice.axes]
+    return _GCAD_SCRIPT.format(product=product, window=window, step=1 if result.base == 0 else -1)
+
+
+def start_gcad(case: Case, _: str, make: Make) -> Job | str:
+    return NO_CURVES if case.exact is None else make([sys.executable, "-"], gcad_script(case.exact))
+
+
+def read_gcad(case: Case, job: Job) -> Row:
+    number = json.loads(job.said())["cells"]
+    return _beside(case, lambda result: (True, f"{number} cells, the map has {len(result.cells)}"))
+
+
+def start_qepcad(case: Case, setting: str, make: Make) -> Job | str:
+    if setting == CELLS and case.exact is None:
+        return NO_CURVES
+    command = qepcad_command()
+    if command is None:
+        return "qepcad is not installed"
+    swapped = case.exact is not None and case.exact.base == 1
+    if setting == CELLS:
+        ordered = load(exchanged(case.record, case.folder)) if swapped else case.slice
+        problems = [slice_variety(ordered).text("qepcad")]
+        return make(command, qepcad_session(problems), check=lambda usage: incomplete(QUIT, usage))
+    asked = question(case.slice)
+    if isinstance(asked, str):
+        return asked
+    problems = [
+        asked.problem(task, swapped=swapped) for task in Task if (task is Task.TWO_STABLE) == ("stable" in setting)
+    ]
+    return make(
+        command,
+        qepcad_session(problems),
+        check=lambda usage: "" if len(formulas(usage.output)) == len(problems) else "no answer",
+    )
+
+
+def read_qepcad(case: Case, job: Job) -> Row:
+    if job.setting == CELLS:
+        return _beside(case, lambda result: same_cells(result, qepcad_samples(job.said())))
+    count = "stable" if "stable" in job.setting else "total"
+    return {"figures": {count: figures((0.0, 0.0), 0.0)}, "note": FORMULA}
+
+
+def qepcad_command() -> tuple[str, ...] | None:
+    """The command that reads a session from standard input, None when QEPCAD is not installed."""
+    where = shutil.which("qepcad")
+    return (where, "-noecho", f"+N{_GARBAGE_COLLECTED_CELLS}") if where is not None else None
+
+
+def qepcad_session(problems: Sequence[str]) -> str:
+    """QEPCAD's standard input for several problems, each without a final ``quit``."""
+    return "\ncontinue\n".join(problem.rstrip() for problem in problems) + _QEPCAD_END
+
+
+def formulas(output: str) -> list[str]:
+    """The quantifier-free formulas that QEPCAD wrote; after most errors it writes none and exits with 0."""
+    return [" ".join(found.split()) for found in _FORMULA.findall(output)]
+
+
+def incomplete(end: str, usage: Usage) -> str:
+    """What is wrong with a session, which exits with status 0 after most errors; empty when nothing is."""
+    wrong = _ERROR.search(usage.output)
+    if wrong is not None:
+        return " ".join(wrong[0].split())[:100]
+    return "" if end in usage.output else "stopped within its script"
+
+
 def qepcad_samples(output: str) -> list[tuple[Fraction, Fraction]]:
     """The samples of the open cells of the window, in the order of QEPCAD's variables.
 
@@ -192,3 +299,93 @@ def same_cells(result: RegionMap, samples: Sequence[tuple[Fraction, Fraction]]) 
     seen = {result.locate(dict(zip(order, sample, strict=True))).cell for sample in samples}
     words = f"{len(samples)} cells, in {len(seen - {None})} of the map's {len(result.cells)}"
     return None not in seen and len(seen) == len(result.cells), words
+
+
+# ------------------------------------------------------------------------------------------------- counts by the sextic
+
+
+class Task(Enum):
+    """What QEPCAD is asked: in which part of the window are there exactly so many equilibria?"""
+
+    SIX = "6 equilibria"
+    FOUR = "4 equilibria"
+    TWO_STABLE = "2 stable equilibria"
+
+
+Terms = tuple[tuple[int, int, int, int], ...]
+"""A polynomial in x, y and t: ``(i, j, n, c)`` means c x^i y^j t^n, c an integer, the content being 1."""
+
+
+class Question(NamedTuple):
+    """The sextic over a window, ready to be put to QEPCAD.
+
+    Attributes
+    ----------
+    sextic, slope : the sextic and its derivative in t, up to a positive factor.
+    v, w : numerators of V and W, up to a positive factor.
+    axes : the window.
+    """
+
+    sextic: Terms
+    slope: Terms
+    v: Terms
+    w: Terms
+    axes: tuple[Axis, Axis]
+
+    def problem(self, task: Task, *, swapped: bool = False, then: Sequence[str] = ("solution T",)) -> str:
+        """One problem of a session.
+
+        Parameters
+        ----------
+        swapped : eliminate the first axis before the second, instead of the second before the first.
+        then : the commands that are given once the decomposition is made.
+        """
+        p, slope, v, w = (
+            " ".join(signed_terms((((i, j, n), c) for i, j, n, c in terms), "xyt", times=" ")) for terms in self[:4]
+        )
+        condition = f"{p} = 0"
+        if task is Task.TWO_STABLE:
+            condition += rf" /\ [[{v} > 0 /\ {w} > 0 /\ {slope} < 0] \/ [{v} < 0 /\ {w} < 0 /\ {slope} > 0]]"
+        number = {Task.SIX: 6, Task.FOUR: 4, Task.TWO_STABLE: 2}[task]
+        window = r" /\ ".join(
+            f"{_line(name, axis.low)} > 0 /\\ {_line(name, axis.high)} < 0"
+            for name, axis in zip("xy", self.axes, strict=True)
+        )
+        return "\n".join((
+            f"[ x is {self.axes[0].name}, y is {self.axes[1].name} ]",
+            "(y,x,t)" if swapped else "(x,y,t)",
+            "2",
+            f"(X{number} t)[ {condition} ].",
+            f"assume [ {window} ]",
+            "measure-zero-error",
+            *("go",) * 3,
+            *then,
+        ))  # fmt: skip
+
+
+def question(slice: Slice) -> Question | str:
+    """The sextic of a slice, or the reason why there is none to put to QEPCAD."""
+    if slice.mechanism != "ptm":
+        return f"the sextic is the paper's mechanism's, not that of {slice.mechanism}"
+    if slice.has_free_lengths:
+        return "with free lengths there is no sextic"
+    if not all(value.is_polynomial for value in slice.parameters.values()):
+        return "a parameter is not a polynomial in the axes"
+    coefficients, v, w, _ = sextic(slice.parameters)
+    if not coefficients[6].numerator:
+        return LOSES_PI
+    slope = [n * coefficient for n, coefficient in enumerate(coefficients)][1:]
+    return Question(_terms(coefficients), _terms(slope), _terms(v), _terms(w), slice.axes)
+
+
+def _terms(polynomial: Sequence[Expression]) -> Terms:
+    terms = [(i, j, n, c) for n, coefficient in enumerate(polynomial) for i, j, c in coefficient.numerator]
+    scale = math.lcm(*(c.denominator for *_, c in terms))
+    content = math.gcd(*(int(c * scale) for *_, c in terms))
+    return tuple((i, j, n, int(c * scale) // content) for i, j, n, c in terms)
+
+
+def _line(name: str, end: Fraction) -> str:
+    """The line q name - p, positive where ``name > p/q``."""
+    terms = ((1,), end.denominator), ((0,), -end.numerator)
+    return " ".join(signed_terms((term for term in terms if term[1]), name, times=" "))

@@ -1,45 +1,31 @@
 """Shipped records as whole processes: time, memory and forecasts; and what each saving is worth.
 
-Guarantee: of an ablation every map that is timed was compared with the one that all savings made
-(`difference`); ratios are medians of the ratios within a round, of processor time.
+Guarantee: of an ablation every map that is timed was compared with the one that all savings made (`difference`); ratios
+are medians of the ratios within a round, of processor time.
 """
 
 from __future__ import annotations
 
 import argparse
-import random
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import yaml
 
 from ptmcad.answer.regionmap import Merge, RegionMap
 from ptmcad.ask.checking import check
 from ptmcad.errors import PtmcadError
 from ptmcad.question.config import load
 from ptmcad.question.savings import ALL, SAVINGS, Engine
-from ptmcad.studies.bench.harness import PTMCAD, Job, Row, progress, ratio, take_turns
-from ptmcad.studies.bench.methods import exchanged
+from ptmcad.studies.bench.harness import PTMCAD, Job, summary, turns
 
 FLOOR = (sys.executable, "-c", "import flint, numpy, click, yaml")
-_SHORT, _LONG = ("rho=1/20:1/2", "L2=5/4:2"), ("rho=1:2", "L2=1:2")
-CERTIFIED: dict[str, tuple[tuple[Sequence[str], str], ...]] = {
-    "free02": ((_SHORT, "1/20"), ((), "1/1000")),
-    "free02-unloaded": ((_SHORT, "1/20"), (_LONG, "1/1000")),
-}
-"""Records on which the certified engine's savings are measured: windows, and the share at which to stop."""
-PATIENCE = 30
-"""Seconds after which a certified run without a saving stops."""
-
-
-def turns(jobs: Sequence[Job], options: argparse.Namespace) -> None:
-    """All rounds of jobs, which have ``--timeout`` seconds each."""
-
-    def attempt(job: Job) -> None:
-        progress(f"{job.subject}, {job.what}, {job.setting}")
-        job.attempt(options.timeout)
-
-    take_turns(jobs, options.rounds, random.Random(options.seed), attempt)
+TOLERANCE, PATIENCE = "1/20", 30
+"""The share at which a certified run of an ablation stops, and the seconds."""
 
 
 def found_records(given: Sequence[Path], pattern: str = "*.yaml") -> Sequence[Path]:
@@ -58,60 +44,51 @@ def found_records(given: Sequence[Path], pattern: str = "*.yaml") -> Sequence[Pa
     return found
 
 
-def timed(options: argparse.Namespace) -> list[Row]:
+def timed(options: argparse.Namespace) -> pd.DataFrame:
     """Whole ``ptmcad classify`` processes, with JSON only and with pictures too, against the machine's floor.
 
     Each row of a record without free lengths holds what ``ptmcad check`` foretells.
     """
-    floor = Job("floor", "", "", ((FLOOR, ""),))
-    jobs = [floor]
-    slices = {path: load(path) for path in found_records(options.records)}
+    jobs = [Job("floor", "", "", FLOOR)]
+    slices = {str(path.with_suffix("")): (path, load(path)) for path in found_records(options.records)}
     with tempfile.TemporaryDirectory() as folder:
-        for path, slice in slices.items():
+        for subject, (path, slice) in slices.items():
             if slice.has_free_lengths and not options.records:
                 continue  # such a map takes as long as it is given
             for formats in ("json", "json,png,svg"):
                 command = (*PTMCAD, "classify", str(path), "--format", formats, "--out", folder)
-                jobs.append(Job(str(path.with_suffix("")), "classify", formats, ((command, ""),)))
+                jobs.append(Job(subject, "classify", formats, command))
         turns(jobs, options)
-    rows = []
-    foretold = {str(path.with_suffix("")): check(slice).forecast for path, slice in slices.items()}
-    for job in jobs:
-        row = job.row() | {"over floor": ratio(job, floor, "seconds")}
-        cost = foretold.get(job.subject)
-        if cost is not None and job.setting == "json":
-            row |= {"foretold s": round(cost.seconds, 2), "foretold MB": round(cost.megabytes)}
-        rows.append(row)
+    rows = summary(jobs, "floor", "seconds")
+    foretold = {subject: check(slice).forecast for subject, (_, slice) in slices.items()}
+    costs = [foretold.get(job.subject) if job.setting == "json" else None for job in jobs]
+    rows["foretold s"] = [cost and round(cost.seconds, 2) for cost in costs]
+    rows["foretold MB"] = [cost and round(cost.megabytes) for cost in costs]
     return rows
 
 
-def ablation(options: argparse.Namespace) -> list[Row]:
+def ablation(options: argparse.Namespace) -> pd.DataFrame:
     """Records with each saving switched off, and with all of them; their own engine's savings, and "imports"."""
-    rows: list[Row] = []
+    tables = []
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for path in found_records(options.records):
             slice = load(path)
-            exact = tuple(s.name for s in SAVINGS if s.engine is not Engine.CERTIFIED)
-            parts: list[tuple[Path, Sequence[str], Sequence[str], str]] = [
-                (path, (*exact, ALL), (), slice.name),
-                (exchanged(path, folder), ("axis-order",), (), f"{slice.name}, axes exchanged"),
-            ]
             if slice.has_free_lengths:
-                names = tuple(s.name for s in SAVINGS if s.engine is Engine.CERTIFIED)
-                parts = []
-                for window, share in CERTIFIED.get(slice.name, ()):
-                    ranges = [part for axis in window for part in ("--range", axis)]
-                    more: Sequence[str] = [*ranges, "--tolerance", share, "--jobs", "1", "--timeout", str(PATIENCE)]
-                    parts.append((path, (*names, ALL), more, " ".join([slice.name, *window, share])))
-            for record, savings, more, subject in parts:
-                rows += _without(record, subject, savings, more, folder, options)
-    return rows
+                savings = [s.name for s in SAVINGS if s.engine is Engine.CERTIFIED]
+                more = ["--tolerance", TOLERANCE, "--jobs", "1", "--timeout", str(PATIENCE)]
+                tables.append(_without(path, slice.name, [*savings, ALL], more, folder, options))
+            else:
+                savings = [s.name for s in SAVINGS if s.engine is not Engine.CERTIFIED]
+                tables.append(_without(path, slice.name, [*savings, ALL], [], folder, options))
+                turned = exchanged(path, folder)
+                tables.append(_without(turned, f"{slice.name}, axes exchanged", ["axis-order"], [], folder, options))
+    return pd.concat(tables)
 
 
 def _without(
     record: Path, subject: str, savings: Sequence[str], more: Sequence[str], folder: Path, options: argparse.Namespace
-) -> Iterator[Row]:
+) -> pd.DataFrame:
     """The rows of one record: all savings made, and each switched off."""
     name = load(record).name
     made: list[Job] = []
@@ -119,19 +96,28 @@ def _without(
         target = folder / f"{len(made)}-{saving}"
         off = ("--without", saving) if saving else ()
         command = (*PTMCAD, "classify", str(record), *more, *off, "--format", "json", "--out", str(target))
-        made.append(Job(subject, "classify", saving or "all made", ((command, ""),), target / f"{name}.json"))
+        made.append(Job(subject, "classify", saving or "all made", command, answer=target / f"{name}.json"))
     made[0].attempt(options.timeout)  # fills caches, and compiles
     made[0].usages.clear()
     turns(made, options)
-    results = []
-    for job in made:
-        assert job.answer is not None
-        results.append(RegionMap.from_json(job.answer.read_text(encoding="utf-8")) if job.answer.exists() else None)
-    for job, result in zip(made, results, strict=True):
-        row = job.row() | {"over all made": ratio(job, made[0])}
-        if results[0] is not None and result is not None:
-            row["differs"] = difference(results[0], result)
-        yield row
+    results = [RegionMap.from_json(job.said()) if job.usages else None for job in made]
+    rows = summary(made, "all made", "processor")
+    rows["differs"] = [
+        None if results[0] is None or result is None else difference(results[0], result) for result in results
+    ]
+    return rows
+
+
+def exchanged(record: Path, folder: Path) -> Path:
+    """The record with its axes exchanged."""
+    data: dict[str, Any] = yaml.safe_load(record.read_text(encoding="utf-8"))
+    data["axes"] = dict(reversed(data["axes"].items()))
+    model = data.get("mechanism")
+    if isinstance(model, str) and (beside := record.resolve().parent / model).is_file():
+        data["mechanism"] = str(beside)
+    target = folder / f"exchanged-{record.name}"
+    target.write_text(yaml.safe_dump(data, sort_keys=False), encoding="utf-8")
+    return target
 
 
 def difference(one: RegionMap, other: RegionMap) -> str:
@@ -139,51 +125,33 @@ def difference(one: RegionMap, other: RegionMap) -> str:
 
     Guarantee
     ---------
-    Empty only if the regions of both exact maps correspond one to one, with equal counts, the same
-    pairs of neighbours and areas whose bounds overlap. Of certified maps it says only that no
-    sample's counts contradict each other.
+    Empty only if no sample's counts contradict each other, and if the regions of exact maps correspond one to one, with
+    the same pairs of neighbours and areas whose bounds overlap.
     """
-    return next(_certified(one, other) if one.cover is not None else _exact(one, other), "")
-
-
-def _exact(one: RegionMap, other: RegionMap) -> Iterator[str]:
-    if len(one.regions) != len(other.regions):
-        yield f"{len(one.regions)} regions and {len(other.regions)}"
-        return
     pairs: set[tuple[int, int]] = set()
     for first, second, step in ((one, other, 1), (other, one, -1)):
         for cell in first.cells:
             at = second.locate(**dict(cell.sample))
-            if at.region is None:  # on a curve that only one of the maps uses
+            counts = ((cell.total, at.total), (cell.stable, at.stable), (cell.index, at.index))
+            if at.region is None:  # on a curve that only one of the maps uses, or undecided
                 continue
-            if (at.total, at.stable, at.index) != (cell.total, cell.stable, cell.index):
-                yield f"other counts at {dict(cell.sample)}"
-            first_region, second_region = (cell.region, at.region)[::step]
-            pairs.add((first_region, second_region))
+            if any(mine != yours and None not in (mine, yours) for mine, yours in counts):
+                return f"other counts at {dict(cell.sample)}"
+            pairs.add((cell.region, at.region)[::step])
+    if one.cover is not None:
+        return ""
     partner = dict(pairs)
-    if not len(pairs) == len(partner) == len(set(partner.values())) == len(one.regions):
-        yield "the regions do not correspond"
-        return
+    if not len(pairs) == len(partner) == len(set(partner.values())) == len(one.regions) == len(other.regions):
+        return f"{len(one.regions)} regions and {len(other.regions)}, which do not correspond"
     for n, m in partner.items():
-        a, b = one.regions[n], other.regions[m]
-        if (a.stable, a.total, a.index) != (b.stable, b.total, b.index):
-            yield f"other counts of region {n}"
-        if a.area[0] > b.area[1] or b.area[0] > a.area[1]:
-            yield f"another area of region {n}"
-    if {frozenset(map(partner.__getitem__, pair)) for pair in neighbours(one)} != neighbours(other):
-        yield "other neighbours"
+        (low, high), (least, most) = one.regions[n].area, other.regions[m].area
+        if low > most or least > high:
+            return f"another area of region {n}"
+    pairs_of_one = {frozenset(map(partner.__getitem__, pair)) for pair in neighbours(one)}
+    return "" if pairs_of_one == neighbours(other) else "other neighbours"
 
 
 def neighbours(result: RegionMap) -> set[frozenset[int]]:
     """Pairs of regions that share an arc."""
     region = [cell.region for cell in result.cells]
     return {frozenset((region[a.first], region[a.second])) for a in result.adjacencies if a.merge is Merge.SEPARATED}
-
-
-def _certified(one: RegionMap, other: RegionMap) -> Iterator[str]:
-    count = one.slice.count.value
-    for first, second in ((one, other), (other, one)):
-        for cell in first.cells:
-            mine, yours = getattr(cell, count), getattr(second.locate(**dict(cell.sample)), count)
-            if None not in (mine, yours) and mine != yours:
-                yield f"another {count} at {dict(cell.sample)}"

@@ -1,16 +1,13 @@
 """The rivals that people write, on a grid: companion matrices of a sextic, or scipy's root finder from many starts.
 
-Guarantee: none for the counts, as with every such program; they are what floating point and a
-tolerance say. The same input and seed give the same counts.
+Guarantee: none for the counts, as with every such program; they are what floating point and a tolerance say. The same
+input and seed give the same counts.
 
-``companion`` takes eigenvalues of stacked companion matrices (numpy, hence LAPACK) of the sextic in
-tan(theta2/2), drops imaginary parts, takes two Newton steps on what is left, theta1 from the first
-equation, and stability from the Hessian's signs, all vectorised. ``multistart`` finds roots in
-(theta1, theta2) at each point and removes duplicates; an equilibrium that no start leads to is not
-counted. They run as ``python -m ptmcad.studies.bench.rivals METHOD QUESTION N RESULT SEED``, import
-no algebra, and share the derivatives of the potential, by hand, divided by L1 and L2:
-
-    (k2 rho + k3 rho + F3x) s1 - F3 c1 - k3 L2 s12,  (k1 rho + k3 rho - F4x) s2 - F4 c2 - k3 L1 s12.
+``companion`` takes eigenvalues of stacked companion matrices (numpy, hence LAPACK) of `ptmcad.studies.sextic`, drops
+imaginary parts, takes two Newton steps on what is left, theta1 from the first equation, and stability from the
+Hessian's signs. ``multistart`` finds roots in (theta1, theta2) at each point and removes duplicates; an
+equilibrium that no start leads to is not counted. They run as
+``python -m ptmcad.studies.bench.rivals METHOD QUESTION N RESULT SEED`` and import no algebra.
 """
 
 from __future__ import annotations
@@ -23,6 +20,7 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.polynomial import polyder, polyval
 from numpy.typing import NDArray
 
 from ptmcad.studies.sextic import sextic
@@ -88,31 +86,31 @@ def grid_values(question: Mapping[str, Any], n: int) -> dict[str, Array]:
 
 def companion(p: Mapping[str, Array], seed: int = 0) -> NDArray[np.int8]:
     """Stable and total counts at each point, of shape (2, points)."""
-    polynomials: Array = np.stack(sextic(p)[0][::-1], axis=1)
-    size = np.abs(polynomials).max(axis=1, keepdims=True)
-    polynomials = polynomials / np.where(size > 0, size, 1)
-    while polynomials.shape[1] > 2 and np.abs(polynomials[:, 0]).max() < MIN_LEADING:
-        polynomials = polynomials[:, 1:]
-    found = np.zeros((2, len(polynomials)), dtype=np.int8)
-    for start in range(0, len(polynomials), BATCH_POINTS):
-        part = slice(start, start + BATCH_POINTS)
-        values = {name: array[part, None] for name, array in p.items()}
-        found[:, part] = _from_sextic(polynomials[part], values)
-    return found
+    starts = range(0, len(p["rho"]), BATCH_POINTS)
+    parts = [{name: values[k : k + BATCH_POINTS] for name, values in p.items()} for k in starts]
+    return np.concatenate([_from_sextic(part) for part in parts], axis=1)
 
 
-def _from_sextic(polynomials: Array, p: Values) -> NDArray[np.int8]:
-    degree = polynomials.shape[1] - 1
-    leading = polynomials[:, :1]
-    matrices = np.zeros((len(polynomials), degree, degree))
-    with np.errstate(all="ignore"):
-        replaced = np.where(leading == 0, np.finfo(float).tiny ** 0.25, leading)
-        matrices[:, 0, :] = -polynomials[:, 1:] / replaced
+def _from_sextic(p: Values) -> NDArray[np.int8]:
+    polynomial = np.stack(sextic(p)[0])
+    size = np.abs(polynomial).max(axis=0)
+    polynomial = polynomial / np.where(size > 0, size, 1)
+    while len(polynomial) > 2 and np.abs(polynomial[-1]).max() < MIN_LEADING:
+        polynomial = polynomial[:-1]
+    degree, points = len(polynomial) - 1, polynomial.shape[1]
+    leading = np.where(polynomial[-1] == 0, np.finfo(float).tiny ** 0.25, polynomial[-1])
+    matrices = np.zeros((points, degree, degree))
+    matrices[:, 0, :] = (-polynomial[-2::-1] / leading).T
     matrices[:, np.arange(1, degree), np.arange(degree - 1)] = 1
-    roots = np.linalg.eigvals(matrices)
+    roots = np.linalg.eigvals(matrices).T
     real = np.abs(roots.imag) < MAX_IMAGINARY * (1 + np.abs(roots.real))
-    t = _polished(polynomials, roots.real)
+    t, slope = roots.real, polyder(polynomial)
+
     with np.errstate(all="ignore"):
+        for _ in range(POLISHING):
+            step = polyval(t, polynomial[:, None], tensor=False) / polyval(t, slope[:, None], tensor=False)
+            good = np.isfinite(step) & (np.abs(step) < 1e-3 * (1 + np.abs(t)))
+            t = np.where(good, t - step, t)
         c2, s2 = (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
         along, across = equations(p, 0, 1, c2, s2)[0], equations(p, 1, 0, c2, s2)[0]
         # the first equation is along s1 + across c1 = 0; of its two solutions one fulfils the second
@@ -121,36 +119,23 @@ def _from_sextic(polynomials: Array, p: Values) -> NDArray[np.int8]:
         fulfilled, rest = equations(p, c1, s1, c2, s2)[1], equations(p, 0, 0, c2, s2)[1]
         sign = np.where(abs(fulfilled) <= abs(2 * rest - fulfilled), 1.0, -1.0)
         stable = real & is_stable(*equations(p, sign * c1, sign * s1, c2, s2)[2:])
-    return np.stack([stable.sum(axis=1), real.sum(axis=1)]).astype(np.int8)
-
-
-def _polished(polynomials: Array, t: Array) -> Array:
-    for _ in range(POLISHING):
-        value, slope = np.zeros_like(t), np.zeros_like(t)
-        for c in polynomials.T:
-            slope = slope * t + value
-            value = value * t + c[:, None]
-        with np.errstate(all="ignore"):
-            step = value / slope
-        good = np.isfinite(step) & (np.abs(step) < 1e-3 * (1 + np.abs(t)))
-        t = np.where(good, t - step, t)
-    return t
+    return np.stack([stable.sum(axis=0), real.sum(axis=0)]).astype(np.int8)
 
 
 def multistart(values: Mapping[str, Array], seed: int) -> NDArray[np.int8]:
     """Stable and total counts at each point, of shape (2, points)."""
-    number = len(values["rho"])
     generator = np.random.default_rng(seed)
-    found = np.zeros((2, number), dtype=np.int8)
-    places = (np.arange(STARTS) + 0.5) * (2 * np.pi / STARTS) - np.pi
+    apart = 2 * np.pi / STARTS
+    places = (np.arange(STARTS) + 0.5) * apart - np.pi
     starts = np.stack(np.meshgrid(places, places), axis=-1).reshape(-1, 2)
-    for k in range(number):
-        moved = starts + generator.uniform(-0.5, 0.5, starts.shape) * (2 * np.pi / STARTS)
-        found[:, k] = _from_starts({name: float(a[k]) for name, a in values.items()}, moved)
-    return found
+    counts = [
+        _from_starts(dict(zip(values, point, strict=True)), starts + generator.uniform(-0.5, 0.5, starts.shape) * apart)
+        for point in zip(*values.values(), strict=True)
+    ]
+    return np.array(counts, dtype=np.int8).T
 
 
-def _from_starts(p: dict[str, float], starts: Array) -> tuple[int, int]:
+def _from_starts(p: Values, starts: Array) -> tuple[int, int]:
     from scipy.optimize import root
 
     scale = sum(map(abs, p.values()))

@@ -15,29 +15,26 @@ import argparse
 import json
 import random
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
-from statistics import median
 from typing import Any, NamedTuple
 
 import numpy as np
+import pandas as pd
 
 from ptmcad.errors import PtmcadError
 from ptmcad.show.render.printing import save
-from ptmcad.studies.bench.harness import PTMCAD, Job, Row
+from ptmcad.studies.bench.harness import PTMCAD, Job, Row, summary, turns
+from ptmcad.studies.bench.picture import draw
 from ptmcad.studies.bench.process import Usage
-from ptmcad.studies.bench.records import turns
 from ptmcad.text.expressions import Expression, Term, axis, constant
 from ptmcad.text.terms import signed_terms
 
 SHIFT = Fraction(1, 100)
 """What a bend's coefficients' moduli add up to at most: the window's edge meets the same curves in the same order."""
 MAX_COEFFICIENT, DIGITS = 9, 400
-BEND, STRAIGHT, FLAT = 0.35, 0.9, 1.3
-"""The halves' slopes differ when their difference exceeds the first; R^2 from which a line is one; a quantity whose
-largest value is less than the third times its smallest does not grow."""
 
 Record = dict[str, Any]
 
@@ -125,7 +122,7 @@ FAMILIES = {
 }  # fmt: skip
 
 
-def measure(options: argparse.Namespace) -> list[Row]:
+def measure(options: argparse.Namespace) -> pd.DataFrame:
     """The families' rows: what each size takes, and the exponents that fit.
 
     Raises
@@ -137,7 +134,8 @@ def measure(options: argparse.Namespace) -> list[Row]:
     unknown = [name for name in names if name not in FAMILIES]
     if unknown:
         raise PtmcadError(f"no family {unknown[0]!r}; there are {', '.join(FAMILIES)}")
-    measured: list[tuple[str, int, Job, list[Mapping[str, float]]]] = []
+    jobs: list[Job] = []
+    stages: list[Row] = []
     with tempfile.TemporaryDirectory() as folder:
         for name in names:
             family = FAMILIES[name]
@@ -147,75 +145,61 @@ def measure(options: argparse.Namespace) -> list[Row]:
                 record.write_text(json.dumps(data), encoding="utf-8")
                 target = Path(folder, "out", record.name)
                 command = (*PTMCAD, "classify", str(record), "--format", "json", "--out", str(target.parent))
-                timings: list[Mapping[str, float]] = []
-                check = partial(_checked, target, family.regions(n), timings)
-                job = Job(name, family.title, str(n), ((command, ""),), target, check)
-                measured.append((name, n, job, timings))
-        turns([job for _, _, job, _ in measured], options)
-    rows: list[Row] = []
-    points: dict[tuple[str, str], list[tuple[float, float]]] = {}
-    for name, n, job, timings in measured:
-        row = job.row()
-        for stage in timings[0] if timings else ():
-            seconds = [run[stage] for run in timings]
-            row[f"{stage} s"] = round(median(seconds), 5)
-            points.setdefault((name, stage), []).extend((n, y) for y in seconds)
-        rows.append(row)
-    for (name, stage), found in points.items():
-        law = fit(found)
-        if law is not None:
-            rows.append({"subject": name, "what": FAMILIES[name].title, "setting": f"fit: {stage}", **law})
-    return rows
+                check = partial(_checked, target, family.regions(n), (name, n), stages)
+                jobs.append(Job(name, family.title, str(n), command, answer=target, check=check))
+        turns(jobs, options)
+    rows = summary(jobs)
+    if not stages:
+        return rows
+    taken = pd.DataFrame(stages).groupby(["subject", "n"], sort=False).median()
+    seconds = taken.round(5).rename(columns="{} s".format).reset_index()
+    rows = rows.merge(seconds.assign(setting=seconds.pop("n").map(str)), on=["subject", "setting"], how="left")
+    laws = [
+        {"subject": name, "what": FAMILIES[name].title, "setting": f"fit: {stage}", **law}
+        for name, sizes in taken.groupby("subject", sort=False)
+        for stage, column in sizes.droplevel("subject").items()
+        if (law := fit(column.dropna()))
+    ]
+    return pd.concat([rows, pd.DataFrame(laws)], ignore_index=True)
 
 
-def _checked(target: Path, regions: int, timings: list[Mapping[str, float]], _: Usage) -> str:
+def _checked(target: Path, regions: int, size: tuple[str, int], stages: list[Row], _: Usage) -> str:
     """Note the seconds of a map's stages; what is wrong with its number of regions."""
     found = json.loads(target.read_text(encoding="utf-8"))
-    timings.append(found["timings"])
-    number = len(found["regions"])
-    return "" if number == regions else f"{number} regions"
+    if len(found["regions"]) != regions:
+        return f"{len(found['regions'])} regions"
+    stages.append({"subject": size[0], "n": size[1], **found["timings"]})
+    return ""
 
 
-def fit(points: Sequence[tuple[float, float]]) -> Row | None:
-    """The power law y = c x^p through points, those with the same x having their median.
+def fit(taken: pd.Series[float]) -> Row | None:
+    """The power law y = c x^p through positive values y, whose index are the x.
 
     Returns
     -------
-    The exponent p by least squares in logarithms, the slopes over the lower and over the upper half
-    of the range, of which the upper one predicts, and whether they agree. None when there are fewer
-    than two different x, or something is not positive.
+    The exponent p by least squares in logarithms; that over the upper half of the range, which predicts; and the largest
+    factor by which a value is off the line. None when there are fewer than two, or something is not positive.
     """
-    places = sorted({x for x, _ in points})
-    heights = [median(y for x, y in points if x == place) for place in places]
-    if len(places) < 2 or min(*places, *heights) <= 0:
+    if len(taken) < 2 or min(*taken.index, *taken) <= 0:
         return None
-    u, v = np.log(places), np.log(heights)
-    # both halves hold the point next to the middle, so that they are joined
-    joint = min(range(1, len(u) - 1), key=lambda k: abs(2 * u[k] - u[0] - u[-1]), default=len(u) - 1)
-    parts = {"exponent": slice(None), "lower": slice(joint + 1), "upper": slice(joint % (len(u) - 1), None)}
-    found = {name: float(np.polyfit(u[part], v[part], 1)[0]) for name, part in parts.items()}
-    rise = found["upper"] - found["lower"]
-    if max(heights) < FLAT * min(heights):
-        verdict = "does not grow"
-    elif len(places) < 4:
-        verdict = "too few sizes to tell"
-    elif abs(rise) > BEND:
-        verdict = f"the exponent {'rises' if rise > 0 else 'falls'}"
-    else:
-        verdict = "power law" if np.corrcoef(u, v)[0, 1] ** 2 >= STRAIGHT else "scattered"
-    return {name: float(f"{value:.4g}") for name, value in found.items()} | {"verdict": verdict}
+    taken = taken.sort_index()
+    u, v = np.log(np.asarray(taken.index, dtype=float)), np.log(taken.to_numpy())
+    line = np.polyfit(u, v, 1)
+    upper = u >= min((u[0] + u[-1]) / 2, u[-2])
+    found = {
+        "exponent": line[0],
+        "upper": np.polyfit(u[upper], v[upper], 1)[0],
+        "off by": np.exp(np.abs(v - np.polyval(line, u)).max()),
+    }
+    return {name: float(f"{x:.4g}") for name, x in found.items()}
 
 
-def save_picture(rows: Sequence[Row], folder: Path) -> None:
+def save_picture(rows: pd.DataFrame, folder: Path) -> None:
     """Draw the seconds of the computation along all families into scaling.svg."""
-    from ptmcad.studies.bench.picture import Curve, Spot, draw
-
-    found: dict[str, list[Spot]] = {}
-    for row in rows:
-        if row.get("total s"):
-            n, seconds = float(row["setting"]), row["total s"]
-            found.setdefault(row["what"], []).append(Spot((n, n, n), (seconds, seconds)))
-    if found:
-        curves = [Curve(title, spots, style) for style, (title, spots) in enumerate(found.items())]
-        figure = draw("How cost grows", "size", "seconds of the computation, medians", curves)
+    if "total s" in rows:
+        shown = rows.dropna(subset="total s")
+        n, seconds = shown["setting"].astype(float), shown["total s"]
+        points = pd.DataFrame({"curve": shown["what"], "style": pd.factorize(shown["what"])[0], "x": n, "least": n,
+                               "most": n, "low": seconds, "high": seconds, "label": ""})  # fmt: skip
+        figure = draw("How cost grows", "size", "seconds of the computation, medians", points)
         save(figure, folder / "scaling.svg")

@@ -15,24 +15,23 @@ Not guaranteed: that a small change is found; a median within the spread of the 
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Iterator, Sequence
-from io import StringIO
 from pathlib import Path
 from typing import Any
+
+import pandas as pd
 
 from ptmcad.errors import ConfigError
 from ptmcad.studies.bench.error import Figures
 from ptmcad.studies.bench.harness import Row
 from ptmcad.studies.tables import columns
-from ptmcad.text.codec import TEXT, TRUTH, Codec, line, listed, named, optional, record
-from ptmcad.text.node import Node
+from ptmcad.text.codec import NATURAL, POSITIVE, SECONDS, TRUTH, WHOLE, Codec, line, listed, named, optional, record
+from ptmcad.text.node import Node, opened
 from ptmcad.text.textfile import read_as
 
 FORMAT = "ptmcad-bench/1"
 MAX_BYTES = 10_000_000
-MAX_COUNTED = 10**12
 SEEN_SHARE = 0.99
 """A grid sees a region when it shows this share of it, at least, with its count."""
 MARGIN = 1.1
@@ -42,53 +41,53 @@ BAD = ("slower", "worse", "lost")
 """Verdicts that are no good news; the others are faster, better, gained and same."""
 _COMPARED = ("wrong", "undetermined", "wrong_centres", "missed", "distance")
 """Figures, numbers or bounds, larger being worse."""
-_COLUMNS = (
+_FINEST = ("index", "total", "stable", "admissible")
+_COLUMNS = [
     "slice", "method", "setting", "seconds_median", "seconds_min", "seconds_max", "runs", "computing_median",
     "peak_mib", "count", "wrong_low", "wrong_high", "undetermined", "wrong_centres", "regions", "missed",
-    "faintest_low", "faintest_high", "distance_low", "distance_high", "area_width", "reason",
-)  # fmt: skip
+    "faintest_low", "faintest_high", "distance_low", "distance_high", "area_width", "reason", "note",
+]  # fmt: skip
+_SHORT = {
+    "seconds_minimum": "seconds_min", "seconds_maximum": "seconds_max", "seconds_runs": "runs", "peak": "peak_mib"
+}  # fmt: skip
+_WHOLE = ["runs", "wrong_centres", "regions", "missed"]
 
 
-def measurement(
-    method: str,
-    setting: str,
-    seconds: Row | None = None,
-    computing: Row | None = None,
-    peak: float | None = None,
-    reason: str = "",
-    note: str = "",
-    figures: dict[str, Figures] | None = None,
-    area_width: float | None = None,
-) -> Row:
-    """The row of one method at one setting.
+def measurement(method: str, setting: str, **more: Any) -> Row:
+    """What is known of one method at one setting.
 
     Parameters
     ----------
-    seconds : of whole processes, start-up included; None when it was not run to its end.
-    computing : of the computation in them, where the process reports them.
-    peak : largest resident set in MiB.
-    reason : why there are no times; empty when there are.
-    note : what the figures rest on, where it is not a measurement of ours.
-    figures : by count.
-    area_width : of the widest bounds of the area of all points with one count, as a share of the window.
+    more : ``seconds`` and ``computing``, of whole processes and of the computation in them, as of `times`; ``peak``,
+        the largest resident set in MiB; ``reason``, why there are no times; ``note``, what the figures rest on;
+        ``figures`` by count; ``area_width`` of the widest bounds of the area of all points with one count, as a share
+        of the window.
     """
-    return {
-        "method": method, "setting": setting, "seconds": seconds, "computing": computing, "peak": peak,
-        "reason": reason, "note": note, "figures": figures, "area_width": area_width,
+    nothing = {
+        "seconds": None, "computing": None, "peak": None, "reason": "", "note": "", "figures": None, "area_width": None
     }  # fmt: skip
+    return {"method": method, "setting": setting, **nothing, **more}
 
 
-def grid_of(m: Row) -> int | None:
-    """Pixels along each side, for a grid."""
-    label, _, number = m["setting"].partition(" = ")
-    return int(number) if label == "N" else None
+def frame(study: Row) -> pd.DataFrame:
+    """A row for each measurement and count, with the columns of the CSV file and the notes."""
+    rows = []
+    for m in study["measurements"]:
+        for count, figures in (m["figures"] or {None: {}}).items():
+            parts = {
+                name: dict(zip(("low", "high"), x, strict=True)) if isinstance(x, tuple) else x
+                for name, x in figures.items()
+            }
+            rows.append({"slice": study["slice"], "count": count, **m, **parts, "figures": None})
+    table = pd.json_normalize(rows, sep="_").rename(columns=_SHORT).reindex(columns=_COLUMNS)
+    return table.astype(dict.fromkeys(_WHOLE, "Int64"))
 
 
-def main_figures(m: Row) -> Figures | None:
-    """The figures for the finest count that the method gives."""
-    found = m["figures"] or {}
-    finest = ("index", "total", "stable", "admissible")
-    return next((found[count] for count in finest if count in found), None)
+def finest(study: Row) -> pd.DataFrame:
+    """A row for each measurement, with the figures for the finest count that the method gives."""
+    table = frame(study)
+    ranks = table["count"].map({count: rank for rank, count in enumerate(_FINEST)})
+    return table.loc[ranks.sort_values(kind="stable").index].drop_duplicates(["method", "setting"]).sort_index()
 
 
 def smallest_grid(study: Row, method: str, count: str, seen: bool) -> int | None:
@@ -98,14 +97,10 @@ def smallest_grid(study: Row, method: str, count: str, seen: bool) -> int | None
     ----------
     seen : ask for grids that see every region (see `SEEN_SHARE`), and not just find some pixel of it.
     """
-    fit = []
-    for m in study["measurements"]:
-        n, f = grid_of(m), (m["figures"] or {}).get(count)
-        if m["method"] == method and n is not None and f is not None:
-            shown = f["faintest"] is not None and f["faintest"][0] >= SEEN_SHARE
-            if shown if seen else f["missed"] == 0:
-                fit.append(n)
-    return min(fit, default=None)
+    table = frame(study)
+    fit = table["faintest_low"] >= SEEN_SHARE if seen else table["missed"] == 0
+    sizes = table["setting"][fit.fillna(False) & (table["method"] == method) & (table["count"] == count)]
+    return min((int(setting.removeprefix("N = ")) for setting in sizes), default=None)
 
 
 def write_study(study: Row) -> str:
@@ -115,21 +110,8 @@ def write_study(study: Row) -> str:
 
 def write_table(study: Row) -> str:
     """The study as CSV, one row for each measurement and count."""
-    text = StringIO()
-    table = csv.DictWriter(text, _COLUMNS, restval=None, extrasaction="ignore", lineterminator="\n")
-    table.writeheader()
-    for m in study["measurements"]:
-        row = {**m, "slice": study["slice"], "peak_mib": m["peak"]}
-        row |= {f"seconds_{name[:3] if name != 'median' else name}": x for name, x in (m["seconds"] or {}).items()}
-        row |= {"runs": row.pop("seconds_run", None), "computing_median": (m["computing"] or {}).get("median")}
-        for count, f in (m["figures"] or {None: {}}).items():
-            bounds = {
-                f"{name}_{end}": x
-                for name in ("wrong", "faintest", "distance")
-                for end, x in zip(("low", "high"), f.get(name) or (), strict=False)
-            }
-            table.writerow({**row, **f, **bounds, "count": count})
-    return text.getvalue()
+    text: str = frame(study).drop(columns="note").to_csv(index=False, lineterminator="\n")
+    return text
 
 
 def read_study(path: Path) -> Row:
@@ -151,19 +133,7 @@ def study_of(text: str) -> Row:
     ValueError
         When the text is not such a document; the message names the place.
     """
-    node = Node(json.loads(text), "")
-    if (found := node.mapping().get("format")) is not None and found.text() != FORMAT:
-        raise found.fault(f"is not {FORMAT!r}")
-    return _STUDY.read(node)
-
-
-def _whole(node: Node) -> int:
-    """Of pixels or regions, a seed: what nobody can count is not one."""
-    if type(node.value) is not int:
-        raise node.fault("is not a whole number")
-    if node.value > MAX_COUNTED:
-        raise node.fault(f"is more than {MAX_COUNTED}")
-    return node.value
+    return _STUDY.read(opened(text, FORMAT, MAX_BYTES, "ptmcad bench"))
 
 
 def _positive(node: Node) -> float:
@@ -173,23 +143,21 @@ def _positive(node: Node) -> float:
     return seconds
 
 
-_WHOLE: Codec[int] = Codec(lambda value: value, _whole)
-_NUMBER: Codec[float] = Codec(lambda value: value, Node.number)
-_SECONDS: Codec[float] = Codec(lambda value: value, _positive)
-_PAIR = listed(_NUMBER, 2)
-_TIMES: Codec[Row] = record(dict, runs=_WHOLE, median=_SECONDS, minimum=_SECONDS, maximum=_SECONDS)
+_TAKEN: Codec[float] = Codec(SECONDS.write, _positive, {"type": "number", "exclusiveMinimum": 0})
+_PAIR = listed(SECONDS, 2)
+_TIMES: Codec[Row] = record(dict, runs=POSITIVE, median=_TAKEN, minimum=_TAKEN, maximum=_TAKEN)
 _FIGURES: Codec[Figures] = record(
-    dict, wrong=_PAIR, undetermined=_NUMBER, wrong_centres=optional(_WHOLE), regions=optional(_WHOLE),
-    missed=optional(_WHOLE), faintest=optional(_PAIR), distance=optional(_PAIR),
+    dict, wrong=_PAIR, undetermined=SECONDS, wrong_centres=optional(NATURAL), regions=optional(POSITIVE),
+    missed=optional(NATURAL), faintest=optional(_PAIR), distance=optional(_PAIR),
 )  # fmt: skip
 _MEASUREMENT: Codec[Row] = record(
     dict, method=line(60), setting=line(60), seconds=optional(_TIMES), computing=optional(_TIMES),
-    peak=optional(_NUMBER), reason=line(1000), note=line(1000), figures=optional(named(_FIGURES)),
-    area_width=optional(_NUMBER),
+    peak=optional(SECONDS), reason=line(1000), note=line(1000), figures=optional(named(_FIGURES)),
+    area_width=optional(SECONDS),
 )  # fmt: skip
 _STUDY: Codec[Row] = record(
-    dict, format=TEXT, slice=line(200), heading=line(1000), machine=named(line(300)), versions=named(line(300)),
-    seed=_WHOLE, rounds=_WHOLE, time_limit=_NUMBER, quick=TRUTH, verified=optional(TRUTH), floor=_TIMES,
+    lambda **keys: {"format": FORMAT, **keys}, slice=line(200), heading=line(1000), machine=named(line(300)), versions=named(line(300)),
+    seed=WHOLE, rounds=POSITIVE, time_limit=_TAKEN, quick=TRUTH, verified=optional(TRUTH), floor=_TIMES,
     measurements=listed(_MEASUREMENT),
 )  # fmt: skip
 
@@ -212,11 +180,11 @@ def compare(old: Row, new: Row) -> tuple[Row, ...]:
     return tuple(
         {"method": place[0], "setting": place[1], "verdict": verdict, "detail": detail}
         for place in dict.fromkeys([*before, *after])
-        for verdict, detail in _changes(old["floor"], before.get(place), new["floor"], after.get(place))
+        for verdict, detail in _changes(before.get(place), old["floor"], after.get(place), new["floor"])
     )
 
 
-def _changes(old_floor: Row, before: Row | None, new_floor: Row, after: Row | None) -> Iterator[tuple[str, str]]:
+def _changes(before: Row | None, old_floor: Row, after: Row | None, new_floor: Row) -> Iterator[tuple[str, str]]:
     old, new = (m["seconds"] if m is not None else None for m in (before, after))
     if old is None or before is None:
         if new is not None:
@@ -226,39 +194,37 @@ def _changes(old_floor: Row, before: Row | None, new_floor: Row, after: Row | No
     if new is None or after is None:
         yield "lost", "not in the new study" if after is None else after["reason"]
         return
-    differences = list(_errors(before, after))
-    yield from differences
-    margin = MARGIN if old["runs"] > 1 and new["runs"] > 1 else SINGLE_RUN_MARGIN
-    verdict = "same"
-    if new["minimum"] / new_floor["maximum"] > margin * old["maximum"] / old_floor["minimum"]:
-        verdict = "slower"
-    elif old["minimum"] / old_floor["maximum"] > margin * new["maximum"] / new_floor["minimum"]:
-        verdict = "faster"
-    if verdict != "same" or not differences:
-        ratio = (new["median"] / new_floor["median"]) / (old["median"] / old_floor["median"])
-        yield (
-            verdict,
-            f"{ratio:.2f} times the time, machine allowed for ({old['median']:g} s at a floor of "
-            f"{old_floor['median']:g} s, now {new['median']:g} at {new_floor['median']:g})",
-        )
+    one, two = _bounds(before, old_floor), _bounds(after, new_floor)
+    gone = (before["figures"] or {}).keys() - (after["figures"] or {}).keys()
+    verdicts = [("lost", f"{count}: no error is reported any more") for count in sorted(gone)]
+    ratio = (new["median"] / new_floor["median"]) / (old["median"] / old_floor["median"])
+    times = (
+        f"{ratio:.2f} times the time, machine allowed for ({old['median']:g} s at a floor of "
+        f"{old_floor['median']:g} s, now {new['median']:g} at {new_floor['median']:g})"
+    )
+    for name in (name for name in one if name in two):
+        (low, high), (least, most) = one[name], two[name]
+        margin, words, detail = 1.0, ("worse", "better"), f"{name}: {high:g}, now {most:g}"
+        if name == "time":
+            margin = MARGIN if old["runs"] > 1 and new["runs"] > 1 else SINGLE_RUN_MARGIN
+            words, detail = ("slower", "faster"), times
+        if least > margin * high:
+            verdicts.append((words[0], detail))
+        elif low > margin * most:
+            verdicts.append((words[1], detail))
+    yield from verdicts or [("same", times)]
 
 
-def _errors(before: Row, after: Row) -> Iterator[tuple[str, str]]:
-    """Differences of the figures of error."""
-    pairs: list[tuple[str, Any, Any]] = [("width of area bounds", before["area_width"], after["area_width"])]
-    for count, f in (before["figures"] or {}).items():
-        g = (after["figures"] or {}).get(count)
-        if g is None:
-            yield "lost", f"{count}: no error is reported any more"
-            continue
-        for name in _COMPARED:
-            pairs.append((f"{count}, {name.replace('_', ' ')}", f[name], g[name]))
-    for name, a, b in pairs:
-        if a is None or b is None:
-            continue
-        (low, high), (least, most) = (x if isinstance(x, tuple) else (x, x) for x in (a, b))
-        if least > high or most < low:
-            yield "worse" if least > high else "better", f"{name}: {high:g}, now {most:g}"
+def _bounds(m: Row, floor: Row) -> dict[str, tuple[float, float]]:
+    """What is compared of a measurement: bounds of the time in floors, and of figures of error."""
+    found = {"time": (m["seconds"]["minimum"] / floor["maximum"], m["seconds"]["maximum"] / floor["minimum"])}
+    figures = {
+        f"{count}, {name.replace('_', ' ')}": f[name] for count, f in (m["figures"] or {}).items() for name in _COMPARED
+    }
+    for name, x in ({"width of area bounds": m["area_width"]} | figures).items():
+        if x is not None:
+            found[name] = x if isinstance(x, tuple) else (x, x)
+    return found
 
 
 def comparison_table(changes: Sequence[Row]) -> str:
