@@ -11,14 +11,14 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import disjoint, has_root_between, isolate, sign_at, squarefree_part
+from ptmcad.algebra.real_roots import disjoint, has_root_between, isolate, squarefree_part
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.arrangement import Arrangement
 from ptmcad.answer.regionmap import Merge, Wall
 from ptmcad.exact.cad.curves import Curve
 from ptmcad.exact.cad.projection import Projection
-from ptmcad.exact.cad.stacks import StackData, heights_between
+from ptmcad.exact.cad.stacks import StackData, heights_between, level_at
 from ptmcad.exact.counting import Equilibria
 from ptmcad.exact.regions import Link, members, merge
 from ptmcad.exact.stages import (
@@ -28,6 +28,7 @@ from ptmcad.exact.stages import (
     SliceProblem,
     Stacks,
     Variety,
+    cell_at,
     crossings_of,
     neighbours_of,
     problem_of,
@@ -56,18 +57,8 @@ class Picture(NamedTuple):
 
     def region_at(self, at: Sample) -> int | None:
         """The region of a point of the window; None on the curves, and on lines over critical abscissae."""
-        base = self.variety.base
-        u, v = at[base], at[1 - base]
-        place = 0
-        for r in self.projection.abscissae:
-            if r.low <= u <= r.high and sign_at(r.polynomial, u) == 0:
-                return None
-            place += _below(r.polynomial, r.low, r.high, u)
-        level = _level(self.variety.curves, u, v, self.problem.window[1 - base])
-        if level is None:
-            return None
-        first = sum(len(stack.heights) for stack in self.stacks.stacks[:place])
-        return self.neighbours.region_of[first + level]
+        cell = cell_at(self.problem, self.variety, (self.projection, self.stacks), at)
+        return None if cell is None else self.neighbours.region_of[cell]
 
 
 def picture_of(slice: Slice, known: Known | None = None, check: Check = nothing, base: int | None = None) -> Picture:
@@ -155,25 +146,8 @@ def _levels_at(curves: Sequence[Curve], edge: fmpq, stack: StackData, fibre: Int
         u = stack.sample
         while any(has_root_between(p, min(u, edge), max(u, edge)) for p in traces):
             u = (u + edge) / 2
-        level = _level(curves, u, height, fibre)
-        assert level is not None  # the segment from the edge to this point meets no curve
-        levels.append(level)
+        levels.append(level_at(curves, u, height, fibre))  # the segment from the edge to this point meets no curve
     return levels
-
-
-def _level(curves: Sequence[Curve], u: fmpq, v: fmpq, fibre: Interval) -> int | None:
-    """The number of walls below a point over an abscissa that is not critical; None on a wall."""
-    fibres = [c.fibre(u) for c in curves]
-    if any(sign_at(p, v) == 0 for p in fibres):
-        return None
-    return sum(len(isolate(p, fibre[0], v)) for p in fibres)
-
-
-def _below(p: UnivariatePolynomial, low: fmpq, high: fmpq, u: fmpq) -> bool:
-    """Whether the only root of p in [low, high], which is not u, is less than u."""
-    if not low < u < high:
-        return bool(u >= high)
-    return sign_at(p, u) == sign_at(p, high)
 
 
 def _without_repetition(regions: Sequence[int]) -> tuple[int, ...]:

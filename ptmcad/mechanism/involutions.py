@@ -94,6 +94,23 @@ class Involution:
         """Whether each point of the slice is its own image."""
         return self.axes == (0, 1) and self.axis_signs == (1, 1)
 
+    def coordinates(self, kinds: Sequence[UnknownKind]) -> list[tuple[int, int]]:
+        """Which coordinate comes to each one's place, and its sign.
+
+        Coordinates are cosine and sine of each angle, one angle after the other, and then the unknowns on the line.
+
+        Parameters
+        ----------
+        kinds : of the model's unknowns.
+        """
+        angles = [k for k, kind in enumerate(kinds) if kind is UnknownKind.ANGLE]
+        reals = [k for k in range(len(kinds)) if k not in angles]
+        found = []
+        for k in angles:
+            place, sign = 2 * angles.index(self.images[k]), 1 - 2 * self.halves[k]
+            found += [(place, sign), (place + 1, sign * self.signs[k])]
+        return found + [(2 * len(angles) + reals.index(self.images[k]), self.signs[k]) for k in reals]
+
     def at(self, point: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
         """The image of a point of the slice."""
         x, y = (s * point[k] + c for k, s, c in zip(self.axes, self.axis_signs, self.shifts, strict=True))
