@@ -21,7 +21,6 @@ from ptmcad.algebra.polynomials import RationalPolynomial
 from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve, by_component, max_height_bits
-from ptmcad.exact.cad.mirrors import Wall, mirrored, wall_of
 from ptmcad.exact.cad.panels import Border, Effort, Panel, halves, panels
 from ptmcad.exact.cad.stacks import StackData
 from ptmcad.text.balls import exact
@@ -160,7 +159,6 @@ def region_areas(
     more = _MIN_ORDER + max(0, max((len(c.in_v) for c in parts.curves), default=0) - _LONG_FIBRE) // _FIBRE_PER_ORDER
     share, own, finer = fmpq(1, 10 ** (digits + 3) * 4), True, 20
     curve_of = by_component(parts.curves)
-    axes = {component: curve.reflection and curve.reflection.axis for component, curve in curve_of.items()}
 
     @lru_cache(maxsize=_CACHED_FIBRES)
     def roots(component: int, u: fmpq) -> tuple[RealRoot, ...]:
@@ -168,7 +166,7 @@ def region_areas(
         return curve_of[component].roots_over(u, parts.fibre)
 
     while True:
-        effort = Effort(digits + more, width, parts.fibre, broad, narrowest / 2 ** (bits // 2), roots, axes)
+        effort = Effort(digits + more, width, parts.fibre, broad, narrowest / 2 ** (bits // 2), roots)
         try:
             with ctx.workprec(bits):
                 bounds = _areas(parts, _spans(parts.stacks, share, own=own), tolerance * 3 / 4, effort, check)
@@ -216,14 +214,10 @@ def _areas(
     load = Counter(i for row in borders for b in row for i in parts.beside(b))
     # of a panel's integral: what would do if all were about as bad, with some more panels than borders
     allowed = [from_fraction(tolerance) * rough[i] / (_PANELS * max(load[i], 1)) for i in range(parts.number)]
-    known: dict[Wall, list[Panel]] = {}
+    covered: list[Panel] = []
     for border in chain.from_iterable(borders):
         check()
-        found = mirrored(border, border.span, known, effort)
-        if found is None:
-            found = panels(border, border.span, effort, min(allowed[border.below], allowed[border.above]))
-        known[wall_of(border, border.span)] = found
-    covered = [p for found in known.values() for p in found]
+        covered += panels(border, border.span, effort, min(allowed[border.below], allowed[border.above]))
     return _refine(covered, _Frame(parts, _edges(spans, parts), lost, allowed), tolerance, effort, check)
 
 
@@ -319,19 +313,14 @@ def _refine(
         load = Counter(i for p in panels for i in frame.parts.beside(p.border))
         target = {i: tolerance * max(bounds[i][0], bounds[i][1] / 8) / (2 * max(load[i], 1)) for i in poor}
         refined: list[Panel] = []
-        known: dict[Wall, list[Panel]] = {}
         for p in panels:
             allowed = min((target[i] for i in poor & frame.parts.beside(p.border)), default=p.width)
             if p.width > allowed:
                 check()
                 if p.high - p.low < effort.narrowest:
                     raise _Unreachable(strips=False)
-                found = mirrored(p.border, (p.low, p.high), known, effort)
-                if found is None:
-                    least = min(frame.allowed[p.border.below], frame.allowed[p.border.above])
-                    found = halves(p, effort, min(least, from_fraction(allowed) / 4))
-                known[wall_of(p.border, (p.low, p.high))] = found
-                refined += found
+                least = min(frame.allowed[p.border.below], frame.allowed[p.border.above])
+                refined += halves(p, effort, min(least, from_fraction(allowed) / 4))
             else:
                 refined.append(p)
         panels = refined

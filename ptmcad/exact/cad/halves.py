@@ -13,7 +13,16 @@ from math import prod
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import RationalPolynomial, UnivariatePolynomial
-from ptmcad.algebra.real_roots import RealRoot, disjoint, halve, isolate, sign_at, simplest_between, squarefree_part
+from ptmcad.algebra.real_roots import (
+    RealRoot,
+    disjoint,
+    halve,
+    inside,
+    isolate,
+    sign_at,
+    simplest_between,
+    squarefree_part,
+)
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.area import RegionStacks
 from ptmcad.exact.cad.curves import Curve
@@ -42,7 +51,7 @@ def below(parts: RegionStacks, line: RationalPolynomial) -> RegionStacks:
     )
     for polynomial in {id(r.polynomial): r.polynomial for r in ends}.values():
         crossings //= crossings.gcd(polynomial)
-    roots = disjoint([*ends, *isolate(crossings, *parts.base)])
+    roots = inside(disjoint([*ends, *isolate(crossings, *parts.base)]), parts.base)
     places = [BaseEnd(parts.base[0], None, None), *(BaseEnd(r.middle, r, None) for r in roots)]
     stacks, rows, number = [], [], 0
     for left, right in pairwise([*places, BaseEnd(parts.base[1], None, None)]):
