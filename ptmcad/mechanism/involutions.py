@@ -6,7 +6,7 @@ identities of polynomials over Q, decided exactly. All are found that exchange a
 angles by half a turn, and keep the energy but for what no unknown is in, the springs with a free length, the moments,
 the equations up to their order and signs, and the conditions up to their order; so those that a record's `symmetries`
 list are found again where they are of this kind. None is found where expressions are too large to be multiplied out,
-nor with free lengths in closed loops.
+nor with free lengths in closed loops; none that moves axes where parameters have denominators.
 
 In cosines and sines such a change only permutes monomials and gives them signs. For each permutation of unknowns and
 axes the signs with which all polynomials are kept are the solutions of linear equations over the field of two elements.
@@ -25,7 +25,7 @@ from ptmcad.mechanism.closed import ClosedMechanism
 from ptmcad.mechanism.description import Mechanism, Model, System, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.proofs import Image, Monomial, Polynomial, Ring, felt
-from ptmcad.text.expressions import Expression, Term, constant
+from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.tree import Tree
 
 MAX_WORK = 100_000
@@ -135,11 +135,11 @@ def involutions(model: Model, parameters: Mapping[str, Expression], window: Wind
     kinds = tuple(model.unknowns.values())
     size = range(len(kinds))
     found = []
-    for axes, signs, shifts in _axis_changes(window):
+    for axes, signs, shifts in _axis_changes(None if ring.has_denominators else window):
         for images in permutations(size):
             if any(images[images[k]] != k or kinds[images[k]] is not kinds[k] for k in size):
                 continue
-            change = _Change(ring, tuple(model.unknowns), images, axes, signs)
+            change = _Change(tuple(model.unknowns), images, axes, signs)
             for system in _kept(change, families, change.known(kinds)):
                 found += [
                     Involution(images, *change.read(bits), axes, signs, shifts)
@@ -165,15 +165,13 @@ def _axis_changes(window: Window | None) -> Iterator[tuple[_Two, _Two, tuple[Fra
 class _Slice(Ring):
     """The ring with the slice's parameters in it, as polynomials in the axes, measured from the window's middle.
 
-    Attributes
-    ----------
-    below : the variables that are inverses of denominators, to these.
+    A denominator's inverse is a variable. What becomes of it where the axes change is not known.
     """
 
     def __init__(self, unknowns: Collection[str], parameters: Mapping[str, Expression], window: Window | None) -> None:
         super().__init__(MAX_WORK)
         self.unknowns, self.parameters = unknowns, parameters
-        self.below: dict[str, _Terms] = {}
+        self.has_denominators = False
         middle = [Fraction(0)] * 2 if window is None else [(low + high) / 2 for low, high in window]
         self.axes = [self.variable(name) + self.constant(m) for name, m in zip(_AXES, middle, strict=True)]
 
@@ -181,29 +179,16 @@ class _Slice(Ring):
         if name in self.unknowns:
             return self.variable(name)
         given = self.parameters.get(name, constant(0))
-        value = self._polynomial(given.numerator)
-        if given.is_polynomial:
-            return value
-        inverse, unit = self.inverse(self._polynomial(given.denominator).terms)
-        return value * self.variable(inverse) * self.constant(1 / unit)
-
-    def inverse(self, denominator: _Terms) -> tuple[str, Fraction]:
-        """The variable that is a denominator's inverse, times the number that is given with it."""
-        terms = sorted(denominator.items())
-        unit = terms[-1][1]
-        monic = {m: c / unit for m, c in terms}
-        name = f"over {monic}"
-        self.below[name] = monic
-        return name, unit
-
-    def _polynomial(self, terms: Sequence[Term]) -> Polynomial:
         total = self.constant(Fraction(0))
-        for i, j, c in terms:
+        for i, j, c in given.numerator:
             term = self.constant(c)
             for factor in (self.axes[0],) * i + (self.axes[1],) * j:
                 term = term * factor
             total += term
-        return total
+        if given.is_polynomial:
+            return total
+        self.has_denominators = True
+        return total * self.variable(f"over {given.denominator}")
 
 
 def _families(model: Model, ring: _Slice) -> list[_Family]:
@@ -245,7 +230,6 @@ class _Change(NamedTuple):
     line the second bit is its sign.
     """
 
-    ring: _Slice
     unknowns: tuple[str, ...]
     images: tuple[int, ...]
     axes: _Two
@@ -270,30 +254,26 @@ class _Change(NamedTuple):
         signs = [-1 if h != bool(bits & self.bits(k)[1]) else 1 for k, h in enumerate(halves)]
         return tuple(signs), tuple(map(int, halves))
 
-    def variable(self, name: str) -> tuple[str, Fraction, int]:
-        """What becomes of a variable: another one, times a number, and the bits that may change its sign."""
+    def variable(self, name: str) -> tuple[str, int, int]:
+        """What becomes of a variable: another one, its sign, and the bits that may change that."""
         if name in _AXES:
             k = _AXES.index(name)
-            return _AXES[self.axes[k]], Fraction(self.axis_signs[k]), 0
-        if name in self.ring.below:
-            moved = dict(self.monomial(m, c)[:2] for m, c in self.ring.below[name].items())
-            inverse, unit = self.ring.inverse(moved)
-            return inverse, 1 / unit, 0
+            return _AXES[self.axes[k]], self.axis_signs[k], 0
         mark, _, own = name.rpartition(" ")
         if own not in self.unknowns:
-            return name, Fraction(1), 0
+            return name, 1, 0
         k = self.unknowns.index(own)
         cosine, sine = self.bits(k)
         image = self.unknowns[self.images[k]]
-        return f"{mark} {image}".strip(), Fraction(1), {"cos": cosine, "d": cosine | sine}.get(mark, sine)
+        return f"{mark} {image}".strip(), 1, {"cos": cosine, "d": cosine | sine}.get(mark, sine)
 
     def monomial(self, m: Monomial, c: Fraction) -> tuple[Monomial, Fraction, int]:
         """What becomes of a term, and the bits that may change its sign."""
         powers, mask = [], 0
         for name, e in m:
-            image, factor, bits = self.variable(name)
+            image, sign, bits = self.variable(name)
             powers.append((image, e))
-            c *= factor**e
+            c *= sign**e
             mask ^= bits * (e % 2)
         return tuple(sorted(powers)), c, mask
 
