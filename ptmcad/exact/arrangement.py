@@ -19,12 +19,11 @@ from ptmcad.answer.regionmap import Merge, Wall
 from ptmcad.exact.cad.curves import Curve
 from ptmcad.exact.cad.projection import Projection
 from ptmcad.exact.cad.stacks import StackData, heights_between, level_at
-from ptmcad.exact.counting import Equilibria
-from ptmcad.exact.regions import Link, members, merge
+from ptmcad.exact.regions import members
+from ptmcad.exact.sparing import counts_by_component, joined_cells
 from ptmcad.exact.stages import (
     Neighbours,
     Sample,
-    SampleCounts,
     SliceProblem,
     Stacks,
     Variety,
@@ -35,7 +34,6 @@ from ptmcad.exact.stages import (
     projection_of,
     stacks_of,
     variety_of,
-    with_keys,
 )
 from ptmcad.exact.variety import Known
 from ptmcad.question.domain import prove_slice
@@ -85,9 +83,8 @@ def picture_of(slice: Slice, known: Known | None = None, check: Check = nothing,
     projection = projection_of(problem, variety, check=check)
     stacks = stacks_of(problem, variety, projection)
     crossings = crossings_of(problem, variety, stacks, check=check)
-    unknown = SampleCounts((), ((),) * len(stacks.points))
-    parts = neighbours_of(variety, projection, stacks, unknown, crossings)
-    counts = _counts(problem, stacks, parts, check)
+    joined = joined_cells(variety, projection, stacks, crossings)
+    counts = counts_by_component(problem, stacks, joined, lambda _done, _total: check())
     neighbours = neighbours_of(variety, projection, stacks, counts, crossings)
     region_of = neighbours.region_of
     keys = tuple(counts.keys[cells[0]] for cells in members(region_of))
@@ -99,21 +96,6 @@ def picture_of(slice: Slice, known: Known | None = None, check: Check = nothing,
     sides = _sides(problem, variety, stacks, region_of)
     arrangement = Arrangement(keys, frozenset((a, b) for a, b in pairs if a != b), sides)
     return Picture(arrangement, problem, variety, projection, stacks, neighbours)
-
-
-def _counts(problem: SliceProblem, stacks: Stacks, parts: Neighbours, check: Check) -> SampleCounts:
-    """The counts at all samples, each computed once for cells that are joined off the curves."""
-    joined = [Link(a.first, a.second, None) for a in parts.adjacencies if a.component is None]
-    part_of = merge([()] * len(stacks.points), joined)
-    found: dict[int, Equilibria] = {}
-    for cells in members(part_of):
-        check()
-        found[part_of[cells[0]]] = problem.solved_at(min((stacks.points[n] for n in cells), key=_height))
-    return with_keys(problem, [found[part] for part in part_of])
-
-
-def _height(at: Sample) -> int:
-    return max(abs(int(n)) for value in at for n in (value.p, value.q))
 
 
 def _sides(
