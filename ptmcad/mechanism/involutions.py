@@ -41,15 +41,10 @@ _Bits = Mapping[int, int]
 """Linear equations over the field of two elements, by the length of their numbers; bit 0 is the constant."""
 
 
-class _Family(NamedTuple):
-    """Polynomials that an involution takes to those of their images, in another order or not.
+class _Part(NamedTuple):
+    """A polynomial that an involution takes to one of some polynomials, or to the negative of one if it may."""
 
-    Attributes
-    ----------
-    may_be_negated : whether each may become the negative of one.
-    """
-
-    polynomials: Sequence[_Terms]
+    polynomial: _Terms
     images: Sequence[_Terms]
     may_be_negated: bool = False
 
@@ -129,7 +124,7 @@ def involutions(model: Model, parameters: Mapping[str, Expression], window: Wind
         return []
     ring = _Slice(model.unknowns, parameters, window)
     try:
-        families = _families(model, ring)
+        parts = list(_parts(model, ring))
     except ExpressionError:
         return []
     kinds = tuple(model.unknowns.values())
@@ -140,7 +135,7 @@ def involutions(model: Model, parameters: Mapping[str, Expression], window: Wind
             if any(images[images[k]] != k or kinds[images[k]] is not kinds[k] for k in size):
                 continue
             change = _Change(tuple(model.unknowns), images, axes, signs)
-            for system in _kept(change, families, change.known(kinds)):
+            for system in _kept(change, parts, change.known(kinds)):
                 found += [
                     Involution(images, *change.read(bits), axes, signs, shifts)
                     for bits in _solutions(system, len(kinds))
@@ -191,36 +186,37 @@ class _Slice(Ring):
         return total * self.variable(f"over {given.denominator}")
 
 
-def _families(model: Model, ring: _Slice) -> list[_Family]:
-    """What an involution has to keep, but for the order within each family."""
+def _parts(model: Model, ring: _Slice) -> Iterator[_Part]:
+    """What an involution has to keep, but for the order."""
     unknowns = {name for u in model.unknowns for name in (u, f"cos {u}", f"sin {u}")}
 
-    def felt_by_unknowns(p: Polynomial) -> _Terms:
-        return {m: c for m, c in p.terms.items() if any(v in unknowns for v, _ in m)}
+    def felt_by_unknowns(p: Polynomial) -> list[_Terms]:
+        return [{m: c for m, c in p.terms.items() if any(v in unknowns for v, _ in m)}]
 
-    def marked(parts: Mapping[str, _Terms]) -> _Terms:
-        return {tuple(sorted(((mark, 1), *m))): c for mark, terms in parts.items() for m, c in terms.items()}
-
-    if isinstance(model, Mechanism):
-        energy, springs, work = felt(model, Image(ring, {}))
-        whole = marked({f"d {u}": dict(terms) for u, terms in work.items()})
-        lengths = [marked({f"spring {n}": dict(part) for n, part in enumerate(s)}) for s in springs.elements()]
-        return [_family([felt_by_unknowns(energy)]), _family([whole]), _family(lengths)]
-    assert isinstance(model, System)
-    if isinstance(model, ClosedMechanism) and any(evaluate(s.free, ring).terms for s in model.mechanism.springs):
-        raise ExpressionError("free lengths are in none of a closed loop's equations")
+    def marked(parts: Mapping[str, Iterable[tuple[Monomial, Fraction]]]) -> _Terms:
+        return {tuple(sorted(((mark, 1), *m))): c for mark, terms in parts.items() for m, c in terms}
 
     def values(trees: Iterable[Tree]) -> list[_Terms]:
         return [evaluate(tree, ring).terms for tree in trees]
 
-    equations = _family(values(model.equations), may_be_negated=True)
-    if model.potential is not None:
-        equations = _family([felt_by_unknowns(evaluate(model.potential, ring))])
-    return [equations, _family(values(model.inequalities)), _family(values(model.stability))]
-
-
-def _family(polynomials: Sequence[_Terms], *, may_be_negated: bool = False) -> _Family:
-    return _Family(polynomials, polynomials, may_be_negated)
+    if isinstance(model, Mechanism):
+        energy, springs, work = felt(model, Image(ring, {}))
+        # how many are the same is said in their polynomial
+        lengths = [
+            marked({f"spring {n}": part for n, part in enumerate((*spring, (((), Fraction(number)),)))})
+            for spring, number in springs.items()
+        ]
+        kept = [felt_by_unknowns(energy), [marked({f"d {u}": terms for u, terms in work.items()})], lengths]
+    else:
+        assert isinstance(model, System)
+        if isinstance(model, ClosedMechanism) and any(evaluate(s.free, ring).terms for s in model.mechanism.springs):
+            raise ExpressionError("free lengths are in none of a closed loop's equations")
+        kept = [values(model.inequalities), values(model.stability)]
+        if model.potential is not None:
+            kept.append(felt_by_unknowns(evaluate(model.potential, ring)))
+        equations = values(model.equations)
+        yield from (_Part(f, equations, True) for f in equations)
+    yield from (_Part(f, images) for images in kept for f in images)
 
 
 class _Change(NamedTuple):
@@ -278,23 +274,17 @@ class _Change(NamedTuple):
         return tuple(sorted(powers)), c, mask
 
 
-def _kept(change: _Change, families: Sequence[_Family], known: _Bits) -> Iterator[_Bits]:
-    """The equations for the bits with which all polynomials are kept, for each order in which these may come."""
-    if not families:
-        yield known
-        return
-    (polynomials, images, may_be_negated), *others = families
-    if not polynomials:
-        yield from _kept(change, others, known)
-        return
-    first, *rest = polynomials
-    moved = {m: (c, mask) for m, c, mask in (change.monomial(*term) for term in first.items())}
-    own = 2 << 2 * len(change.unknowns) + len(rest) if may_be_negated else 0
-    for n, image in enumerate(images):
-        system = _same(moved, image, own, known)
-        if system is not None:
-            left = _Family(rest, [*images[:n], *images[n + 1 :]], may_be_negated)
-            yield from _kept(change, [left, *others], system)
+def _kept(change: _Change, parts: Sequence[_Part], known: _Bits) -> list[_Bits]:
+    """The equations for the bits with which all polynomials are kept, for each choice of what they become."""
+    systems = [known]
+    for n, part in enumerate(parts):
+        moved = {m: (c, mask) for m, c, mask in (change.monomial(*term) for term in part.polynomial.items())}
+        own = 2 << 2 * len(change.unknowns) + n if part.may_be_negated else 0
+        found = (_same(moved, image, own, system) for system in systems for image in part.images)
+        systems = [system for system in found if system is not None]
+        if not systems:
+            break
+    return systems
 
 
 def _same(moved: Mapping[Monomial, tuple[Fraction, int]], image: _Terms, own: int, known: _Bits) -> _Bits | None:
