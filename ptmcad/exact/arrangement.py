@@ -11,30 +11,29 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import disjoint, has_root_between, isolate, sign_at, squarefree_part
+from ptmcad.algebra.real_roots import disjoint, has_root_between, isolate, squarefree_part
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.arrangement import Arrangement
 from ptmcad.answer.regionmap import Merge, Wall
 from ptmcad.exact.cad.curves import Curve
 from ptmcad.exact.cad.projection import Projection
-from ptmcad.exact.cad.stacks import StackData, heights_between
-from ptmcad.exact.counting import Equilibria
-from ptmcad.exact.regions import Link, members, merge
+from ptmcad.exact.cad.stacks import StackData, heights_between, level_at
+from ptmcad.exact.regions import members
+from ptmcad.exact.sparing import counts_by_component, joined_cells
 from ptmcad.exact.stages import (
     Neighbours,
     Sample,
-    SampleCounts,
     SliceProblem,
     Stacks,
     Variety,
+    cell_at,
     crossings_of,
     neighbours_of,
     problem_of,
     projection_of,
     stacks_of,
     variety_of,
-    with_keys,
 )
 from ptmcad.exact.variety import Known
 from ptmcad.question.domain import prove_slice
@@ -56,18 +55,8 @@ class Picture(NamedTuple):
 
     def region_at(self, at: Sample) -> int | None:
         """The region of a point of the window; None on the curves, and on lines over critical abscissae."""
-        base = self.variety.base
-        u, v = at[base], at[1 - base]
-        place = 0
-        for r in self.projection.abscissae:
-            if r.low <= u <= r.high and sign_at(r.polynomial, u) == 0:
-                return None
-            place += _below(r.polynomial, r.low, r.high, u)
-        level = _level(self.variety.curves, u, v, self.problem.window[1 - base])
-        if level is None:
-            return None
-        first = sum(len(stack.heights) for stack in self.stacks.stacks[:place])
-        return self.neighbours.region_of[first + level]
+        cell = cell_at(self.problem, self.variety, (self.projection, self.stacks), at)
+        return None if cell is None else self.neighbours.region_of[cell]
 
 
 def picture_of(slice: Slice, known: Known | None = None, check: Check = nothing, base: int | None = None) -> Picture:
@@ -94,9 +83,8 @@ def picture_of(slice: Slice, known: Known | None = None, check: Check = nothing,
     projection = projection_of(problem, variety, check=check)
     stacks = stacks_of(problem, variety, projection)
     crossings = crossings_of(problem, variety, stacks, check=check)
-    unknown = SampleCounts((), ((),) * len(stacks.points))
-    parts = neighbours_of(variety, projection, stacks, unknown, crossings)
-    counts = _counts(problem, stacks, parts, check)
+    joined = joined_cells(variety, projection, stacks, crossings)
+    counts = counts_by_component(problem, stacks, joined, lambda _done, _total: check())
     neighbours = neighbours_of(variety, projection, stacks, counts, crossings)
     region_of = neighbours.region_of
     keys = tuple(counts.keys[cells[0]] for cells in members(region_of))
@@ -108,21 +96,6 @@ def picture_of(slice: Slice, known: Known | None = None, check: Check = nothing,
     sides = _sides(problem, variety, stacks, region_of)
     arrangement = Arrangement(keys, frozenset((a, b) for a, b in pairs if a != b), sides)
     return Picture(arrangement, problem, variety, projection, stacks, neighbours)
-
-
-def _counts(problem: SliceProblem, stacks: Stacks, parts: Neighbours, check: Check) -> SampleCounts:
-    """The counts at all samples, each computed once for cells that are joined off the curves."""
-    joined = [Link(a.first, a.second, None) for a in parts.adjacencies if a.component is None]
-    part_of = merge([()] * len(stacks.points), joined)
-    found: dict[int, Equilibria] = {}
-    for cells in members(part_of):
-        check()
-        found[part_of[cells[0]]] = problem.solved_at(min((stacks.points[n] for n in cells), key=_height))
-    return with_keys(problem, [found[part] for part in part_of])
-
-
-def _height(at: Sample) -> int:
-    return max(abs(int(n)) for value in at for n in (value.p, value.q))
 
 
 def _sides(
@@ -155,25 +128,8 @@ def _levels_at(curves: Sequence[Curve], edge: fmpq, stack: StackData, fibre: Int
         u = stack.sample
         while any(has_root_between(p, min(u, edge), max(u, edge)) for p in traces):
             u = (u + edge) / 2
-        level = _level(curves, u, height, fibre)
-        assert level is not None  # the segment from the edge to this point meets no curve
-        levels.append(level)
+        levels.append(level_at(curves, u, height, fibre))  # the segment from the edge to this point meets no curve
     return levels
-
-
-def _level(curves: Sequence[Curve], u: fmpq, v: fmpq, fibre: Interval) -> int | None:
-    """The number of walls below a point over an abscissa that is not critical; None on a wall."""
-    fibres = [c.fibre(u) for c in curves]
-    if any(sign_at(p, v) == 0 for p in fibres):
-        return None
-    return sum(len(isolate(p, fibre[0], v)) for p in fibres)
-
-
-def _below(p: UnivariatePolynomial, low: fmpq, high: fmpq, u: fmpq) -> bool:
-    """Whether the only root of p in [low, high], which is not u, is less than u."""
-    if not low < u < high:
-        return bool(u >= high)
-    return sign_at(p, u) == sign_at(p, high)
 
 
 def _without_repetition(regions: Sequence[int]) -> tuple[int, ...]:

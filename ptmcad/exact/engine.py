@@ -12,6 +12,7 @@ from time import perf_counter
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import LimitReached
+from ptmcad.exact.areas import areas_of
 from ptmcad.exact.assembly import Reached, assemble
 from ptmcad.exact.cad.adjacency import Crossing
 from ptmcad.exact.cad.projection import Projection
@@ -21,7 +22,6 @@ from ptmcad.exact.stages import (
     SliceProblem,
     Stacks,
     Variety,
-    areas_of,
     counts_of,
     crossings_of,
     neighbours_of,

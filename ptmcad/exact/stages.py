@@ -13,24 +13,25 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import Coefficient, Ratio, UnivariatePolynomial, evaluate, from_expression
+from ptmcad.algebra.real_roots import RealRoot, sign_at
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import HARMLESS, Adjacency, Component, Merge, Segment
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
 from ptmcad.exact.cad.adjacency import Crossing, Separator, cross
-from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.curves import Curve, curves_of, lines_of
 from ptmcad.exact.cad.projection import Projection, predicted_cost, project
-from ptmcad.exact.cad.stacks import Avoided, StackData, lift
+from ptmcad.exact.cad.stacks import Avoided, StackData, level_at, lift
 from ptmcad.exact.counting import Equilibria, equilibria
 from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.point_system import DegeneratePoint
-from ptmcad.exact.regions import Link, members, merge
+from ptmcad.exact.regions import Link, merge
 from ptmcad.exact.variety import Known, check_hypotheses, discriminant_variety
+from ptmcad.mechanism.involutions import Involution, involutions
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
-from ptmcad.text.numerals import decimal, fraction_of, short_text
+from ptmcad.text.numerals import short_text
 
 Sample = tuple[fmpq, fmpq]
 Report = Callable[[int, int], None]
@@ -62,6 +63,13 @@ class SliceProblem(NamedTuple):
         """Of the window."""
         first, second = self.slice.axes
         return (first.high - first.low) * (second.high - second.low)
+
+    @property
+    def reflections(self) -> list[Involution]:
+        """The involutions that map the window to itself and move some of its points."""
+        slice = self.slice
+        first, second = ((axis.low, axis.high) for axis in slice.axes)
+        return [c for c in involutions(slice.model, slice.parameters, (first, second)) if not c.keeps_points]
 
     def place(self, at: Sample) -> str:
         """A point in words, for messages."""
@@ -324,31 +332,26 @@ def segment_of(separator: Separator) -> Segment:
     return (to_fraction(separator.low), to_fraction(separator.high), to_fraction(separator.height))
 
 
-def areas_of(
-    problem: SliceProblem, variety: Variety, known: Cells, tolerance: Fraction, without: frozenset[str], check: Check
-) -> Areas:
-    """Bounds of the regions' areas.
-
-    Parameters
-    ----------
-    tolerance : largest relative width of each region's bounds before they are written in decimals.
-    """
-    base, region_of = variety.base, known.neighbours.region_of
-    alone = "equal-counts" in without
-    numbers = iter(range(len(region_of)) if alone else region_of)
-    stacks = known.stacks.stacks
-    rows = [tuple(next(numbers) for _ in stack.heights) for stack in stacks]
-    parts = RegionStacks(stacks, rows, variety.curves, problem.window[base], problem.window[1 - base])
-    bounds, bits = region_areas(parts, tolerance, check)
-    if alone:
-        bounds = tuple(_sum_of([bounds[n] for n in cells], problem.area) for cells in members(region_of))
-    return Areas(
-        tuple((fraction_of(decimal(low, up=False)), fraction_of(decimal(high, up=True))) for low, high in bounds), bits
-    )
+def cell_at(problem: SliceProblem, variety: Variety, known: tuple[Projection, Stacks], at: Sample) -> int | None:
+    """The cell in which a point of the window lies; None on the curves, and on lines over critical abscissae."""
+    projection, stacks = known
+    u, v = at[variety.base], at[1 - variety.base]
+    place = 0
+    for r in projection.abscissae:
+        if r.low <= u <= r.high and sign_at(r.polynomial, u) == 0:
+            return None
+        place += _is_below(r, u)
+    if any(sign_at(c.fibre(u), v) == 0 for c in variety.curves):
+        return None
+    first = sum(len(stack.heights) for stack in stacks.stacks[:place])
+    return first + level_at(variety.curves, u, v, problem.window[1 - variety.base])
 
 
-def _sum_of(areas: Sequence[tuple[Fraction, Fraction]], most: Fraction) -> tuple[Fraction, Fraction]:
-    return sum((low for low, _ in areas), Fraction(0)), min(sum((high for _, high in areas), Fraction(0)), most)
+def _is_below(root: RealRoot, u: fmpq) -> bool:
+    """Whether a root, which is not u, is less than u."""
+    if not root.low < u < root.high:
+        return bool(u >= root.high)
+    return sign_at(root.polynomial, u) == sign_at(root.polynomial, root.high)
 
 
 def count_at(where: str, system: ParametricSystem, parameters: dict[str, Ratio], at: Sample) -> Equilibria:

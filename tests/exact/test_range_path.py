@@ -22,7 +22,7 @@ from ptmcad.exact.models.system import on_slice
 from ptmcad.exact.ranges.equations import Family
 from ptmcad.exact.ranges.line import system_on
 from ptmcad.exact.ranges.matrices import plus, times
-from ptmcad.exact.ranges.symmetry import Mirror, mirror_of
+from ptmcad.exact.ranges.mirror import Mirror, mirror_of
 from ptmcad.exact.ranges.tracking import BITS, Reached, at_value, bridge, enclose, follow
 from ptmcad.mechanism import ptm
 from ptmcad.question.line import line_of

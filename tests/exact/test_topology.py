@@ -14,7 +14,7 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
-from flint import arb, ctx, fmpq, fmpz_mpoly, fmpz_poly
+from flint import arb, ctx, fmpq, fmpq_poly, fmpz_mpoly, fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.examples import examples
@@ -24,11 +24,10 @@ from ptmcad.algebra.branches import PrecisionTooLow
 from ptmcad.algebra.polynomials import PLANE, coefficients_in
 from ptmcad.algebra.puiseux import puiseux_integral
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part
-from ptmcad.exact.cad import area, mirrors
 from ptmcad.exact.cad.adjacency import Separator, cross
 from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.curves import Curve, curve
-from ptmcad.exact.cad.panels import Panel
+from ptmcad.exact.cad.halves import before, below
 from ptmcad.exact.cad.projection import project
 from ptmcad.exact.cad.stacks import StackData, lift
 from ptmcad.exact.regions import Link, merge
@@ -330,10 +329,14 @@ AREAS: dict[str, tuple[list[fmpz_mpoly], Window, str, str, tuple[Fraction, Fract
 }  # fmt: skip
 
 
-def check_area(name: str, base: int, tolerance: Fraction) -> None:
+def check_area(name: str, base: int, tolerance: Fraction, half: str = "") -> None:
     polynomials, window, x, y, (low, high) = AREAS[name]
     found = decompose(polynomials, window, base)
-    areas, _ = region_areas(RegionStacks(found.stacks, found.pieces, found.curves, found.base, found.fibre), tolerance)
+    parts = RegionStacks(found.stacks, found.pieces, found.curves, found.base, found.fibre)
+    if half:
+        parts = parts._replace(images=range(parts.number))
+        parts = below(parts, fmpq_poly(LINES[half])) if half in LINES else before(parts, fmpq(0))
+    areas, _ = region_areas(parts, tolerance)
     at = (rational(x), rational(y))
     u, v = at[base], at[1 - base]
     stack = next(
@@ -367,54 +370,20 @@ def test_a_series_beside_a_cusp_is_tried_at_twice_the_precision(failures: int, m
     assert tried[1] == 2 * tried[0]
 
 
-@pytest.mark.parametrize(
-    ("p", "window", "least"),
-    [
-        (circle(0, 0, 1), ("-2", "3/2", "-1/2", "2"), 1),
-        ((X**2 + Y**2) ** 3 - 4 * X**2 * Y**2, ("-2", "3/2", "-1", "3/4"), 3),
-        (Y**2 - X**2 * (X + 1), SQUARE, 2),
-        (X**2 + (3 * Y - X - 1) ** 2 - 4, ("-2", "3/2", "-1", "1"), 1),
-        ((X**2 + (2 * Y + X) ** 2) ** 3 - 4 * X**2 * (2 * Y + X) ** 2, ("-1", "3/2", "-3/5", "1/2"), 5),
-        ((2 * Y - X - 1) ** 2 - X**2 * (X + 1), ("-2", "2", "-1", "1"), 2),
-        ((2 * Y - X - 1) ** 4 + X**2 * (2 * Y - X - 1) - 1, SQUARE, 0),
-        (Y - X**2, ("-2", "2", "1/2", "5/2"), 1),
-        (X * Y - 1, ("-2", "2", "-2", "2"), 0),
-    ],
-    ids=[
-        "disc",
-        "rose",
-        "node",
-        "sheared disc",
-        "sheared rose",
-        "sheared node",
-        "sheared, but odd",
-        "parabola",
-        "hyperbola",
-    ],
-)
-@pytest.mark.slow_cases("rose", "sheared rose", "sheared node")
-def test_mirror_images_of_walls_are_walls(
-    p: fmpz_mpoly, window: Window, least: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """In windows that are not symmetric, so that some walls have no image, or a part of one."""
-    found = decompose([p], window, 0)
-    parts = RegionStacks(found.stacks, found.pieces, found.curves, found.base, found.fibre)
-    images = []
+LINES = {"v = 0": [0], "v = u": [0, 1], "v = -u": [0, -1]}
 
-    def followed(*arguments: Any) -> list[Panel] | None:
-        image = mirrors.mirrored(*arguments)
-        images.append(image is not None)
-        return image
 
-    monkeypatch.setattr(area, "mirrored", followed)
-    bounds, _ = region_areas(parts, Fraction(1, 10**6))
-    assert sum(images) >= least
-    monkeypatch.setattr(area, "mirrored", lambda *_: None)
-    for (low, high), (bottom, top) in zip(bounds, region_areas(parts, Fraction(1, 10**6))[0], strict=True):
-        assert low <= top
-        assert bottom <= high
-    if not least:
-        assert not any(images)
+@pytest.mark.parametrize("tolerance", [Fraction(1, 10**4), pytest.param(Fraction(1, 10**9), marks=pytest.mark.slow)])
+@pytest.mark.parametrize("half", ["u = 0", *LINES])
+@pytest.mark.parametrize("name", ["disc", "outside of a disc", "astroid", "tiny disc"])
+def test_areas_of_a_window_are_those_of_a_half_and_its_image(name: str, half: str, tolerance: Fraction) -> None:
+    """Of curves and pieces that are their own images."""
+    check_area(name, 0, tolerance, half)
+
+
+@pytest.mark.parametrize("name", ["quarter of a disc", "triangle"])
+def test_areas_of_a_window_beside_the_origin_are_those_of_a_half(name: str) -> None:
+    check_area(name, 0, Fraction(1, 10**6), "v = u")
 
 
 def _below(c: Curve, u: fmpq, low: fmpq, v: fmpq) -> Sequence[object]:

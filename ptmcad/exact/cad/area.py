@@ -12,20 +12,21 @@ from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from itertools import chain, pairwise
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.branches import PrecisionTooLow
+from ptmcad.algebra.polynomials import RationalPolynomial
 from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve, by_component, max_height_bits
-from ptmcad.exact.cad.mirrors import Wall, mirrored, wall_of
 from ptmcad.exact.cad.panels import Border, Effort, Panel, halves, panels
 from ptmcad.exact.cad.stacks import StackData
 from ptmcad.text.balls import exact
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
+_Sum = TypeVar("_Sum", fmpq, arb)
 Bounds = tuple[tuple[Fraction, Fraction], ...]
 """Of each region's area, in the product of the axes' units."""
 
@@ -49,12 +50,15 @@ _CACHED_FIBRES = 1024
 
 
 class RegionStacks(NamedTuple):
-    """A window cut into stacks whose cells belong to regions.
+    """A window cut into stacks whose cells belong to regions, or one half of it.
 
     Attributes
     ----------
     regions : for each stack the region of each of its cells, from below.
     curves : whose branches are the walls.
+    base, fibre : of the whole window.
+    images : of a half, the regions of which each one's other part is the mirror image.
+    ceiling : the line, over the base, up to which the last cells reach if that is not the window's edge.
     """
 
     stacks: Sequence[StackData]
@@ -62,11 +66,27 @@ class RegionStacks(NamedTuple):
     curves: Sequence[Curve]
     base: Interval
     fibre: Interval
+    images: Sequence[int] = ()
+    ceiling: RationalPolynomial | None = None
 
     @property
     def number(self) -> int:
         """The number of regions."""
-        return 1 + max(max(row) for row in self.regions)
+        return len(self.images) or 1 + max(max(row) for row in self.regions)
+
+    @property
+    def top(self) -> RationalPolynomial:
+        """Up to which the last cells reach."""
+        return RationalPolynomial([self.fibre[1]]) if self.ceiling is None else self.ceiling
+
+    def whole(self, parts: Sequence[_Sum]) -> list[_Sum]:
+        """What belongs to each region, from what belongs to it in the half."""
+        return [a + parts[j] for a, j in zip(parts, self.images, strict=True)] if self.images else list(parts)
+
+    def beside(self, border: Border) -> set[int]:
+        """The regions that a wall, or its image, is a wall of."""
+        own = {border.below, border.above}
+        return own | {self.images[i] for i in own} if self.images else own
 
     @property
     def height(self) -> fmpq:
@@ -90,9 +110,11 @@ class _Frame(NamedTuple):
 
     Attributes
     ----------
+    fixed : of the half, where the window is cut into halves.
     allowed : for each region, the error of a panel's integral that would probably do.
     """
 
+    parts: RegionStacks
     fixed: Sequence[fmpq]
     lost: fmpq
     allowed: Sequence[fmpq]
@@ -102,6 +124,7 @@ class _Frame(NamedTuple):
         for p in panels:
             totals[p.border.below] += p.integral
             totals[p.border.above] -= p.integral
+        totals = self.parts.whole(totals)
         lost = to_fraction(self.lost)
         return tuple((max(exact(t.lower()), Fraction(0)), exact(t.upper()) + lost) for t in totals)
 
@@ -136,7 +159,6 @@ def region_areas(
     more = _MIN_ORDER + max(0, max((len(c.in_v) for c in parts.curves), default=0) - _LONG_FIBRE) // _FIBRE_PER_ORDER
     share, own, finer = fmpq(1, 10 ** (digits + 3) * 4), True, 20
     curve_of = by_component(parts.curves)
-    axes = {component: curve.reflection and curve.reflection.axis for component, curve in curve_of.items()}
 
     @lru_cache(maxsize=_CACHED_FIBRES)
     def roots(component: int, u: fmpq) -> tuple[RealRoot, ...]:
@@ -144,7 +166,7 @@ def region_areas(
         return curve_of[component].roots_over(u, parts.fibre)
 
     while True:
-        effort = Effort(digits + more, width, parts.fibre, broad, narrowest / 2 ** (bits // 2), roots, axes)
+        effort = Effort(digits + more, width, parts.fibre, broad, narrowest / 2 ** (bits // 2), roots)
         try:
             with ctx.workprec(bits):
                 bounds = _areas(parts, _spans(parts.stacks, share, own=own), tolerance * 3 / 4, effort, check)
@@ -181,7 +203,7 @@ def _areas(
     parts: RegionStacks, spans: Sequence[Interval], tolerance: Fraction, effort: Effort, check: Callable[[], None]
 ) -> Bounds:
     """One attempt, at the context's precision."""
-    lost = sum((b[0] - a[1] for a, b in pairwise(spans)), fmpq(0)) * parts.height
+    lost = sum((b[0] - a[1] for a, b in pairwise(spans)), fmpq(0)) * parts.height * (2 if parts.images else 1)
     borders = list(parts.borders(spans))
     rough, sizes = _rough(spans, parts, borders, effort)
     if lost * 4 > from_fraction(tolerance) * min(rough) * _HOPELESS_RATIO:
@@ -189,18 +211,14 @@ def _areas(
     right = fmpq(2) ** (ctx.prec - _SPARE_BITS) * from_fraction(tolerance)
     if any(size > area * right for size, area in zip(sizes, rough, strict=True)):
         raise _Unreachable(strips=False)
-    load = Counter(i for row in borders for b in row for i in (b.below, b.above))
+    load = Counter(i for row in borders for b in row for i in parts.beside(b))
     # of a panel's integral: what would do if all were about as bad, with some more panels than borders
     allowed = [from_fraction(tolerance) * rough[i] / (_PANELS * max(load[i], 1)) for i in range(parts.number)]
-    known: dict[Wall, list[Panel]] = {}
+    covered: list[Panel] = []
     for border in chain.from_iterable(borders):
         check()
-        found = mirrored(border, border.span, known, effort)
-        if found is None:
-            found = panels(border, border.span, effort, min(allowed[border.below], allowed[border.above]))
-        known[wall_of(border, border.span)] = found
-    covered = [p for found in known.values() for p in found]
-    return _refine(covered, _Frame(_edges(spans, parts), lost, allowed), tolerance, effort, check)
+        covered += panels(border, border.span, effort, min(allowed[border.below], allowed[border.above]))
+    return _refine(covered, _Frame(parts, _edges(spans, parts), lost, allowed), tolerance, effort, check)
 
 
 def _isolated(stack: StackData) -> fmpq:
@@ -258,8 +276,8 @@ def _rough(
             sizes[border.below] += size
             sizes[border.above] += size
             bottom = wall.low
-        total[row[-1]] += (parts.fibre[1] - bottom) * (high - low)
-    return total, sizes
+        total[row[-1]] += (parts.top((low + high) / 2) - bottom) * (high - low)
+    return parts.whole(total), parts.whole(sizes)
 
 
 def _told_apart(roots: Sequence[RealRoot], height: fmpq) -> list[RealRoot]:
@@ -274,10 +292,10 @@ def _told_apart(roots: Sequence[RealRoot], height: fmpq) -> list[RealRoot]:
 
 def _edges(spans: Sequence[Interval], parts: RegionStacks) -> list[fmpq]:
     """The exact contributions of the window's edges to each region's area."""
-    total = [fmpq(0)] * parts.number
+    total, top = [fmpq(0)] * parts.number, parts.top.integral()
     for (low, high), row in zip(spans, parts.regions, strict=True):
         total[row[0]] -= parts.fibre[0] * (high - low)
-        total[row[-1]] += parts.fibre[1] * (high - low)
+        total[row[-1]] += top(high) - top(low)
     return total
 
 
@@ -292,22 +310,17 @@ def _refine(
             return bounds
         if any(to_fraction(frame.lost) * 4 > tolerance * bounds[i][1] for i in poor):
             raise _Unreachable(strips=True)
-        load = Counter(i for p in panels for i in (p.border.below, p.border.above))
+        load = Counter(i for p in panels for i in frame.parts.beside(p.border))
         target = {i: tolerance * max(bounds[i][0], bounds[i][1] / 8) / (2 * max(load[i], 1)) for i in poor}
         refined: list[Panel] = []
-        known: dict[Wall, list[Panel]] = {}
         for p in panels:
-            allowed = min((target[i] for i in poor & {p.border.below, p.border.above}), default=p.width)
+            allowed = min((target[i] for i in poor & frame.parts.beside(p.border)), default=p.width)
             if p.width > allowed:
                 check()
                 if p.high - p.low < effort.narrowest:
                     raise _Unreachable(strips=False)
-                found = mirrored(p.border, (p.low, p.high), known, effort)
-                if found is None:
-                    least = min(frame.allowed[p.border.below], frame.allowed[p.border.above])
-                    found = halves(p, effort, min(least, from_fraction(allowed) / 4))
-                known[wall_of(p.border, (p.low, p.high))] = found
-                refined += found
+                least = min(frame.allowed[p.border.below], frame.allowed[p.border.above])
+                refined += halves(p, effort, min(least, from_fraction(allowed) / 4))
             else:
                 refined.append(p)
         panels = refined

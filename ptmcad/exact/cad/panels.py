@@ -5,7 +5,7 @@ graph, by the branch's Taylor series (`algebra.branches`), by its Puiseux series
 (`algebra.puiseux`), between arcs (`algebra.arcs`), between horizontals, or between the window's edges.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -14,7 +14,6 @@ from flint import arb, ctx, fmpq
 from ptmcad.algebra.arcs import arc_integral
 from ptmcad.algebra.branches import Integral, PrecisionTooLow, branch_integral
 from ptmcad.algebra.graphs import graph_integral
-from ptmcad.algebra.polynomials import RationalPolynomial
 from ptmcad.algebra.real_roots import RealRoot, refine, sign_at, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve
@@ -48,7 +47,6 @@ class Effort(NamedTuple):
     broad : on panels broader than this horizontals would be too coarse to be worth their time.
     narrowest : narrower panels would need a higher precision.
     roots : of a component over an abscissa within the window; isolated once for all of a stack's walls.
-    axes : for each component m(u), if the reflection (u, v) to (u, 2 m(u) - v) maps it to itself.
     """
 
     order: int
@@ -57,7 +55,6 @@ class Effort(NamedTuple):
     broad: fmpq
     narrowest: fmpq
     roots: Callable[[int, fmpq], tuple[RealRoot, ...]]
-    axes: Mapping[int, RationalPolynomial | None]
 
 
 class Border(NamedTuple):

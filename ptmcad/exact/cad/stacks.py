@@ -11,7 +11,7 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, sign_at, simplest_between
+from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, sign_at, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.curves import Curve
@@ -107,3 +107,8 @@ def _simplest_off(low: fmpq, high: fmpq, avoided: Sequence[UnivariatePolynomial]
     while any(sign_at(p, value) == 0 for p in avoided):  # as often as they have roots at most
         value = simplest_between(value, high)
     return value
+
+
+def level_at(curves: Sequence[Curve], u: fmpq, v: fmpq, fibre: Interval) -> int:
+    """The number of walls below a point, over an abscissa that is not critical."""
+    return sum(len(isolate(c.fibre(u), fibre[0], v)) for c in curves)

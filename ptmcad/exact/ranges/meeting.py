@@ -23,8 +23,9 @@ from ptmcad.exact.models.system import on_slice, polynomial_at
 from ptmcad.exact.ranges.equations import Family, coordinates_of
 from ptmcad.exact.ranges.line import system_on
 from ptmcad.exact.ranges.matrices import Vector
-from ptmcad.exact.ranges.symmetry import Mirror, changed, changes, mirror_of, proportional
+from ptmcad.exact.ranges.mirror import Mirror, mirror_of
 from ptmcad.exact.ranges.tracking import BITS, Reached, at_value, bridge
+from ptmcad.mechanism.involutions import involutions
 from ptmcad.question.line import Line
 from ptmcad.text.flint_numbers import from_fraction
 
@@ -306,41 +307,37 @@ def _outside(family: Family, point: Vector, box: Sequence[tuple[arb, arb]]) -> b
 
 
 def _symmetries(family: Family, line: Line, group: Sequence[_Member], after: Fraction) -> list[_Symmetry]:
-    """How exchanges of unknowns, coordinates' signs and a reflection of all angles permute the group.
-
-    Those are meant that leave the equations alone everywhere on the line.
-    """
+    """How the involutions that keep all points of the line, and a reflection of all angles, permute the group."""
     if len(group) <= 2:
         return []
-    equations = on_slice(*system_on(line)).equations
     with ctx.workprec(BITS):
         places = [coordinates_of(m.shifted, family.angles) for m in group]
-        mirror = mirror_of(equations, family.angles) if len(group[0].shifted) == family.angles else None
-        found = [] if mirror is None else _reflections(mirror, group, places, after)
-        for order, signs in changes(family.angles, len(group[0].shifted)):
-            if not all(any(proportional(changed(e, order, signs), f) for f in equations) for e in equations):
-                continue
-            moved = [[s * place[k] for k, s in zip(order, signs, strict=True)] for place in places]
-            images = _images(group, places, moved)
+        found = _reflections(family, line, group, places, after)
+        for change in involutions(line.model, line.parameters):
+            coordinates = change.coordinates(tuple(line.model.unknowns.values()))
+            images = _images(group, places, [[sign * place[k] for k, sign in coordinates] for place in places])
             if images is not None:
-                odd = frozenset(k for k, (i, sign) in enumerate(zip(order, signs, strict=True)) if i == k and sign < 0)
+                odd = frozenset(k for k, (i, sign) in enumerate(coordinates) if i == k and sign < 0)
                 found.append(_Symmetry(images, odd))
     return found
 
 
 def _reflections(
-    mirror: Mirror, group: Sequence[_Member], places: Sequence[Sequence[arb]], after: Fraction
+    family: Family, line: Line, group: Sequence[_Member], places: Sequence[Sequence[arb]], after: Fraction
 ) -> list[_Symmetry]:
     """How the reflection of all angles at once, whose line may turn with the parameter, permutes the group."""
+    if family.system.ring.reals:
+        return []
+    mirror = mirror_of(on_slice(*system_on(line)).equations, family.angles)
     values = [m.solution.place.value for m in group]  # the first is the branch's own, on the near side
-    if mirror.angle(min(values[0], after), max(values[0], after)) is None:
+    if mirror is None or mirror.angle(min(values[0], after), max(values[0], after)) is None:
         return []
     moved = []
     for m, value in zip(group, values, strict=True):
-        line = mirror.angle(value, value)
-        if line is None:
+        turned = mirror.angle(value, value)
+        if turned is None:
             return []
-        moved.append(coordinates_of(tuple(2 * line - t for t in m.shifted), len(m.shifted)))
+        moved.append(coordinates_of(tuple(2 * turned - t for t in m.shifted), len(m.shifted)))
     images = _images(group, places, moved)
     return [] if images is None else [_Symmetry(images, mirror=mirror)]
 

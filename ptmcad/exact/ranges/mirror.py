@@ -1,10 +1,7 @@
-"""Symmetries of a system on a line of parameters: changes of coordinates, and a reflection that may turn with it.
+"""A reflection of all angles at once, whose line may turn with the parameter, and that a system on a line keeps.
 
-Changes exchange coordinates and give them signs.
-
-Guarantee of the reflection, of all angles at once: a `Mirror` that `mirror_of` returns leaves the equations alone, each
-up to its sign, for every value of the line at which its direction is not zero: identities of polynomials, computed
-exactly.
+Guarantee: a `Mirror` that `mirror_of` returns leaves the equations alone, each up to its sign, for every value of the
+line at which its direction is not zero: identities of polynomials, computed exactly.
 
 With z = exp(i t) for each angle t an equation is a sum of e_m z^m over integer vectors m, and e_-m is the conjugate
 of e_m. The reflection at the line of a complex number w takes z to (w / conj w) conj z. It takes the equation to
@@ -16,18 +13,14 @@ Source: elementary (the Fourier coefficients of a real function under a reflecti
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
-from itertools import permutations, product
 from typing import NamedTuple
 
 from flint import arb
 
 from ptmcad.algebra.polynomials import Coefficient, UnknownPolynomial, constant_like
 from ptmcad.text.balls import ball_of
-
-_MAX_SIGNS = 8
-"""Coordinates of which all changes of signs, and of order, are tried as symmetries."""
 
 Gaussian = tuple[Coefficient, Coefficient]
 """Real and imaginary part, polynomials in the axes."""
@@ -116,34 +109,3 @@ def _at(p: Coefficient, value: arb) -> arb:
     for (i, *_), c in p.to_dict().items():
         total += arb(c) * value**i
     return total
-
-
-def changes(angles: int, unknowns: int) -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
-    """For each coordinate which one comes to its place, and with which sign: of angles both coordinates together."""
-    width = angles + unknowns
-    if width > _MAX_SIGNS:
-        return
-    for first, last in product(permutations(range(angles)), permutations(range(2 * angles, width))):
-        order = (*(i for k in first for i in (2 * k, 2 * k + 1)), *last)
-        for signs in product((1, -1), repeat=width):
-            yield order, signs
-
-
-def changed(p: UnknownPolynomial, order: Sequence[int], signs: Sequence[int]) -> UnknownPolynomial:
-    """A polynomial at changed coordinates."""
-    result = {}
-    for monomial, coefficient in p.items():
-        odd = sum(e for e, s in zip(monomial, signs, strict=True) if s < 0) % 2
-        powers = [0] * len(order)
-        for k, e in zip(order, monomial, strict=True):
-            powers[k] = e
-        result[tuple(powers)] = -coefficient if odd else coefficient
-    return result
-
-
-def proportional(first: UnknownPolynomial, second: UnknownPolynomial) -> bool:
-    """Whether two polynomials are the same up to a factor."""
-    if first.keys() != second.keys():
-        return False
-    some = next(iter(first))
-    return all(first[m] * second[some] == second[m] * first[some] for m in first)
