@@ -8,7 +8,7 @@ Guarantee: each point of the window at which the chosen count changes lies on th
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -17,11 +17,11 @@ from ptmcad.certified.curve import Curve
 from ptmcad.certified.formula import Formula
 from ptmcad.certified.plain.bounds import TURN, Range, ranges
 from ptmcad.certified.plain.chart import Chart, chart, determinant, principal_minors
-from ptmcad.certified.plain.frame import frames
+from ptmcad.certified.plain.frame import Frame, frames
 from ptmcad.certified.plain.geometry import Geometry, geometry
 from ptmcad.certified.plain.involution import Involution, involution_of
 from ptmcad.certified.plain.problem import FIRST, Condition, Problem, problem_of
-from ptmcad.certified.plain.quotient import folds
+from ptmcad.certified.plain.quotient import NEAR, folds
 from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.scales import TURNING_WEIGHT, short_lengths, variable_weights
 from ptmcad.certified.solved import Quotient, quotients
@@ -40,6 +40,7 @@ class _Search:
     stable : whether only folds of minima are asked for.
     swallowed : whether solutions that springs without length swallow have curves of their own.
     dependent : whether formulas that vanish at all solutions are used besides the equations.
+    mirror : with it, configurations that are near their images are searched otherwise.
     rising : whether only solutions are asked for at which the Jacobian's determinant is not negative.
     """
 
@@ -54,6 +55,7 @@ class _Search:
     conditions: tuple[Condition, ...]
     rising: bool
     where: str
+    mirror: Frame | None = None
 
 
 def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) -> tuple[Curve, ...]:
@@ -91,7 +93,7 @@ def _of_branch(slice: Slice, count: Count, without: frozenset[str], problem: Pro
         problem.where,
     )
     found = None
-    if "mirror-images" not in without and not (search.swallowed or problem.closing):
+    if "mirror-images" not in without and problem.is_gradient and not problem.closing:
         found = involution_of(problem)
     yield from _smooth(search, at) if found is None else _quotient(search, found, at)
     yield from _boundaries(search, at)
@@ -110,8 +112,9 @@ def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
 
 def _quotient(search: _Search, change: Involution, whole: Chart) -> Iterator[Curve]:
     """The folds of minima where an involution keeps the problem, and limits of minima without a spring's length."""
-    for frame in frames(search.problem, change, search.ranges):
-        for fold in folds(search.exact, frame):
+    around = list(frames(search.problem, change, search.ranges))
+    for frame in around:
+        for fold in folds(search.exact, frame, stable=search.stable):
             vanishing = tuple(
                 [*own, *more] for own, more in zip(fold.vanishing, _dependent(search, fold.at), strict=True)
             )
@@ -123,12 +126,19 @@ def _quotient(search: _Search, change: Involution, whole: Chart) -> Iterator[Cur
                     fold.equations,
                     (0, 1, *(FIRST + k for k in range(len(fold.ranges)))),
                     ([f for f in cheap if f.value is None], costly),
-                    [*fold.nonnegative, *_semidefinite(fold.at), *_values(search.conditions, fold.at)],
+                    [
+                        *fold.nonnegative,
+                        *(_semidefinite(fold.at) if search.stable else ()),
+                        *_values(search.conditions, fold.at),
+                    ],
                     solved=_solved(search, [*fold.equations, *fold.at.equations, *cheap]),
                 ),
                 fold.ranges,
                 np.array([*search.weights[:2], *(1.0 for _ in fold.ranges)]),
             )
+    if not search.stable:
+        far = replace(search, mirror=around[0])
+        yield from (_fold(far, whole), *_short_folds(far, whole))
     yield from _points_without_length(search, whole) if len(search.problem.unknowns) == 1 else _cones(search)
 
 
@@ -161,6 +171,7 @@ def _fold(search: _Search, at: Chart) -> Curve:
             _dependent(search, at),
             [
                 *(at.lengths[s] - search.short[s] for s in _charted(search, at)),
+                *_far(search, at),
                 *(_semidefinite(at) if search.stable else []),
                 *_values(search.conditions, at),
             ],
@@ -169,6 +180,14 @@ def _fold(search: _Search, at: Chart) -> Curve:
         search.ranges,
         np.array(search.weights),
     )
+
+
+def _far(search: _Search, at: Chart) -> list[Formula]:
+    """What is not negative where configurations are not searched about an involution's fixed points."""
+    if search.mirror is None:
+        return []
+    unknowns = [at.equations[0].graph.variable(k) for k in search.problem.variables]
+    return [search.mirror.distance(unknowns) - NEAR]
 
 
 def _semidefinite(at: Chart) -> list[Formula]:
@@ -261,6 +280,7 @@ def _short_folds(search: _Search, at: Chart) -> Iterator[Curve]:
                 [
                     at.springs[s].extent,
                     search.short[s] - at.lengths[s],
+                    *_far(search, at),
                     *semidefinite,
                     *_values(search.conditions, at),
                 ],

@@ -18,7 +18,8 @@ Golubitsky, Stewart & Schaeffer, Singularities and Groups in Bifurcation Theory 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 
 from ptmcad.certified.formula import Formula
 from ptmcad.certified.plain.bounds import Range
@@ -27,6 +28,12 @@ from ptmcad.certified.plain.frame import Frame
 from ptmcad.certified.plain.geometry import Geometry
 from ptmcad.certified.plain.opening import Coordinates, Opening, coordinates, opening, stiffness
 from ptmcad.certified.plain.springs import Matrix
+
+
+NEAR = Fraction(1, 16)
+"""The distance from their images below which configurations are searched about the fixed points."""
+MOST = 0.26
+"""A little more than the odd coordinates there: their angles, tangents of half of these, or shares of the reach."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,11 +58,11 @@ class Fold:
     ranges: tuple[Range, ...]
 
 
-def folds(exact: Geometry, frame: Frame) -> Iterator[Fold]:
-    """All folds of minima about a component of the fixed points, on it and off it."""
-    yield from _fixed(exact, frame)
-    for lead in range(len(frame.reaches)):
-        yield _moved(exact, frame, lead)
+def folds(exact: Geometry, frame: Frame, *, stable: bool) -> Iterator[Fold]:
+    """Folds of minima about a component of the fixed points, on it and off it; or those of all equilibria `NEAR` it."""
+    for fold in (*_fixed(exact, frame), *(_moved(exact, frame, lead, stable) for lead in range(len(frame.reaches)))):
+        kind, _, _ = fold.name.partition(" ")
+        yield fold if stable else replace(fold, name=kind, reason="equilibria meet: det H = 0", nonnegative=())
 
 
 def _fixed(exact: Geometry, frame: Frame) -> Iterator[Fold]:
@@ -86,7 +93,7 @@ def _fixed(exact: Geometry, frame: Frame) -> Iterator[Fold]:
         )
 
 
-def _moved(exact: Geometry, frame: Frame, lead: int) -> Fold:
+def _moved(exact: Geometry, frame: Frame, lead: int, whole: bool) -> Fold:
     """Folds off it, each for its image, too: where the odd coordinate of number ``lead`` is the largest."""
     place = coordinates(frame, lead)
     at = chart(exact, unknowns=place.unknowns())
@@ -100,7 +107,7 @@ def _moved(exact: Geometry, frame: Frame, lead: int) -> Fold:
         (*balance, near.slope, *near.ratios, determinant(matrix)),
         (at.equations, ()),
         tuple(principal_minors(matrix)),
-        place.ranges,
+        tuple(r if whole or k != len(frame.ranges) else (0.0, MOST) for k, r in enumerate(place.ranges)),
     )
 
 
