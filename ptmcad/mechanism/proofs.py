@@ -218,7 +218,7 @@ def check_symmetries(mechanism: Mechanism, faults: Faults) -> None:
         key = f"symmetries.{n}"
         with faults:
             try:
-                holds = _are_the_same(mechanism, _Image(Ring(), {}), _Image(Ring(), images))
+                holds = _are_the_same(mechanism, Image(Ring(), {}), Image(Ring(), images))
             except ExpressionError as error:
                 raise ConfigError(
                     f"it is not proved to be a symmetry: {error.message}", key=f"symmetries.{n}"
@@ -231,7 +231,7 @@ def check_symmetries(mechanism: Mechanism, faults: Faults) -> None:
                 )
 
 
-class _Image:
+class Image:
     """A ring in which names have the values of their images, in another ring; of some angles half a turn more."""
 
     def __init__(self, ring: Ring, images: Mapping[str, Tree], turned: Collection[str] = ()):
@@ -241,7 +241,7 @@ class _Image:
         return self.ring.constant(value)
 
     def parameter(self, name: str) -> Polynomial:
-        return evaluate(self.images[name], self.ring) if name in self.images else self.ring.variable(name)
+        return evaluate(self.images[name], self.ring) if name in self.images else self.ring.parameter(name)
 
     def cos(self, angle: str) -> Polynomial:
         return self._wave("cos", angle)
@@ -267,18 +267,18 @@ def energy_is_kept(
     numbers: dict[str, Tree] = {name: Number(value) for name, value in parameters.items()}
     images: dict[str, Tree] = {**numbers, **{name: Negative(Name(name)) for name in reflected}}
     try:
-        return _are_the_same(mechanism, _Image(Ring(), numbers), _Image(Ring(), images, turned))
+        return _are_the_same(mechanism, Image(Ring(), numbers), Image(Ring(), images, turned))
     except ExpressionError:  # too large to be multiplied out
         return False
 
 
-def _are_the_same(mechanism: Mechanism, one: _Image, other: _Image) -> bool:
+def _are_the_same(mechanism: Mechanism, one: Image, other: Image) -> bool:
     """Whether the equilibria are those of the same energy and the same work of moments, but for numbers.
 
     Springs with a free length have roots in their energies: they are the same when stiffness, free length and squared
     length are.
     """
-    (energy, springs, work), (energy2, springs2, work2) = (_feels(mechanism, image) for image in (one, other))
+    (energy, springs, work), (energy2, springs2, work2) = (felt(mechanism, image) for image in (one, other))
     change = energy - energy2
     if springs != springs2 or any(change.derivative(u).terms for u in mechanism.unknowns):
         return False
@@ -289,17 +289,17 @@ _Terms = frozenset[tuple[Monomial, Fraction]]
 _Spring = tuple[_Terms, _Terms, _Terms]
 
 
-def _feels(mechanism: Mechanism, ring: _Image) -> tuple[Polynomial, Counter[_Spring], dict[str, _Terms]]:
+def felt(mechanism: Mechanism, ring: Image) -> tuple[Polynomial, Counter[_Spring], dict[str, _Terms]]:
     """Twice the energy without springs of free length, these springs, and the moments' work along each unknown."""
     points = Points(mechanism, ring)
     energy = ring.constant(Fraction(0))
     springs: list[_Spring] = []
     for spring in mechanism.springs:
-        squared, k = points.squared(spring.start, spring.end), points.value(spring.stiffness)
-        if isinstance(spring.free, Number) and not spring.free.value:
-            energy += k * squared
+        squared, k, free = points.squared(spring.start, spring.end), *map(points.value, (spring.stiffness, spring.free))
+        if free.terms:
+            springs.append((_terms(k), _terms(free), _terms(squared)))
         else:
-            springs.append((_terms(k), _terms(points.value(spring.free)), _terms(squared)))
+            energy += k * squared
     energy -= points.work_of_loads()
     for torsion in mechanism.torsion:
         energy += points.value(torsion.energy) * ring.constant(Fraction(2))
@@ -318,7 +318,7 @@ def _terms(p: Polynomial) -> _Terms:
 class Points:
     """The coordinates of a mechanism's points, each computed once."""
 
-    def __init__(self, mechanism: Mechanism, ring: Ring | _Image | None = None):
+    def __init__(self, mechanism: Mechanism, ring: Ring | Image | None = None):
         self.mechanism = mechanism
         self.ring = ring or Ring()
         self.known: dict[str, tuple[Polynomial, Polynomial]] = {}
