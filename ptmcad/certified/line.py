@@ -17,7 +17,6 @@ from flint import ctx
 from ptmcad.certified.arb_evaluation import ball, lower, upper
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.curve import Curve
-from ptmcad.certified.pitchforks import pitchforks
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.points import PointCount
@@ -26,11 +25,7 @@ from ptmcad.certified.system import System
 from ptmcad.certified.tape import enclosing_floats
 from ptmcad.question.slice import Count, Slice
 
-FOLD = "fold"
-"""The name of the curve of singular equilibria."""
 MIN_BOX_WIDTH = 1e-8
-COARSE_WIDTH = 1e-3
-"""Of the boxes around a pitchfork, of which narrower ones are ever more and say no more."""
 BUDGET, MAX_OPEN_BOXES = 20_000, 400
 """Boxes to treat, and boxes to leave open, before a part of the line is halved."""
 MAX_BOXES = 600_000
@@ -108,16 +103,6 @@ def _gaps(slice: Slice, curve: Curve, varying: int, value: Fraction, bits: int) 
         limits = MIN_BOX_WIDTH, BUDGET, MAX_OPEN_BOXES
         found = isolate(system.arguments(), equations.arguments(), start, limits, curve.importance())
         total += found.used
-        if curve.name == FOLD and len(found.left()):
-            limits = COARSE_WIDTH, BUDGET // 4, MAX_OPEN_BOXES
-            coarse = isolate(system.arguments(), equations.arguments(), start, limits, curve.importance())
-            total += coarse.used
-            met = (
-                pitchforks(slice, varying, value, coarse.left(), bits) if len(coarse.left()) <= MAX_OPEN_BOXES else None
-            )
-            if met is not None:
-                yield from (Gap(*ends, ("pitchfork",), True) for ends in met)
-                found = coarse._replace(small=_NO_BOXES, waiting=_NO_BOXES)
         left, variables = found.left(), start.shape[1] // 2
         if (found.used >= BUDGET or len(left) > MAX_OPEN_BOXES) and high - low > smallest and total < MAX_BOXES:
             middle = (low + high) / 2
@@ -134,7 +119,6 @@ def _gaps(slice: Slice, curve: Curve, varying: int, value: Fraction, bits: int) 
 
 
 _NONE = np.empty(0, np.int64)
-_NO_BOXES = np.empty((0, 0))
 
 
 def _balls(row: Boxes, varying: int, value: Fraction) -> Box:

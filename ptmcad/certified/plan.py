@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from ptmcad.answer.plan import saving_step, zero_parameters, zero_terms
 from ptmcad.answer.regionmap import PlanStep
-from ptmcad.certified.plain.involution import involution_of
+from ptmcad.certified.plain.involution import mirrors
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.errors import PtmcadError
 from ptmcad.question.slice import Slice
@@ -37,15 +37,15 @@ def _plain(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
             steps.append(saving_step("cones-and-creases", without))
     if slice.has_free_lengths:
         steps.append(saving_step("dependent-equations", without))
-    if slice.count.is_of_stable and "folds-of-saddles" not in without and _is_symmetric(slice):
+    if _is_symmetric(slice):
         steps.append(saving_step("mirror-images", without))
     return tuple(steps)
 
 
 def _is_symmetric(slice: Slice) -> bool:
-    """Whether an involution keeps the slice's problem, if it has one."""
+    """Whether an involution keeps each point of the slice."""
     try:
         problem = problem_of(slice)
     except PtmcadError:
         return False  # the engine says why
-    return problem.is_gradient and involution_of(problem) is not None
+    return bool(mirrors(slice, problem))

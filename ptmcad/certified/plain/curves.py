@@ -8,24 +8,26 @@ Guarantee: each point of the window at which the chosen count changes lies on th
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
 
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.formula import Formula
+from ptmcad.certified.plain.angle import Angle
 from ptmcad.certified.plain.bounds import TURN, Range, ranges
 from ptmcad.certified.plain.chart import Chart, chart, determinant, principal_minors
-from ptmcad.certified.plain.frame import frames
+from ptmcad.certified.plain.frame import Frame, frames
 from ptmcad.certified.plain.geometry import Geometry, geometry
-from ptmcad.certified.plain.involution import Involution, involution_of
+from ptmcad.certified.plain.involution import mirrors
 from ptmcad.certified.plain.problem import FIRST, Condition, Problem, problem_of
-from ptmcad.certified.plain.quotient import folds
+from ptmcad.certified.plain.quotient import NEAR, Fold, folds
 from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.scales import TURNING_WEIGHT, short_lengths, variable_weights
 from ptmcad.certified.solved import Quotient, quotients
 from ptmcad.certified.system import system
+from ptmcad.mechanism.involutions import Involution
 from ptmcad.question.slice import Count, Slice
 
 
@@ -40,6 +42,7 @@ class _Search:
     stable : whether only folds of minima are asked for.
     swallowed : whether solutions that springs without length swallow have curves of their own.
     dependent : whether formulas that vanish at all solutions are used besides the equations.
+    mirrors : a frame of each involution, configurations near whose fixed points are searched about these.
     rising : whether only solutions are asked for at which the Jacobian's determinant is not negative.
     """
 
@@ -54,6 +57,7 @@ class _Search:
     conditions: tuple[Condition, ...]
     rising: bool
     where: str
+    mirrors: tuple[Frame, ...] = ()
 
 
 def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) -> tuple[Curve, ...]:
@@ -90,10 +94,8 @@ def _of_branch(slice: Slice, count: Count, without: frozenset[str], problem: Pro
         problem.closing > 0 and count.is_of_stable,
         problem.where,
     )
-    found = None
-    if "mirror-images" not in without and not (search.swallowed or problem.closing):
-        found = involution_of(problem)
-    yield from _smooth(search, at) if found is None else _quotient(search, found, at)
+    found = [] if "mirror-images" in without else mirrors(slice, problem)
+    yield from _quotient(search, found, at) if found else _smooth(search, at)
     yield from _boundaries(search, at)
     yield from _at_free_lengths(search, at)
 
@@ -108,28 +110,47 @@ def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
     return (_fold(search, at), *_short_folds(search, at), *swallowed)
 
 
-def _quotient(search: _Search, change: Involution, whole: Chart) -> Iterator[Curve]:
-    """The folds of minima where an involution keeps the problem, and limits of minima without a spring's length."""
-    for frame in frames(search.problem, change, search.ranges):
-        for fold in folds(search.exact, frame):
-            vanishing = tuple(
-                [*own, *more] for own, more in zip(fold.vanishing, _dependent(search, fold.at), strict=True)
-            )
-            cheap, costly = vanishing if search.dependent else ((), ())
-            yield Curve(
-                fold.name + search.where,
-                fold.reason,
-                system(
-                    fold.equations,
-                    (0, 1, *(FIRST + k for k in range(len(fold.ranges)))),
-                    ([f for f in cheap if f.value is None], costly),
-                    [*fold.nonnegative, *_semidefinite(fold.at), *_values(search.conditions, fold.at)],
-                    solved=_solved(search, [*fold.equations, *fold.at.equations, *cheap]),
-                ),
-                fold.ranges,
-                np.array([*search.weights[:2], *(1.0 for _ in fold.ranges)]),
-            )
+def _quotient(search: _Search, changes: Sequence[Involution], whole: Chart) -> Iterator[Curve]:
+    """The folds where involutions keep the problem, and limits without a spring's length.
+
+    Minima are searched all about one involution's fixed points; else what is far from all of them as without any.
+    """
+    near = not search.stable or len(changes) > 1
+    for change in changes:
+        around = list(frames(search.problem, change, search.ranges))
+        for frame in around:
+            for fold in folds(search.exact, frame, stable=search.stable, near=near):
+                yield _fold_about(search, fold)
+        search = replace(search, mirrors=(*search.mirrors, around[0]))
+    if near:
+        yield from (_fold(search, whole), *_short_folds(search, whole))
     yield from _points_without_length(search, whole) if len(search.problem.unknowns) == 1 else _cones(search)
+
+
+def _fold_about(search: _Search, fold: Fold) -> Curve:
+    """A fold in coordinates about an involution's fixed points."""
+    cheap, costly = (
+        [*own, *more] if search.dependent else []
+        for own, more in zip(fold.vanishing, _dependent(search, fold.at), strict=True)
+    )
+    return Curve(
+        fold.name + search.where,
+        fold.reason,
+        system(
+            fold.equations,
+            (0, 1, *(FIRST + k for k in range(len(fold.ranges)))),
+            ([f for f in cheap if f.value is None], costly),
+            [
+                *fold.nonnegative,
+                *_far(search, fold.at),
+                *(_semidefinite(fold.at) if search.stable else ()),
+                *_values(search.conditions, fold.at),
+            ],
+            solved=_solved(search, [*fold.equations, *fold.at.equations, *cheap]),
+        ),
+        fold.ranges,
+        np.array([*search.weights[:2], *(1.0 for _ in fold.ranges)]),
+    )
 
 
 def _solved(search: _Search, vanishing: Sequence[Formula]) -> tuple[Quotient, ...]:
@@ -161,6 +182,7 @@ def _fold(search: _Search, at: Chart) -> Curve:
             _dependent(search, at),
             [
                 *(at.lengths[s] - search.short[s] for s in _charted(search, at)),
+                *_far(search, at),
                 *(_semidefinite(at) if search.stable else []),
                 *_values(search.conditions, at),
             ],
@@ -169,6 +191,16 @@ def _fold(search: _Search, at: Chart) -> Curve:
         search.ranges,
         np.array(search.weights),
     )
+
+
+def _far(search: _Search, at: Chart) -> list[Formula]:
+    """What is not negative where configurations are not searched about an involution's fixed points."""
+    angles = [name not in search.problem.reals for name in search.problem.unknowns]
+    unknowns = [
+        Angle(u.graph, {u: 1}) if isinstance(u, Formula) and is_angle else u
+        for u, is_angle in zip(at.unknowns, angles, strict=True)
+    ]
+    return [mirror.distance(unknowns) - NEAR for mirror in search.mirrors]
 
 
 def _semidefinite(at: Chart) -> list[Formula]:
@@ -261,6 +293,7 @@ def _short_folds(search: _Search, at: Chart) -> Iterator[Curve]:
                 [
                     at.springs[s].extent,
                     search.short[s] - at.lengths[s],
+                    *_far(search, at),
                     *semidefinite,
                     *_values(search.conditions, at),
                 ],

@@ -14,10 +14,11 @@ from typing import NamedTuple
 from ptmcad.certified.formula import Formula, Graph
 from ptmcad.certified.plain.angle import Angle, Unknown
 from ptmcad.certified.plain.bounds import TURN, Range
-from ptmcad.certified.plain.involution import Involution, square_of
+from ptmcad.certified.plain.involution import square_of
 from ptmcad.certified.plain.problem import Problem
 from ptmcad.certified.plain.springs import Matrix
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
+from ptmcad.mechanism.involutions import Involution
 
 
 class Place(NamedTuple):
@@ -64,6 +65,20 @@ class Frame:
     def odds(self) -> list[list[tuple[int, int]]]:
         """The same of the odd ones."""
         return [[(k, p.odd_sign) for k, p in enumerate(self.places) if p.odd == o] for o in range(len(self.reaches))]
+
+    def distance(self, unknowns: Sequence[Unknown]) -> Formula:
+        """Of a configuration from its image: of odd coordinates the squares of the sines, or shares of the reach."""
+        graph = unknowns[0].graph
+        total = graph.constant(0)
+        for odd, reach in zip(self.odds, self.reaches, strict=True):
+            k = odd[0][0]
+            q, image, sign = unknowns[k], unknowns[self.change.images[k]], self.change.signs[k]
+            if isinstance(q, Formula) and isinstance(image, Formula):
+                total = total + ((q - sign * image) * (1 / (2 * reach))).squared()
+            elif isinstance(q, Angle) and isinstance(image, Angle):
+                apart = q + -sign * image + Angle(graph, quarters=2 * self.change.halves[k])
+                total = total + (1 - apart.cos()) * Fraction(1, 2)
+        return total
 
     def unknowns(self, evens: Sequence[Formula], odds: Sequence[Formula | Angle], graph: Graph) -> list[Unknown]:
         """What stands for the unknowns.

@@ -21,6 +21,7 @@ from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Angle, Unknown
 from ptmcad.certified.plain.bounds import Range
 from ptmcad.certified.plain.frame import Frame
+from ptmcad.certified.plain.involution import image_of
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial
 from ptmcad.certified.solved import with_formula
@@ -338,7 +339,7 @@ def _springs(at: Coordinates) -> Iterator[_Spring]:
     number = at.coordinate.variable + len(at.w)
     while left:
         k = min(left)
-        image, pull = change.of(left.pop(k)), problem.cones[k].pull
+        image, pull = image_of(left.pop(k), change), problem.cones[k].pull
         other = k
         if image != squares[k]:
             other = next(j for j, f in left.items() if f == image and problem.cones[j].pull == pull)

@@ -18,7 +18,8 @@ Golubitsky, Stewart & Schaeffer, Singularities and Groups in Bifurcation Theory 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 
 from ptmcad.certified.formula import Formula
 from ptmcad.certified.plain.bounds import Range
@@ -27,6 +28,11 @@ from ptmcad.certified.plain.frame import Frame
 from ptmcad.certified.plain.geometry import Geometry
 from ptmcad.certified.plain.opening import Coordinates, Opening, coordinates, opening, stiffness
 from ptmcad.certified.plain.springs import Matrix
+
+NEAR = Fraction(1, 256)
+"""The distance from their images below which configurations are searched about the fixed points."""
+MOST = 0.0626
+"""A little more than the odd coordinates there, or shares of the reach, and twice the tangents of half of these."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,11 +57,17 @@ class Fold:
     ranges: tuple[Range, ...]
 
 
-def folds(exact: Geometry, frame: Frame) -> Iterator[Fold]:
-    """All folds of minima about a component of the fixed points, on it and off it."""
-    yield from _fixed(exact, frame)
-    for lead in range(len(frame.reaches)):
-        yield _moved(exact, frame, lead)
+def folds(exact: Geometry, frame: Frame, *, stable: bool, near: bool) -> Iterator[Fold]:
+    """Folds about a component of the fixed points, on it and off it.
+
+    Parameters
+    ----------
+    stable : whether only those of minima are asked for.
+    near : whether only those `NEAR` it are.
+    """
+    for fold in (*_fixed(exact, frame), *(_moved(exact, frame, lead, near) for lead in range(len(frame.reaches)))):
+        kind, _, _ = fold.name.partition(" ")
+        yield fold if stable else replace(fold, name=kind, reason="equilibria meet: det H = 0", nonnegative=())
 
 
 def _fixed(exact: Geometry, frame: Frame) -> Iterator[Fold]:
@@ -86,21 +98,22 @@ def _fixed(exact: Geometry, frame: Frame) -> Iterator[Fold]:
         )
 
 
-def _moved(exact: Geometry, frame: Frame, lead: int) -> Fold:
+def _moved(exact: Geometry, frame: Frame, lead: int, near: bool) -> Fold:
     """Folds off it, each for its image, too: where the odd coordinate of number ``lead`` is the largest."""
     place = coordinates(frame, lead)
     at = chart(exact, unknowns=place.unknowns())
-    near = opening(place, [spring.vector for spring in at.springs])
-    matrix = _matrix(place, near, frame.block(at.hessian, frame.evens, at.scales, over=False))
+    most = MOST if place.is_turning or frame.reaches[lead] else MOST / 2
+    opened = opening(place, [spring.vector for spring in at.springs])
+    matrix = _matrix(place, opened, frame.block(at.hessian, frame.evens, at.scales, over=False))
     balance = [sum((s * at.equations[k] for k, s in e[1:]), start=at.equations[e[0][0]]) for e in frame.evens]
     return Fold(
         "fold of a stable equilibrium that is not its own image",
         "a minimum meets a saddle: det H = 0 with no negative principal minor; so do their images",
         at,
-        (*balance, near.slope, *near.ratios, determinant(matrix)),
+        (*balance, opened.slope, *opened.ratios, determinant(matrix)),
         (at.equations, ()),
         tuple(principal_minors(matrix)),
-        place.ranges,
+        tuple((0.0, most) if near and k == len(frame.ranges) else r for k, r in enumerate(place.ranges)),
     )
 
 
