@@ -12,21 +12,13 @@ from ptmcad.errors import ConfigError, Faults
 from ptmcad.mechanism.angles import PI
 from ptmcad.mechanism.description import Kind, Parameter, System, UnknownKind
 from ptmcad.mechanism.evaluate import value_at
-from ptmcad.mechanism.reading import (
-    Reader,
-    faulty_entries,
-    name_of,
-    new_name,
-    parameters_of,
-    parsed,
-    title_of,
-    unknowns_of,
-)
+from ptmcad.mechanism.reading import VALUE, Context, new_name, parsed
 from ptmcad.mechanism.sizes import check_sizes
-from ptmcad.text.entry import MAX_ENTRIES, Entry, Place
+from ptmcad.text.codec import Codec, listed, part, reading, record
+from ptmcad.text.entry import Place, from_python
+from ptmcad.text.node import MAX_ENTRIES, Node
 from ptmcad.text.tree import Tree, names_of
 
-SYSTEM_KEYS = ("name", "title", "parameters", "unknowns", "equations", "potential", "positive", "stable")
 DEFAULT_NAME = "system"
 _LISTS = ("equations", "positive", "stable")
 _HOLDING = frozenset({"unknowns", "equations", "potential"})
@@ -53,19 +45,16 @@ def described_system(record: Mapping[str, Any]) -> System:
 
 def read_system(record: Mapping[str, Any], faults: Faults) -> System:
     """As `described_system`, but what is wrong is noted, and left out or replaced."""
-    whole = Entry(record, Place(), faults).fields(SYSTEM_KEYS)
-    name = whole.read("name", name_of, DEFAULT_NAME)
-    title = whole.read("title", lambda entry: title_of(entry.value), "")
-    parameters: dict[str, Parameter] = {}
-    with faults:
-        parameters = parameters_of(whole)
-    unknowns = unknowns_of(whole, parameters)
+    context = Context(faults)
+    codec = system_codec(context)
+    found = codec.read(Node.of(from_python(record, Place()), faults))
     # a key that nobody knows has been told, and may be meant for one of these
-    misspelt = not {"equations", "potential"} & record.keys() and any(key not in SYSTEM_KEYS for key in record)
+    misspelt = not {"equations", "potential"} & record.keys() and not record.keys() <= codec.schema["properties"].keys()
     with faults:
         if ("equations" in record) is ("potential" in record) and not misspelt:
             raise ConfigError("give either equations or a potential", key="equations")
-    texts = _texts(whole)
+    texts: dict[str, Node] = {entry.key: entry for key in (*_LISTS, "potential") for entry in found.pop(key)}
+    parameters, unknowns = context.parameters, context.unknowns
     trees: dict[str, Tree] = {}
     for key, entry in texts.items():
         with faults:
@@ -75,18 +64,18 @@ def read_system(record: Mapping[str, Any], faults: Faults) -> System:
     with faults:
         if len(parameters) > MAX_ENTRIES:
             raise ConfigError(f"{len(parameters)} names of parameters, more than {MAX_ENTRIES}", key="equations")
-    reader = Reader(parameters, unknowns, faulty_entries(faults, "unknowns"))
     for key in trees:
         with faults:
-            trees[key] = tree = reader.tree(texts[key], moving=True)
+            trees[key] = tree = context.reader.tree(texts[key], moving=True)
             if key.startswith("positive.") and not names_of(tree) and value_at(tree, {}) <= 0:
                 raise ConfigError("is never positive: no solution would be counted", key=key)
     equations, positive, stable = (
         tuple(tree for key, tree in trees.items() if key.startswith(f"{part}.")) for part in _LISTS
     )
     system = System(
-        name, parameters, unknowns, equations, trees.get("potential"), positive, stable, source=record, title=title
-    )
+        **{**found, "parameters": parameters}, equations=equations, potential=trees.get("potential"),
+        inequalities=positive, stability=stable, source=record,
+    )  # fmt: skip
     with faults:
         if system.potential is not None and system.stability:
             raise ConfigError("of a potential the Hessian decides what is stable: leave this out", key="stable")
@@ -104,6 +93,22 @@ def read_system(record: Mapping[str, Any], faults: Faults) -> System:
     return system
 
 
+def system_codec(context: Context) -> Codec[dict[str, Any]]:
+    """A system's keys, read in this order; its expressions are left as they are written, one after another."""
+    text = reading(lambda entry: entry, **VALUE)
+    potential = reading(lambda entry: (entry,), **VALUE)
+    equations, positive, stable = (listed(text, None, MAX_ENTRIES, _LIKE[key]) for key in _LISTS)
+    whole: Codec[dict[str, Any]] = record(
+        dict,
+        **context.start(DEFAULT_NAME, "Kinds, defaults and ranges; other names in the equations are numbers."),
+        equations=part(equations, "Each is zero.", ()),
+        potential=part(potential, "Solutions are its critical points.", ()),
+        positive=part(positive, "Strict inequalities that a counted solution satisfies.", ()),
+        stable=part(stable, "A solution is stable where all are positive.", ()),
+    )
+    return whole.narrowed(oneOf=[{"required": ["equations"]}, {"required": ["potential"]}])
+
+
 def _add_names(
     tree: Tree, key: str, parameters: dict[str, Parameter], unknowns: Mapping[str, UnknownKind], faults: Faults
 ) -> None:
@@ -112,14 +117,6 @@ def _add_names(
         with faults:
             if name != PI and name not in parameters and name not in unknowns:
                 parameters[new_name(name, key, {})] = Parameter(name, Kind.NUMBER, "", None)
-
-
-def _texts(record: Entry) -> dict[str, Entry]:
-    """The expressions as written, by their keys."""
-    found = [entry for key in _LISTS for entry in record.at(key, ()).each_item(lambda entry: entry, _LIKE[key])]
-    if record.has("potential"):
-        found.append(record.at("potential"))
-    return {entry.key: entry for entry in found}
 
 
 def _check_unknowns(system: System, faults: Faults) -> None:

@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Model
-from ptmcad.question.config.parameters import unknown_parameter
-from ptmcad.question.config.record import Record, Window, check_axis_name
+from ptmcad.question.config.record import Record, Window, check_axis_name, unknown_parameter
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Count
 from ptmcad.text.entry import Place, Scalar
