@@ -29,7 +29,7 @@ def bodies(context: Context) -> Codec[dict[str, tuple[str, ...]]]:
             "A point, or two coordinates.", instead=((), nothing),
         ),
         angle=part(
-            reading(lambda entry: cosine_and_sine(*context.turned(entry)), **VALUE),
+            reading(lambda entry: cosine_and_sine(*context.angle(entry)), **VALUE),
             "A sum of whole multiples of unknown angles, and of quarter turns such as pi/2.", instead=nothing,
         ),
         points=part(
@@ -46,7 +46,7 @@ def bodies(context: Context) -> Codec[dict[str, tuple[str, ...]]]:
         def read_point(local: Node) -> None:
             new_name(local.name, local.key, context.points)
             context.points[local.name] = at  # known, whatever is wrong with it
-            context.points[local.name] = _placed(at, said["angle"], context.reader.pair(local))
+            context.points[local.name] = _placed(at, said["angle"], context.pair(local))
 
         entry.gathered(read_point, said["points"].values())
         return entry.name, (*held, *said["points"])
@@ -62,7 +62,7 @@ def _frame(entry: Node, context: Context) -> tuple[tuple[str, ...], Place]:
     if isinstance(entry.plain, str):
         name = context.known_point(entry, entry.plain)
         return (name,), context.points[name]
-    return (), context.reader.pair(entry, moving=True)
+    return (), context.pair(entry, moving=True)
 
 
 def _placed(at: Place, turned: Place, local: Place) -> Place:

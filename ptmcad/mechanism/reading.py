@@ -14,7 +14,7 @@ from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
 from ptmcad.mechanism.angles import PI, split_angle, without_quarter_turns
 from ptmcad.mechanism.description import Kind, Parameter, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate, value_at
-from ptmcad.mechanism.sizes import size_of
+from ptmcad.mechanism.sizes import Size, Sizes
 from ptmcad.text.codec import Codec, Key, choice, named, part, reading, record
 from ptmcad.text.entry import as_written
 from ptmcad.text.node import MAX_ENTRIES, Node
@@ -177,9 +177,21 @@ class Context:
         self.points: dict[str, tuple[Tree, Tree]] = Unread()
 
     @cached_property
-    def reader(self) -> Reader:
-        """Of expressions, once parameters and unknowns are read."""
-        return Reader(self.parameters, self.unknowns, faulty_entries(self.faults, "unknowns"), self.second)
+    def fixed(self) -> _Names:
+        """The names of which what no unknown moves is made, once parameters and unknowns are read."""
+        return _Names(self.parameters, (), (*self.unknowns, *self.second), self._doubtful)
+
+    @cached_property
+    def moving(self) -> _Names:
+        """The names of which what unknowns move is made."""
+        angles = [name for name, kind in self.unknowns.items() if kind is UnknownKind.ANGLE]
+        lengths = [name for name in self.unknowns if name not in angles or name in self._doubtful]
+        return _Names((*self.parameters, *lengths), (*angles, *self.second), (), self._doubtful)
+
+    @property
+    def _doubtful(self) -> frozenset[str]:
+        """Unknowns that are faulty themselves: they may stand anywhere."""
+        return faulty_entries(self.faults, "unknowns")
 
     def parameters_of(self, node: Node) -> dict[str, Parameter]:
         """The parameters; one that is faulty is there as a number."""
@@ -205,6 +217,11 @@ class Context:
         last = (Kind.FREE_LENGTH,)
         self.parameters = {n: p for late in (False, True) for n, p in found.items() if (p.kind in last) is late}
         return self.parameters
+
+    def add(self, name: str) -> None:
+        """Take a name for a parameter, of which nothing else is said."""
+        self.parameters[name] = Parameter(name, Kind.NUMBER, "", None)
+        self.moving.constants[name] = None
 
     def unknowns_of(self, node: Node) -> dict[str, UnknownKind]:
         """The unknowns; one that is faulty is there as an angle."""
@@ -254,76 +271,36 @@ class Context:
         """The name of a point that there is."""
         return reading(lambda entry: self.known_point(entry, entry.plain), **NAME_SCHEMA)
 
-    def turned(self, entry: Node) -> tuple[Tree, int]:
-        """A sum of angles, and the quarter turns that are added to it."""
-        return self.reader.angle(entry)
-
-    def symmetry(self, entry: Node) -> dict[str, Tree]:
-        """A substitution."""
-        return self.reader.symmetry(entry)
-
     def value(self, moving: bool = False) -> Codec[Tree]:
-        """An expression in the parameters, and in the unknowns where it may move."""
-        return reading(lambda entry: self.reader.tree(entry, moving=moving), **VALUE)
-
-    def pair(self, moving: bool = False) -> Codec[tuple[Tree, Tree]]:
-        """Two coordinates."""
-        return reading(lambda entry: self.reader.pair(entry, moving=moving), **two(VALUE))
-
-    def angle(self) -> Codec[tuple[Tree, int]]:
-        """A sum of angles, and the quarter turns that are added to it."""
-        return reading(self.turned, **VALUE)
+        """The codec of an expression in the parameters, and in the unknowns where it may move."""
+        return reading(lambda entry: self.tree(entry, moving), **VALUE)
 
     def between(self) -> Codec[tuple[str, str]]:
         """Two points that there are."""
         return reading(lambda entry: ends(entry, self.points), **two(NAME_SCHEMA), description="Two points.")
 
+    # ------------------------------------------------------------------------------------------------- expressions
 
-# ------------------------------------------------------------------------------------------------------- expressions
+    def tree(self, entry: Node, moving: bool = False) -> Tree:
+        """An expression in the parameters, and in the unknowns where it may move.
 
-
-class Reader:
-    """Reads expressions, and refuses those without a value in every ring.
-
-    Parameters
-    ----------
-    doubtful : names of unknowns that are faulty themselves: they may stand anywhere.
-    second : names of angles that follow from unknown ones.
-    """
-
-    def __init__(
-        self,
-        parameters: Mapping[str, Parameter],
-        unknowns: Mapping[str, UnknownKind],
-        doubtful: frozenset[str] = frozenset(),
-        second: Sequence[str] = (),
-    ):
-        lengths = [name for name, kind in unknowns.items() if kind is not UnknownKind.ANGLE or name in doubtful]
-        angles = [name for name, kind in unknowns.items() if kind is UnknownKind.ANGLE]
-        self.second = frozenset(second)
-        self.excluded = frozenset((*unknowns, *second))
-        self.fixed = _Names(parameters, (), (*unknowns, *second), doubtful)
-        self.moving = _Names((*parameters, *lengths), (*angles, *second), (), doubtful)
-        self.names = dict.fromkeys((*parameters, *unknowns))
-
-    def tree(self, entry: Node, *, moving: bool = False) -> Tree:
-        """An expression in the parameters, and in the unknowns where it may move."""
+        Quarter turns in cosines and sines are worked out, once it was found to have a value.
+        """
         tree = parsed(entry)
-        return located(lambda: self._without_offsets(tree, self.moving if moving else self.fixed), entry)
 
-    @staticmethod
-    def _without_offsets(tree: Tree, names: _Names) -> Tree:
-        """The tree with quarter turns in cosines and sines worked out, once it was found to have a value."""
-        turned = without_quarter_turns(tree)
-        evaluate(turned, names)
-        size_of(turned)
-        return turned
+        def read() -> Tree:
+            turned = without_quarter_turns(tree)
+            if evaluate(turned, self.moving if moving else self.fixed).degree > MAX_DEGREE:
+                raise ExpressionError(f"the degree exceeds {MAX_DEGREE}")
+            return turned
+
+        return located(read, entry)
 
     def pair(
-        self, entry: Node, *, moving: bool = False, what: str = "coordinates", like: str = "[rho, 0]"
+        self, entry: Node, moving: bool = False, what: str = "coordinates", like: str = "[rho, 0]"
     ) -> tuple[Tree, Tree]:
         """Two coordinates or components; what they are, and an example, are for messages."""
-        first, second = (self.tree(one, moving=moving) for one in entry.pair(f"two {what},", like))
+        first, second = (self.tree(one, moving) for one in entry.pair(f"two {what},", like))
         return first, second
 
     def angle(self, entry: Node) -> tuple[Tree, int]:
@@ -339,18 +316,17 @@ class Reader:
 
     def symmetry(self, entry: Node) -> dict[str, Tree]:
         """A substitution; angles stand in it as they are."""
-        trees = {}
+        names, trees = {**self.parameters, **self.unknowns}, {}
         for name, image in entry.mapping().items():
-            tree = parsed(image)
-            for used in (name, *names_of(tree)):
-                if used not in self.names:
-                    raise image.fault(f"unknown name '{used}'{did_you_mean(used, self.names)}")
-            trees[name] = tree
+            trees[name] = parsed(image)
+            for used in (name, *names_of(trees[name])):
+                if used not in names:
+                    raise image.fault(f"unknown name '{used}'{did_you_mean(used, names)}")
         return trees
 
 
-class _Names:
-    """The ring in which only names and degrees count.
+class _Names(Sizes):
+    """The ring in which trees have their sizes as values, and names are refused that have none here.
 
     Parameters
     ----------
@@ -367,16 +343,13 @@ class _Names:
         self.constants, self.angles, self.excluded = map(dict.fromkeys, (constants, angles, excluded))
         self.doubtful = doubtful
 
-    def constant(self, value: Fraction) -> _Degree:
-        return _Degree(0)
-
-    def parameter(self, name: str) -> _Degree:
+    def parameter(self, name: str) -> Size:
         if name in self.angles and name not in self.doubtful:
             raise ExpressionError(f"{name} is an angle: it stands inside of cos or sin")
         self._check(name, self.constants)
-        return _Degree(1)
+        return super().parameter(name)
 
-    def cos(self, angle: str) -> _Degree:
+    def cos(self, angle: str) -> Size:
         if angle in self.constants and angle not in self.doubtful:
             # of a rational angle neither is rational, so that no axis could be one
             raise ExpressionError(
@@ -384,9 +357,11 @@ class _Names:
                 "(1 - t^2)/(1 + t^2) and 2*t/(1 + t^2), t the tangent of its half"
             )
         self._check(angle, self.angles)
-        return _Degree(1)
+        return super().parameter(f"cos {angle}")
 
-    sin = cos
+    def sin(self, angle: str) -> Size:
+        self._check(angle, self.angles)  # the cosine was asked for before
+        return super().parameter(f"sin {angle}")
 
     def _check(self, name: str, known: Mapping[str, None]) -> None:
         if name in self.doubtful:
@@ -400,25 +375,6 @@ class _Names:
                 f"; the names are {', '.join(known)}" if known else "; no name is known here"
             )
             raise ExpressionError(f"unknown name '{name[:MAX_NAME]}'{hint}")
-
-
-class _Degree:
-    """What is known of an element: a bound of its degree."""
-
-    __slots__ = ("bound",)
-
-    def __init__(self, bound: int):
-        self.bound = bound
-
-    def __add__(self, other: _Degree) -> _Degree:
-        return self if self.bound >= other.bound else other
-
-    __sub__ = __add__
-
-    def __mul__(self, other: _Degree) -> _Degree:
-        if self.bound + other.bound > MAX_DEGREE:
-            raise ExpressionError(f"the degree exceeds {MAX_DEGREE}")
-        return _Degree(self.bound + other.bound)
 
 
 def parsed(entry: Node) -> Tree:

@@ -81,8 +81,8 @@ def mechanism_codec(context: Context) -> Codec[dict[str, Any]]:
     torsion: Codec[dict[str, Any]] = record(
         dict, "{angle: th, k: 1}",
         angle=part(
-            context.angle(), "A sum of whole multiples of unknown angles, and of quarter turns such as pi/2.",
-            instead=(ZERO, 0),
+            reading(context.angle, **VALUE),
+            "A sum of whole multiples of unknown angles, and of quarter turns such as pi/2.", instead=(ZERO, 0),
         ),
         k=part(value, "Stiffness, a moment.", instead=_ONE),
         rest=part(
@@ -207,7 +207,7 @@ def _points(node: Node, context: Context) -> dict[str, tuple[Tree, Tree]]:
     def read(entry: Node) -> None:
         context.points[entry.name] = (ZERO, ZERO)  # known, whatever is wrong with it
         new_name(entry.name, entry.key, {})
-        context.points[entry.name] = context.reader.pair(entry, moving=True)
+        context.points[entry.name] = context.pair(entry, moving=True)
 
     node.gathered(read, entries.values())
     return context.points
@@ -249,7 +249,7 @@ def _load(context: Context) -> Codec[tuple[Tree, Tree]]:
     def read(entry: Node) -> tuple[Tree, Tree]:
         if entry.is_mapping:
             return weight.read(entry)
-        return context.reader.pair(entry, what="components", like="[0, -W], or {weight: W}")
+        return context.pair(entry, what="components", like="[0, -W], or {weight: W}")
 
     return reading(read, anyOf=[two(VALUE), weight.schema])
 

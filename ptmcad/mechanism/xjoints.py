@@ -37,12 +37,12 @@ def xjoints(context: Context) -> Codec[tuple[XJoint, ...]]:
         base=part(context.between(), "Left and right end of what the joint stands on."),
         bars=part(context.value(), "Their length, which is not the base's."),
         angles=part(
-            reading(lambda entry: entry.pair("two names,", "[th, psi]", "expected two names, such as [th, psi]"), **names),
+            reading(lambda entry: _two_names(entry, "[th, psi]"), **names),
             "Of the bars from the base's left and right end, against the base: an unknown, and a new name for the one "
             "that follows from it.",
         ),
         top=part(
-            reading(lambda entry: entry.pair("two names,", "[C, D]", "expected two names, such as [C, D]"), **names),
+            reading(lambda entry: _two_names(entry, "[C, D]"), **names),
             "New points: where the bar from the base's right end arrives, and the one from the left end.",
         ),
     )  # fmt: skip
@@ -71,12 +71,16 @@ def xjoints(context: Context) -> Codec[tuple[XJoint, ...]]:
     return reading(read_all, **{**named(joint, most=MAX_UNKNOWNS).schema, "propertyNames": NAME_SCHEMA})
 
 
+def _two_names(entry: Node, like: str) -> tuple[Node, Node]:
+    return entry.pair("two names,", like, f"expected two names, such as {like}")
+
+
 def _joint(name: str, said: Mapping[str, Any], context: Context, below: Mapping[str, XJoint]) -> XJoint:
     base, bars = said["base"], said["bars"]
     angle, other = said["angles"]
     taken = {**context.parameters, **context.unknowns, **{joint.other: joint for joint in below.values()}}
     second = new_name(other.plain, other.key, taken)
-    moving = context.reader.moving.angles
+    moving = context.moving.angles
     first = angle.plain
     if first not in moving or first in context.second:
         raise angle.fault(f"{as_written(first)} is no unknown angle")
@@ -89,7 +93,7 @@ def _joint(name: str, said: Mapping[str, Any], context: Context, below: Mapping[
     if under is not None:
         return XJoint(name, base, top, first, second, under.length, bars, *under.upper)
     (x, y), (x1, y1) = (context.points[p] for p in base)
-    movers = {*moving, *(u for u in taken if u in context.reader.excluded)}
+    movers = {*moving, *context.unknowns, *context.second}
     if y != y1 or movers & {*names_of(x), *names_of(x1), *names_of(y)}:
         raise ConfigError(
             "the base of an x-joint is the top of another one above, as [left, right], or two points that no unknown "

@@ -316,6 +316,17 @@ def record_of(
     return made.narrowed(**{_CLASS: kind.__name__})
 
 
+def row_of(kind: type[T], make: Callable[..., T] | None = None) -> Codec[T]:
+    """A list of the fields of a dataclass, in their order; those with a default may be missing at its end."""
+    names = tuple(field.name for field in _fields(kind))
+    codecs = [codec_of(hint) for hint in _hints(cast(Hashable, kind), names).values()]
+
+    def read(node: Node) -> T:
+        return node.made(make or kind, *(c.read(p) for c, p in zip(codecs, node.items(most=len(names)), strict=False)))
+
+    return Codec(lambda value: [c.write(v) for c, v in zip(codecs, attrgetter(*names)(value), strict=True)], read)
+
+
 def unless_default(kind: type, *names: str, known: Known = _ALIKE) -> dict[str, Key]:
     """Keys of fields that are left out where a field has its default."""
     keys, hints = {}, _hints(kind, names)

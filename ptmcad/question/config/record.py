@@ -189,8 +189,8 @@ def record_codec(model: Model | None) -> Codec[dict[str, Any]]:
         system=part(told, "Another parametric system, in place of a mechanism.", None),
         parameters=part(
             reading(lambda node: _values(node, model), type=["object", "null"], additionalProperties=VALUE),
-            f"Fixed values, or expressions in the axes and in other parameters ({FORCE}: F, {SECOND}: 2*{THIRD}). Below "
-            f"are those of the mechanism {ptm().name}; others have their own.", {},
+            f"Fixed values, or expressions in the axes and in other parameters ({FORCE}: F, {SECOND}: 2*{THIRD}). "
+            f"Below are those of the mechanism {ptm().name}; others have their own.", {},
         )._replace(field="values"),
         axes=part(
             reading(_axes, **windows, minProperties=2, maxProperties=2),

@@ -47,7 +47,7 @@ def record_schema() -> dict[str, Any]:
     }
     whole, names = read["properties"], [name for name in NAMES if starter_mechanism(name) is not None]
     models = [{"enum": names}, {"type": "string", "pattern": "[.](yaml|yml|YAML|YML)$"}, {"$ref": "#/$defs/mechanism"}]
-    own = {
+    own: dict[str, Any] = {
         "mechanism": {"anyOf": models},
         "system": {"$ref": "#/$defs/system"},
         "parameters": {"properties": parameters},
@@ -58,8 +58,8 @@ def record_schema() -> dict[str, Any]:
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "$id": "urn:ptmcad:record",
         "title": "ptmcad problem record",
-        "description": "A two-parameter slice of a planar mechanism or of another parametric system. Numbers are exact: "
-        "0.1 is 1/10.",
+        "description": "A two-parameter slice of a planar mechanism or of another parametric system. Numbers are "
+        "exact: 0.1 is 1/10.",
         **read,
         "required": ["axes"],
         "properties": {name: {**said, **own.get(name, {})} for name, said in whole.items()},
