@@ -178,7 +178,8 @@ def _verified_sweep(
     folder: Path, seed: int | None, boxes: int | None, effort: int | None, progress: Progress
 ) -> VerifyReport:
     """Each member's map, and what the index holds of it."""
-    from ptmcad.sweeping.index import UNTOLD, member_map, members, read_sweep
+    from ptmcad.answer.widths import Attainment
+    from ptmcad.sweeping.index import member_map, members, read_sweep
     from ptmcad.sweeping.member import Wanted, summary_of
     from ptmcad.verification import VerifyReport, verify
     from ptmcad.verification.report import Headway, Unchecked, Violation, checked
@@ -205,7 +206,7 @@ def _verified_sweep(
         areas = any(area.area != ("", "") for area in summary.areas)
         true = summary_of(stored, Wanted(areas=areas, along=along))
         widest, untold = summary.widest, ""
-        if widest is not None and widest.proof == UNTOLD:
+        if widest is not None and widest.proof == Attainment.UNDECIDED.value:
             untold = "; where a width is attained"
             if true.widest is not None and _meet(widest.width, true.widest.width):
                 true = replace(true, widest=widest)  # an earlier version found it, with bounds of its own

@@ -10,7 +10,7 @@ from fractions import Fraction
 
 from ptmcad.errors import ExpressionError
 from ptmcad.mechanism.evaluate import FIXED_ANGLE, multiples, multiples_with_positions
-from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree, names_of
+from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Step, Tree, mapped, names_of
 
 PI = "pi"
 
@@ -60,23 +60,17 @@ def without_quarter_turns(tree: Tree) -> Tree:
     ExpressionError
         When one has a part that is no multiple of pi/2; with its position.
     """
-    if PI not in names_of(tree):
-        return tree
-    match tree:
-        case Chain(first, steps):
-            parts = tuple(step._replace(operand=without_quarter_turns(step.operand)) for step in steps)
-            return Chain(without_quarter_turns(first), parts)
-        case Power(base, exponent, position):
-            return Power(without_quarter_turns(base), without_quarter_turns(exponent), position)
-        case Negative(operand, position):
-            return Negative(without_quarter_turns(operand), position)
-        case Call(function, argument, position):
-            try:
-                pair = cosine_and_sine(*split_angle(argument))
-            except ExpressionError as error:
-                raise ExpressionError(error.message, position if error.position is None else error.position) from None
-            return pair[0 if function == "cos" else 1]
-    return tree
+    return mapped(tree, _of_varying_angle) if PI in names_of(tree) else tree
+
+
+def _of_varying_angle(part: Tree) -> Tree | None:
+    if not isinstance(part, Call):
+        return None
+    try:
+        pair = cosine_and_sine(*split_angle(part.argument))
+    except ExpressionError as error:
+        raise ExpressionError(error.message, part.position if error.position is None else error.position) from None
+    return pair[0 if part.function == "cos" else 1]
 
 
 def _without_pi(parts: Mapping[str, Fraction], positions: Mapping[str, int]) -> Tree:

@@ -5,48 +5,64 @@ Guarantee: distances within a body are constant, as `ptmcad.mechanism.proofs` pr
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 from ptmcad.mechanism.angles import cosine_and_sine
-from ptmcad.mechanism.reading import MAX_BODIES, Reader, new_name, point_name
-from ptmcad.text.entry import Entry
+from ptmcad.mechanism.reading import MAX_BODIES, NAME_SCHEMA, POINTS, VALUE, ZERO, Context, new_name, two
+from ptmcad.text.codec import Codec, named, part, reading, record
+from ptmcad.text.node import Node
 from ptmcad.text.tree import Chain, Step, Tree
 
-BODY_KEYS = ("at", "angle", "points")
 Place = tuple[Tree, Tree]
 
 
-def add_bodies(bodies: Entry, reader: Reader, points: dict[str, Place]) -> dict[str, tuple[str, ...]]:
-    """Add the bodies' points to the others; bodies to the names of their points.
+def bodies(context: Context) -> Codec[dict[str, tuple[str, ...]]]:
+    """The bodies, to the names of their points, which are added to the others.
 
     A body may be at a point of a body above it.
     """
-    found: dict[str, tuple[str, ...]] = {}
-    faults = bodies.faults
-    for name, entry in bodies.entries(most=MAX_BODIES).items():
-        with faults:
-            new_name(name, entry.key, {})
-            fields = entry.fields(BODY_KEYS, BODY_KEYS, "{at: P, angle: phi, points: {Q: [1, 0]}}")
-            local = fields.at("points", {}).entries("{Q: [1, 0]}")
-            held = fields.at("at").value
-            found[name] = (*((held,) if isinstance(held, str) else ()), *local)
-            nothing = reader.tree(entry._replace(value=0))
-            at = fields.read("at", lambda part: _frame(part, reader, points), (nothing, nothing))
-            turned = fields.read("angle", lambda part: cosine_and_sine(*reader.angle(part)), (nothing, nothing))
-            for point, pair in local.items():
-                with faults:
-                    new_name(point, pair.key, points)
-                    points[point] = at  # known, whatever is wrong with it
-                    points[point] = _placed(at, turned, reader.pair(pair))
-    return found
+    nothing = (ZERO, ZERO)
+    body: Codec[dict[str, Any]] = record(
+        dict, "{at: P, angle: phi, points: {Q: [1, 0]}}",
+        at=part(
+            reading(lambda entry: _frame(entry, context), anyOf=[NAME_SCHEMA, two(VALUE)]),
+            "A point, or two coordinates.", instead=((), nothing),
+        ),
+        angle=part(
+            reading(lambda entry: cosine_and_sine(*context.angle(entry)), **VALUE),
+            "A sum of whole multiples of unknown angles, and of quarter turns such as pi/2.", instead=nothing,
+        ),
+        points=part(
+            reading(lambda entry: entry.mapping(like="{Q: [1, 0]}"), **POINTS),
+            "Local coordinates, in parameters only.", instead={},
+        ),
+    )  # fmt: skip
+
+    def read(entry: Node) -> tuple[str, tuple[str, ...]]:
+        new_name(entry.name, entry.key, {})
+        said = body.read(entry)
+        held, at = said["at"]
+
+        def read_point(local: Node) -> None:
+            new_name(local.name, local.key, context.points)
+            context.points[local.name] = at  # known, whatever is wrong with it
+            context.points[local.name] = _placed(at, said["angle"], context.pair(local))
+
+        entry.gathered(read_point, said["points"].values())
+        return entry.name, (*held, *said["points"])
+
+    return reading(
+        lambda node: dict(node.gathered(read, node.mapping(MAX_BODIES).values())),
+        **{**named(body, most=MAX_BODIES).schema, "propertyNames": NAME_SCHEMA},
+    )
 
 
-def _frame(entry: Entry, reader: Reader, points: Mapping[str, Place]) -> Place:
-    """Where a body is: at a point, or at coordinates."""
-    if isinstance(entry.value, str):
-        return points[point_name(entry.value, entry.key, points)]
-    return reader.pair(entry, moving=True)
+def _frame(entry: Node, context: Context) -> tuple[tuple[str, ...], Place]:
+    """Where a body is: at a point, which has a name, or at coordinates."""
+    if isinstance(entry.plain, str):
+        name = context.known_point(entry, entry.plain)
+        return (name,), context.points[name]
+    return (), context.pair(entry, moving=True)
 
 
 def _placed(at: Place, turned: Place, local: Place) -> Place:

@@ -47,6 +47,25 @@ RECORD = {
     ],
 }  # fmt: skip
 
+MEANINGS = {
+    "L1": "Length of the rod A1A3.",
+    "L2": "Length of the rod A2A4.",
+    "rho": "Distance A1A2 of the two pivots.",
+    "k": "Stiffness of the springs, force per length.",
+    "k1": "Stiffness of the spring A1A4.",
+    "k2": "Stiffness of the spring A2A3.",
+    "k3": "Stiffness of the spring A3A4.",
+    "F3": "Vertical force at A3, upwards.",
+    "F4": "Vertical force at A4, upwards.",
+    "F3x": "Horizontal force at A3, to the right.",
+    "F4x": "Horizontal force at A4, to the right.",
+    "l0": "Free length of the springs.",
+    "l0_1": "Free length of A1A4.",
+    "l0_2": "Free length of A2A3.",
+    "l0_3": "Free length of A3A4.",
+}
+"""What its parameters are, for people."""
+
 
 @lru_cache(maxsize=1)
 def ptm() -> Mechanism:

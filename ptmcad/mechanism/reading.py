@@ -6,19 +6,21 @@ Guarantee: an expression that leaves here has a value in every ring (`ptmcad.mec
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from enum import Enum
 from fractions import Fraction
-from typing import TypeVar
+from functools import cached_property
+from typing import Any, TypeVar
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
 from ptmcad.mechanism.angles import PI, split_angle, without_quarter_turns
 from ptmcad.mechanism.description import Kind, Parameter, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate, value_at
-from ptmcad.mechanism.sizes import size_of
-from ptmcad.text.entry import Entry, as_written
+from ptmcad.mechanism.sizes import Size, Sizes
+from ptmcad.text.codec import Codec, Key, choice, named, part, reading, record
+from ptmcad.text.entry import as_written
+from ptmcad.text.node import MAX_ENTRIES, Node
 from ptmcad.text.numerals import FINITE
 from ptmcad.text.syntax import NAME, NOT_NUMBERS, did_you_mean, parse
-from ptmcad.text.tree import FUNCTIONS, Call, Negative, Number, Tree, names_of
+from ptmcad.text.tree import FUNCTIONS, Call, Number, Tree, names_of
 from ptmcad.text.tree import to_text as text_of
 
 MAX_NAME = 40
@@ -28,28 +30,24 @@ MAX_DEGREE = 64
 MAX_UNKNOWNS = 12
 MAX_BODIES = 100
 """One may be at a point of another, whose coordinates then stand in its own."""
-PARAMETER_KEYS = ("kind", "default", "range", "alias")
 _EXPRESSIONS = ": what depends on other parameters is written under the record's 'parameters:'"
 _UNSET = frozenset({Kind.FREE_LENGTH, Kind.FORCE, Kind.ANGLE})
 """Kinds that are zero where nothing is said."""
-_Member = TypeVar("_Member", bound=Enum)
 _T = TypeVar("_T")
+ZERO: Tree = Number(Fraction(0))
+VALUE, NUMBER, NAME_SCHEMA = ({"$ref": f"#/$defs/{name}"} for name in ("value", "number", "name"))
+"""Schemas of a record's leaves: an expression, a number, and a name."""
+
+
+def two(items: Mapping[str, str]) -> dict[str, Any]:
+    """The schema of a list of two."""
+    return {"type": "array", "minItems": 2, "maxItems": 2, "items": items}
 
 
 def faulty_entries(faults: Faults, part: str) -> frozenset[str]:
     """The entries of a part of a description of which something is noted."""
     keys = ((fault.key or "").split(".") for fault in faults.found)
     return frozenset(steps[1] for steps in keys if len(steps) > 1 and steps[0] == part)
-
-
-def member(kinds: type[_Member], entry: Entry) -> _Member:
-    """The member of an enumeration that a word stands for."""
-    for kind in kinds:
-        if kind.value == entry.value:
-            return kind
-    words = [str(kind.value) for kind in kinds]
-    hint = did_you_mean(str(entry.value), words)
-    raise entry.error(f"{as_written(entry.value)} is none of {', '.join(words)}{hint}")
 
 
 # ------------------------------------------------------------------------------------------------------------- names
@@ -69,9 +67,9 @@ def new_name(name: object, key: str, taken: Mapping[str, object]) -> str:
     return name
 
 
-def name_of(entry: Entry) -> str:
-    """The name of what is described."""
-    return new_name(entry.value, entry.key, {})
+def name_of(entry: Node) -> str:
+    """A name that anything may have."""
+    return new_name(entry.plain, entry.key, {})
 
 
 def title_of(title: object) -> str:
@@ -99,7 +97,7 @@ class Unread(dict[str, tuple[Tree, Tree]]):
     """Points of which nothing is known, because what lists them is missing or faulty: any name may be one's."""
 
     def __missing__(self, name: str) -> tuple[Tree, Tree]:
-        return Number(Fraction(0)), Number(Fraction(0))
+        return ZERO, ZERO
 
 
 def point_name(name: object, key: str, points: Mapping[str, object]) -> str:
@@ -116,115 +114,196 @@ def point_name(name: object, key: str, points: Mapping[str, object]) -> str:
     return name
 
 
-def ends(entry: Entry, points: Mapping[str, object]) -> tuple[str, str]:
+def ends(entry: Node, points: Mapping[str, object]) -> tuple[str, str]:
     """The names of two different points."""
-    start, end = (point_name(part.value, entry.key, points) for part in entry.pair("two points,", "[A1, A3]"))
+    start, end = (point_name(end.plain, entry.key, points) for end in entry.pair("two points,", "[A1, A3]"))
     if start == end:
-        raise entry.error(f"both ends are {start}")
+        raise entry.fault(f"both ends are {start}")
     return start, end
 
 
 # ------------------------------------------------------------------------------------------- parameters and unknowns
 
 
-def parameters_of(record: Entry) -> dict[str, Parameter]:
-    """The parameters of a record; one that is faulty is there as a number."""
-    found: dict[str, Parameter] = {}
-    entries = record.at("parameters", {}).entries()
-    for name, entry in entries.items():
-        with record.faults:
-            new_name(name, entry.key, found)
-            found[name] = Parameter(name, Kind.NUMBER, "", None)
-            entry.entries(like="{kind: length, default: 1}, or {} for a number")
-            fields = entry.fields(PARAMETER_KEYS)
-            kind = member(Kind, fields.at("kind", Kind.NUMBER.value))
-            default = constant(fields.at("default"), _EXPRESSIONS) if fields.has("default") else ""
-            if not default and kind in _UNSET:
-                default = "0"
-            found[name] = Parameter(name, kind, default, _window(fields.at("range")) if fields.has("range") else None)
-            for alias in fields.at("alias", ()).items("[k1, k2]"):
-                with record.faults:
-                    new_name(alias.value, alias.key, {})
-                    if alias.value in entries:
-                        raise alias.error(f"'{alias.value}' is a parameter of its own: leave one out")
-                    new_name(alias.value, alias.key, found)
-                    found[alias.value] = Parameter(alias.value, kind, name, found[name].window, name)
-    return {name: p for last in (False, True) for name, p in found.items() if (p.kind is Kind.FREE_LENGTH) is last}
-
-
-def _window(entry: Entry) -> tuple[str, str]:
+def _window(entry: Node) -> tuple[str, str]:
     low, high = (constant(end) for end in entry.pair("a range", "[0, 2]"))
     if value_at(parse(low), {}) >= value_at(parse(high), {}):
-        raise entry.error(f"the range is reversed or empty: {low} to {high}")
+        raise entry.fault(f"the range is reversed or empty: {low} to {high}")
     return low, high
 
 
-def unknowns_of(record: Entry, taken: Mapping[str, object]) -> dict[str, UnknownKind]:
-    """The unknowns of a record."""
-    found: dict[str, UnknownKind] = {}
-    unknowns = record.at("unknowns")
-    with record.faults:
-        if not record.has("unknowns"):
-            raise unknowns.error("is missing")
-        entries = unknowns.entries("{th: angle, x: real}", MAX_UNKNOWNS)
-        if not entries:
-            raise unknowns.error("there is none")
-        for name, entry in entries.items():
-            with record.faults:
-                new_name(name, entry.key, taken)
-                found[name] = UnknownKind.ANGLE  # known, whatever is wrong with it
-                found[name] = member(UnknownKind, entry)
-    return found
+_PARAMETER: Codec[dict[str, Any]] = record(
+    dict, "{kind: length, default: 1}, or {} for a number",
+    kind=part(choice(Kind), default=Kind.NUMBER, shown=Kind.NUMBER.value),
+    default=part(reading(lambda entry: constant(entry, _EXPRESSIONS), **NUMBER), default=""),
+    range=part(reading(_window, **two(NUMBER)), "What --slice takes for it.", None),
+    alias=part(
+        reading(lambda entry: entry.items(like="[k1, k2]"), type="array", maxItems=MAX_ENTRIES, items=NAME_SCHEMA),
+        "Parameters for which this one stands where they are not given.", (),
+    ),
+)  # fmt: skip
+_UNKNOWN = choice(UnknownKind)
+DEFINITIONS = {
+    "parameters": {
+        **named(_PARAMETER, most=MAX_ENTRIES).schema, "propertyNames": NAME_SCHEMA,
+        "description": "Names to what they measure, defaults and usual ranges. Something has to use each: the "
+        "description, or an expression under the record's parameters.",
+    },
+    "unknowns": {
+        **named(_UNKNOWN, most=MAX_UNKNOWNS).schema, "minProperties": 1, "propertyNames": NAME_SCHEMA,
+        "description": "Names to where they live: angle on the circle; length and real on the line.",
+    },
+}  # fmt: skip
+"""Schemas of what mechanisms and systems have."""
+POINTS = {
+    "type": "object", "maxProperties": MAX_ENTRIES, "propertyNames": NAME_SCHEMA, "additionalProperties": two(VALUE),
+}  # fmt: skip
 
 
-# ------------------------------------------------------------------------------------------------------- expressions
+class Context:
+    """What has been read of a description, to which its further parts refer; their codecs, of mappings as of keys.
 
-
-class Reader:
-    """Reads expressions, and refuses those without a value in every ring.
-
-    Parameters
+    Attributes
     ----------
-    doubtful : names of unknowns that are faulty themselves: they may stand anywhere.
+    points : of which there may be any until they are known.
     second : names of angles that follow from unknown ones.
     """
 
-    def __init__(
-        self,
-        parameters: Mapping[str, Parameter],
-        unknowns: Mapping[str, UnknownKind],
-        doubtful: frozenset[str] = frozenset(),
-        second: Sequence[str] = (),
-    ):
-        lengths = [name for name, kind in unknowns.items() if kind is not UnknownKind.ANGLE or name in doubtful]
-        angles = [name for name, kind in unknowns.items() if kind is UnknownKind.ANGLE]
-        self.second = frozenset(second)
-        self.excluded = frozenset((*unknowns, *second))
-        self.fixed = _Names(parameters, (), (*unknowns, *second), doubtful)
-        self.moving = _Names((*parameters, *lengths), (*angles, *second), (), doubtful)
-        self.names = dict.fromkeys((*parameters, *unknowns))
+    def __init__(self, faults: Faults, second: Sequence[str] = ()):
+        self.faults = faults
+        self.second = second
+        self.parameters: dict[str, Parameter] = {}
+        self.unknowns: dict[str, UnknownKind] = {}
+        self.points: dict[str, tuple[Tree, Tree]] = Unread()
 
-    def tree(self, entry: Entry, *, moving: bool = False) -> Tree:
-        """An expression in the parameters, and in the unknowns where it may move."""
+    @cached_property
+    def fixed(self) -> _Names:
+        """The names of which what no unknown moves is made, once parameters and unknowns are read."""
+        return _Names(self.parameters, (), (*self.unknowns, *self.second), self._doubtful)
+
+    @cached_property
+    def moving(self) -> _Names:
+        """The names of which what unknowns move is made."""
+        angles = [name for name, kind in self.unknowns.items() if kind is UnknownKind.ANGLE]
+        lengths = [name for name in self.unknowns if name not in angles or name in self._doubtful]
+        return _Names((*self.parameters, *lengths), (*angles, *self.second), (), self._doubtful)
+
+    @property
+    def _doubtful(self) -> frozenset[str]:
+        """Unknowns that are faulty themselves: they may stand anywhere."""
+        return faulty_entries(self.faults, "unknowns")
+
+    def parameters_of(self, node: Node) -> dict[str, Parameter]:
+        """The parameters; one that is faulty is there as a number."""
+        entries, found = node.mapping(), dict[str, Parameter]()
+
+        def read(entry: Node) -> None:
+            name = new_name(entry.name, entry.key, found)
+            found[name] = Parameter(name, Kind.NUMBER, "", None)
+            said = _PARAMETER.read(entry)
+            kind, default = said["kind"], said["default"]
+            if not default and kind in _UNSET:
+                default = "0"
+            found[name] = Parameter(name, kind, default, said["range"])
+            for alias in said["alias"]:
+                with self.faults:
+                    other = name_of(alias)
+                    if other in entries:
+                        raise alias.fault(f"'{other}' is a parameter of its own: leave one out")
+                    new_name(other, alias.key, found)
+                    found[other] = Parameter(other, kind, name, found[name].window, name)
+
+        node.gathered(read, entries.values())
+        last = (Kind.FREE_LENGTH,)
+        self.parameters = {n: p for late in (False, True) for n, p in found.items() if (p.kind in last) is late}
+        return self.parameters
+
+    def add(self, name: str) -> None:
+        """Take a name for a parameter, of which nothing else is said."""
+        self.parameters[name] = Parameter(name, Kind.NUMBER, "", None)
+        self.moving.constants[name] = None
+
+    def unknowns_of(self, node: Node) -> dict[str, UnknownKind]:
+        """The unknowns; one that is faulty is there as an angle."""
+
+        def read(entry: Node) -> None:
+            new_name(entry.name, entry.key, self.parameters)
+            self.unknowns[entry.name] = UnknownKind.ANGLE
+            self.unknowns[entry.name] = _UNKNOWN.read(entry)
+
+        entries = node.mapping(MAX_UNKNOWNS, "{th: angle, x: real}")
+        if not entries:
+            raise node.fault("there is none")
+        node.gathered(read, entries.values())
+        return self.unknowns
+
+    def start(self, name: str, parameters: str = "") -> dict[str, Key]:
+        """The keys with which every description begins.
+
+        Parameters
+        ----------
+        name : that it has by default.
+        parameters : what these are, where it is not what they mostly are.
+        """
+        known, unknown = ({"$ref": f"#/$defs/{key}"} for key in DEFINITIONS)
+        return {
+            "name": part(reading(name_of, **NAME_SCHEMA), "A name of its own.", name, shown=name),
+            "title": part(
+                reading(lambda entry: title_of(entry.plain), type="string", maxLength=MAX_TITLE),
+                "What the report calls it, by default its name.", "",
+            ),
+            "parameters": part(reading(self.parameters_of, **known), parameters, {}),
+            "unknowns": part(reading(self.unknowns_of, **unknown), instead={}),
+        }  # fmt: skip
+
+    def known_point(self, entry: Node, name: str) -> str:
+        """The name of a point that there is."""
+        return point_name(name, entry.key, self.points)
+
+    def known_unknown(self, entry: Node, name: str) -> str:
+        """The name of an unknown that there is."""
+        if name not in self.unknowns:
+            hint = did_you_mean(name, self.unknowns) or f"; they are {', '.join(self.unknowns)}"
+            raise entry.fault(f"there is no unknown {quoted(name)}{hint}")
+        return name
+
+    def point(self) -> Codec[str]:
+        """The name of a point that there is."""
+        return reading(lambda entry: self.known_point(entry, entry.plain), **NAME_SCHEMA)
+
+    def value(self, moving: bool = False) -> Codec[Tree]:
+        """The codec of an expression in the parameters, and in the unknowns where it may move."""
+        return reading(lambda entry: self.tree(entry, moving), **VALUE)
+
+    def between(self) -> Codec[tuple[str, str]]:
+        """Two points that there are."""
+        return reading(lambda entry: ends(entry, self.points), **two(NAME_SCHEMA), description="Two points.")
+
+    # ------------------------------------------------------------------------------------------------- expressions
+
+    def tree(self, entry: Node, moving: bool = False) -> Tree:
+        """An expression in the parameters, and in the unknowns where it may move.
+
+        Quarter turns in cosines and sines are worked out, once it was found to have a value.
+        """
         tree = parsed(entry)
-        return located(lambda: self._without_offsets(tree, self.moving if moving else self.fixed), entry)
 
-    @staticmethod
-    def _without_offsets(tree: Tree, names: _Names) -> Tree:
-        """The tree with quarter turns in cosines and sines worked out, once it was found to have a value."""
-        turned = without_quarter_turns(tree)
-        evaluate(turned, names)
-        size_of(turned)
-        return turned
+        def read() -> Tree:
+            turned = without_quarter_turns(tree)
+            if evaluate(turned, self.moving if moving else self.fixed).degree > MAX_DEGREE:
+                raise ExpressionError(f"the degree exceeds {MAX_DEGREE}")
+            return turned
+
+        return located(read, entry)
 
     def pair(
-        self, entry: Entry, *, moving: bool = False, what: str = "coordinates", like: str = "[rho, 0]"
+        self, entry: Node, moving: bool = False, what: str = "coordinates", like: str = "[rho, 0]"
     ) -> tuple[Tree, Tree]:
         """Two coordinates or components; what they are, and an example, are for messages."""
-        first, second = (self.tree(part, moving=moving) for part in entry.pair(f"two {what},", like))
+        first, second = (self.tree(one, moving) for one in entry.pair(f"two {what},", like))
         return first, second
 
-    def angle(self, entry: Entry) -> tuple[Tree, int]:
+    def angle(self, entry: Node) -> tuple[Tree, int]:
         """A sum of whole multiples of unknown angles, and the quarter turns that are added to it."""
         tree = parsed(entry)
 
@@ -235,20 +314,19 @@ class Reader:
 
         return located(read, entry)
 
-    def symmetry(self, entry: Entry) -> dict[str, Tree]:
+    def symmetry(self, entry: Node) -> dict[str, Tree]:
         """A substitution; angles stand in it as they are."""
-        trees = {}
-        for name, image in entry.entries().items():
-            tree = parsed(image)
-            for used in (name, *names_of(tree)):
-                if used not in self.names:
-                    raise image.error(f"unknown name '{used}'{did_you_mean(used, self.names)}")
-            trees[name] = tree
+        names, trees = {**self.parameters, **self.unknowns}, {}
+        for name, image in entry.mapping().items():
+            trees[name] = parsed(image)
+            for used in (name, *names_of(trees[name])):
+                if used not in names:
+                    raise image.fault(f"unknown name '{used}'{did_you_mean(used, names)}")
         return trees
 
 
-class _Names:
-    """The ring in which only names and degrees count.
+class _Names(Sizes):
+    """The ring in which trees have their sizes as values, and names are refused that have none here.
 
     Parameters
     ----------
@@ -265,16 +343,13 @@ class _Names:
         self.constants, self.angles, self.excluded = map(dict.fromkeys, (constants, angles, excluded))
         self.doubtful = doubtful
 
-    def constant(self, value: Fraction) -> _Degree:
-        return _Degree(0)
-
-    def parameter(self, name: str) -> _Degree:
+    def parameter(self, name: str) -> Size:
         if name in self.angles and name not in self.doubtful:
             raise ExpressionError(f"{name} is an angle: it stands inside of cos or sin")
         self._check(name, self.constants)
-        return _Degree(1)
+        return super().parameter(name)
 
-    def cos(self, angle: str) -> _Degree:
+    def cos(self, angle: str) -> Size:
         if angle in self.constants and angle not in self.doubtful:
             # of a rational angle neither is rational, so that no axis could be one
             raise ExpressionError(
@@ -282,9 +357,11 @@ class _Names:
                 "(1 - t^2)/(1 + t^2) and 2*t/(1 + t^2), t the tangent of its half"
             )
         self._check(angle, self.angles)
-        return _Degree(1)
+        return super().parameter(f"cos {angle}")
 
-    sin = cos
+    def sin(self, angle: str) -> Size:
+        self._check(angle, self.angles)  # the cosine was asked for before
+        return super().parameter(f"sin {angle}")
 
     def _check(self, name: str, known: Mapping[str, None]) -> None:
         if name in self.doubtful:
@@ -300,48 +377,27 @@ class _Names:
             raise ExpressionError(f"unknown name '{name[:MAX_NAME]}'{hint}")
 
 
-class _Degree:
-    """What is known of an element: a bound of its degree."""
-
-    __slots__ = ("bound",)
-
-    def __init__(self, bound: int):
-        self.bound = bound
-
-    def __add__(self, other: _Degree) -> _Degree:
-        return self if self.bound >= other.bound else other
-
-    __sub__ = __add__
-
-    def __mul__(self, other: _Degree) -> _Degree:
-        if self.bound + other.bound > MAX_DEGREE:
-            raise ExpressionError(f"the degree exceeds {MAX_DEGREE}")
-        return _Degree(self.bound + other.bound)
-
-
-def parsed(entry: Entry) -> Tree:
+def parsed(entry: Node) -> Tree:
     """A text or an exact number as a tree."""
-    value = entry.value
-    if isinstance(value, str):
-        return located(lambda: parse(value), entry)
-    if isinstance(value, bool) or not isinstance(value, int | Fraction):
-        raise entry.error(f"{as_written(value)} is neither an exact number nor an expression as text")
-    number = Number(abs(Fraction(value)), int(value < 0))  # where it stands in the number's text, which is read alike
-    return Negative(number) if value < 0 else number
+    value = entry.plain
+    if isinstance(value, bool) or not isinstance(value, int | str):
+        raise entry.fault(f"{as_written(value)} is neither an exact number nor an expression as text")
+    return located(lambda: parse(str(value)), entry)
 
 
-def located(work: Callable[[], _T], entry: Entry) -> _T:
+def located(work: Callable[[], _T], entry: Node) -> _T:
     """What the work returns; its `ExpressionError` as one that names the entry."""
     try:
         return work()
     except ExpressionError as error:
-        raise entry.place.located(error, str(entry.value)) from None
+        fault: ConfigError = entry.place.located(error, str(entry.plain))
+        raise fault from None
 
 
-def constant(entry: Entry, instead: str = "") -> str:
+def constant(entry: Node, instead: str = "") -> str:
     """A number as text; ``instead`` says where expressions are written."""
     tree = parsed(entry)
     if names := names_of(tree):
-        raise entry.error(f"expected a number, not an expression in {names[0]}{instead}")
+        raise entry.fault(f"expected a number, not an expression in {names[0]}{instead}")
     located(lambda: value_at(tree, {}), entry)
     return text_of(tree)

@@ -10,54 +10,30 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import Any, TypeVar
 
-from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
+from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism.angles import angle_name
-from ptmcad.mechanism.bodies import add_bodies
-from ptmcad.mechanism.description import Closing, Load, Mechanism, Moment, Parameter, Spring, Support, TorsionSpring
+from ptmcad.mechanism.bodies import bodies
+from ptmcad.mechanism.description import Closing, Load, Mechanism, Moment, Spring, Support, TorsionSpring
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.parts import check_numbers
 from ptmcad.mechanism.proofs import check_bars, check_springs, check_symmetries, check_unknowns
-from ptmcad.mechanism.reading import (
-    Reader,
-    Unread,
-    constant,
-    ends,
-    faulty_entries,
-    member,
-    name_of,
-    new_name,
-    parameters_of,
-    point_name,
-    title_of,
-    unknowns_of,
-)
+from ptmcad.mechanism.reading import NUMBER, POINTS, VALUE, ZERO, Context, constant, new_name, two
 from ptmcad.mechanism.sizes import check_sizes
 from ptmcad.mechanism.work import split_moments
-from ptmcad.mechanism.xjoint import XJoint
-from ptmcad.text.entry import Entry, Place, as_written
-from ptmcad.text.syntax import did_you_mean, parse
+from ptmcad.mechanism.xjoints import second_angles, xjoints
+from ptmcad.text.codec import Codec, choice, listed, named, part, reading, record
+from ptmcad.text.entry import Place, as_written, from_python
+from ptmcad.text.node import MAX_ENTRIES, Node
+from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Name, Negative, Number, Tree
 
-KEYS = (
-    "name", "title", "parameters", "unknowns", "points", "bodies", "bars", "supports", "springs", "torsion", "loads",
-    "moments", "symmetries", "closing", "x-joint",
-)  # fmt: skip
-SPRING_KEYS = ("between", "k", "free")
-TORSION_KEYS = ("angle", "k", "rest", "at")
-CLOSING_KEYS = ("between", "length")
+S = TypeVar("S")
+T = TypeVar("T")
 DEFAULT_NAME = "mechanism"
 NAMED_RESTS = {
     "0": (1, 0), "pi/2": (0, 1), "pi": (-1, 0), "-pi": (-1, 0), "-pi/2": (0, -1), "3*pi/2": (0, -1),
 }  # fmt: skip
 """Cosine and sine of the angles that have both rational and are written with pi."""
-_LIKE = {
-    "points": "{A: [0, 0]}", "bars": "[[O, P]]", "supports": "{O: pin}", "springs": "[{between: [A, P], k: 1}]",
-    "torsion": "[{angle: th, k: 1}]", "loads": "{P: [0, -W]}", "moments": "{th: M}", "symmetries": "[{th: -th}]",
-    "closing": "[{between: [B, D], length: L}]",
-}  # fmt: skip
-"""Examples for messages."""
-T = TypeVar("T")
-_ZERO: Tree = Number(Fraction(0))
 _ONE: Tree = Number(Fraction(1))
 
 
@@ -84,55 +60,108 @@ def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
 
 def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = False) -> Mechanism:
     """As `described`, but what is wrong is noted, and left out or replaced."""
-    whole = Entry(record, Place(), faults).fields(KEYS)
-    name = whole.read("name", name_of, DEFAULT_NAME)
-    title = whole.read("title", lambda entry: title_of(entry.value), "")
-    parameters: dict[str, Parameter] = {}
-    with faults:
-        parameters = parameters_of(whole)
-    unknowns = unknowns_of(whole, parameters)
-    with faults:
-        if not whole.has("points"):
-            raise whole.at("points").error("is missing")
-    second: tuple[str, ...] = ()
-    if "x-joint" in record:
-        from ptmcad.mechanism.xjoints import add_xjoints, second_angles
-
-        second = second_angles(record["x-joint"])
-    parts = _Parts(whole, Reader(parameters, unknowns, faulty_entries(faults, "unknowns"), second))
-    points = parts.points()
-    xjoints: tuple[XJoint, ...] = ()
-    if "x-joint" in record:
-        with faults:
-            xjoints = add_xjoints(whole.at("x-joint"), parts.reader, points, {**parameters, **unknowns})
-    bodies = {}
-    with faults:
-        bodies = add_bodies(whole.at("bodies", {}), parts.reader, points)
-    bars, supports, loads = parts.bars(points), parts.supports(points), parts.loads(points)
-    moments, torsion = parts.moments(unknowns), parts.torsion(points)
-    found = Mechanism(
-        name,
-        parameters,
-        unknowns,
-        points,
-        (*bars, *(bar for joint in xjoints for bar in joint.rigid)),
-        supports,
-        parts.springs(points),
-        loads,
-        parts.symmetries(),
-        bodies,
-        moments,
-        torsion,
-        parts.closing(points),
-        xjoints,
-        source=record,
-        title=title,
-    )
+    second = second_angles(record["x-joint"]) if "x-joint" in record else ()
+    read = mechanism_codec(Context(faults, second)).read(Node.of(from_python(record, Place()), faults))
+    read["bars"] += tuple(bar for joint in read["xjoints"] for bar in joint.rigid)
+    found = Mechanism(**read, source=record)
     if not proved:
         if not {(fault.key or "").partition(".")[0] for fault in faults.found} - _FORCELESS:
             check_sizes(found, faults)
         _prove(found, faults)
     return found
+
+
+def mechanism_codec(context: Context) -> Codec[dict[str, Any]]:
+    """A mechanism's keys, read in this order."""
+    value, between = context.value(), context.between()
+    spring: Codec[dict[str, Any]] = record(
+        dict, "{between: [A, B], k: 1}", between=part(between, instead=("", "")),
+        k=part(value, "Stiffness.", instead=_ONE), free=part(value, "Free length.", ZERO, shown=0),
+    )  # fmt: skip
+    torsion: Codec[dict[str, Any]] = record(
+        dict, "{angle: th, k: 1}",
+        angle=part(
+            reading(context.angle, **VALUE),
+            "A sum of whole multiples of unknown angles, and of quarter turns such as pi/2.", instead=(ZERO, 0),
+        ),
+        k=part(value, "Stiffness, a moment.", instead=_ONE),
+        rest=part(
+            reading(_rest, anyOf=[{"enum": [0, *NAMED_RESTS]}, _DIRECTION.schema]),
+            "The angle at which it is relaxed, or its cosine and sine.", (Fraction(1), Fraction(0)), shown=0,
+        ),
+        at=part(
+            context.point(),
+            "The point at which it is drawn, where bodies, bars and supports do not tell the joint; it changes no "
+            "result.", "",
+        ),
+    )  # fmt: skip
+    closing = record(
+        lambda between, length: Closing(between[0], between[1], length), "{between: [B, D], length: L}",
+        between=part(between), length=part(value),
+    )  # fmt: skip
+    moving = context.value(moving=True)
+    return record(
+        dict,
+        **context.start(DEFAULT_NAME),
+        points=part(
+            reading(lambda node: _points(node, context), **POINTS),
+            "Names to coordinates, polynomials in parameters, lengths, and cos and sin of sums of angles.", instead={},
+        ),
+        **{"x-joint": part(
+            xjoints(context),
+            "X-joints: two crossed bars of one length from a base to a top that is as long as the base. The base is "
+            "two points on one level, from left to right, which no unknown moves, or the top of a joint above. The "
+            "first bar, from the base's left end to the top's right one, turns by an unknown angle against the base; "
+            "the other bar's angle follows, and its name may be used like an unknown's.", (),
+        )._replace(field="xjoints")},
+        bodies=part(
+            bodies(context), "Rigid bodies: place, angle, and points in coordinates that turn with the body.", {}
+        ),
+        bars=part(
+            listed(between, most=MAX_ENTRIES, like="[[O, P]]"),
+            "Pairs of points, drawn; that their distances are constant is proved.", (),
+        ),
+        supports=part(
+            named(choice(Support), context.known_point, MAX_ENTRIES, "{O: pin}"),
+            "What holds a point, for drawings.", {},
+        ),
+        springs=part(
+            _read_as(_springs, listed(spring, None, MAX_ENTRIES, "[{between: [A, P], k: 1}]")),
+            "Springs between points, along their lines.", (),
+        ),
+        torsion=part(
+            _read_as(_torsion, listed(torsion, None, MAX_ENTRIES, "[{angle: th, k: 1}]")),
+            "Springs between directions: energy k (1 - cos(angle - rest)), moment k sin(angle - rest). For small "
+            "angles that is the linear spring of energy k (angle - rest)^2/2, which is no polynomial in cosines and "
+            "sines and no function on a circle.", (),
+        ),
+        loads=part(
+            _read_as(
+                lambda loads: tuple(Load(point, x, y) for point, (x, y) in loads.items()),
+                named(_load(context), context.known_point, MAX_ENTRIES, "{P: [0, -W]}"),
+            ), "Dead forces at points: two components, or a weight, in parameters.", ()),
+        moments=part(
+            _read_as(
+                lambda moments: tuple(Moment(*moment) for moment in moments.items()),
+                named(moving, context.known_unknown, MAX_ENTRIES, "{th: M}"),
+            ),
+            "Generalised forces on unknowns. Of one that depends on its own unknown the part that varies is the slope "
+            "of an energy; the work of the constant part is in no energy that is shown. With one that depends on "
+            "another unknown nothing says what is stable.", (),
+        ),
+        symmetries=part(
+            listed(
+                reading(context.symmetry, type="object", additionalProperties=VALUE),
+                most=MAX_ENTRIES, like="[{th: -th}]",
+            ),
+            "Substitutions under which the energy changes by what no unknown is in.", (),
+        ),
+        closing=part(
+            listed(closing, most=MAX_ENTRIES, like="[{between: [B, D], length: L}]"),
+            "Bars that close loops: two points whose distance stays the length. Where they leave more than one degree "
+            "of freedom, the tension of each, divided by its length, is a further unknown.", (),
+        ),
+    )  # fmt: skip
 
 
 _SHAPE = frozenset({"parameters", "unknowns", "points", "bodies", "x-joint"})
@@ -171,132 +200,77 @@ def check_moments(mechanism: Mechanism, faults: Faults) -> None:
             raise ConfigError(f"they have no energy: {error.message}", key="moments") from None
 
 
-class _Parts:
-    """The parts of a record, each read with its faults noted."""
+def _points(node: Node, context: Context) -> dict[str, tuple[Tree, Tree]]:
+    entries = node.mapping(like="{A: [0, 0]}")
+    context.points = {}
 
-    def __init__(self, record: Entry, reader: Reader):
-        self.record = record
-        self.reader = reader
-        self.faults = record.faults
+    def read(entry: Node) -> None:
+        context.points[entry.name] = (ZERO, ZERO)  # known, whatever is wrong with it
+        new_name(entry.name, entry.key, {})
+        context.points[entry.name] = context.pair(entry, moving=True)
 
-    def _items(self, key: str, read: Callable[[Entry], T]) -> tuple[T, ...]:
-        return self.record.at(key, ()).each_item(read, _LIKE[key])
-
-    def _entries(self, key: str, read: Callable[[Entry], T]) -> tuple[T, ...]:
-        return self.record.at(key, {}).each_entry(read, _LIKE[key])
-
-    def points(self) -> dict[str, tuple[Tree, Tree]]:
-        found: dict[str, tuple[Tree, Tree]] = {}
-
-        def read(entry: Entry) -> None:
-            found[entry.name] = (_ZERO, _ZERO)  # known, whatever is wrong with it
-            new_name(entry.name, entry.key, {})
-            found[entry.name] = self.reader.pair(entry, moving=True)
-
-        self._entries("points", read)
-        return Unread(found) if any(fault.key == "points" for fault in self.faults.found) else found
-
-    def bars(self, points: Mapping[str, object]) -> tuple[tuple[str, str], ...]:
-        return self._items("bars", lambda entry: ends(entry, points))
-
-    def supports(self, points: Mapping[str, object]) -> dict[str, Support]:
-        def read(entry: Entry) -> tuple[str, Support]:
-            return point_name(entry.name, entry.key, points), member(Support, entry)
-
-        return dict(self._entries("supports", read))
-
-    def springs(self, points: Mapping[str, object]) -> tuple[Spring, ...]:
-        springs: dict[str, Spring] = {}
-
-        def read(entry: Entry) -> None:
-            fields = entry.fields(SPRING_KEYS, ("between", "k"), "{between: [A, B], k: 1}")
-            start, end = fields.read("between", lambda part: ends(part, points), ("", ""))
-            stiffness, free = fields.read("k", self.reader.tree, _ONE), fields.read("free", self.reader.tree, _ZERO)
-            between = f"{start}{end}"
-            names = (*([stiffness.name] if isinstance(stiffness, Name) else []), between, f"{between}_{entry.name}")
-            name = next(name for name in names if name not in springs)
-            springs[name] = Spring(name, start, end, stiffness, free)
-
-        self._items("springs", read)
-        return tuple(springs.values())
-
-    def torsion(self, points: Mapping[str, object]) -> tuple[TorsionSpring, ...]:
-        found: dict[str, TorsionSpring] = {}
-
-        def read(entry: Entry) -> None:
-            fields = entry.fields(TORSION_KEYS, ("angle", "k"))
-            angle, turns = fields.read("angle", self.reader.angle, (_ZERO, 0))
-            stiffness = fields.read("k", self.reader.tree, _ONE)
-            rest = fields.read("rest", _rest, (Fraction(1), Fraction(0)))
-            at = fields.read("at", lambda part: point_name(part.value, part.key, points), "")
-            for _ in range(turns):  # what is added to the angle is taken from the rest
-                rest = (rest[1], -rest[0])
-            of_angle = angle_name(angle)
-            name = of_angle if of_angle and of_angle not in found else f"{of_angle}#{entry.name}"
-            found[name] = TorsionSpring(angle, stiffness, rest, name, at)
-
-        self._items("torsion", read)
-        return tuple(found.values())
-
-    def closing(self, points: Mapping[str, object]) -> tuple[Closing, ...]:
-        found = []
-
-        def read(entry: Entry) -> None:
-            fields = entry.fields(CLOSING_KEYS, CLOSING_KEYS, "{between: [B, D], length: L}")
-            if fields.has(*CLOSING_KEYS):
-                between = ends(fields.at("between"), points)
-                found.append(Closing(*between, self.reader.tree(fields.at("length"))))
-
-        self._items("closing", read)
-        return tuple(found)
-
-    def loads(self, points: Mapping[str, object]) -> tuple[Load, ...]:
-        found = []
-
-        def read(entry: Entry) -> None:
-            point_name(entry.name, entry.key, points)
-            if not isinstance(entry.value, Mapping):
-                like = "[0, -W], or {weight: W}"
-                found.append(Load(entry.name, *self.reader.pair(entry, what="components", like=like)))
-                return
-            fields = entry.fields(("weight",))
-            if not entry.value:
-                raise entry.error("expected two components, such as [0, -W], or {weight: W}")
-            if fields.has("weight"):  # or its key is a fault already
-                found.append(Load(entry.name, _ZERO, Negative(self.reader.tree(fields.at("weight")))))
-
-        self._entries("loads", read)
-        return tuple(found)
-
-    def moments(self, unknowns: Mapping[str, object]) -> tuple[Moment, ...]:
-        def read(entry: Entry) -> Moment:
-            if entry.name not in unknowns:
-                hint = did_you_mean(str(entry.name), unknowns) or f"; they are {', '.join(unknowns)}"
-                raise entry.error(f"there is no unknown {quoted(entry.name)}{hint}")
-            return Moment(entry.name, self.reader.tree(entry, moving=True))
-
-        return self._entries("moments", read)
-
-    def symmetries(self) -> tuple[Mapping[str, Tree], ...]:
-        return self._items("symmetries", self.reader.symmetry)
+    node.gathered(read, entries.values())
+    return context.points
 
 
-def _rest(entry: Entry) -> tuple[Fraction, Fraction]:
+def _read_as(make: Callable[[S], T], codec: Codec[S]) -> Codec[T]:
+    """What is made of what a codec reads."""
+    return reading(lambda node: make(codec.read(node)), **codec.schema)
+
+
+def _springs(found: tuple[dict[str, Any], ...]) -> tuple[Spring, ...]:
+    springs: dict[str, Spring] = {}
+    for n, said in enumerate(found, 1):
+        (start, end), stiffness = said["between"], said["k"]
+        names = (*([stiffness.name] if isinstance(stiffness, Name) else []), f"{start}{end}", f"{start}{end}_{n}")
+        name = next(name for name in names if name not in springs)
+        springs[name] = Spring(name, start, end, stiffness, said["free"])
+    return tuple(springs.values())
+
+
+def _torsion(found: tuple[dict[str, Any], ...]) -> tuple[TorsionSpring, ...]:
+    springs: dict[str, TorsionSpring] = {}
+    for n, said in enumerate(found, 1):
+        (angle, turns), rest = said["angle"], said["rest"]
+        for _ in range(turns):  # what is added to the angle is taken from the rest
+            rest = (rest[1], -rest[0])
+        of_angle = angle_name(angle)
+        name = of_angle if of_angle and of_angle not in springs else f"{of_angle}#{n}"
+        springs[name] = TorsionSpring(angle, said["k"], rest, name, said["at"])
+    return tuple(springs.values())
+
+
+def _load(context: Context) -> Codec[tuple[Tree, Tree]]:
+    """Two components, or a weight."""
+    weight: Codec[tuple[Tree, Tree]] = record(
+        lambda weight: (ZERO, Negative(weight)), "{weight: W}", weight=part(context.value())
+    )
+
+    def read(entry: Node) -> tuple[Tree, Tree]:
+        if entry.is_mapping:
+            return weight.read(entry)
+        return context.pair(entry, what="components", like="[0, -W], or {weight: W}")
+
+    return reading(read, anyOf=[two(VALUE), weight.schema])
+
+
+_DIRECTION = record(
+    lambda cos, sin: (cos, sin), "{cos: 3/5, sin: 4/5}",
+    **{name: part(reading(lambda entry: value_at(parse(constant(entry)), {}), **NUMBER)) for name in ("cos", "sin")},
+)  # fmt: skip
+
+
+def _rest(entry: Node) -> tuple[Fraction, Fraction]:
     """The cosine and sine of the angle at which a torsion spring is relaxed."""
-    value = entry.value
-    if isinstance(value, Mapping):
-        faults = Faults()
-        fields = entry._replace(faults=faults).fields(("cos", "sin"))
-        faults.check()
-        if set(value) != {"cos", "sin"}:
-            raise entry.error("expected both, such as {cos: 3/5, sin: 4/5}")
-        c, s = (value_at(parse(constant(fields.at(part))), {}) for part in ("cos", "sin"))
+    if entry.is_mapping:
+        c, s = _DIRECTION.read(entry)
         if c * c + s * s != 1:
-            raise entry.error(f"cos^2 + sin^2 is {c * c + s * s}, not 1: no angle has these")
+            raise entry.fault(f"cos^2 + sin^2 is {c * c + s * s}, not 1: no angle has these")
         return c, s
+    value = entry.plain
     named = NAMED_RESTS.get(str(value).replace(" ", "") if isinstance(value, str | int) else "")
     if named is None:
-        raise entry.error(
+        raise entry.fault(
             f"{as_written(value)} is none of {', '.join(NAMED_RESTS)}: of other angles give the cosine and sine, such "
             "as {cos: 3/5, sin: 4/5}"
         )

@@ -10,28 +10,17 @@ from typing import Any
 
 from ptmcad.errors import ConfigError, Faults
 from ptmcad.mechanism.angles import PI
-from ptmcad.mechanism.description import Kind, Parameter, System, UnknownKind
+from ptmcad.mechanism.description import System
 from ptmcad.mechanism.evaluate import value_at
-from ptmcad.mechanism.reading import (
-    Reader,
-    faulty_entries,
-    name_of,
-    new_name,
-    parameters_of,
-    parsed,
-    title_of,
-    unknowns_of,
-)
+from ptmcad.mechanism.reading import VALUE, Context, new_name, parsed
 from ptmcad.mechanism.sizes import check_sizes
-from ptmcad.text.entry import MAX_ENTRIES, Entry, Place
+from ptmcad.text.codec import Codec, listed, part, reading, record
+from ptmcad.text.entry import Place, from_python
+from ptmcad.text.node import MAX_ENTRIES, Node
 from ptmcad.text.tree import Tree, names_of
 
-SYSTEM_KEYS = ("name", "title", "parameters", "unknowns", "equations", "potential", "positive", "stable")
 DEFAULT_NAME = "system"
-_LISTS = ("equations", "positive", "stable")
 _HOLDING = frozenset({"unknowns", "equations", "potential"})
-_LIKE = {"equations": '["x^3 - a*x + b"]', "positive": "[x]", "stable": '["3*x^2 - a"]'}
-"""Examples for messages."""
 
 
 def described_system(record: Mapping[str, Any]) -> System:
@@ -53,73 +42,70 @@ def described_system(record: Mapping[str, Any]) -> System:
 
 def read_system(record: Mapping[str, Any], faults: Faults) -> System:
     """As `described_system`, but what is wrong is noted, and left out or replaced."""
-    whole = Entry(record, Place(), faults).fields(SYSTEM_KEYS)
-    name = whole.read("name", name_of, DEFAULT_NAME)
-    title = whole.read("title", lambda entry: title_of(entry.value), "")
-    parameters: dict[str, Parameter] = {}
-    with faults:
-        parameters = parameters_of(whole)
-    unknowns = unknowns_of(whole, parameters)
+    context = Context(faults)
+    codec = system_codec(context)
+    found = codec.read(Node.of(from_python(record, Place()), faults))
+    system = System(**{**found, "parameters": context.parameters}, source=record)
     # a key that nobody knows has been told, and may be meant for one of these
-    misspelt = not {"equations", "potential"} & record.keys() and any(key not in SYSTEM_KEYS for key in record)
-    with faults:
-        if ("equations" in record) is ("potential" in record) and not misspelt:
-            raise ConfigError("give either equations or a potential", key="equations")
-    texts = _texts(whole)
-    trees: dict[str, Tree] = {}
-    for key, entry in texts.items():
+    misspelt = not {"equations", "potential"} & record.keys() and not record.keys() <= codec.schema["properties"].keys()
+    equations = record.get("equations")
+    written = len(equations) if isinstance(equations, list | tuple) else 0
+    number, unknowns = len(system.parameters), len(system.unknowns)
+    for wrong, key, problem in (
+        (
+            ("equations" in record) is ("potential" in record) and not misspelt,
+            "equations", "give either equations or a potential",
+        ),
+        (number > MAX_ENTRIES, "equations", f"{number} names of parameters, more than {MAX_ENTRIES}"),
+        (
+            system.potential is not None and system.stability,
+            "stable", "of a potential the Hessian decides what is stable: leave this out",
+        ),
+        (
+            "potential" not in record and written not in (0, unknowns),
+            "equations", f"{written} equations for {unknowns} unknowns: give as many as there are unknowns",
+        ),
+    ):  # fmt: skip
         with faults:
-            trees[key] = parsed(entry)
-    for key, tree in trees.items():
-        _add_names(tree, key, parameters, unknowns, faults)
-    with faults:
-        if len(parameters) > MAX_ENTRIES:
-            raise ConfigError(f"{len(parameters)} names of parameters, more than {MAX_ENTRIES}", key="equations")
-    reader = Reader(parameters, unknowns, faulty_entries(faults, "unknowns"))
-    for key in trees:
-        with faults:
-            trees[key] = tree = reader.tree(texts[key], moving=True)
-            if key.startswith("positive.") and not names_of(tree) and value_at(tree, {}) <= 0:
-                raise ConfigError("is never positive: no solution would be counted", key=key)
-    equations, positive, stable = (
-        tuple(tree for key, tree in trees.items() if key.startswith(f"{part}.")) for part in _LISTS
-    )
-    system = System(
-        name, parameters, unknowns, equations, trees.get("potential"), positive, stable, source=record, title=title
-    )
-    with faults:
-        if system.potential is not None and system.stability:
-            raise ConfigError("of a potential the Hessian decides what is stable: leave this out", key="stable")
-    with faults:
-        written = sum(key.startswith("equations.") for key in texts)
-        if "potential" not in record and written and written != len(unknowns):
-            raise ConfigError(
-                f"{written} equations for {len(unknowns)} unknowns: give as many as there are unknowns", key="equations"
-            )
+            if wrong:
+                raise ConfigError(problem, key=key)
     faulty = {(fault.key or "").partition(".")[0] for fault in faults.found}
-    if not faulty & (_HOLDING | {*_LISTS}):
+    if not faulty & (_HOLDING | {"positive", "stable"}):
         check_sizes(system, faults)
     if not misspelt and not faulty & _HOLDING:
         _check_unknowns(system, faults)
     return system
 
 
-def _add_names(
-    tree: Tree, key: str, parameters: dict[str, Parameter], unknowns: Mapping[str, UnknownKind], faults: Faults
-) -> None:
-    """Add the names in an expression that are new to the parameters."""
-    for name in names_of(tree):
-        with faults:
-            if name != PI and name not in parameters and name not in unknowns:
-                parameters[new_name(name, key, {})] = Parameter(name, Kind.NUMBER, "", None)
+def system_codec(context: Context) -> Codec[dict[str, Any]]:
+    """A system's keys, read in this order; names in expressions that are no unknowns become parameters."""
 
+    def read(entry: Node) -> Tree:
+        for name in names_of(parsed(entry)):
+            if name not in (PI, *context.parameters, *context.unknowns):
+                context.add(new_name(name, entry.key, {}))
+        return context.tree(entry, moving=True)
 
-def _texts(record: Entry) -> dict[str, Entry]:
-    """The expressions as written, by their keys."""
-    found = [entry for key in _LISTS for entry in record.at(key, ()).each_item(lambda entry: entry, _LIKE[key])]
-    if record.has("potential"):
-        found.append(record.at("potential"))
-    return {entry.key: entry for entry in found}
+    def read_positive(entry: Node) -> Tree:
+        tree = read(entry)
+        if not names_of(tree) and value_at(tree, {}) <= 0:
+            raise entry.fault("is never positive: no solution would be counted")
+        return tree
+
+    tree, positive = reading(read, **VALUE), reading(read_positive, **VALUE)
+    whole: Codec[dict[str, Any]] = record(
+        dict,
+        **context.start(DEFAULT_NAME, "Kinds, defaults and ranges; other names in the equations are numbers."),
+        equations=part(listed(tree, None, MAX_ENTRIES, '["x^3 - a*x + b"]'), "Each is zero.", ()),
+        positive=part(
+            listed(positive, None, MAX_ENTRIES, "[x]"), "Strict inequalities that a counted solution satisfies.", ()
+        )._replace(field="inequalities"),
+        stable=part(
+            listed(tree, None, MAX_ENTRIES, '["3*x^2 - a"]'), "A solution is stable where all are positive.", ()
+        )._replace(field="stability"),
+        potential=part(tree, "Solutions are its critical points.", None),
+    )
+    return whole.narrowed(oneOf=[{"required": ["equations"]}, {"required": ["potential"]}])
 
 
 def _check_unknowns(system: System, faults: Faults) -> None:

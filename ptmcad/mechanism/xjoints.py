@@ -7,96 +7,97 @@ or it is the top of a joint that stands above in the record.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from fractions import Fraction
+from typing import Any
 
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism.derivative import negative, product, total
-from ptmcad.mechanism.reading import MAX_UNKNOWNS, Reader, ends, new_name
+from ptmcad.mechanism.reading import MAX_UNKNOWNS, NAME_SCHEMA, ZERO, Context, new_name, two
 from ptmcad.mechanism.xjoint import LEVEL, XJoint
-from ptmcad.text.entry import Entry, as_written
-from ptmcad.text.tree import Number, Tree, names_of
+from ptmcad.text.codec import Codec, named, part, reading, record
+from ptmcad.text.entry import as_written
+from ptmcad.text.node import Node
+from ptmcad.text.tree import Tree, names_of
 
-XJOINT_KEYS = ("base", "bars", "angles", "top")
-LIKE = "{X: {base: [A, B], bars: L, angles: [th, psi], top: [C, D]}}"
 Place = tuple[Tree, Tree]
-_ZERO: Tree = Number(Fraction(0))
 
 
 def second_angles(value: object) -> tuple[str, ...]:
     """The names that the record gives to angles of second bars, before anything of it is checked."""
     entries = value.values() if isinstance(value, Mapping) else ()
-    return tuple(name for entry in entries for name in _named(entry, "angles")[1:2])
+    angles = (entry.get("angles") for entry in entries if isinstance(entry, Mapping))
+    second = (names[1] for names in angles if isinstance(names, list | tuple) and len(names) > 1)
+    return tuple(name for name in second if isinstance(name, str))
 
 
-def add_xjoints(
-    xjoints: Entry, reader: Reader, points: dict[str, Place], taken: Mapping[str, object]
-) -> tuple[XJoint, ...]:
-    """Add the joints' tops to the points.
-
-    Parameters
-    ----------
-    taken : parameters and unknowns.
-    """
+def xjoints(context: Context) -> Codec[tuple[XJoint, ...]]:
+    """The X-joints, whose tops are added to the points."""
+    names: dict[str, Any] = two(NAME_SCHEMA)
+    joint: Codec[dict[str, Any]] = record(
+        dict, "{base: [A, B], bars: L, angles: [th, psi], top: [C, D]}",
+        base=part(context.between(), "Left and right end of what the joint stands on."),
+        bars=part(context.value(), "Their length, which is not the base's."),
+        angles=part(
+            reading(lambda entry: _two_names(entry, "[th, psi]"), **names),
+            "Of the bars from the base's left and right end, against the base: an unknown, and a new name for the one "
+            "that follows from it.",
+        ),
+        top=part(
+            reading(lambda entry: _two_names(entry, "[C, D]"), **names),
+            "New points: where the bar from the base's right end arrives, and the one from the left end.",
+        ),
+    )  # fmt: skip
     found: dict[str, XJoint] = {}
-    for name, entry in xjoints.entries(LIKE, MAX_UNKNOWNS).items():
-        with xjoints.faults:
-            new_name(name, entry.key, {})
-            fields = entry.fields(XJOINT_KEYS, XJOINT_KEYS, "{base: [A, B], bars: L, angles: [th, psi], top: [C, D]}")
-            if fields.has(*XJOINT_KEYS):
-                joint = _joint(name, fields, reader, points, {**taken, **{j.other: j for j in found.values()}}, found)
-                for point, angle, (x, y) in zip(
-                    joint.top, (joint.other, joint.angle), (points[p] for p in joint.base[::-1]), strict=True
-                ):
-                    c, s = joint.bar(angle)
-                    points[point] = total(x, product(joint.bars, c)), total(y, product(joint.bars, s))
-                found[name] = joint
-        if name not in found:  # what refers to the points of its top is not to blame for it
-            for point in _named(entry.value, "top"):
-                points.setdefault(point, (_ZERO, _ZERO))
-    return tuple(found.values())
+
+    def read(entry: Node) -> None:
+        new_name(entry.name, entry.key, {})
+        try:
+            found[entry.name] = new = _joint(entry.name, joint.read(entry), context, found)
+        except ConfigError:
+            # what refers to the points of its top is not to blame for it
+            top = entry.plain.get("top") if entry.is_mapping else None
+            for point in top if isinstance(top, list) else ():
+                context.points.setdefault(str(point), (ZERO, ZERO))
+            raise
+        for point, angle, base in zip(new.top, (new.other, new.angle), new.base[::-1], strict=True):
+            (x, y), (c, s) = context.points[base], new.bar(angle)
+            context.points[point] = total(x, product(new.bars, c)), total(y, product(new.bars, s))
+
+    like = "{X: {base: [A, B], bars: L, angles: [th, psi], top: [C, D]}}"
+
+    def read_all(node: Node) -> tuple[XJoint, ...]:
+        node.gathered(read, node.mapping(MAX_UNKNOWNS, like).values())
+        return tuple(found.values())
+
+    return reading(read_all, **{**named(joint, most=MAX_UNKNOWNS).schema, "propertyNames": NAME_SCHEMA})
 
 
-def _named(entry: object, key: str) -> tuple[str, ...]:
-    """The names in a list of an entry, before anything of it is checked."""
-    listed = entry.get(key) if isinstance(entry, Mapping) else None
-    return tuple(name for name in listed if isinstance(name, str)) if isinstance(listed, list | tuple) else ()
+def _two_names(entry: Node, like: str) -> tuple[Node, Node]:
+    return entry.pair("two names,", like, f"expected two names, such as {like}")
 
 
-def _joint(
-    name: str,
-    fields: Entry,
-    reader: Reader,
-    points: Mapping[str, Place],
-    taken: Mapping[str, object],
-    below: Mapping[str, XJoint],
-) -> XJoint:
-    key = fields.key
-    base = ends(fields.at("base"), points)
-    angles, top = (_two_names(fields.at(k), like) for k, like in (("angles", "[th, psi]"), ("top", "[C, D]")))
-    new_name(angles[1], f"{key}.angles.2", taken)
-    if angles[0] not in reader.moving.angles or angles[0] in reader.second:
-        raise ConfigError(f"{as_written(angles[0])} is no unknown angle", key=f"{key}.angles.1")
-    if any(joint.angle == angles[0] for joint in below.values()):
-        raise ConfigError(f"{angles[0]} is the angle of another x-joint", key=f"{key}.angles.1")
-    for n, point in enumerate(top, 1):
-        new_name(point, f"{key}.top.{n}", {**points, **({top[0]: None} if n == 2 else {})})
-    bars = reader.tree(fields.at("bars"))
+def _joint(name: str, said: Mapping[str, Any], context: Context, below: Mapping[str, XJoint]) -> XJoint:
+    base, bars = said["base"], said["bars"]
+    angle, other = said["angles"]
+    taken = {**context.parameters, **context.unknowns, **{joint.other: joint for joint in below.values()}}
+    second = new_name(other.plain, other.key, taken)
+    moving = context.moving.angles
+    first = angle.plain
+    if first not in moving or first in context.second:
+        raise angle.fault(f"{as_written(first)} is no unknown angle")
+    if any(joint.angle == first for joint in below.values()):
+        raise angle.fault(f"{first} is the angle of another x-joint")
+    left, right = said["top"]
+    start = new_name(left.plain, left.key, context.points)
+    top = (start, new_name(right.plain, right.key, {**context.points, start: None}))
     under = next((joint for joint in below.values() if joint.top == base), None)
     if under is not None:
-        return XJoint(name, base, top, *angles, under.length, bars, *under.upper)
-    (x, y), (x1, y1) = (points[p] for p in base)
-    moving = {*reader.moving.angles, *(u for u in taken if u in reader.excluded)}
-    if y != y1 or moving & {*names_of(x), *names_of(x1), *names_of(y)}:
+        return XJoint(name, base, top, first, second, under.length, bars, *under.upper)
+    (x, y), (x1, y1) = (context.points[p] for p in base)
+    movers = {*moving, *context.unknowns, *context.second}
+    if y != y1 or movers & {*names_of(x), *names_of(x1), *names_of(y)}:
         raise ConfigError(
             "the base of an x-joint is the top of another one above, as [left, right], or two points that no unknown "
             "moves, from left to right on one level: turn a frame that moves by its unknowns' angles instead",
-            key=f"{key}.base",
+            key=f"x-joint.{name}.base",
         )
-    return XJoint(name, base, top, *angles, total(x1, negative(x)), bars, LEVEL, 0)
-
-
-def _two_names(entry: Entry, like: str) -> tuple[str, str]:
-    value = entry.value
-    if not (isinstance(value, list | tuple) and len(value) == 2 and all(isinstance(name, str) for name in value)):
-        raise entry.error(f"expected two names, such as {like}")
-    return value[0], value[1]
+    return XJoint(name, base, top, first, second, total(x1, negative(x)), bars, LEVEL, 0)

@@ -18,16 +18,17 @@ import os
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager, suppress
-from dataclasses import astuple
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import CountedArea, Member, State, Summary, Sweep, Widest
-from ptmcad.answer.widths import Attainment
 from ptmcad.errors import ConfigError, OutputError
 from ptmcad.process.output import locked, reason
 from ptmcad.sweeping.member import Failed, Found, Outcome, Refused
+from ptmcad.text.codec import listed, row_of
+from ptmcad.text.node import Node
 from ptmcad.text.numerals import fraction_of
 from ptmcad.text.textfile import read_bytes
 
@@ -35,8 +36,6 @@ FORMAT = "ptmcad-sweep/1"
 INDEX, RESULTS = "index.sqlite", "results"
 MAX_BYTES = 60_000_000
 """Of a member's result."""
-UNTOLD = Attainment.UNDECIDED.value
-"""Of a width in an index that was written before attainment was told."""
 _IN_A_FOLDER = 1000
 """Results of a folder below `RESULTS`: a million files in one are slow to list."""
 _TABLES = """
@@ -176,8 +175,8 @@ class Index:
                 "WHERE number = ?",
                 (
                     found.status, found.cells, found.regions, found.undetermined,
-                    json.dumps([astuple(area) for area in found.areas]),
-                    None if found.widest is None else json.dumps(astuple(found.widest)),
+                    json.dumps(_AREAS.write(found.areas)),
+                    None if found.widest is None else json.dumps(_WIDEST.write(found.widest)),
                     file, hashlib.sha256(data).hexdigest(), len(data), outcome.seconds, number,
                 ),
             )  # fmt: skip
@@ -356,8 +355,9 @@ def _member(folder: Path, names: Sequence[str], row: tuple[Any, ...]) -> Member:
         values = json.loads(parameters)
         exact = [values[name] for name in names]
         if state == State.DONE.value:
-            counted = tuple(CountedArea(count, n, (low, high)) for count, n, (low, high) in json.loads(areas))
-            summary = Summary(status, cells, regions, open_share, counted, _widest(widest))
+            counted = _AREAS.read(Node(json.loads(areas), "areas"))
+            told = None if widest is None else _WIDEST.read(Node(json.loads(widest), "widest"))
+            summary = Summary(status, cells, regions, open_share, counted, told)
             exact += [open_share, *(bound for area in counted for bound in area.area if bound)]
             if file != _name(number if same_as is None else same_as):
                 raise ValueError("it names another result")
@@ -367,20 +367,14 @@ def _member(folder: Path, names: Sequence[str], row: tuple[Any, ...]) -> Member:
         return Member(number, values, State(state), summary, same_as, error, file, digest, seconds, attempts)
 
 
-def _widest(text: str | None) -> Widest | None:
-    if text is None:
-        return None
-    along, width, places, proof, remark, *attainment = json.loads(text)
-    # an index of before says of limits that they are attained
-    known = attainment[0] if attainment else UNTOLD
-    return Widest(
-        along,
-        None if width is None else (width[0], width[1]),
-        tuple((p[0], p[1]) for p in places),
-        proof if attainment or not proof else known,
-        remark,
-        known,
-    )
+def _told(*values: Any) -> Widest:
+    """A width; an index that was written before attainment was told says of limits that they are attained."""
+    found = Widest(*values)
+    return found if len(values) > 5 or not found.proof else replace(found, proof=found.attainment)
+
+
+_AREAS = listed(row_of(CountedArea))
+_WIDEST = row_of(Widest, _told)
 
 
 def member_map(sweep: Sweep, member: Member) -> RegionMap:

@@ -2,7 +2,7 @@
 
 Guarantee: all three come of one description, which is the class's annotations where nothing else is said. What a codec
 reads from what it has written is equal to what was written; every fault of a document is a ValueError that names its
-place.
+place. Records, which people write, are read by codecs too (`part`, `reading`), and all of their faults are noted.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from operator import attrgetter, or_
 from types import MappingProxyType, NoneType
 from typing import Any, Generic, NamedTuple, TypeVar, cast, get_args, get_origin, get_type_hints
 
-from ptmcad.text.node import MAX_ITEMS, Node
+from ptmcad.text.node import Node
 from ptmcad.text.numerals import integer_text, shortest_text, text_of
 
 T = TypeVar("T")
@@ -94,24 +94,28 @@ def optional(codec: Codec[T]) -> Codec[T | None]:
 COUNT = optional(NATURAL)
 
 
-def listed(codec: Codec[T], length: int | None = None, most: int = MAX_ITEMS) -> Codec[tuple[T, ...]]:
-    """Several of the same, so many or at most so many."""
+def listed(codec: Codec[T], length: int | None = None, most: int | None = None, like: str = "") -> Codec[tuple[T, ...]]:
+    """Several of the same, so many or at most so many; ``like`` is an example for a record's message."""
     convert = codec.write
     write = _itself if convert is _itself else lambda values: [convert(v) for v in values]
     size = {} if length is None else {"minItems": length, "maxItems": length}
-    schema = {"type": "array", "items": codec.schema, **size}
-    return Codec(write, lambda node: node.each(codec.read, length, most), schema)
+    schema = {"type": "array", "items": codec.schema, **size, **({"maxItems": most} if most else {})}
+    return Codec(write, lambda node: node.each(codec.read, length, most, like), schema)
 
 
 def named(
-    codec: Codec[T], name: Callable[[Node, str], str] = lambda _, key: key, most: int = MAX_ITEMS
+    codec: Codec[T], name: Callable[[Node, str], str] = lambda _, key: key, most: int | None = None, like: str = ""
 ) -> Codec[Mapping[str, T]]:
     """Several of the same by at most so many names; ``name`` reads one, and may refuse it."""
+
+    def read(node: Node) -> Mapping[str, T]:
+        parts = node.mapping(most, like).values()
+        return dict(node.gathered(lambda part: (name(part, part.name), codec.read(part)), parts))
+
     return Codec(
-        lambda values: {name: codec.write(v) for name, v in values.items()},
-        lambda node: {name(place, key): codec.read(place) for key, place in node.mapping(most).items()},
-        {"type": "object", "additionalProperties": codec.schema},
-    )
+        lambda values: {name: codec.write(v) for name, v in values.items()}, read,
+        {"type": "object", "additionalProperties": codec.schema, **({"maxProperties": most} if most else {})},
+    )  # fmt: skip
 
 
 def either(key: str, is_first: Callable[[T], bool], first: Codec[Any], other: Codec[Any]) -> Codec[T]:
@@ -146,6 +150,9 @@ class Key(NamedTuple):
     checked : whether what is read has to be what the object, once it is made, gives; not in a document that lacks one
         of the keys that are checked, as an earlier version wrote it.
     beside : where it is not empty, the codec writes an object with some of these keys, which stand beside the others.
+    help, shown : what it means, and its default, for people.
+    instead : of a record that a person writes, what is taken where the key is wrong or missing; without it nothing is
+        read of the object then.
     """
 
     codec: Codec[Any] | None = None
@@ -156,6 +163,25 @@ class Key(NamedTuple):
     made: bool = True
     checked: bool = False
     beside: tuple[str, ...] = ()
+    help: str = ""
+    shown: object = ...
+    instead: object = ...
+
+
+_DEFAULT = object()
+
+
+def part(
+    codec: Codec[Any], help: str = "", default: object = ..., instead: object = _DEFAULT, shown: object = ...
+) -> Key:
+    """A key of what a person writes, with its meaning."""
+    instead = default if instead is _DEFAULT else instead
+    return Key(codec, None, default, always=True, help=help, instead=instead, shown=shown)
+
+
+def reading(read: Callable[[Node], T], **schema: Any) -> Codec[T]:
+    """What a person writes and the program only reads; ``schema`` has the keywords of what is valid."""
+    return Codec(_itself, read, schema)
 
 
 def derived(get: Callable[[Any], Any], codec: Codec[Any] = TEXT, default: object = ...) -> Key:
@@ -163,22 +189,24 @@ def derived(get: Callable[[Any], Any], codec: Codec[Any] = TEXT, default: object
     return Key(codec, get, default, always=True, made=False, checked=True)
 
 
-def record(make: Callable[..., T], **keys: Codec[Any] | Key) -> Codec[T]:
+def record(make: Callable[..., T], like: str = "", /, **keys: Codec[Any] | Key) -> Codec[T]:
     """An object with these keys, in this order.
 
     Parameters
     ----------
     make : of the keys' values, by their names; what it refuses is wrong with the object.
+    like : an example for a record's message.
     """
     entries = {name: key if isinstance(key, Key) else Key(key) for name, key in keys.items()}
-    expected: list[str] = []
-    writers, readers, checked = [], [], []
+    known = [name for key, entry in entries.items() for name in entry.beside or (key,)]
+    needed = [name for name, key in entries.items() if key.default is ... and not key.beside]
+    writers, readers, checked, instead = [], [], [], dict[str, object]()
     for name, key in entries.items():
         codec, get = _codec(key), key.get or attrgetter(key.field or name)
-        expected += [f"{other}?" for other in key.beside] or [name if key.default is ... else f"{name}?"]
         writers.append((name, get, codec.write, ... if key.always else key.default, bool(key.beside)))
         if key.made:
             readers.append((name, key.field or name, codec.read, key.default, bool(key.beside)))
+            instead[key.field or name] = key.instead
         if key.checked:
             checked.append((name, get, codec.write))
 
@@ -193,11 +221,21 @@ def record(make: Callable[..., T], **keys: Codec[Any] | Key) -> Codec[T]:
         return found
 
     def read(node: Node) -> T:
-        given = node.record(*expected)
+        given = node.record(known, needed, like)
         values = {}
         for name, argument, read_part, default, beside in readers:
             place = node if beside else given.get(name)
-            values[argument] = default if place is None else read_part(place)
+            if node.faults is None:
+                values[argument] = default if place is None else read_part(place)
+                continue
+            values[argument] = instead[argument]
+            with node.faults:
+                if place is not None:
+                    values[argument] = read_part(place)
+                elif default is not ...:
+                    values[argument] = default
+        if node.faults is not None and ... in values.values():
+            raise node.noted()
         found = node.made(make, **values)
         if checked and all(name in given for name, *_ in checked):
             for name, get, convert in checked:
@@ -219,7 +257,9 @@ def _schema_of(entries: Mapping[str, Key]) -> Schema:
     for name, key in entries.items():
         flag = key.default is False and not key.always
         schema: Schema = {"const": True} if flag else _codec(key).schema
-        properties |= schema["properties"] if key.beside else {name: schema}
+        said: dict[str, object] = {"description": key.help} if key.help else {}
+        said |= {} if key.shown is ... else {"default": key.shown}
+        properties |= schema["properties"] if key.beside else {name: {**schema, **said}}
         alternatives |= {"oneOf": schema["oneOf"]} if key.beside else {}
     needed = [name for name, key in entries.items() if key.default is ... and not key.beside]
     return {
@@ -274,6 +314,17 @@ def record_of(
         found[name] = key._replace(codec=codec_of(hints[key.field or name], known))
     made = record(make or kind, **{name: key for name, key in found.items() if key is not None})
     return made.narrowed(**{_CLASS: kind.__name__})
+
+
+def row_of(kind: type[T], make: Callable[..., T] | None = None) -> Codec[T]:
+    """A list of the fields of a dataclass, in their order; those with a default may be missing at its end."""
+    names = tuple(field.name for field in _fields(kind))
+    codecs = [codec_of(hint) for hint in _hints(cast(Hashable, kind), names).values()]
+
+    def read(node: Node) -> T:
+        return node.made(make or kind, *(c.read(p) for c, p in zip(codecs, node.items(most=len(names)), strict=False)))
+
+    return Codec(lambda value: [c.write(v) for c, v in zip(codecs, attrgetter(*names)(value), strict=True)], read)
 
 
 def unless_default(kind: type, *names: str, known: Known = _ALIKE) -> dict[str, Key]:

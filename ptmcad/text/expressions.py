@@ -146,14 +146,10 @@ class Expression:
                 square = square * square
         return result
 
-    def __radd__(self, other: Fraction | int) -> Expression:
-        return _as_expression(other) + self
+    __radd__, __rmul__ = __add__, __mul__
 
     def __rsub__(self, other: Fraction | int) -> Expression:
         return _as_expression(other) - self
-
-    def __rmul__(self, other: Fraction | int) -> Expression:
-        return _as_expression(other) * self
 
     def __rtruediv__(self, other: Fraction | int) -> Expression:
         return _as_expression(other) / self

@@ -1,18 +1,21 @@
-"""A value of a JSON document together with its place, read as one type or refused.
+"""A value of a JSON document or of a record together with its place, read as one type or refused.
 
-Guarantee: every reading method either returns a value of its type within the limits below, or raises ValueError with
-the place of the fault, such as ``cells[3].sample``.
+Guarantee: every reading method either returns a value of its type within the limits below, or raises what names the
+place of the fault: of a document ValueError, with a place such as ``cells[3].sample``, at the first fault; of a record
+`ConfigError`, with file, line and a key such as ``springs.2.k``, where all faults are noted and work goes on behind.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from enum import Enum
 from fractions import Fraction
 from typing import Any, NamedTuple, TypeVar
 
-from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.errors import ConfigError, ExpressionError, Faults
+from ptmcad.text.entry import Place, Scalar, Sequence, Tree, Written, as_written, plain_data
 from ptmcad.text.numerals import fraction_of
+from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.textfile import json_data
 
 # Limits far beyond any slice's result; they bound the time in which a damaged document is refused.
@@ -21,69 +24,196 @@ MAX_NUMBER = 10**6
 """Of cells, regions, equilibria."""
 MAX_CHARACTERS = 40_000
 """Of a coordinate. A record's numbers have 2000 digits at most, and coordinates in its result a few times as many."""
+MAX_ENTRIES = 400
+"""Of any list or mapping in a description, so that what is read is read, and proved, in a fraction of a second."""
 
 Item = TypeVar("Item")
+Part = TypeVar("Part")
 Choice = TypeVar("Choice", bound=Enum)
 
 
 class Node(NamedTuple):
-    """A value of the document with its place, such as ``cells[3].sample``."""
+    """A value with its place.
+
+    Attributes
+    ----------
+    value : of a record what is written there, of a document JSON's data.
+    place : of a record a `Place`, of a document a text such as ``cells[3].sample``.
+    faults : of a record, where what is wrong is noted; None of a document.
+    name : the last step of the place.
+    """
 
     value: Any
-    place: str
+    place: Any
+    faults: Faults | None = None
+    name: Any = ""
 
-    def fault(self, problem: str) -> ValueError:
+    @classmethod
+    def of(cls, written: Written, faults: Faults, name: Any = "") -> Node:
+        """A part of a record."""
+        return cls(written, written.place, faults, name)
+
+    @property
+    def key(self) -> str:
+        """The path of keys to it."""
+        return str((self.place.key if isinstance(self.place, Place) else self.place) or "")
+
+    @property
+    def plain(self) -> Any:
+        """Of a record, what is written as plain data, which is not nothing."""
+        if isinstance(self.value, Scalar) and self.value.is_null:
+            raise self._empty()
+        return plain_data(self.value)
+
+    @property
+    def is_mapping(self) -> bool:
+        """Whether it has entries by names."""
+        return isinstance(self._inside, Mapping)
+
+    @property
+    def _inside(self) -> Any:
+        """The entries of a list or mapping."""
+        value = self.value
+        return value.entries if isinstance(value, Tree) else value.items if isinstance(value, Sequence) else value
+
+    def fault(self, problem: str) -> Exception:
+        """What is raised of a problem: after a document's place, or as the message of a record's."""
+        if isinstance(self.place, Place):
+            return self.place.error(problem)
         return ValueError(f"{self.place or 'the document'} {problem}")
+
+    def note(self, error: Exception) -> None:
+        """Note a fault of a record; raise one of a document."""
+        if self.faults is None:
+            raise error
+        with self.faults:
+            raise error
+
+    def noted(self) -> ConfigError:
+        """What was noted last, to be raised where nothing can be read on: it is not noted twice."""
+        assert self.faults is not None
+        return self.faults.found[-1]
 
     def made(self, make: Callable[..., Item], *values: Any, **entries: Any) -> Item:
         """What a function makes of values that were read here; what it refuses is wrong with this part."""
+        if self.faults is not None:
+            return make(*values, **entries)
         try:
             return make(*values, **entries)
         except (ValueError, ConfigError, ExpressionError) as error:
             raise self.fault(f"is wrong: {error}") from error
 
-    def record(self, *keys: str) -> dict[str, Node]:
-        """An object with exactly these keys; those that end in ``?`` may be missing."""
-        required = [key for key in keys if not key.endswith("?")]
-        known = {key.rstrip("?") for key in keys}
-        values = self.mapping()
-        for key in required:
-            if key not in values:
-                raise self.fault(f"lacks the key {key!r}")
-        for key in values:
-            if key not in known:
-                raise self.fault(f"has the unknown key {key[:40]!r}")
-        return values
+    # ------------------------------------------------------------------------------------------------------- shapes
 
-    def mapping(self, most: int = MAX_ITEMS) -> dict[str, Node]:
-        if not isinstance(self.value, dict):
-            raise self.fault("is not an object")
-        if len(self.value) > most:
-            raise self.fault(f"has more than {most} keys")
-        for key in self.value:
-            if not key.isprintable():
-                raise self.fault(f"has the key {key[:40]!r} with a character that is not printable")
-        start = f"{self.place}." if self.place else ""
-        return {key: Node(value, start + key[:40]) for key, value in self.value.items()}
+    def below(self, step: str | int, value: Any) -> Node:
+        """An entry of this one, or where one would be."""
+        if self.faults is None:
+            inner = f"[{step}]" if isinstance(step, int) else f".{step[:40]}" if self.place else step[:40]
+            return Node(value, f"{self.place}{inner}", None, step)
+        if isinstance(value, Scalar | Sequence | Tree):
+            return Node.of(value, self.faults, step)
+        return Node(value, self.place.below(str(step)), self.faults, step)
+
+    def mapping(self, most: int | None = None, like: str = "", expected: str = "") -> dict[str, Node]:
+        """The entries of a mapping of at most so many.
+
+        Parameters
+        ----------
+        like : an example for a record's message; or ``expected``, all of it.
+        """
+        inside = self._inside
+        if not isinstance(inside, Mapping):
+            raise self._unlike("is not an object", "a mapping", like, expected)
+        self._check_size(len(inside), most, "keys")
+        if self.faults is None and (hidden := next((key for key in inside if not key.isprintable()), None)):
+            raise self.fault(f"has the key {hidden[:40]!r} with a character that is not printable")
+        return {key: self.below(key, value) for key, value in inside.items()}
+
+    def items(
+        self, length: int | None = None, most: int | None = None, like: str = "", expected: str = ""
+    ) -> list[Node]:
+        """The entries of a list of at most so many, or of just so many."""
+        inside = self._inside
+        if not isinstance(inside, list | tuple) or isinstance(inside, Scalar):
+            raise self._unlike("is not a list", "a list", like, expected)
+        self._check_size(len(inside), most, "entries")
+        if length is not None and len(inside) != length:
+            raise self.fault(f"has {len(inside)} entries, not {length}")
+        return [self.below(k, value) for k, value in enumerate(inside, self.faults is not None)]
+
+    def pair(self, what: str, like: str, expected: str = "") -> tuple[Node, Node]:
+        """The two entries of a list that has two; ``what`` it is, for a record's message."""
+        found = self.items(like=like, expected=expected)
+        if len(found) != 2:
+            raise self.fault(f"expected {what} such as {like}")
+        return found[0], found[1]
+
+    def _unlike(self, problem: str, shape: str, like: str, expected: str) -> Exception:
+        if self.faults is None:
+            return self.fault(problem)
+        if not expected and isinstance(self.value, Scalar) and self.value.is_null:
+            return self._empty(like)
+        return self.fault(expected or f"expected {shape}{like and f', such as {like}'}")
+
+    def _empty(self, like: str = "") -> Exception:
+        return self.fault(f"has no value: write one{like and f', such as {like}'}, or leave the key out")
+
+    def _check_size(self, size: int, most: int | None, what: str) -> None:
+        limit = most or (MAX_ITEMS if self.faults is None else MAX_ENTRIES)
+        if size > limit:
+            number = f"{size} entries, more than the {limit} that can be computed with"
+            raise self.fault(f"has more than {limit} {what}" if self.faults is None else number)
+
+    def record(
+        self, known: Collection[str], needed: Iterable[str] = (), like: str = "", expected: str = ""
+    ) -> dict[str, Node]:
+        """The entries of a mapping; every key that is not known, and every one that is missing, is a fault."""
+        found = self.mapping(like=like, expected=expected)
+        unknown = [name for name in found if name not in known]
+        missing = [name for name in needed if name not in found]
+        for name in unknown:
+            hint = did_you_mean(name, known) or f"; the keys are {', '.join(known)}"
+            self.note(self._about(name, f"unknown key{hint}", f"has the unknown key {name[:40]!r}"))
+        for name in missing if len(missing) > len(unknown) else ():  # else those may be meant for these
+            self.note(self._about(name, "is missing", f"lacks the key {name!r}"))
+        return found
+
+    def _about(self, key: str, problem: str, of_document: str) -> Exception:
+        """A fault of a key, which a document has as a whole."""
+        return self.fault(of_document) if self.faults is None else self.at(key).fault(problem)
+
+    def has(self, name: str) -> bool:
+        """Whether a mapping has a key."""
+        return name in self._inside
+
+    def at(self, name: str) -> Node:
+        """What a mapping has under a key, or where it would be."""
+        return self.below(name, self._inside.get(name))
 
     def entry(self, key: str) -> Node:
-        """What an object has under a key."""
+        """What a document's object has under a key."""
         values = self.mapping()
         if key not in values:
             raise self.fault(f"lacks the key {key!r}")
         return values[key]
 
-    def items(self, length: int | None = None, most: int = MAX_ITEMS) -> Iterator[Node]:
-        if not isinstance(self.value, list):
-            raise self.fault("is not a list")
-        if len(self.value) > most:
-            raise self.fault(f"has more than {most} entries")
-        if length is not None and len(self.value) != length:
-            raise self.fault(f"has {len(self.value)} entries, not {length}")
-        return (Node(value, f"{self.place}[{k}]") for k, value in enumerate(self.value))
+    def each(
+        self, read: Callable[[Node], Item], length: int | None = None, most: int | None = None, like: str = ""
+    ) -> tuple[Item, ...]:
+        """What is read of the entries of a list; of a record without those that are wrong, which are noted."""
+        return tuple(self.gathered(read, self.items(length, most, like)))
 
-    def each(self, read: Callable[[Node], Item], length: int | None = None, most: int = MAX_ITEMS) -> tuple[Item, ...]:
-        return tuple(read(item) for item in self.items(length, most))
+    def gathered(self, read: Callable[[Part], Item], parts: Iterable[Part]) -> list[Item]:
+        """What is read of some entries; of a record without those that are wrong, which are noted."""
+        if self.faults is None:
+            return [read(part) for part in parts]
+        found = []
+        for part in parts:
+            with self.faults:
+                found.append(read(part))
+        return found
+
+    # ------------------------------------------------------------------------------------- values of JSON's documents
 
     def text(self) -> str:
         """A text that can be shown as it is, on a terminal or in a page; in an expression, tabs are blanks."""
@@ -155,10 +285,13 @@ class Node(NamedTuple):
         return value
 
     def choice(self, members: Mapping[str, Choice]) -> Choice:
-        text = self.text()
-        if text not in members:
-            raise self.fault(f"is {text[:40]!r}, not one of {', '.join(members)}")
-        return members[text]
+        """What a word stands for."""
+        word = self.text() if self.faults is None else self.plain
+        if isinstance(word, str) and word in members:
+            return members[word]
+        if self.faults is None:
+            raise self.fault(f"is {word[:40]!r}, not one of {', '.join(members)}")
+        raise self.fault(f"{as_written(word)} is none of {', '.join(members)}{did_you_mean(str(word), members)}")
 
 
 def opened(text: str, expected: str, longest: int, command: str) -> Node:

@@ -8,6 +8,7 @@ of any ring in `ptmcad.mechanism.evaluate`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
 from typing import NamedTuple, Protocol, TypeVar
 
@@ -141,24 +142,27 @@ def names_of(tree: Tree) -> tuple[str, ...]:
     return tuple(names)
 
 
+def mapped(tree: Tree, change: Callable[[Tree], Tree | None]) -> Tree:
+    """A tree with others in place of parts: ``change`` gives them; None for a part of which the parts are looked at."""
+    if (found := change(tree)) is not None:
+        return found
+    match tree:
+        case Chain(first, steps):
+            return Chain(mapped(first, change), tuple(s._replace(operand=mapped(s.operand, change)) for s in steps))
+        case Power(base, exponent, position):
+            return Power(mapped(base, change), mapped(exponent, change), position)
+        case Negative(operand, position):
+            return Negative(mapped(operand, change), position)
+        case Call(function, argument, position):
+            return Call(function, mapped(argument, change), position)
+    return tree
+
+
 def replaced(tree: Tree, name: str, value: Tree) -> Tree:
     """A tree with another in place of a name; the same object where the name does not occur."""
     if name not in names_of(tree):
         return tree
-    match tree:
-        case Name():
-            return value
-        case Chain(first, steps):
-            others = (step._replace(operand=replaced(step.operand, name, value)) for step in steps)
-            return Chain(replaced(first, name, value), tuple(others))
-        case Power(base, exponent):
-            return tree._replace(base=replaced(base, name, value), exponent=replaced(exponent, name, value))
-        case Negative(operand):
-            return tree._replace(operand=replaced(operand, name, value))
-        case Call(_, argument):
-            return tree._replace(argument=replaced(argument, name, value))
-        case Number():  # without names
-            return tree
+    return mapped(tree, lambda part: value if isinstance(part, Name) and part.name == name else None)
 
 
 _MAX_PLACES = 20

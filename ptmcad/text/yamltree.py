@@ -16,7 +16,7 @@ import yaml
 
 from ptmcad.errors import ConfigError, shown
 from ptmcad.text import textfile
-from ptmcad.text.entry import Node, Place, Scalar, Sequence, Tree
+from ptmcad.text.entry import Place, Scalar, Sequence, Tree, Written
 
 MAX_BYTES = 200_000
 MAX_DEPTH = 20
@@ -83,9 +83,9 @@ def _cannot_start(text: str, mark: Any) -> str:
     )
 
 
-def _document(events: Iterator[Any], root: Place) -> Node:
+def _document(events: Iterator[Any], root: Place) -> Written:
     """The only document's root node."""
-    node: Node = Scalar("", root)
+    node: Written = Scalar("", root)
     documents = 0
     for event in events:
         if isinstance(event, yaml.DocumentStartEvent):
@@ -108,7 +108,7 @@ def _counted(events: Iterator[Any], root: Place) -> Iterator[Any]:
         yield event
 
 
-def _node(event: Any, events: Iterator[Any], place: Place, depth: int) -> Node:
+def _node(event: Any, events: Iterator[Any], place: Place, depth: int) -> Written:
     """The node that starts with `event`; the rest of it is taken from `events`."""
     here = Place(place.key, place.file, _line(event))
     key_line = place.line or here.line  # where a block begins is below its key
@@ -121,11 +121,12 @@ def _node(event: Any, events: Iterator[Any], place: Place, depth: int) -> Node:
     if isinstance(event, yaml.ScalarEvent):
         return Scalar(event.value, here, plain=bool(event.implicit[0]))
     if isinstance(event, yaml.SequenceStartEvent):
-        items = []
+        items: list[Written] = []
         while not isinstance(event := next(events), yaml.SequenceEndEvent):
-            items.append(_node(event, events, place._replace(line=None), depth + 1))
+            item = place.below(str(len(items) + 1))._replace(line=None)
+            items.append(_node(event, events, item, depth + 1))
         return Sequence(tuple(items), here._replace(line=key_line))
-    entries: dict[str, Node] = {}
+    entries: dict[str, Written] = {}
     lines: dict[str, int] = {}
     while not isinstance(event := next(events), yaml.MappingEndEvent):
         key = _node(event, events, place._replace(line=None), depth + 1)

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.answer.regionmap import Region
+from ptmcad.answer.regionmap import CriticalValue, Region
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import approximate_text
@@ -40,7 +40,7 @@ class _Panel(NamedTuple):
     branch: Branch
     below: int
     above: int
-    share: arb
+    effort: Effort
     part: Part
 
 
@@ -99,6 +99,7 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
     width = stop - start
     window = to_fraction(width * (high - low))
     brackets = [bracket(v, strip * width) for v in result.critical_values]
+    points = [None, *(_middle(v, strip * width / 2**bits) for v in result.critical_values), None]
     lost = sum((b - a for a, b in brackets), fmpq(0)) * (high - low)
     bounds = [(ball_of(r.area[0]), ball_of(r.area[1])) for r in result.regions]
     number = max(1, sum(len(s.walls) for s in result.stacks))
@@ -111,8 +112,8 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
         right = stop if s == len(brackets) else brackets[s][0]
         whole[result.cells[stack.cells[-1]].region] += arb((right - left) * (high - low))
         for below, above, branch in _borders(claims, s):
-            there = replace(effort, share=min(shares[below], shares[above]))
-            panels += [_Panel(branch, below, above, there.share, p) for p in integrals_over(branch, left, right, there)]
+            there = replace(effort, share=min(shares[below], shares[above]), points=(points[s], points[s + 1]))
+            panels += [_Panel(branch, below, above, there, p) for p in integrals_over(branch, left, right, there)]
     while True:
         areas = list(whole)
         for p in panels:
@@ -139,6 +140,12 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
         panels = halved
 
 
+def _middle(value: CriticalValue, width: fmpq) -> fmpq:
+    """A number within this distance of a critical value."""
+    low, high = bracket(value, width)
+    return (low + high) / 2
+
+
 def _borders(claims: Claims, s: int) -> Iterator[tuple[int, int, Branch]]:
     """The walls of a stack between different regions, with the region below and that above."""
     stack = claims.result.stacks[s]
@@ -161,7 +168,7 @@ def _halved(panels: Sequence[_Panel], regions: set[int], effort: Effort) -> list
         return None
     refined: list[_Panel] = []
     for p in panels:
-        left, right, integral, tried = p.part
+        left, right, integral, tried, run = p.part
         if not (regions & {p.below, p.above} and integral.rad() * 8 > worst):
             refined.append(p)
             continue
@@ -169,6 +176,6 @@ def _halved(panels: Sequence[_Panel], regions: set[int], effort: Effort) -> list
             return None
         middle = (left + right) / 2
         for ends in ((left, middle), (middle, right)) if tried else ((left, right),):
-            parts = integrals_over(p.branch, *ends, replace(effort, share=p.share))
+            parts = integrals_over(p.branch, *ends, replace(p.effort, degrees=effort.degrees), run)
             refined += [p._replace(part=part) for part in parts]
     return refined

@@ -3,8 +3,14 @@
 A branch is a power series in a disk that is proved by `ptmcad.verification.disks`. With coefficients of at most r / R^n
 there (Cauchy), what lies beyond the term of order N contributes at most 2 h r (h/R)^N / ((N+1) (1 - (h/R)^2)) to the
 integral over a panel of half width h < R. Where R is too small for the panel, its middle part is proved for which it is
-large enough. Where no R does, as at turning points, the panel is halved or the branch is shut in between two heights at
-which the curve does not meet the panel.
+large enough. Where no R does, the panel is halved or the branch is shut in between two heights at which the curve does
+not meet the panel.
+
+Beside a turning point of the curve (k = 2) or a node (k = 1) at (U, V) the branch is V + s t, with s^k the distance
+from U, and t a simple root of p(U +- s^k, V + s t)/s^2. This is a polynomial in s and t but for a_00/s^2, a_01 t/s and,
+with k = 1, a_10/s, which are nothing at the point itself, and little where U and V are its approximations. For each
+real s from some sigma on they are numbers, or numbers times t, that are at most as large as at sigma. So what a disk
+proves of all polynomials with such numbers in their place, whatever they are, holds of t at each such s.
 
 Of a polynomial in v^2 the same is done with w = v^2, of half the degree, where the disk proves that |w| <= M and that w
 is not zero: v is analytic there then and |v| <= sqrt(M), which takes the place of r.
@@ -21,7 +27,7 @@ from typing import NamedTuple
 from flint import arb, arb_poly, ctx, fmpq
 
 from ptmcad.verification.claims import PlaneCurve
-from ptmcad.verification.disks import PrecisionTooLow, disk
+from ptmcad.verification.disks import Disk, PrecisionTooLow, disk, recentered
 from ptmcad.verification.roots import numbered_root
 from ptmcad.verification.sturm import changes_of
 
@@ -79,6 +85,7 @@ class Effort:
     shut : panels narrower than this are shut in between heights.
     narrowest : panels narrower than this are not halved at this precision.
     heights : the window's edges.
+    points : approximations of the critical values at the ends of the branch's stack; None at an edge of the window.
     degrees : of the polynomials that a branch is compared with; the closer the next branch, the better it has to be.
     """
 
@@ -87,6 +94,7 @@ class Effort:
     narrowest: fmpq
     heights: tuple[fmpq, fmpq]
     degrees: tuple[int, ...]
+    points: tuple[fmpq | None, fmpq | None] = (None, None)
 
 
 class Part(NamedTuple):
@@ -96,21 +104,31 @@ class Part(NamedTuple):
     ----------
     tried : whether this part has been the whole of what was tried; else it is what was left of something longer, and
         its integral is known by two heights only.
+    run : of what was left how often, one time after the other, it was left at the same end: negative at the left one.
     """
 
     left: fmpq
     right: fmpq
     integral: arb
     tried: bool
+    run: int = 0
 
 
-def integrals_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort) -> list[Part]:
+def integrals_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort, run: int = 0) -> list[Part]:
     """The integral of the branch over a panel, in parts: the best enclosures at hand.
+
+    Parameters
+    ----------
+    run : as `Part` has it. Where a branch was not proved twice at the same end it is likely to meet another one there.
 
     Raises
     ------
     PrecisionTooLow
     """
+    if abs(run) == 2 and (at := effort.points[run > 0]) is not None:
+        meeting = _beside(branch, at, (left, right)[:: -1 if run > 0 else 1], effort)
+        if meeting is not None:
+            return meeting
     low, high = effort.heights
     middle, half = (left + right) / 2, (right - left) / 2
     height = branch.height(middle, low, high)
@@ -122,9 +140,9 @@ def integrals_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort) -> l
     within = _enclosed(branch, middle, half, height, effort) if narrow else None
     if found is None:
         return [_known_by_edges(left, right, effort, True, within)]
-    ends = (left, middle - proved, middle + proved, right)
-    sides = [_known_by_edges(a, b, effort, False, within) for a, b in (ends[:2], ends[2:]) if a < b]
-    return [Part(ends[1], ends[2], found[0] - low * (2 * proved), True), *sides]
+    sides = (left, middle - proved, min(run, 0) - 1), (middle + proved, right, max(run, 0) + 1)
+    rest = [_known_by_edges(a, b, effort, False, within)._replace(run=k) for a, b, k in sides if a < b]
+    return [Part(middle - proved, middle + proved, found[0] - low * (2 * proved), True), *rest]
 
 
 def _more_precisely(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> tuple[arb, fmpq] | None:
@@ -190,14 +208,8 @@ def _along(
     if found is None or (squares and not found.center > found.slack + found.reach):
         return None
     bound = (found.center + found.slack + found.reach).sqrt() if squares else found.reach
-    # order until the tail is negligible
-    proved, ratio, order, tail = found.proved, 1 / found.factor, 4, arb(0)
-    while True:
-        tail = 2 * arb(proved) * bound * arb(ratio) ** order / ((order + 1) * (1 - arb(ratio) ** 2))
-        if tail < effort.share or order >= ctx.prec:
-            break
-        order += 4
-    coefficients = found.coefficients(order)
+    proved = found.proved
+    coefficients, tail = _terms(found, bound, effort.share)
     if squares:
         coefficients = _root(coefficients, height)
     total, power = arb(0), arb(proved)
@@ -207,6 +219,103 @@ def _along(
     if total.rad() > effort.share and total.rad() * 2**_ROUNDED_BITS > arb(proved) * bound:
         raise PrecisionTooLow  # the disk alone says nearly as much as the series
     return total + arb(0).union(2 * tail) - tail, proved
+
+
+def _terms(found: Disk, bound: arb, share: arb) -> tuple[list[arb], arb]:
+    """A disk's power series to an order at which the tail is negligible, and a bound of the tail's integral."""
+    ratio, order = 1 / arb(found.factor), 4
+    while True:
+        tail = 2 * arb(found.proved) * bound * ratio**order / ((order + 1) * (1 - ratio))
+        if tail < share or order >= ctx.prec:
+            return found.coefficients(order), tail
+        order += 4
+
+
+_NEWTON = 8
+"""Steps to a point at which branches meet, from a place that is very near to it."""
+_NEAREST = 2**40
+"""Part of a panel beside a critical value that is a rational number: so much is left out."""
+
+
+def _beside(branch: Branch, at: fmpq, ends: tuple[fmpq, fmpq], effort: Effort) -> list[Part] | None:
+    """The parts of a panel beside a critical value at which the branch meets another one; None where it is not proved.
+
+    Parameters
+    ----------
+    at : the critical value, nearly.
+    ends : of the panel, the one next to the critical value first.
+    """
+    (near, far), (low, high) = ends, effort.heights
+    if near == at:
+        near += (far - at) / _NEAREST
+    with ctx.workprec(2 * ctx.prec):
+        height = branch.height(near, low, high)
+        if height is None:
+            return None
+        over = arb_poly([row(at) for row in branch.value])
+        slope, v = over.derivative(), height.mid()
+        for _ in range(_NEWTON):
+            v = (v - slope(v) / slope.derivative()(v)).mid()
+        rows = recentered([row(arb_poly([at, 1 if far > at else -1])) for row in branch.value], v)
+        for k in (2, 1):
+            found = _from_point(rows, k, abs(near - at), abs(far - at), height - v, effort)
+            if found is not None:
+                total, length = found
+                end = at + length if far > at else at - length
+                integral = total + (v - low) * abs(end - near)
+                inner = _between(end, far, effort, 1 if far > at else -1)
+                return [Part(min(near, end), max(near, end), integral, True), *inner, *_between(ends[0], near, effort)]
+    return None
+
+
+def _between(one: fmpq, other: fmpq, effort: Effort, run: int = 0) -> list[Part]:
+    """What is left between two places, if anything is."""
+    if one == other:
+        return []
+    return [_known_by_edges(min(one, other), max(one, other), effort, False)._replace(run=run)]
+
+
+def _from_point(
+    rows: Sequence[arb_poly], k: int, near: fmpq, far: fmpq, height: arb, effort: Effort
+) -> tuple[arb, fmpq] | None:
+    """The integral of s t over distances from `near` on, and up to where; None when no disk is proved.
+
+    Parameters
+    ----------
+    rows : coefficients in the distance s^k from the point of the powers of the height s t above it.
+    height : of the branch at `near`.
+    """
+    sigma = arb(near).root(k)
+    divided = [_divided(row, k, j, sigma) for j, row in enumerate(rows)]
+    constant, linear, square = (row[0] for row in divided[:3])
+    under, there = linear * linear - 4 * constant * square, height / sigma
+    if not (under > 0 and abs(square) > 0):
+        return None
+    root = under.sqrt() if 2 * square * there + linear > 0 else -under.sqrt()
+    root = (root - linear) / (2 * square)
+    whole = arb(far).root(k).mid().fmpq()
+    try:
+        found = disk(divided, simple(whole, whole / _NEAREST), root, effort.degrees[0])
+    except PrecisionTooLow:
+        return None  # halved panels may do with what precision there is
+    # the branch is that of the disk over the nearest place, and so over all others
+    if found is None or not (root.rad() < found.reach and abs(there - found.center - found.along(sigma)) < found.reach):
+        return None
+    coefficients, tail = _terms(found, found.reach, effort.share)
+    h, total = arb(found.proved), arb(0)
+    for n, c in enumerate(coefficients, k + 1):
+        total += c * (h**n - sigma**n) * fmpq(k, n)
+    tail = tail * h**k * k
+    return total + arb(0).union(2 * tail) - tail, found.proved**k
+
+
+def _divided(row: arb_poly, k: int, j: int, sigma: arb) -> arb_poly:
+    """A coefficient in s^k of (s t)^j, divided by s^2; with balls for what then has negative powers of s >= sigma."""
+    found = [arb(0)] * (k * len(row.coeffs()) + j)
+    for i, c in enumerate(row.coeffs()):
+        power = k * i + j - 2
+        found[max(power, 0)] += c if power >= 0 else arb(0, (abs(c) * sigma**power).upper())
+    return arb_poly(found)
 
 
 _ROUNDED_BITS = 20

@@ -77,7 +77,7 @@ def disk(rows: Sequence[arb_poly], half: fmpq, root: arb, degree: int) -> Disk |
     PrecisionTooLow
     """
     center, length = root.mid(), degree + 1
-    rows = _recentered(rows, center)
+    rows = recentered(rows, center)
     start = arb_series([root - center], prec=length)
     polynomial = arb_poly(
         [arb(0), *(c.mid() for c in _series([row.truncate(length) for row in rows], start, length)[1:])]
@@ -101,7 +101,7 @@ def disk(rows: Sequence[arb_poly], half: fmpq, root: arb, degree: int) -> Disk |
     return None
 
 
-def _recentered(rows: Sequence[arb_poly], center: arb) -> list[arb_poly]:
+def recentered(rows: Sequence[arb_poly], center: arb) -> list[arb_poly]:
     """Coefficients in s of the powers of t in p(s, center + t), given those of the powers of v in p(s, v)."""
     columns = [
         arb_poly([row[i] for row in rows])(arb_poly([center, 1])) for i in range(max(len(row.coeffs()) for row in rows))

@@ -82,7 +82,12 @@ SLICE = "axes: {rho: [0, 1], L2: [1, 2]}\n"
         ),
         (
             "parameters: {F3: F}\nfree: {F: [-10, 0]}\nmembers: [5, x, -3, 1/0, -3]\n" + SLICE,
-            [f"3: members: {what}" for what in ("5 is outside", "the value of a", "division by", "-3 is given twice")],
+            [
+                "3: members.1: 5 is outside",
+                "3: members.2: the value of a",
+                "3: members.4: division",
+                "3: members.5: -3 is",
+            ],
         ),
         (
             "axes: {L2: [0, 2], rho: [3, 0], Z: [0, 1]}\n",

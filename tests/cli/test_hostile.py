@@ -121,7 +121,7 @@ RECORDS: dict[str, tuple[str | bytes, str]] = {
     "1e-400 wide, of a length below zero": ("axes: {rho: [-1e-400, 0], L2: [0, 2]}", "goes below zero"),
     "null characters": (AXES + "\0", "is not YAML"),
     "escape codes": (AXES + '"\\e]0;title\\a\\e[31m": 1', "unknown key"),
-    "escape codes in a value": (AXES + 'count: "\\e[31m\\n"', "is not a count"),
+    "escape codes in a value": (AXES + 'count: "\\e[31m\\n"', "is none of"),
     "newline in a name": (AXES + 'name: "a\\n/../b"', "cannot name a file"),
     "slash in a name": (AXES + "name: ../../b", "cannot name a file"),
     "UTF-16": (AXES.encode("utf-16"), "is not UTF-8"),

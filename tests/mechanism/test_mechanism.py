@@ -262,7 +262,7 @@ def change(*path: str | int) -> Callable[[Any], Change]:
         (change("points", "A4", 0)("2^2^2^2^2"), "points.A4.1", "bits"),
         (change("points", "A4", 0)("L1^-1"), "points.A4.1", "only polynomials can be evaluated"),
         (change("points", "A4", 0)("(rho"), "points.A4.1", "never closed"),
-        (change("points", "A4", 0)(0.5), "points.A4.1", "neither an exact number nor"),
+        (change("points", "A4", 0)(True), "points.A4.1", "neither an exact number nor"),
         (change("points", "A4")([0]), "points.A4", "two coordinates"),
         (change("points", "cos")([0, 0]), "points.cos", "a meaning of its own"),
         (change("points")([]), "points", "expected a mapping"),

@@ -164,7 +164,7 @@ WRONG = [
     ("torsion of parameters", change(PLATFORM, "torsion", 0, "angle", "L"), "torsion.1.angle", "not an unknown angle"),
     ("rest off the circle", change(PLATFORM, "torsion", 0, "rest", "cos", "1/2"), "torsion.1.rest", "not 1"),
     ("rest of no name", change(PLATFORM, "torsion", 0, "rest", "pi/3"), "torsion.1.rest", "give the cosine and sine"),
-    ("half a rest", change(PLATFORM, "torsion", 0, "rest", {"cos": 1}), "torsion.1.rest", "expected both"),
+    ("half a rest", change(PLATFORM, "torsion", 0, "rest", {"cos": 1}), "torsion.1.rest.sin", "is missing"),
     ("rest in words", change(PLATFORM, "torsion", 0, "rest", [1, 0]), "torsion.1.rest", "is none of"),
     ("body nowhere", change(PLATFORM, "bodies", "tip", "at", "Z"), "bodies.tip.at", "there is no point 'Z'"),
     ("body at a point below", change(PLATFORM, "bodies", "plate", "at", "T"), "bodies.plate.at", "no point 'T'"),
@@ -206,11 +206,11 @@ def test_all_faults_are_found_at_once_and_none_follows_from_another() -> None:
     assert [fault.key for fault in caught.value.faults] == [
         "more", "parameters.b.kind", "points.A.1", "bars.5", "springs.1.between", "springs.2.k",
     ]  # fmt: skip
-    system = {"unknowns": {"x": "real", "y": "turn"}, "equations": ["x +", "z*y", 0.5], "stable": 1, "odd": 2}
+    system = {"unknowns": {"x": "real", "y": "turn"}, "equations": ["x +", "z*y", True], "stable": 1, "odd": 2}
     with pytest.raises(ConfigError) as caught:
         described_system(system)
     assert [f.key for f in caught.value.faults] == [
-        "odd", "unknowns.y", "stable", "equations.1", "equations.3", "equations",
+        "odd", "unknowns.y", "equations.1", "equations.3", "stable", "equations",
     ]  # fmt: skip
 
 
@@ -230,7 +230,7 @@ def test_the_built_in_ones_are_proved() -> None:
 
 TITLES: list[tuple[object, str]] = [
     (3, "title: 3 is no text"),
-    (None, "title: an empty value is no text"),
+    (None, "title: has no value"),
     ("a" * 301, "title: the text is longer than 300 characters"),
     ("a\u202eb", "title: the title has a character that cannot be printed, U\\+202E"),
 ]

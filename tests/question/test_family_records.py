@@ -85,7 +85,7 @@ def test_faults_have_their_lines_and_each_is_said_once(tmp_path: Path) -> None:
     with pytest.raises(ConfigError) as caught:
         family_from(_written(tmp_path, text))
     assert [(fault.key, fault.line) for fault in caught.value.faults] == [
-        ("titel", 1), ("parameters.F3", 4), ("members", 6),
+        ("titel", 1), ("parameters.F3", 4), ("members.2", 6),
     ]  # fmt: skip
 
 

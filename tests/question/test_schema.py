@@ -18,18 +18,15 @@ from support.shipped_records import EXACT
 
 from ptmcad import RegionMap, classify, load, slice_variety
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.mechanism import Kind, Support, ptm
-from ptmcad.mechanism.bodies import BODY_KEYS
-from ptmcad.mechanism.description import UnknownKind
-from ptmcad.mechanism.reading import MAX_BODIES, MAX_UNKNOWNS, PARAMETER_KEYS
-from ptmcad.mechanism.record import KEYS, NAMED_RESTS, SPRING_KEYS, TORSION_KEYS
-from ptmcad.mechanism.systems import SYSTEM_KEYS
-from ptmcad.question.config import RECORD_KEYS, slice_from_mapping
+from ptmcad.mechanism import ptm
+from ptmcad.mechanism.reading import MAX_BODIES, MAX_UNKNOWNS
+from ptmcad.question.config import slice_from_mapping
+from ptmcad.question.config.schema import record_schema
 from ptmcad.question.config.starters import NAMES, starter_mechanism, starter_text
 from ptmcad.question.slice import Count
 from ptmcad.show.document.regionmap import FORMAT
 from ptmcad.show.schemas import schemas, with_prose
-from ptmcad.text.entry import MAX_ENTRIES
+from ptmcad.text.node import MAX_ENTRIES
 
 SCHEMA = json.loads(files("ptmcad").joinpath("record.schema.json").read_text(encoding="utf-8"))
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)  # `jsonschema.validate` would check the schema each time
@@ -40,42 +37,39 @@ def test_the_schema_is_valid() -> None:
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
 
 
-def test_the_keys_are_those_of_config() -> None:
-    properties = SCHEMA["properties"]
-    assert tuple(properties) == RECORD_KEYS
-    assert tuple(properties["parameters"]["properties"]) == tuple(ptm().parameters)
-    assert SCHEMA["$defs"]["ptm-parameters"]["properties"]["parameters"]["propertyNames"]["enum"] == list(
-        ptm().parameters
-    )
-    assert properties["count"]["enum"] == [member.value for member in Count]
-    defaults = {name: str(entry["default"]) for name, entry in properties["parameters"]["properties"].items()}
-    assert defaults == {name: parameter.default for name, parameter in ptm().parameters.items()}
+def test_the_published_schema_is_made_of_what_reads_records() -> None:
+    """``scripts/schemas`` writes it anew."""
+    assert record_schema() == SCHEMA
 
 
-def test_the_keys_of_descriptions_are_those_of_their_readers() -> None:
-    mechanism, system = (SCHEMA["$defs"][name]["properties"] for name in ("mechanism", "system"))
-    assert tuple(mechanism) == KEYS
-    assert tuple(system) == SYSTEM_KEYS
-    assert tuple(mechanism["springs"]["items"]["properties"]) == SPRING_KEYS
-    assert tuple(mechanism["torsion"]["items"]["properties"]) == TORSION_KEYS
-    assert tuple(SCHEMA["$defs"]["body"]["properties"]) == BODY_KEYS
-    entry = SCHEMA["$defs"]["parameter"]["properties"]
-    assert tuple(entry) == PARAMETER_KEYS
-    assert entry["kind"]["enum"] == [kind.value for kind in Kind]
-    assert mechanism["supports"]["additionalProperties"]["enum"] == [kind.value for kind in Support]
-    assert SCHEMA["$defs"]["unknowns"]["additionalProperties"]["enum"] == [kind.value for kind in UnknownKind]
-    assert SCHEMA["$defs"]["unknowns"]["maxProperties"] == MAX_UNKNOWNS
-    rests = mechanism["torsion"]["items"]["properties"]["rest"]["anyOf"][0]["enum"]
-    assert rests == [0, *NAMED_RESTS]
-    built_in = [name for name in NAMES if starter_mechanism(name) is not None]
-    assert SCHEMA["properties"]["mechanism"]["anyOf"][0]["enum"] == built_in
-    text = json.dumps(SCHEMA["$defs"])
-    assert {int(found) for found in re.findall(r'"max(?:Items|Properties)": (\d+)', text)} == {
-        2,
-        MAX_UNKNOWNS,
-        MAX_BODIES,
-        MAX_ENTRIES,
+def test_keys_limits_and_defaults_are_those_that_are_read() -> None:
+    properties, definitions = SCHEMA["properties"], SCHEMA["$defs"]
+    assert {name: str(said["default"]) for name, said in properties["parameters"]["properties"].items()} == {
+        name: parameter.default for name, parameter in ptm().parameters.items()
     }
+    assert properties["count"]["enum"] == [member.value for member in Count]
+    built_in = [name for name in NAMES if starter_mechanism(name) is not None]
+    assert properties["mechanism"]["anyOf"][0]["enum"] == built_in
+    mechanism = definitions["mechanism"]
+    assert {*mechanism["properties"]} == {
+        "name", "title", "parameters", "unknowns", "points", "bodies", "bars", "supports", "springs", "torsion",
+        "loads", "moments", "symmetries", "closing", "x-joint",
+    }  # fmt: skip
+    assert mechanism["required"] == ["unknowns", "points"]
+    assert all("description" in said or "$ref" in said for said in mechanism["properties"].values())
+    text = json.dumps(definitions)
+    assert {int(found) for found in re.findall(r'"max(?:Items|Properties)": (\d+)', text)} == {
+        2, MAX_UNKNOWNS, MAX_BODIES, MAX_ENTRIES,
+    }  # fmt: skip
+
+
+def test_a_design_may_say_what_the_manual_says() -> None:
+    axes = {"L1": [1, 2], "L2": [1, 2]}
+    design: dict[str, Any] = {"maximise": "range", "along": "L1", "over": {"L2": [1, 2]}, "where": {"stable": 2}}
+    for aim in ("range", "area", "barrier", "k1.length + 3"):
+        VALIDATOR.validate({"axes": axes, "design": design | {"maximise": aim}})
+    for wrong in ({"maximise": 3}, {"over": {}}, {"where": {"stable": [2]}}, {"poses": "stable:1"}):
+        assert not VALIDATOR.is_valid({"axes": axes, "design": design | wrong})
 
 
 @pytest.mark.parametrize("name", NAMES)

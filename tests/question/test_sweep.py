@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load, point_from_options, slice_from_options
-from ptmcad.question.config.sweeps import RANGE_KEYS, load_sweep, sweep_from
+from ptmcad.question.config.sweeps import load_sweep, sweep_from
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import text_of
 
@@ -140,9 +140,9 @@ PLACES = [
     (15, "sweep.F4x.stop", "unknown key"),
     (16, "sweep.L1", "the range is empty"),
     (17, "sweep.k.steps", "a whole number from 2 on"),
-    (18, "sweep.l0", "yes-or-no"),
+    (18, "sweep.l0.2", "yes-or-no"),
     (19, "sweep.l0_1.step", "a step is positive"),
-    (20, "sweep.l0_2", "from is missing"),
+    (20, "sweep.l0_2.from", "is missing"),
     (21, "sweep.l0_3.steps", "more than 1000000"),
 ]
 
@@ -187,7 +187,6 @@ def test_the_first_member_is_looked_at() -> None:
 
 
 def test_the_schema_knows_the_keys_of_a_range() -> None:
-    assert tuple(SCHEMA["$defs"]["progression"]["properties"]) == RANGE_KEYS
     ends = {"from": 0, "to": 1}
     wrongs: list[Any] = [{"F": []}, {"F": ends}, {"F": ends | {"step": 1, "steps": 2}}, {}, []]
     for wrong in wrongs:

@@ -15,7 +15,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, expect
+from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, Faults, expect
 from ptmcad.mechanism import Kind, Parameter, ptm
 from ptmcad.question.config.binding import bound, member_name, released_names, settled
 from ptmcad.question.config.family import Family, checked_family, family_of, fault_of_member, member_like
@@ -24,28 +24,25 @@ from ptmcad.question.config.objects import make_mechanism, make_system, tree_of
 from ptmcad.question.config.options import Typed, ranges_of, settings_of, with_axes
 from ptmcad.question.config.points import point_from, point_from_mapping, point_from_options, units_of
 from ptmcad.question.config.record import (
-    RECORD_KEYS,
+    COUNT,
     Record,
     check_axis_name,
-    count_of,
-    file_name,
-    portable_file,
     record_of,
     swept_names,
     with_place,
 )
 from ptmcad.question.config.resolution import checked_slice, slice_of
-from ptmcad.question.config.scalars import number_of
+from ptmcad.question.config.scalars import file_name, number_of, portable_file
 from ptmcad.question.domain import MAX_DEGREE
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Count, Slice
-from ptmcad.text.entry import Node, Place, Scalar, Sequence
+from ptmcad.text.entry import Place, Scalar, Sequence, Written
+from ptmcad.text.node import Node
 from ptmcad.text.syntax import did_you_mean
 
 __all__ = [
     "MAX_DEGREE",
-    "RECORD_KEYS",
     "Design",
     "Family",
     "Kind",
@@ -171,7 +168,7 @@ def question_from_options(typed: Typed) -> Slice | Family:
     return slice_of(record) if record.free is None else family_of(record)
 
 
-def _members(text: str) -> Node:
+def _members(text: str) -> Written:
     place = Place("--members")
     items = tuple(Scalar(item.strip(), place) for item in text.split(","))
     return items[0] if len(items) == 1 else Sequence(items, place)
@@ -224,7 +221,7 @@ def record_from_options(typed: Typed) -> Record:
     if count is not None:
         text = count.value if isinstance(count, Count) else count
         place = Place("--count")
-        record = record._replace(counting=count_of(Scalar(text, place)), count_place=place)
+        record = record._replace(counting=COUNT.read(Node(Scalar(text, place), place, Faults())), count_place=place)
     return record
 
 

@@ -11,23 +11,84 @@ from pathlib import Path
 from typing import Any
 
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism.reading import NUMBER, two
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.objects import plain, tree_of
 from ptmcad.question.config.options import ranges_of
-from ptmcad.question.config.record import Record, Window, check_axis_name, described_record, window_of
+from ptmcad.question.config.record import AXIS_NAME, Record, Window, check_axis_name, described_record, window_of
 from ptmcad.question.config.resolution import axis_of, note_values, unread_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
 from ptmcad.question.design import Condition, condition_of, named
 from ptmcad.question.examples import A_DESIGN, FIRST, SECOND
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Axis
-from ptmcad.text.entry import Entry, Node, Place, Scalar, Sequence, Tree, from_python
+from ptmcad.text.codec import Codec, part, reading, record
+from ptmcad.text.entry import Place, Scalar, Sequence, Tree, Written, from_python
+from ptmcad.text.node import Node
 from ptmcad.text.syntax import did_you_mean
 
-KEYS = ("maximise", "along", "over", "where", "pose")
-WHERE_KEYS = ("stable", "tension", "conditions")
 MAX_PARAMETERS = 8
+
+
+def _whole(entry: Node) -> int:
+    found = number_of(number_text(entry), "the number of stable poses")
+    if found.denominator != 1 or not 0 <= found <= 1000:
+        raise entry.fault(f"the number of stable poses is a whole one, not {found}")
+    return int(found)
+
+
+def _flag(entry: Node) -> bool:
+    if not isinstance(entry.value, Scalar) or entry.value.text.lower() not in ("true", "false"):
+        raise entry.fault("write true or false")
+    return entry.value.text.lower() == "true"
+
+
+def _over(entry: Node) -> dict[str, Node]:
+    expected = f"expected design parameters with their bounds, such as {{{FIRST}: [1/2, 2]}}"
+    entries = entry.mapping(expected=expected)
+    if not 1 <= len(entries) <= MAX_PARAMETERS:
+        raise entry.fault(expected)
+    return entries
+
+
+_TEXT = reading(lambda entry: number_text(entry).text.strip(), type="string")
+_WHERE: Codec[dict[str, Any]] = record(
+    dict, "{stable: 2}",
+    stable=part(
+        reading(_whole, **NUMBER),
+        "How many stable poses there are, or solutions where nothing says what is stable.", 2, shown=2,
+    ),
+    tension=part(reading(_flag, type="boolean"), "Whether all springs are in tension.", False, shown=False),
+    conditions=part(
+        reading(
+            lambda entry: (entry,) if isinstance(entry.value, Scalar | Tree) else tuple(entry.items()),
+            anyOf=[{"type": "string"}, {"type": "array", "items": {"type": "string"}}],
+        ),
+        f"Inequalities between the design parameters, such as {FIRST} + {SECOND} <= 3.", (),
+    ),
+)  # fmt: skip
+_NOTHING: Mapping[str, Any] = {"stable": 2, "tension": False, "conditions": ()}
+DESIGN: Codec[dict[str, Any]] = record(
+    dict, A_DESIGN,
+    maximise=part(
+        _TEXT,
+        "range: the length of the widest interval of an axis with the wanted number of stable poses; area: that of the "
+        "regions with this number; barrier: the energy that it takes to leave a stable pose for another; or a quantity "
+        "or an expression, as of ptmcad map --value.", "range", shown="range",
+    ),
+    along=part(_TEXT, "The axis along which a range lies; the first one when it is not given.", ""),
+    over=part(
+        reading(
+            _over, type="object", minProperties=1, maxProperties=MAX_PARAMETERS, propertyNames=AXIS_NAME,
+            additionalProperties=two(NUMBER),
+        ),
+        "The design parameters with their bounds. Of a range the other axis is one of them, of an area no axis is, "
+        "else both are.", None,
+    ),
+    where=part(_WHERE, "Conditions that every design satisfies.", _NOTHING),
+    pose=part(_TEXT, "Of which pose a barrier, a quantity or an expression is.", "stable:1", shown="stable:1"),
+)  # fmt: skip
 
 
 def design_from(question: str | Path | Mapping[str, Any] | Design, **changes: Any) -> Design:
@@ -68,7 +129,7 @@ def design_from_options(
     ConfigError
         For anything wrong, with file, line and key, or the option.
     """
-    given: dict[str, Node] = {}
+    given: dict[str, Written] = {}
     for key, value in (("maximise", maximise), ("along", along), ("pose", pose)):
         if value is not None:
             given[key] = Scalar(value, Place(f"--{key}"))
@@ -83,11 +144,11 @@ def design_from_options(
     return checked_design(record_tree(config), given)
 
 
-def _entries(node: Node | None) -> Mapping[str, Node]:
+def _entries(node: Written | None) -> Mapping[str, Written]:
     return node.entries if isinstance(node, Tree) else {}
 
 
-def checked_design(tree: Tree, given: Mapping[str, Node] | None = None) -> Design:
+def checked_design(tree: Tree, given: Mapping[str, Written] | None = None) -> Design:
     """The design of a record.
 
     Parameters
@@ -114,10 +175,10 @@ def checked_design(tree: Tree, given: Mapping[str, Node] | None = None) -> Desig
     if faults.found and (not entries or len(record.axes) != 2):
         note_values(record._replace(unread=unread), faults)
     record = record._replace(design=None, unread=unread if faults.found else frozenset())
-    return _design(record, Entry(entries, place, faults))
+    return _design(record, Node.of(Tree(entries, place), faults))
 
 
-def _merged(old: Mapping[str, Node], new: Mapping[str, Node]) -> dict[str, Node]:
+def _merged(old: Mapping[str, Written], new: Mapping[str, Written]) -> dict[str, Written]:
     """The new entries, with the old ones of ``where`` that are not replaced."""
     found = dict(new)
     if isinstance(where := new.get("where"), Tree) and isinstance(before := old.get("where"), Tree):
@@ -125,109 +186,82 @@ def _merged(old: Mapping[str, Node], new: Mapping[str, Node]) -> dict[str, Node]
     return found
 
 
-def _design(record: Record, asked: Entry) -> Design:
+def _design(record: Record, asked: Node) -> Design:
     """What the entries of ``design`` ask of a record; what is wrong is noted, and raised."""
     faults = asked.faults
-    asked.fields(KEYS)
-    maximise, along, pose = asked.read("maximise", _text, "range"), "", asked.read("pose", _text, "stable:1")
+    assert faults is not None
+    said = DESIGN.read(asked)
+    maximise, along = said["maximise"], ""
     if maximise == Aim.RANGE.value:
-        along = asked.read("along", partial(_along, tuple(record.axes)), next(iter(record.axes)))
+        along = next(iter(record.axes))
+        with faults:
+            along = _along(said["along"] or along, tuple(record.axes), asked.at("along"))
     elif asked.has("along"):
         with faults:
-            raise asked.at("along").error("is for a range: leave it out")
-    over = _over(record, asked, () if maximise == Aim.AREA.value else tuple(n for n in record.axes if n != along))
-    conditions = "expected conditions such as {stable: 2}"
-    where = asked.read("where", lambda entry: entry.fields(WHERE_KEYS, expected=conditions), asked.below("where", {}))
+            raise asked.at("along").fault("is for a range: leave it out")
+    needed = () if maximise == Aim.AREA.value else tuple(n for n in record.axes if n != along)
+    over, where = _parameters(record, said["over"], asked, needed), said["where"]
+    conditions = asked.gathered(partial(_condition, record, over), where["conditions"])
+    with faults:
+        if where["tension"] and not isinstance(record.model, Mechanism):
+            raise asked.at("where").at("tension").fault("a system has no springs that would be in tension")
     found = Design(
-        record, maximise, along, over, where.read("stable", _whole, 2),
-        where.read("conditions", partial(_conditions, record, over), ()),
-        where.read("tension", partial(_flag, record.model), False), pose,
+        record, maximise, along, over, where["stable"], tuple(conditions), where["tension"], said["pose"]
     )  # fmt: skip
     if faults.found:
-        unread = _entries(asked.value.get("over")).keys()
-        note_values(record._replace(unread=record.unread | unread), faults)
+        unread = record.unread | _entries(asked.at("over").value).keys()
+        note_values(record._replace(unread=unread), faults)
     # read in the middle of the bounds, so that what no design can be asked is said at once
     middle = {axis.name: (axis.low + axis.high) / 2 for axis in over}
     _ = found.slice(middle) if found.aim in (Aim.RANGE, Aim.AREA) else found.point(middle)
     return found
 
 
-def _text(entry: Entry) -> str:
-    return number_text(entry).text.strip()
-
-
-def _along(axes: tuple[str, ...], entry: Entry) -> str:
-    along = _text(entry)
+def _along(along: str, axes: tuple[str, ...], entry: Node) -> str:
     if along not in axes:
         hint = did_you_mean(along, axes) or f": choose {' or '.join(axes)}"
-        raise entry.error(f"{along[:40]!r} is not an axis{hint}")
+        raise entry.fault(f"{along[:40]!r} is not an axis{hint}")
     return along
 
 
-def _over(record: Record, asked: Entry, needed: tuple[str, ...]) -> tuple[Axis, ...]:
+def _parameters(
+    record: Record, given: Mapping[str, Node] | None, asked: Node, needed: tuple[str, ...]
+) -> tuple[Axis, ...]:
     """The design parameters; without a word those axes that have to be among them."""
     entry = asked.at("over")
     windows = {name: record.axes[name] for name in needed}
-    with asked.faults:
-        if asked.has("over"):
-            expected = f"expected design parameters with their bounds, such as {{{FIRST}: [1/2, 2]}}"
-            entries = entry.entries(expected=expected)
-            if not 1 <= len(entries) <= MAX_PARAMETERS:
-                raise entry.error(expected)
-            found = dict(entry.each_entry(lambda part: (part.name, _bounds(record, part, needed))))
-            windows = {name: found[name] for name in (*needed, *found) if name in found}
-            if missing := [name for name in needed if name not in entries]:
-                are = "is an axis" if len(missing) == 1 else "are axes"
-                raise entry.error(f"{' and '.join(missing)} {are} that a design fixes: give bounds here too")
-        elif not needed:
-            raise entry.error("is missing: of an area say over which parameters it changes")
-    axes = []
-    for name, window in windows.items():
-        with asked.faults:
-            axes.append(axis_of(name, window, record.model))
-    return tuple(axes)
+    if given is not None:
+        found = dict(asked.gathered(lambda part: (part.name, _bounds(record, part, needed)), given.values()))
+        windows = {name: found[name] for name in (*needed, *found) if name in found}
+        if missing := [name for name in needed if name not in given]:
+            are = "is an axis" if len(missing) == 1 else "are axes"
+            asked.note(entry.fault(f"{' and '.join(missing)} {are} that a design fixes: give bounds here too"))
+    elif not needed and not asked.has("over"):
+        asked.note(entry.fault("is missing: of an area say over which parameters it changes"))
+    return tuple(asked.gathered(lambda window: axis_of(window[0], window[1], record.model), windows.items()))
 
 
-def _bounds(record: Record, entry: Entry, needed: tuple[str, ...]) -> Window:
+def _bounds(record: Record, entry: Node, needed: tuple[str, ...]) -> Window:
     name = entry.name
     check_axis_name(name, entry.place)
     if name in record.axes and name not in needed:
-        raise entry.error(f"{name} varies over its whole window in every design: it is no design parameter")
+        raise entry.fault(f"{name} varies over its whole window in every design: it is no design parameter")
     used = any(name in names_in_scalar(scalar) for scalar in record.values.values())
     if name not in record.axes and name not in record.model.parameters and not used:
         hint = did_you_mean(name, record.model.parameters) or ": use it in an expression under 'parameters'"
-        raise entry.error(f"no parameter is called {name[:40]}{hint}")
+        raise entry.fault(f"no parameter is called {name[:40]}{hint}")
     return window_of(entry, "bounds", "[1/2, 2]")
 
 
-def _whole(entry: Entry) -> int:
-    found = number_of(number_text(entry), "the number of stable poses")
-    if found.denominator != 1 or not 0 <= found <= 1000:
-        raise entry.error(f"the number of stable poses is a whole one, not {found}")
-    return int(found)
-
-
-def _flag(model: Model, entry: Entry) -> bool:
-    if not isinstance(entry.value, Scalar) or entry.value.text.lower() not in ("true", "false"):
-        raise entry.error("write true or false")
-    if not isinstance(model, Mechanism):
-        raise entry.error("a system has no springs that would be in tension")
-    return entry.value.text.lower() == "true"
-
-
-def _conditions(record: Record, over: tuple[Axis, ...], entry: Entry) -> tuple[Condition, ...]:
+def _condition(record: Record, over: tuple[Axis, ...], item: Node) -> Condition:
     known = {axis.name: (axis.low, axis.high) for axis in over}
     fixed = {n: s.text for n, s in record.values.items() if n not in record.axes}
-
-    def read(item: Entry) -> Condition:
-        if not isinstance(item.value, Scalar):
-            raise item.error(f"expected an inequality such as {FIRST} + {SECOND} <= 3")
-        try:
-            condition = condition_of(item.value.text)
-            for name in condition.names:
-                named(known, fixed)(name)
-        except (ExpressionError, RecursionError) as error:
-            raise item.error(str(error)) from error
-        return condition
-
-    return (read(entry),) if isinstance(entry.value, Scalar | Mapping) else entry.each_item(read)
+    if not isinstance(item.value, Scalar):
+        raise item.fault(f"expected an inequality such as {FIRST} + {SECOND} <= 3")
+    try:
+        condition = condition_of(item.value.text)
+        for name in condition.names:
+            named(known, fixed)(name)
+    except (ExpressionError, RecursionError) as error:
+        raise item.fault(str(error)) from error
+    return condition

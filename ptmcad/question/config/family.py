@@ -19,8 +19,9 @@ from ptmcad.question.config.record import MAX_MEMBERS, Record, Window, check_mem
 from ptmcad.question.config.resolution import axis_of, note_values, slice_of, unread_names, written_in
 from ptmcad.question.config.scalars import number_of
 from ptmcad.question.slice import Axis, Slice
-from ptmcad.text.entry import Entry, Node, Scalar, Tree
+from ptmcad.text.entry import Scalar, Sequence, Tree, Written
 from ptmcad.text.expressions import Expression, axis, constant
+from ptmcad.text.node import Node
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import names_in, parse
 
@@ -207,7 +208,7 @@ def _check_name(record: Record, name: str, window: Window) -> None:
         raise record.values[name].place.error(f"{name} is free and cannot be fixed too: remove it here or from free")
 
 
-def _values(free: Axis, members: Node | None, faults: Faults) -> tuple[Fraction, ...]:
+def _values(free: Axis, members: Written | None, faults: Faults) -> tuple[Fraction, ...]:
     """Where members are wanted: at the values of a list, or at as many as a number says, evenly spaced."""
     if members is None:
         return _spaced(free, MEMBERS)
@@ -217,22 +218,23 @@ def _values(free: Axis, members: Node | None, faults: Faults) -> tuple[Fraction,
         if number.denominator != 1 or not 2 <= number <= MAX_MEMBERS:
             raise members.place.error(f"write how many members there are, 2 to {MAX_MEMBERS}, or a list of values")
         return _spaced(free, int(number))
-    entry = Entry.of(members, members.place, faults)
-    if not 1 <= len(entry.value) <= MAX_MEMBERS:
-        raise entry.error(f"{len(entry.value)} values are given: a family has 1 to {MAX_MEMBERS} members")
+    entry = Node.of(members, faults)
+    assert isinstance(members, Sequence)
+    if not 1 <= len(members.items) <= MAX_MEMBERS:
+        raise entry.fault(f"{len(members.items)} values are given: a family has 1 to {MAX_MEMBERS} members")
     values: set[Fraction] = set()
 
-    def read(item: Entry) -> None:
+    def read(item: Node) -> None:
         if not isinstance(item.value, Scalar):
-            raise item.error("expected a number")
+            raise item.fault("expected a number")
         value = number_of(item.value, "the value of a member")
         if not free.low <= value <= free.high:
-            raise item.error(f"{text_of(value)} is outside of the range of {free.name}")
+            raise item.fault(f"{text_of(value)} is outside of the range of {free.name}")
         if value in values:
-            raise item.error(f"{text_of(value)} is given twice: leave one out")
+            raise item.fault(f"{text_of(value)} is given twice: leave one out")
         values.add(value)
 
-    entry.each_item(read)
+    entry.each(read)
     return tuple(sorted(values))
 
 

@@ -6,8 +6,7 @@ record's folder, or in folders below, are read.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -26,15 +25,12 @@ from ptmcad.mechanism import (
 )
 from ptmcad.mechanism.parts import check_numbers
 from ptmcad.question.config.starters import NAMES, starter_mechanism
-from ptmcad.text.entry import Node, Place, Scalar, Tree, plain_data
-from ptmcad.text.entry import Sequence as Listed
+from ptmcad.text.entry import Place, Scalar, Tree, place_at, plain_data, scalars
 from ptmcad.text.syntax import NAME, did_you_mean, names_in
 from ptmcad.text.yamltree import read_file
 
 _EXPRESSIONS = ("equations", "potential", "positive", "stable")
 """The keys of a system that hold them."""
-_NOTHING: Mapping[str, tuple[Node, Place]] = {}
-"""A plain mapping, as records go to other processes."""
 
 
 class Described(NamedTuple):
@@ -42,34 +38,33 @@ class Described(NamedTuple):
 
     Attributes
     ----------
-    parts : the description's parts by their keys, such as ``springs.2.k``, itself under the empty one; none where
-        nobody has written it.
+    tree : the description; None where nobody has written it.
     doubtful : parameters of which nothing can be said, because what describes them is faulty.
     """
 
     model: Model
-    parts: Mapping[str, tuple[Node, Place]] = _NOTHING
+    tree: Tree | None = None
     doubtful: frozenset[str] = frozenset()
 
     def place_of(self, parameter: str) -> Place | None:
         """Where a parameter has its default, or else where it is declared or first used; None where nothing says it."""
+        if self.tree is None:
+            return None
         found = self.model.parameters[parameter]
-        declared = f"parameters.{found.alias_of or parameter}"
-        if found.alias_of:
-            return self.place_of_part(f"{declared}.alias")
-        if declared in self.parts and isinstance(self.parts[declared][0], Tree):
-            default = f"{declared}.default"
-            return self.place_of_part(default if default in self.parts else declared)
-        texts = ((place, node.text) for node, place in self.parts.values() if isinstance(node, Scalar))
-        return next((place for place, text in texts if parameter in NAME.findall(text)), None)
+        parameters = self.tree.entries.get("parameters")
+        declared = parameters.entries.get(found.alias_of or parameter) if isinstance(parameters, Tree) else None
+        if isinstance(declared, Tree):
+            said = declared.entries.get("alias" if found.alias_of else "default")
+            return declared.place if said is None else said.place
+        return next((s.place for s in scalars(self.tree) if parameter in NAME.findall(s.text)), None)
 
     def place_of_part(self, key: str) -> Place | None:
         """Where a key of the description stands; None where nobody has written it."""
-        return _place(self.parts, key) if self.parts else None
+        return None if self.tree is None else place_at(self.tree, key)
 
     def has_part(self, key: str) -> bool:
         """Whether the description has a key."""
-        return key in self.parts
+        return self.tree is not None and key.partition(".")[0] in self.tree.entries
 
 
 def model_of(record: Tree) -> Model:
@@ -184,9 +179,6 @@ def _read(node: Tree, faults: Faults, used: Iterable[str] = (), is_system: bool 
     used : names in the record's own expressions.
     """
     is_system = is_system or "equations" in node.entries or "potential" in node.entries
-    parts = {key: (part, place) for key, part, place in _parts(node, "", node.place)}
-    # of a whole parameter its reader says what could be there
-    empty = tuple(key for key, (part, _) in parts.items() if _is_empty(part) and not _PARAMETER.fullmatch(key))
     data = plain_data(node)
     found = Faults()
     model: Model | None = None
@@ -202,16 +194,14 @@ def _read(node: Tree, faults: Faults, used: Iterable[str] = (), is_system: bool 
                 model = without_loops(model)
     except ConfigError:  # so many faults that no more are looked for: they still have to be put where they stand
         model = None
-    # what is said of an empty value, or of a list because of one in it, says no more
-    inner = [fault for fault in found.found if not any(_is_below(key, fault.key or "") for key in empty)]
-    placed = [_place(parts, key).error("has no value: write one, or leave the key out") for key in empty]
-    placed += [_place(parts, fault.key or "").error(fault.message) for fault in inner]
+    keys = [fault.key or "" for fault in found.found]
+    placed = [place_at(node, key).error(fault.message) for key, fault in zip(keys, found.found, strict=True)]
     if model is None:
         raise ConfigError.of(placed)
     for error in placed:
         with faults:
             raise error
-    return Described(model, parts, _doubtful(model, (*(fault.key or "" for fault in found.found), *empty)))
+    return Described(model, node, _doubtful(model, keys))
 
 
 _WITHOUT_PARAMETERS = frozenset({"name", "title", "bars", "supports", "unknowns"})
@@ -270,30 +260,3 @@ def _hidden(model: System, faulty: Sequence[list[str]]) -> set[str]:
             if isinstance(text, str):
                 (hidden if [key, *filter(None, (str(n),))] in faulty else right).update(NAME.findall(text))
     return undeclared & (hidden - right)
-
-
-_PARAMETER = re.compile(r"parameters\.[^.]*")
-
-
-def _is_empty(node: Node) -> bool:
-    return isinstance(node, Scalar) and node.is_null
-
-
-def _is_below(key: str, above: str) -> bool:
-    return key == above or key.startswith(f"{above}.")
-
-
-def _parts(node: Node, key: str, place: Place) -> Iterator[tuple[str, Node, Place]]:
-    """Every part of a description with its key and its place."""
-    yield key, node, place
-    entries = enumerate(node.items, 1) if isinstance(node, Listed) else ()
-    for step, part in node.entries.items() if isinstance(node, Tree) else entries:
-        yield from _parts(part, f"{key}.{step}" if key else str(step), place.below(str(step), part.place.line))
-
-
-def _place(parts: Mapping[str, tuple[Node, Place]], key: str) -> Place:
-    """Where a key of a description stands: the line of the nearest entry above it that is there."""
-    if key in parts:
-        return parts[key][1]
-    above, _, step = key.rpartition(".")
-    return _place(parts, above).below(step)

@@ -12,8 +12,7 @@ from ptmcad.mechanism import Model, ptm
 from ptmcad.question.config.binding import bound, released_names, settled
 from ptmcad.question.config.objects import plain, tree_of
 from ptmcad.question.config.options import settings_of
-from ptmcad.question.config.parameters import unknown_parameter
-from ptmcad.question.config.record import Record, record_of, swept_names
+from ptmcad.question.config.record import Record, record_of, swept_names, unknown_parameter
 from ptmcad.question.config.resolution import point_of, without_shorthands
 from ptmcad.question.config.scalars import number_of, number_text
 from ptmcad.question.shipped import record_tree

@@ -6,34 +6,36 @@ Guarantee: what is wrong with keys and shapes is a `ConfigError` with file, line
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from ptmcad.errors import ConfigError, Faults, HypothesisError, PtmcadError, shown
 from ptmcad.mechanism import Model, ptm
-from ptmcad.mechanism.reading import MAX_TITLE, title_of
+from ptmcad.mechanism.reading import MAX_NAME as MAX_AXIS_NAME
+from ptmcad.mechanism.reading import MAX_TITLE, NUMBER, VALUE, two
 from ptmcad.question.config.model import Described, described_in
-from ptmcad.question.config.parameters import unknown_parameter
-from ptmcad.question.config.scalars import names_in_scalar, number_text
-from ptmcad.question.examples import A_DESIGN, A_SWEEP, AXES
+from ptmcad.question.config.scalars import (
+    MAX_NAME,
+    name_in,
+    name_of_file,
+    names_in_scalar,
+    number_text,
+    text_in,
+    title_in,
+)
+from ptmcad.question.examples import A_DESIGN, A_SWEEP, AXES, FORCE, SECOND, THIRD
 from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count
-from ptmcad.text.entry import Entry, Node, Place, Scalar, Sequence, Tree, plain_data
-from ptmcad.text.node import unstorable
-from ptmcad.text.syntax import NAME, did_you_mean
+from ptmcad.text.codec import Codec, choice, named, part, reading, record
+from ptmcad.text.entry import Place, Scalar, Sequence, Tree, Written, plain_data
+from ptmcad.text.node import Node, unstorable
+from ptmcad.text.syntax import NAME, NOT_NUMBERS, did_you_mean
 
-RECORD_KEYS = ("name", "title", "notes", "mechanism", "system", "parameters", "axes", "free", "members", "sweep",
-               "design", "count", "units", "reference")  # fmt: skip
+AXIS_NAME = {"pattern": f"^{NAME.pattern}$", "maxLength": MAX_AXIS_NAME}
+COUNT = choice(Count)
 MAX_MEMBERS = 400
 """Of a family."""
-_MAX_NAME = 100
 MAX_VALUES = 10_000
 """Of a record: more than a file may have."""
-_FIELDS = {"parameters": "values", "count": "counting"}
-"""Of a `Record`, where it is not named like its key."""
-_PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")
-_DEVICES = frozenset(("CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$", *_PORTS))
-"""Windows takes a file of such a name, in any case and with any suffix, for a device."""
 
 _NOTHING: Mapping[str, Any] = {}
 """What is not written; a plain mapping, as records go to other processes."""
@@ -65,13 +67,13 @@ class Record(NamedTuple):
     values: Mapping[str, Scalar] = _NOTHING
     axes: Mapping[str, Window] = _NOTHING
     free: tuple[str, Window] | None = None
-    members: Node | None = None
+    members: Written | None = None
     counting: Count | None = None
     units: Mapping[str, str] = _NOTHING
     reference: Mapping[str, Any] = _NOTHING
     place: Place = Place()
-    sweep: Node | None = None
-    design: Node | None = None
+    sweep: Written | None = None
+    design: Written | None = None
     count_place: Place = Place("count")
     values_place: Place | None = None
     described: Described | None = None
@@ -138,41 +140,101 @@ def read_record(tree: Tree, faults: Faults) -> Record:
             f"this is a {shown(kind.text, 40)} file, a result, not a problem record: `ptmcad plot`, `report`, "
             "`verify`, `locate` and `map` take results"
         )
-    whole = Entry.of(tree, tree.place, faults).fields(RECORD_KEYS)
-    read: dict[str, Any] = {"place": tree.place}
-    for part, key in (("values_place", "parameters"), ("count_place", "count")):
-        read[part] = whole.at(key, Scalar("", tree.place.below(key))).place
-    model = None
+    node = Node.of(tree, faults)
+    name, described = "", None
+    if "name" not in tree.entries:
+        with faults:
+            name = name_of_file(tree.place.file)
     with faults:
-        read["described"] = described_in(tree, faults)
-        model = read["model"] = read["described"].model
-    readers: dict[str, Callable[[Entry], Any]] = {
-        "name": _file_name,
-        "title": _title,
-        "parameters": lambda entry: _values(entry, model),
-        "axes": _axes,
-        "free": _free,
-        "members": lambda entry: check_members(tree.entries["members"]),
-        "sweep": lambda entry: _sweep(tree.entries["sweep"]),
-        "design": lambda entry: _design(tree.entries["design"]),
-        "count": lambda entry: count_of(tree.entries["count"]),
-        "units": _units,
-        "reference": lambda entry: _reference(tree.entries["reference"]),
-    }
-    for key, reader in readers.items():
+        described = described_in(tree, faults)
+    model = None if described is None else described.model
+    read: dict[str, Any] = record_codec(model).read(node)
+    for key in ("notes", "mechanism", "system"):
+        del read[key]
+    if read["members"] is not None and "free" not in tree.entries:
         with faults:
-            if whole.has(key):
-                read[_FIELDS.get(key, key)] = reader(whole.at(key))
-            elif key == "name":
-                read[key] = _name_of_file(tree.place.file)
-    if "members" in tree.entries and "free" not in tree.entries:
-        with faults:
-            raise whole.at("members").error(
+            raise node.at("members").fault(
                 "there are members where a parameter is free: add one, such as free: {F: [-20, 0]}"
             )
-    if model is None:  # of which nothing is known: the rest is read as if it were of the built-in one
-        read["model"] = ptm()
-    return Record(**read)
+    return Record(
+        model or ptm(),  # without one nothing is known: the rest is read as if it were of the built-in one
+        **{**read, "name": read["name"] or name}, described=described, place=tree.place,
+        count_place=node.at("count").place, values_place=node.at("parameters").place,
+    )  # fmt: skip
+
+
+def record_codec(model: Model | None) -> Codec[dict[str, Any]]:
+    """A record's keys, read in this order.
+
+    Parameters
+    ----------
+    model : what the record is about; it has been read.
+    """
+    windows = {"type": "object", "propertyNames": AXIS_NAME, "additionalProperties": two(NUMBER)}
+    told = reading(lambda node: None)
+    unit = reading(_unit, type="string", minLength=1, maxLength=MAX_UNIT)
+    units = {"type": "object", "additionalProperties": False, "properties": {q: unit.schema for q in QUANTITIES}}
+    return record(
+        dict,
+        name=part(
+            reading(name_in, type="string", pattern="^[A-Za-z0-9]([A-Za-z0-9._-]*[A-Za-z0-9_-])?$", maxLength=MAX_NAME),
+            "Start of the names of the files that are written; by default the record's own file name.", "",
+        ),
+        title=part(reading(title_in, type="string", maxLength=MAX_TITLE), "The picture's title.", ""),
+        notes=part(told.narrowed(type="string"), "Free text for the reader of the record.", None),
+        mechanism=part(
+            told, "A built-in mechanism's name, a file below the record's folder that describes one, or a description.",
+            None, shown=ptm().name,
+        ),
+        system=part(told, "Another parametric system, in place of a mechanism.", None),
+        parameters=part(
+            reading(lambda node: _values(node, model), type=["object", "null"], additionalProperties=VALUE),
+            f"Fixed values, or expressions in the axes and in other parameters ({FORCE}: F, {SECOND}: 2*{THIRD}). "
+            f"Below are those of the mechanism {ptm().name}; others have their own.", {},
+        )._replace(field="values"),
+        axes=part(
+            reading(_axes, **windows, minProperties=2, maxProperties=2),
+            "The two axes with their ranges, the horizontal one first: parameters, or new names that expressions use.",
+            {},
+        ),
+        free=part(
+            reading(_free, **windows, minProperties=1, maxProperties=1),
+            "A third parameter with its range: the record is one of a family, with a map for each of its members.",
+            None,
+        ),
+        members=part(
+            reading(
+                lambda node: check_members(node.value),
+                anyOf=[NUMBER, {"type": "array", "items": NUMBER, "minItems": 1, "maxItems": MAX_MEMBERS}],
+            ),
+            "Values of the free parameter at which there are maps, or how many, evenly spaced; 9 when it is not given.",
+            None,
+        ),
+        sweep=part(
+            reading(_sweep),
+            "For ptmcad sweep: parameters, or names that expressions use, with the values that they take, in every "
+            "combination; a list of such mappings is one after another.", None,
+        ),
+        design=part(
+            reading(_design),
+            "For ptmcad design: what is made as large as possible, over which parameters within which bounds, and "
+            "under what conditions. Other commands take the record without it.", None,
+        ),
+        count=part(
+            COUNT,
+            "What distinguishes two regions: stable equilibria, all of them, minima/saddles/maxima, or stable "
+            "equilibria with every spring longer than its free length. Where nothing says what is stable, total is the "
+            "default.", None, shown=Count.STABLE.value,
+        )._replace(field="counting"),
+        units=part(
+            named(unit, _quantity, like="{length: mm}")._replace(schema=units),
+            "Units that pictures and tables name; numbers are taken as they are.", {},
+        ),
+        reference=part(
+            reading(_reference, type=["object", "null"]),
+            "Published answers, for tests and benchmarks; never used by the computation.", {},
+        ),
+    )  # fmt: skip
 
 
 def with_place(error: ConfigError | HypothesisError, record: Record) -> PtmcadError:
@@ -210,146 +272,77 @@ def _place_of_fault(error: HypothesisError, record: Record) -> Place | None:
     return Place("axes", axes.place.file, axes.place.line)
 
 
-def _text(entry: Entry, limit: int) -> str:
-    if not isinstance(entry.value, Scalar) or entry.value.is_null:
-        raise entry.error("expected a text")
-    if len(entry.value.text) > limit:
-        raise entry.error(f"the text is longer than {limit} characters")
-    return entry.value.text
-
-
-def _title(entry: Entry) -> str:
-    try:
-        return title_of(_text(entry, MAX_TITLE))
-    except ConfigError as error:
-        raise entry.error(error.message) from error
-
-
-def file_name(name: str, option: str) -> str:
-    """A name for files that an option gives.
-
-    Raises
-    ------
-    ConfigError
-        When it is not safe as the start of a file's name.
-    """
-    place = Place(option)
-    return _file_name(Entry(Scalar(name, place), place, Faults()))
-
-
-def _file_name(entry: Entry) -> str:
-    """A name that is safe as the start of a file's name."""
-    name = _text(entry, _MAX_NAME)
-    if not name or not name[0].isalnum() or not all(c.isalnum() or c in "._-" for c in name) or name.endswith("."):
-        raise entry.error(
-            f"{name!r} cannot name a file: use letters, digits, '.', '_' and '-', starting with a letter or digit"
-        )
-    return _portable(name, entry.place)
-
-
-def portable_file(file: str, option: str) -> str:
-    """The name of a file that an option gives, with its suffix: any that no system gives another meaning.
-
-    Raises
-    ------
-    ConfigError
-        When Windows keeps the name for a device, or would drop its end.
-    """
-    if file.endswith((".", " ")):
-        raise Place(option).error(f"{file!r} cannot name a file: Windows drops dots and spaces at the end")
-    return _portable(file, Place(option))
-
-
-def _portable(name: str, place: Place) -> str:
-    device = name.partition(".")[0].rstrip(" ").upper()
-    if device in _DEVICES:
-        raise place.error(f"{name!r} cannot name a file: Windows keeps {device} for a device, whatever the suffix")
-    return name
-
-
-def _name_of_file(file: str | None) -> str:
-    """The file's stem, with characters that `_file_name` refuses replaced; empty when there is no file.
-
-    Raises
-    ------
-    ConfigError
-        When Windows keeps the name for a device.
-    """
-    stem = Path(file).stem if file else ""
-    name = "".join(c if c.isalnum() or c in "._-" else "-" for c in stem).strip(".-_")[:_MAX_NAME]
-    return _portable(name, Place("name", file))
-
-
-def _values(parameters: Entry, model: Model | None) -> dict[str, Scalar]:
+def _values(parameters: Node, model: Model | None) -> dict[str, Scalar]:
     """The values that are given; without a model any name is taken."""
     if isinstance(parameters.value, Scalar) and parameters.value.is_null:
         return {}
     values = {}
-    expected = f"expected a mapping such as {{{_example(model or ptm())}}}"
-    for name, entry in parameters.entries(most=MAX_VALUES, expected=expected).items():
-        with parameters.faults:
-            if model is not None and name not in model.parameters:
-                raise entry.error(unknown_parameter(name, model))
-            values[name] = Scalar("1", entry.place)  # known, whatever is wrong with it
-            values[name] = number_text(entry)
+
+    def read(entry: Node) -> None:
+        if model is not None and entry.name not in model.parameters:
+            raise entry.fault(unknown_parameter(entry.name, model))
+        values[entry.name] = Scalar("1", entry.place)  # known, whatever is wrong with it
+        values[entry.name] = number_text(entry)
+
+    some = [*(model or ptm()).parameters.values()][:2]
+    example = ", ".join(f"{parameter.name}: {parameter.default or 1}" for parameter in some)
+    expected = f"expected a mapping such as {{{example}}}"
+    parameters.gathered(read, parameters.mapping(MAX_VALUES, expected=expected).values())
     return values
 
 
-def _example(model: Model) -> str:
-    return ", ".join(f"{name}: {parameter.default or 1}" for name, parameter in list(model.parameters.items())[:2])
-
-
-def _axes(entry: Entry) -> dict[str, Window]:
-    axes = entry.entries(most=MAX_VALUES, expected=f"expected two axes with their ranges, such as {AXES}")
+def _axes(entry: Node) -> dict[str, Window]:
+    axes = entry.mapping(MAX_VALUES, expected=f"expected two axes with their ranges, such as {AXES}")
     if len(axes) != 2:
-        with entry.faults:
-            raise entry.error(f"{len(axes)} axes are given: a slice has two, the horizontal one first")
-    return dict(entry.each_entry(lambda axis: (axis.name, _window(axis))))
+        entry.note(entry.fault(f"{len(axes)} axes are given: a slice has two, the horizontal one first"))
+    return dict(entry.gathered(lambda axis: (axis.name, _window(axis)), axes.values()))
 
 
-def _free(entry: Entry) -> tuple[str, Window]:
+def _free(entry: Node) -> tuple[str, Window]:
     """The third parameter of a family with its range."""
     expected = "expected one parameter with its range, such as {F: [-20, 0]}"
-    free = [*entry.entries(expected=expected).values()]
+    free = [*entry.mapping(expected=expected).values()]
     if len(free) != 1:
-        raise entry.error(expected)
+        raise entry.fault(expected)
     return free[0].name, _window(free[0])
 
 
-def _window(entry: Entry) -> Window:
+def _window(entry: Node) -> Window:
     check_axis_name(entry.name, entry.place)
     return window_of(entry, "a range", "[0, 2]")
 
 
-def window_of(entry: Entry, what: str, like: str) -> Window:
+def window_of(entry: Node, what: str, like: str) -> Window:
     """The range that a list of two ends is; what it is, and an example, are for messages."""
     low, high = entry.pair(what, like, f"expected {what} such as {like}")
     return Window(number_text(low), number_text(high), entry.place)
 
 
-def _sweep(node: Node) -> Node:
-    if isinstance(node, Scalar):
-        raise node.place.error(f"expected parameters with their values, such as {A_SWEEP}")
-    return node
+def _sweep(node: Node) -> Written:
+    sweep: Written = node.value
+    if isinstance(sweep, Scalar):
+        raise node.fault(f"expected parameters with their values, such as {A_SWEEP}")
+    return sweep
 
 
 def swept_names(record: Record) -> dict[str, Place]:
     """What a record sweeps, with its places, as far as that can be read."""
     found: dict[str, Place] = {}
     node = record.sweep
-    for part in node.items if isinstance(node, Sequence) else (node,):
-        if isinstance(part, Tree):
-            found |= {name: entry.place for name, entry in part.entries.items()}
+    for one in node.items if isinstance(node, Sequence) else (node,):
+        if isinstance(one, Tree):
+            found |= {name: entry.place for name, entry in one.entries.items()}
     return found
 
 
-def _design(node: Node) -> Node:
-    if not isinstance(node, Tree):
-        raise node.place.error(f"expected what is designed, such as {A_DESIGN}")
-    return node
+def _design(node: Node) -> Written:
+    design: Written = node.value
+    if not isinstance(design, Tree):
+        raise node.fault(f"expected what is designed, such as {A_DESIGN}")
+    return design
 
 
-def check_members(node: Node) -> Node:
+def check_members(node: Written) -> Written:
     """The members of a family as written; refuses what can neither be a list of values nor a number of members."""
     if isinstance(node, Tree):
         raise node.place.error("expected a list of values such as [-20, -10, 0], or how many, such as 9")
@@ -362,42 +355,41 @@ def check_members(node: Node) -> Node:
 
 
 def check_axis_name(name: str, place: Place) -> None:
-    if not NAME.fullmatch(name) or len(name) > 40 or name.lower() in ("nan", "inf", "infinity"):
+    if not NAME.fullmatch(name) or len(name) > MAX_AXIS_NAME or name.lower() in NOT_NUMBERS:
         raise place.error(
             f"{name[:40]!r} cannot name an axis: use ASCII letters, digits and '_', starting with a letter"
         )
 
 
-def count_of(node: Node) -> Count:
-    words = [member.value for member in Count]
-    if not isinstance(node, Scalar) or node.text not in words:
-        found = f"'{node.text[:40]}'" if isinstance(node, Scalar) else "a list or a mapping"
-        raise node.place.error(f"{found} is not a count: write {', '.join(words[:-1])} or {words[-1]}")
-    return Count(node.text)
+def unknown_parameter(name: str, model: Model) -> str:
+    """The message for a name that is none of the model's parameters."""
+    if not model.parameters:
+        return f"unknown parameter '{name[:40]}': {model.name} has none"
+    hint = did_you_mean(name, model.parameters) or f"; the parameters are {', '.join(model.parameters)}"
+    return f"unknown parameter '{name[:40]}'{hint}"
 
 
-def _units(units: Entry) -> dict[str, str]:
-    """Units of quantities, which pictures and tables name."""
+def _quantity(entry: Node, name: str) -> str:
+    if name not in QUANTITIES:
+        hint = did_you_mean(name, QUANTITIES) or f"; units are those of {' and '.join(QUANTITIES)}"
+        raise entry.fault(f"unknown quantity{hint}")
+    return name
 
-    def read(entry: Entry) -> tuple[str, str]:
-        if entry.name not in QUANTITIES:
-            hint = did_you_mean(entry.name, QUANTITIES) or f"; units are those of {' and '.join(QUANTITIES)}"
-            raise entry.error(f"unknown quantity{hint}")
-        text = _text(entry, MAX_UNIT).strip()
-        if not text.isprintable() or re.fullmatch(r"[-+.\d]*", text):  # empty, or a number
-            raise entry.error("a unit is a short text such as mm")
-        return entry.name, text
 
-    units.entries(expected=f"expected a mapping such as length: mm of {' and '.join(QUANTITIES)}")
-    return dict(units.each_entry(read))
+def _unit(entry: Node) -> str:
+    """The unit of a quantity, which pictures and tables name."""
+    text = text_in(entry, MAX_UNIT).strip()
+    if not text.isprintable() or re.fullmatch(r"[-+.\d]*", text):  # empty, or a number
+        raise entry.fault("a unit is a short text such as mm")
+    return text
 
 
 def _reference(node: Node) -> dict[str, Any]:
-    data = plain_data(node)
+    data = plain_data(node.value)
     if data is None:
         return {}
     if not isinstance(data, dict):
-        raise node.place.error("expected a mapping of published answers")
+        raise node.fault("expected a mapping of published answers")
     if (found := unstorable(data)) is not None:
-        raise node.place.error(f"it has the character U+{ord(found):04X}, which a result cannot store: remove it")
+        raise node.fault(f"it has the character U+{ord(found):04X}, which a result cannot store: remove it")
     return data

@@ -141,14 +141,8 @@ def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[s
     axes = [_judged_axis(name, window, record, faults) for name, window in record.axes.items()]
     unread = record.unread | set(tuple(record.axes)[2:])  # of three axes the last one
     record = record._replace(unread=unread)
-    resolution = Resolution(record, {name: axis(index) for index, name in enumerate(tuple(record.axes)[:2])})
-    for name in record.values:
-        with faults:
-            resolution.check_names(name)
-    for name in record.model.parameters:
-        with faults:
-            resolution.resolve(name, ())
-    resolved = {name: resolution.done[name] for name in record.model.parameters}
+    resolution = Resolution(record, {name: axis(index) for index, name in enumerate(tuple(record.axes)[:2])}, faults)
+    resolved = resolution.run()
     known = [a for a in axes[:2] if a is not None]
     window = (known[0], known[1]) if len(known) == 2 else None
     wrong: set[str] = set()
@@ -257,8 +251,9 @@ def _check_count(record: Record, resolved: Mapping[str, Expression]) -> None:
 def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fraction]:
     """Resolve a record to a point; ``axes`` holds the values of its axes that are no parameters."""
     mechanism = record.model
-    resolved = Resolution(record, axes).run()
-    values = {}
+    faults, values = Faults(), {}
+    resolved = Resolution(record, axes, faults).run()
+    faults.check()
     for name, expression in resolved.items():
         place = record.place_of(name)
         value = expression.constant()

@@ -12,23 +12,25 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import Faults
 from ptmcad.mechanism import Model
+from ptmcad.mechanism.reading import NUMBER
 from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.objects import tree_of
-from ptmcad.question.config.record import Record, check_axis_name, described_record, swept_names
+from ptmcad.question.config.record import AXIS_NAME, Record, check_axis_name, described_record, swept_names
 from ptmcad.question.config.resolution import check_number, note_values, slice_of, unread_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
 from ptmcad.question.examples import A_SWEEP, FIRST
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Slice
 from ptmcad.question.sweep import Listed, Product, Spaced, Sweep, Values
-from ptmcad.text.entry import Entry, Place, Tree
+from ptmcad.text.codec import Codec, part, reading, record
+from ptmcad.text.entry import Sequence, Tree
+from ptmcad.text.node import Node
 from ptmcad.text.syntax import did_you_mean
 
 MAX_MEMBERS = 1_000_000
 """Of a sweep; more would rather be asked in parts."""
-RANGE_KEYS = ("from", "to", "step", "steps")
+_EXPECTED = f"expected parameters with their values, such as {A_SWEEP}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +99,7 @@ def checked_sweep(tree: Tree) -> Sweeping:
     record, faults = described_record(tree)
     sweep = None
     if record.sweep is not None:
-        sweep = _read(Entry.of(record.sweep, tree.place, faults), record)
+        sweep = _read(Node.of(record.sweep, faults), record)
     elif "sweep" not in tree.entries:
         with faults:
             raise tree.place.below("sweep").error(f"is missing: say what is swept, such as {A_SWEEP}")
@@ -109,48 +111,42 @@ def checked_sweep(tree: Tree) -> Sweeping:
     return Sweeping(record, sweep)
 
 
-def _read(sweep: Entry, record: Record) -> Sweep | None:
+def _read(sweep: Node, record: Record) -> Sweep | None:
     """The sweep of a record; None where there is nothing to go on with."""
-    expected = f"expected parameters with their values, such as {A_SWEEP}"
-    parts = sweep.items(most=MAX_MEMBERS) if isinstance(sweep.value, tuple) else [sweep]
+    parts = sweep.items(most=MAX_MEMBERS) if isinstance(sweep.value, Sequence) else [sweep]
     if not parts:
-        with sweep.faults:
-            raise sweep.error(expected)
+        sweep.note(sweep.fault(_EXPECTED))
     first: list[str] = []
 
-    def product(part: Entry) -> Product:
-        names = [*part.entries(expected=expected)]
-        if not names:
-            raise part.error(expected)
-        first.extend(names if not first else ())
-        if {*names} != {*first}:
-            raise part.error(f"each mapping of the list sweeps the same parameters: {', '.join(first)}")
-        return Product(dict(part.each_entry(lambda entry: (entry.name, _swept(entry, record)))))
+    def product(part: Node) -> Product:
+        entries = part.mapping(expected=_EXPECTED)
+        if not entries:
+            raise part.fault(_EXPECTED)
+        first.extend(entries if not first else ())
+        if {*entries} != {*first}:
+            raise part.fault(f"each mapping of the list sweeps the same parameters: {', '.join(first)}")
+        return Product(dict(part.gathered(lambda entry: (entry.name, _swept(entry, record)), entries.values())))
 
-    products = []
-    for part in parts:
-        with sweep.faults:
-            products.append(product(part))
+    products = sweep.gathered(product, parts)
     if len(products) < max(len(parts), 1) or not all(product.values for product in products):
         return None
     found = Sweep(tuple(products))
-    with sweep.faults:
-        if len(found) > MAX_MEMBERS:
-            raise sweep.error(f"has {len(found)} members, more than {MAX_MEMBERS}: ask for a part of them")
+    if len(found) > MAX_MEMBERS:
+        sweep.note(sweep.fault(f"has {len(found)} members, more than {MAX_MEMBERS}: ask for a part of them"))
     return found
 
 
-def _swept(entry: Entry, record: Record) -> Values:
+def _swept(entry: Node, record: Record) -> Values:
     """The values of a parameter that can be swept."""
     name = entry.name
     check_axis_name(name, entry.place)
     if name in record.axes:
-        raise entry.error(f"{name} is an axis and cannot be swept too: remove it here or from the axes")
+        raise entry.fault(f"{name} is an axis and cannot be swept too: remove it here or from the axes")
     if name in record.values:
-        raise entry.error(f"{name} has a value under 'parameters' and cannot be swept too: leave one out")
+        raise entry.fault(f"{name} has a value under 'parameters' and cannot be swept too: leave one out")
     if name not in record.model.parameters and not _used(name, record):
         hint = did_you_mean(name, record.model.parameters) or ";"
-        raise entry.error(
+        raise entry.fault(
             f"no parameter is called {name[:40]}{hint} or use it in an expression, {_example(record.model, name)}"
         )
     found = _values(entry)
@@ -169,55 +165,76 @@ def _used(name: str, record: Record) -> bool:
     return any(name in names_in_scalar(scalar) for scalar in record.values.values())
 
 
-def _values(entry: Entry) -> Values:
+def _values(entry: Node) -> Values:
     """The values of one parameter: a list, or a range."""
-    if isinstance(entry.value, Mapping):
+    if entry.is_mapping:
         return _range(entry)
     expected = "expected a list such as [-10, -20], or a range such as {from: -40, to: 0, step: 5}"
     items = entry.items(expected=expected, most=MAX_MEMBERS)
     if not items:
-        raise entry.error("the list is empty: give the values, such as [-10, -20]")
+        raise entry.fault("the list is empty: give the values, such as [-10, -20]")
     return Listed(tuple(number_of(number_text(item), "a value") for item in items))
 
 
-def _range(entry: Entry) -> Spaced:
-    """The values of a range with its ends and the step between two values, or the number of values."""
-    faults = Faults()
-    entry._replace(faults=faults).fields(RANGE_KEYS)
-    faults.check()
-    if missing := [key for key in ("from", "to") if not entry.has(key)]:
-        raise entry.error(f"{' and '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing")
-    if entry.has("step") == entry.has("steps"):
-        raise entry.error("give either step, the distance of two values, or steps, the number of values")
-    low, high = (_number(entry, key) for key in ("from", "to"))
-    if low == high:
-        raise entry.error(f"the range is empty: {low} to {high}; a list gives a single value")
-    return _by_step(entry, low, high) if entry.has("step") else _by_number(entry, low, high)
+def _number(entry: Node) -> Fraction:
+    return number_of(number_text(entry), f"'{entry.name}'")
 
 
-def _number(entry: Entry, key: str) -> Fraction:
-    return number_of(number_text(entry.at(key)), f"'{key}'")
-
-
-def _by_step(entry: Entry, low: Fraction, high: Fraction) -> Spaced:
-    step, place = _number(entry, "step"), entry.at("step").place
+def _step(entry: Node) -> Fraction:
+    step = _number(entry)
     if step <= 0:
-        raise place.error(f"a step is positive, not {step}; a range may go down: from 0 to -40")
-    signed = step if high > low else -step
-    number = (high - low) / signed
-    if number.denominator != 1:
-        raise place.error(f"steps of {step} from {low} do not end at {high}: {high - low} is no multiple of {step}")
-    return _bounded(Spaced(low, signed, int(number) + 1), place)
+        raise entry.fault(f"a step is positive, not {step}; a range may go down: from 0 to -40")
+    return step
 
 
-def _by_number(entry: Entry, low: Fraction, high: Fraction) -> Spaced:
-    steps, place = _number(entry, "steps"), entry.at("steps").place
+def _steps(entry: Node) -> int:
+    steps = _number(entry)
     if steps.denominator != 1 or steps < 2:
-        raise place.error(f"the number of values, both ends among them, is a whole number from 2 on, not {steps}")
-    return _bounded(Spaced(low, (high - low) / (int(steps) - 1), int(steps)), place)
+        raise entry.fault(f"the number of values, both ends among them, is a whole number from 2 on, not {steps}")
+    return int(steps)
 
 
-def _bounded(found: Spaced, place: Place) -> Spaced:
+_ENDS = {"from": "The first value.", "to": "The last value."}
+_READ: Codec[dict[str, Any]] = record(
+    dict, "{from: -40, to: 0, step: 5}",
+    **{name: part(reading(_number, **NUMBER), help) for name, help in _ENDS.items()},
+    step=part(reading(_step, **NUMBER), "The distance of two values, positive; it divides that of ends.", None, ...),
+    steps=part(
+        reading(_steps, type="integer", minimum=2, maximum=MAX_MEMBERS), "The number of values.", None, ...
+    ),
+)  # fmt: skip
+_RANGE = _READ.narrowed(
+    oneOf=[{"required": ["step"]}, {"required": ["steps"]}],
+    description="Values at equal distances, both ends among them.",
+)
+
+
+def _range(entry: Node) -> Spaced:
+    """The values of a range with its ends and the step between two values, or the number of values."""
+    said = _RANGE.read(entry)
+    low, high, step, steps = said.values()
+    if not entry.mapping().keys() <= said.keys():
+        raise entry.noted()  # a key that nobody knows may be meant for one of these
+    if entry.has("step") == entry.has("steps"):
+        raise entry.fault("give either step, the distance of two values, or steps, the number of values")
+    if low == high:
+        raise entry.fault(f"the range is empty: {low} to {high}; a list gives a single value")
+    if step is not None:
+        place, signed = entry.at("step"), step if high > low else -step
+        if ((high - low) / signed).denominator != 1:
+            problem = f"steps of {step} from {low} do not end at {high}: {high - low} is no multiple of {step}"
+            raise place.fault(problem)
+        found = Spaced(low, signed, int((high - low) / signed) + 1)
+    else:
+        place, found = entry.at("steps"), Spaced(low, (high - low) / (steps - 1), steps)
     if found.number > MAX_MEMBERS:
-        raise place.error(f"has {found.number} values, more than {MAX_MEMBERS}")
+        raise place.fault(f"has {found.number} values, more than {MAX_MEMBERS}")
     return found
+
+
+_PRODUCT = {
+    "type": "object", "minProperties": 1, "propertyNames": AXIS_NAME,
+    "additionalProperties": {"anyOf": [{"type": "array", "items": NUMBER, "minItems": 1}, _RANGE.schema]},
+}  # fmt: skip
+SWEEP = {"anyOf": [_PRODUCT, {"type": "array", "items": _PRODUCT, "minItems": 1}]}
+"""The schema of a record's ``sweep``."""

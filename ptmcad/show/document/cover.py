@@ -31,7 +31,7 @@ def _cover(node: Node) -> Cover:
     ValueError
         With the place of the first fault.
     """
-    entry = node.record("steps", "rectangles", "patches?")
+    entry = node.record(("steps", "rectangles", "patches"), ("steps", "rectangles"))
     steps = entry["steps"].value
     if type(steps) is not int or not 0 < steps <= MAX_STEPS or steps & (steps - 1):
         raise entry["steps"].fault(f"is not a power of two up to {MAX_STEPS}")

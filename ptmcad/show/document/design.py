@@ -90,7 +90,8 @@ def _model(model: Model) -> Any:
 
 def _model_of(node: Node) -> Model:
     if not isinstance(node.value, str):
-        ((kind, place),) = node.record("system" if "system" in node.mapping() else "mechanism").items()
+        kind = "system" if "system" in node.mapping() else "mechanism"
+        place = node.record((kind,), (kind,))[kind]
         return place.made(model_from, kind, place.data())
     if node.value not in built_in():
         raise node.fault(f"is {node.value[:40]!r}, no mechanism that is known by its name")

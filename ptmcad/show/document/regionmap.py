@@ -140,7 +140,7 @@ def _codec(names: tuple[str, str], certified: bool, slice: Slice | None = None) 
 
 
 def _point(node: Node, names: tuple[str, str]) -> Point:
-    values = node.record(*names)
+    values = node.record(names, names)
     return Point(names, values[names[0]].fraction(), values[names[1]].fraction())
 
 

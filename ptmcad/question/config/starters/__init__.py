@@ -6,7 +6,7 @@ mechanism as the starter of that name.
 
 from __future__ import annotations
 
-from ptmcad.text.entry import Node
+from ptmcad.text.entry import Written
 from ptmcad.text.yamltree import read_text
 
 NAMES = ("ptm", "pendulum", "chain", "platform", "cusp")
@@ -27,6 +27,6 @@ def starter_text(name: str) -> str:
     return files(__package__).joinpath(f"{name}.yaml").read_text(encoding="utf-8")
 
 
-def starter_mechanism(name: str) -> Node | None:
+def starter_mechanism(name: str) -> Written | None:
     """The description of a mechanism by its name; None when there is none."""
     return read_text(starter_text(name)).entries.get("mechanism") if name in NAMES else None
