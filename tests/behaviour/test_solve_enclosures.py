@@ -56,6 +56,7 @@ def solved(record: str, at: str, folder: Path, status: int) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("at", ["X=-2,Y=1/5", "X=-1,Y=1e-9"])
+@pytest.mark.slow_cases("X=-1,Y=1e-9")
 def test_a_force_that_may_be_zero_is_enclosed(at: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """By hand: both stable poses have AP at its free length, as the moment about P is that of the load alone."""
     document = solved(BAR, at, tmp_path, 0)
