@@ -385,7 +385,7 @@ def verdict(folder: Path, data: Any, capsys: pytest.CaptureFixture[str]) -> tupl
 
 
 @pytest.mark.parametrize("name", DESIGNS)
-@pytest.mark.slow_cases("approached", "where ranges meet")
+@pytest.mark.slow_cases("approached", "where ranges meet", "on an interval")
 def test_verify_checks_what_a_design_says_of_attainment(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -267,6 +267,7 @@ def crank_counts(weight: float, moment: float) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize("unknowns", [{"th": "angle", "x": "length"}, {"x": "length", "th": "angle"}], ids=str)
+@pytest.mark.slow_cases("{'th': 'angle', 'x': 'length'}")
 def test_a_slider_in_any_order_of_the_unknowns(unknowns: dict[str, str]) -> None:
     """Bounds of the slider follow from the loop; the determinant's sign from the order."""
     record = crank(unknowns)

@@ -155,7 +155,7 @@ def inside(at: tuple[float, ...], box: Box) -> bool:
 
 
 @pytest.mark.parametrize(("name", "count"), CASES)
-@pytest.mark.slow_cases("paper-index", "paper-stable")
+@pytest.mark.slow_cases("paper-index", "paper-stable", "loop-total")
 def test_formulas_are_those_of_the_balls(name: str, count: str) -> None:
     """Equations and Jacobian at random configurations, by compiled forms and by balls, which share the waves alone."""
     claims, rng = CertifiedClaims(a_map(name, count)), random.Random(count)
