@@ -121,6 +121,7 @@ def test_all_poses_are_certified_where_no_box_is_open(tmp_path: Path) -> None:
     assert len(document["equilibria"]) == 3
 
 
+@pytest.mark.slow
 def test_the_paper_s_mechanism_beside_a_spring_without_length(tmp_path: Path) -> None:
     """At rho = L1 spring 2 may have no length: the poses that are proved are there, and open boxes are counted."""
     record = "name: p\nmechanism: ptm\nparameters: {l0: 1/2}\naxes: {rho: [0, 2], L2: [0, 2]}\n"

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 import yaml
 from support.dense_search import dense_search
+from support.few import few
 from support.loop_search import taut_along
 from support.minima_search import minima
 
@@ -214,7 +215,7 @@ def test_poses_say_the_same(name: str) -> None:
         assert sum(pose.admissible is True for pose in poses.equilibria) == cell.admissible, at
 
 
-@pytest.mark.parametrize("name", ["roof", "four-bar", pytest.param("chain", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", few(["roof", "four-bar", "chain"], "roof"))
 def test_the_checker_agrees(name: str) -> None:
     m = map_of(name, "1/100" if name != "roof" else "1/200")
     assert m.status is Status.CERTIFIED
