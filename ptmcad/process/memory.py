@@ -110,11 +110,11 @@ def loading(what: str = "") -> Iterator[None]:
     kept = resource.getrlimit(resource.RLIMIT_DATA)
     resource.setrlimit(resource.RLIMIT_DATA, _in_force[-1][1] if _in_force else kept)
     # what they print meanwhile the process that watches shows, unless it comes of a limit
-    printed = open(2, "w", 1, closefd=False) if watched() else sys.stderr
+    printed = open(2, "w", 1, closefd=False) if watched() else sys.stderr  # noqa: SIM115 - it stays open
     try:
         with redirect_stderr(printed):
             yield
-    except (ImportError, OSError) as error:
+    except (ImportError, OSError, SystemError) as error:
         missing = isinstance(error, ModuleNotFoundError)
         small = any(size < LOW_LIMIT for size, _ in caller_limits())  # of which many loaders say nothing, as LLVM's
         if speaks_of_memory(str(error)) or (small and not missing):

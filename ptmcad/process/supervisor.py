@@ -24,7 +24,6 @@ import resource
 import signal
 import sys
 from collections.abc import Callable, Sequence
-from contextlib import redirect_stderr
 from threading import Timer
 from types import FrameType
 from typing import Any, NoReturn
@@ -135,10 +134,11 @@ def _redirect(printed: int) -> None:
         sys.__stderr__ = sys.stderr  # type: ignore[misc, assignment]
 
         def to_the_parent(hook: Callable[..., None]) -> Callable[..., None]:
-            def print_there(*what: Any) -> None:
-                with redirect_stderr(unexpected):
-                    hook(*what)
-                    unexpected.flush()
+            def print_there(*what: Any) -> None:  # of which nothing may take memory
+                sys.stderr, usual = unexpected, sys.stderr
+                hook(*what)
+                unexpected.flush()
+                sys.stderr = usual
 
             return print_there
 

@@ -71,6 +71,7 @@ def expressions(draw: st.DrawFn, field: RealField) -> tuple[Element, fmpq_poly]:
 
 @pytest.mark.parametrize("prime", [pytest.param(p, marks=pytest.mark.slow) if 2 < p < 11 else p for p in PRIMES])
 @pytest.mark.fast_cases("2", "11")
+@pytest.mark.slow_cases("11")
 def test_zero_rational_and_enclosure_agree_with_residues_over_q(prime: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(number_field, "PRIME", prime)
 

@@ -76,7 +76,7 @@ def _is_on(found: FamilyMap, point: tuple[Fraction, Fraction, Fraction], share: 
 
 
 @pytest.mark.parametrize("name", few(SHIPPED, "bowl", "cone", "swallowtail"))
-@pytest.mark.slow_cases("bowl")
+@pytest.mark.slow_cases("bowl", "swallowtail")
 def test_every_vertex_lies_on_the_variety_at_its_members_height(name: str) -> None:
     found, mesh = maps(name), surface(name)
     heights = [float(value) for value in mesh.members]
@@ -183,6 +183,7 @@ def test_strips_end_at_corners_of_walls_and_not_at_other_curves() -> None:
     assert [strip.keys for strip in Strips(smooth).strips] == [((0,), (2,))]
 
 
+@pytest.mark.slow
 def test_where_elimination_is_out_of_reach_that_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ptmcad.ask.changes.critical_values", lambda *_: "for a reason")
     found = ptmcad.family(BOWL, areas=False, changes=True)

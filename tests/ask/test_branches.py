@@ -220,6 +220,7 @@ def test_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
 
 
 @pytest.mark.usefixtures("coarse")
+@pytest.mark.slow
 def test_a_picture_of_branches_with_free_lengths(tmp_path: Path) -> None:
     pytest.importorskip("numba")
     common = ["range", str(CONFIGS / "free02.yaml"), "--along", "rho", "--at", "L2=3/2", "--range", "rho=3/10:2/5"]

@@ -186,6 +186,7 @@ def test_bad_questions_and_limits_are_told() -> None:
 LOADS = {"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"F3": "F", "F4": "F"}, "free": {"F": [-40, 0]}}
 
 
+@pytest.mark.slow
 def test_the_loads_of_figure_4_change_nothing_between_0_and_40() -> None:
     found = ptmcad.changes(LOADS)
     assert found.complete

@@ -14,6 +14,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.certified_maps import around, certified, circle
+from support.examples import examples
 from support.maps import part_of_free02, shipped
 
 from ptmcad.answer.comparison import Comparison
@@ -144,7 +145,7 @@ def random_map(cover: Cover) -> tuple[RegionMap, Label]:
 
 
 @given(RECTANGLES, RECTANGLES)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_any_covers_of_two_lattices(
     one: list[tuple[tuple[int, int], tuple[int, int]]], other: list[tuple[tuple[int, int], tuple[int, int]]]
 ) -> None:

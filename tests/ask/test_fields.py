@@ -189,6 +189,7 @@ def test_roots_of_a_cubic() -> None:
             assert [v for v in found if not np.isnan(v)] == pytest.approx(real, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_a_certified_map_and_its_stable_poses(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
     record = {

@@ -29,6 +29,7 @@ def test_a_component_that_is_an_axis_is_told() -> None:
     assert lines[1].endswith("critical of degree 6, 6 in a, 6 in f: up to 10 terms; and the line a = 0")
 
 
+@pytest.mark.slow
 def test_the_way_of_the_projection_is_told() -> None:
     small, large = (list(foretold(load(CONFIGS / f"{name}.yaml"))) for name in ("fig4", "systems/kuramoto-4"))
     assert "the curve's discriminant from 121 values in integers" in small

@@ -75,6 +75,7 @@ def test_what_holds_at_a_fold_is_told_there_wherever_the_path_began(found: PoseP
     assert ends[0].energy.radius < Fraction(1, 10**20)
 
 
+@pytest.mark.slow
 def test_every_point_is_a_proved_stable_pose_and_neighbours_are_near(found: PosePaths) -> None:
     assert found.joined
     for path in found.paths:
@@ -108,6 +109,7 @@ def test_tiny_free_lengths_make_no_difference() -> None:
         assert degrees(float(a)) == pytest.approx(degrees(float(b)), abs=0.05)
 
 
+@pytest.mark.slow
 def test_a_film_falls_at_the_same_place(found: PosePaths) -> None:
     slice = ptmcad.slice_from_options(FREE02, ranges=["rho=11/10:13/10", "L2=7/5:8/5"])
     motion = ptmcad.classify(slice, tolerance="1/5", jobs=1).animate("rho=6/5:5/4,L2=3/2", "stable:2", frames=6)
@@ -117,6 +119,7 @@ def test_a_film_falls_at_the_same_place(found: PosePaths) -> None:
     assert fall.at[0] == pytest.approx(float(end.at), abs=1e-7)
 
 
+@pytest.mark.slow
 def test_a_value_without_an_answer_leaves_a_point_out(monkeypatch: pytest.MonkeyPatch, found: PosePaths) -> None:
     """Here the one just beyond a fold of others, which the path passes."""
     slice, own = slice_of(window="1:6/5"), module.SolutionsOnLine.at
@@ -154,6 +157,7 @@ def test_a_pose_that_is_not_found_again_is_undecided(monkeypatch: pytest.MonkeyP
         ("x", None, "x", "--path"),
     ],
 )
+@pytest.mark.slow_cases("1.23166242-None--")
 def test_starts_that_there_are_not(start: str, number: int | None, message: str, key: str) -> None:
     if not message:  # beside the fold, however near
         assert len(ptmcad.pose_paths(slice_of(), "rho", {"L2": "3/2"}, start, 1).paths) == 1

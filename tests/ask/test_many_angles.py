@@ -49,6 +49,7 @@ def pendulums() -> Model:
     )
 
 
+@pytest.mark.slow
 def test_a_chain_of_four_bars_is_counted() -> None:
     """70 complex solutions, whose basis over Q took minutes and more; Euler's sum is 2 - 7 + 9 - 5 + 1 = 0."""
     found = ptmcad.counts_at(chain(), a="1/3", F="1/2")

@@ -106,6 +106,7 @@ def turning() -> ptmcad.RegionMap:
     return ptmcad.classify(record, areas=False)
 
 
+@pytest.mark.slow
 def test_a_moment_that_turns_a_bar_for_ever_ends_the_motion() -> None:
     """b sin(th) = M has no solution from M = b on."""
     motion = turning().animate("b=1,M=0:5/2", frames=20)

@@ -325,6 +325,7 @@ def close(a: Enclosure, b: Enclosure, factor: Fraction = Fraction(1)) -> bool:
 
 @few
 @given(mechanisms, nonzero)
+@pytest.mark.slow
 def test_stiffness_and_loads_scale_together(parameters: dict[str, Fraction], c: Fraction) -> None:
     poses = solve(**parameters)
     scaled = solve(**{n: c * v if n[0] in "kF" else v for n, v in parameters.items()})
@@ -338,6 +339,7 @@ def test_stiffness_and_loads_scale_together(parameters: dict[str, Fraction], c: 
 
 @few
 @given(mechanisms, nonzero)
+@pytest.mark.slow
 def test_lengths_and_loads_scale_together(parameters: dict[str, Fraction], c: Fraction) -> None:
     poses = solve(**parameters)
     scaled = solve(**{n: v if n[0] == "k" else c * v for n, v in parameters.items()})

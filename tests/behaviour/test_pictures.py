@@ -79,7 +79,7 @@ def truss(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_pixels_that_are_undetermined_are_said_to_be_so(truss: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    asked = ["map", str(truss / "truss.json"), "--value", "energy", "--checks", "2", "--pixels", "30", "--out"]
+    asked = ["map", str(truss / "truss.json"), "--value", "energy", "--checks", "2", "--pixels", "16", "--out"]
     assert run([*asked, str(truss), "--format", "svg"]) == 0
     assert re.search(r"of the pixels; [0-9.]+ % undetermined", capsys.readouterr().out)
     found = texts(truss / "truss-energy-stable-1.svg")
@@ -225,11 +225,11 @@ def test_half_a_turn_is_one_angle_and_its_symbol_stands_in_all_of_a_picture(tmp_
     """Half a turn is 180 degrees at every pixel, never -180; names with an underscore have their letter, too."""
     record, out = tmp_path / "arm.yaml", ["--out", str(tmp_path)]
     record.write_text(ARM, encoding="utf-8")
-    asked = ["map", str(record), "--pixels", "20", "--format", "svg,csv", *out]
+    asked = ["map", str(record), "--pixels", "10", "--format", "svg,csv", *out]
     assert run([*asked, "--value", "angle:alpha_1"]) == 0
     rows = (tmp_path / "arm-angle-alpha-1-stable-1.csv").read_text(encoding="utf-8").splitlines()[1:]
     hanging = [float(row.split(",")[2]) for row in rows if float(row.split(",")[0]) > 2]
-    assert hanging == pytest.approx([180] * (7 * 20))
+    assert hanging == pytest.approx([180] * (3 * 10))
     assert "angle α_1 (degrees)" in texts(tmp_path / "arm-angle-alpha-1-stable-1.svg")
     assert run([*asked, "--value", "cos(alpha_1)*mu_s"]) == 0
     assert "cos(α_1)*μ_s" in texts(tmp_path / "arm-cos-alpha-1-mu-s-stable-1.svg")

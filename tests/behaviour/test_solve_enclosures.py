@@ -56,6 +56,7 @@ def solved(record: str, at: str, folder: Path, status: int) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("at", ["X=-2,Y=1/5", "X=-1,Y=1e-9"])
+@pytest.mark.slow_cases("X=-1,Y=1e-9")
 def test_a_force_that_may_be_zero_is_enclosed(at: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """By hand: both stable poses have AP at its free length, as the moment about P is that of the load alone."""
     document = solved(BAR, at, tmp_path, 0)
@@ -120,6 +121,7 @@ def test_all_poses_are_certified_where_no_box_is_open(tmp_path: Path) -> None:
     assert len(document["equilibria"]) == 3
 
 
+@pytest.mark.slow
 def test_the_paper_s_mechanism_beside_a_spring_without_length(tmp_path: Path) -> None:
     """At rho = L1 spring 2 may have no length: the poses that are proved are there, and open boxes are counted."""
     record = "name: p\nmechanism: ptm\nparameters: {l0: 1/2}\naxes: {rho: [0, 2], L2: [0, 2]}\n"

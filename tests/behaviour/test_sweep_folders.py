@@ -220,6 +220,7 @@ def many_fixture(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize("number", [7, 0])
+@pytest.mark.slow_cases("0")
 def test_a_full_disk_is_named_and_what_is_done_stays(
     many: Path, tmp_path: Path, number: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 import yaml
 from support.dense_search import dense_search
+from support.few import few
 from support.loop_search import taut_along
 from support.minima_search import minima
 
@@ -144,10 +145,11 @@ def test_the_known_answer_of_a_spring_on_a_slider() -> None:
     assert {cell.stable for cell in m.cells} == {1, 2}
 
 
-def test_by_the_papers_mechanism() -> None:
+@pytest.mark.parametrize("number", [10, pytest.param(20, marks=pytest.mark.slow)])
+def test_by_the_papers_mechanism(number: int) -> None:
     """Against formulas made by hand for it, and against a search."""
     plain, seen = plain_counter(slice_of(PLAIN_PTM)), set()
-    for x, y in points_of(slice_of(PLAIN_PTM), 20, seed=3):
+    for x, y in points_of(slice_of(PLAIN_PTM), number, seed=3):
         count = plain.at(x, y, Count.ADMISSIBLE)
         values = {f"k{n}": 100.0 for n in (1, 2, 3)} | {f"l0_{n}": 0.5 for n in (1, 2, 3)}
         values |= {"rho": float(x), "L1": 1, "L2": float(y), "F3": -10, "F4": -10, "F3x": 0, "F4x": 0}
@@ -202,6 +204,7 @@ def test_closed_loops() -> None:
 
 
 @pytest.mark.parametrize("name", ["four-bar", "chain"])
+@pytest.mark.slow_cases("chain")
 def test_poses_say_the_same(name: str) -> None:
     m = map_of(name, "1/100")
     for cell in sorted(m.cells, key=lambda c: c.level)[:4]:
@@ -212,7 +215,7 @@ def test_poses_say_the_same(name: str) -> None:
         assert sum(pose.admissible is True for pose in poses.equilibria) == cell.admissible, at
 
 
-@pytest.mark.parametrize("name", ["roof", "four-bar", pytest.param("chain", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", few(["roof", "four-bar", "chain"], "roof"))
 def test_the_checker_agrees(name: str) -> None:
     m = map_of(name, "1/100" if name != "roof" else "1/200")
     assert m.status is Status.CERTIFIED
@@ -250,6 +253,7 @@ def without(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
 
 
 @pytest.mark.parametrize(("name", "tolerance"), [("chain", "1/20"), ("four-bar", "1/20")])
+@pytest.mark.slow_cases("chain-1/20")
 def test_without_boundaries_at_free_lengths_counts_are_wrong(
     name: str, tolerance: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

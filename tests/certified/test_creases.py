@@ -17,6 +17,8 @@ from hypothesis import strategies as st
 
 pytest.importorskip("numba")
 
+from support.examples import examples
+
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified.engine import certified_map
@@ -80,7 +82,7 @@ def crank_by_hand(force: Fraction, free: Fraction) -> Index:
     return 1, 0
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(small, lengths)
 def test_a_crank_has_the_equilibria_of_half_its_angle(force: Fraction, free: Fraction) -> None:
     assume(free != 2 * (1 + force))
@@ -90,7 +92,7 @@ def test_a_crank_has_the_equilibria_of_half_its_angle(force: Fraction, free: Fra
     assert all(abs(c) + s.radius < 4 for s in count.solutions for c in s.center)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(small, small, lengths)
 def test_the_crease_is_a_peak_in_eulers_sum(force: Fraction, up: Fraction, free: Fraction) -> None:
     """On the circle there are as many minima as maxima, one of which is the crease where it outweighs the load."""
@@ -116,7 +118,7 @@ def pair_by_hand(force: float, free: float) -> Index:
     return tuple(found)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.sampled_from([("1", "0"), ("3/5", "4/5"), ("-5/13", "12/13")]), lengths, lengths)
 def test_two_cranks_have_the_equilibria_of_their_angles_difference(
     way: tuple[str, str], force: Fraction, free: Fraction
@@ -160,7 +162,7 @@ def by_samples(frequencies: tuple[int, ...], force: float, up: float, free: floa
 
 
 @pytest.mark.slow
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.sampled_from([(1, 2), (1, 3), (2, 3), (1, -1), (1, -2), (3, 1)]), small, small, lengths)
 def test_gears_have_the_equilibria_of_all_their_halves(
     frequencies: tuple[int, int], force: Fraction, up: Fraction, free: Fraction
@@ -241,6 +243,7 @@ def spun_by_newton(force: float, up: float, free: float) -> Index:
 @pytest.mark.parametrize(
     "at", [("1/2", "1/5", "1"), ("-1/3", "3/4", "1/2"), ("3/2", "-1/4", "7/4"), ("1/9", "1/7", "2")]
 )
+@pytest.mark.slow_cases("at1", "at2", "at3")
 def test_three_creases_agree_with_a_dense_search(at: tuple[str, str, str]) -> None:
     force, up, free = map(Fraction, at)
     count = counted(SPUN, F=force, G=up, l=free)
@@ -257,7 +260,7 @@ ARM: dict[str, Any] = {
 """A slider with a spring along an arm that turns: as a point of the plane it has two places, half a turn apart."""
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.sampled_from([("1", "0"), ("3/5", "4/5"), ("-5/13", "12/13")]), lengths, lengths)
 def test_a_slider_on_a_turning_arm_has_the_equilibria_of_either_side(
     way: tuple[str, str], force: Fraction, free: Fraction

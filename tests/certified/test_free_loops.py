@@ -121,12 +121,14 @@ def map_of(name: str, count: str, tolerance: str) -> RegionMap:
         pytest.param("anchored", "stable", "1/500", marks=pytest.mark.slow),
     ],
 )
+@pytest.mark.slow_cases("flat-total-1/200")
 def test_counts_are_those_of_a_search_along_the_loop(name: str, count: str, tolerance: str) -> None:
     m = map_of(name, count, tolerance)
     assert m.undetermined < Fraction(tolerance)
     assert not wrong_counts(m)
 
 
+@pytest.mark.slow
 def test_as_free_lengths_vanish_counts_are_the_exact_engine_s() -> None:
     slice = slice_of("four-bar-free")
     for x, y in random_points(slice, 11)[:6]:
@@ -216,6 +218,7 @@ def test_random_four_bars(seed: int) -> None:
     assert decided > 0.9 * POINTS
 
 
+@pytest.mark.slow
 def test_intervals_along_a_line() -> None:
     """With stable counts; and an operation range is where most poses are stable, as without free lengths."""
     slice = slice_of("four-bar-free")
@@ -264,6 +267,7 @@ def crank_counts(weight: float, moment: float) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize("unknowns", [{"th": "angle", "x": "length"}, {"x": "length", "th": "angle"}], ids=str)
+@pytest.mark.slow_cases("{'th': 'angle', 'x': 'length'}")
 def test_a_slider_in_any_order_of_the_unknowns(unknowns: dict[str, str]) -> None:
     """Bounds of the slider follow from the loop; the determinant's sign from the order."""
     record = crank(unknowns)
@@ -370,6 +374,7 @@ SMALL = {"axes": {"x": ["9/5", "11/5"], "y": [1, "7/5"]}, "count": "total"}
 MET = {"x": Fraction(2), "y": Fraction(6, 5)}
 
 
+@pytest.mark.slow
 def test_where_a_spring_has_no_length_there_is_an_equilibrium_less(monkeypatch: pytest.MonkeyPatch) -> None:
     """On the circle itself, which a map has to leave out: beside it the peak is a smooth one, and counts."""
     slice = slice_of("anchored", **SMALL)
@@ -385,6 +390,7 @@ def test_where_a_spring_has_no_length_there_is_an_equilibrium_less(monkeypatch: 
     assert ptmcad.classify(slice, tolerance="1/20").locate(**MET).cell is not None
 
 
+@pytest.mark.slow
 def test_without_short_springs_counts_are_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     """Folds at which a spring is shorter than an eighth of what is usual have a search of their own."""
     slice = slice_of("anchored", **SMALL)

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 from support.held_sliders import FREE, PAIR, SLANTED, STIFF
 from support.multistart import Found, Model, model_of, solutions
 
@@ -126,7 +127,7 @@ def pairs(draw: st.DrawFn) -> dict[str, Fraction]:
     )
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 @given(pairs())
 def test_no_equilibrium_is_beyond_the_bounds(values: dict[str, Fraction]) -> None:
     ranges = hull(slice_at(PAIR, values))
@@ -143,6 +144,7 @@ def test_counts_are_those_of_a_search(values: dict[str, Fraction]) -> None:
     assert counted.index is None or agrees(values, counted.index)
 
 
+@pytest.mark.slow
 def test_a_map_at_irrational_guides_has_the_counts_of_a_search() -> None:
     """Guides along (1, 2) and (3, 1): neither vector has a rational length."""
     result = ptmcad.classify(PAIR, tolerance="1/20", jobs=1)

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.dense_search import dense_search
+from support.examples import examples
 
 import ptmcad
 from ptmcad.certified.arb_evaluation import ball, run_arb
@@ -121,6 +122,7 @@ def test_near_and_on_a_fold() -> None:
     assert counts.at(Q(5, 4) + Q(1, 10**5), Q(3, 2), Count.TOTAL).total == 4
 
 
+@pytest.mark.slow
 def test_bisection_to_a_fold_goes_beyond_floats() -> None:
     counts = equal_springs(Q(1, 5), Q(-1, 10))
     low, high = Q(123, 100), Q(124, 100)
@@ -197,7 +199,7 @@ def test_without_a_free_length_of_spring_3_there_is_no_cone() -> None:
 fractions = st.integers(0, 40).map(lambda n: Q(3 * n, 59))
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 @given(fractions, fractions.filter(bool), fractions, fractions, st.integers(-10, 10))
 def test_symmetries(rho: Q, l2: Q, first: Q, third: Q, load: int) -> None:
     """Swapping the sides with their loads, turning the loads round, and scaling change no count."""

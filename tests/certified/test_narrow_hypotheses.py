@@ -111,6 +111,7 @@ OFF = (Q(0), Q(1, 10**6), Q(-1, 10**6), Q(1, 10**13), Q(-1, 10**13), Q(1, 10**20
 
 
 @pytest.mark.parametrize("off", few(OFF, Q(0), Q(1, 10**6), Q(-1, 10**13)))
+@pytest.mark.slow_cases("off0")
 def test_rho_next_to_a_bar_s_length(off: Q) -> None:
     """Spring 1 has no length on a whole circle where rho = L2, and its formulas are others there, not next to it."""
     s = slice_of({"rho": [0, 2], "L2": [0, 2]})

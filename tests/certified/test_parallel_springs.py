@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 
 pytest.importorskip("numba")
 
+from support.examples import examples
+
 import ptmcad
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import Status
@@ -91,6 +93,9 @@ def named(how: str) -> list[str]:
 
 @pytest.mark.parametrize("count", ["stable", "total", "index"])
 @pytest.mark.parametrize("how", list(APART))
+@pytest.mark.fast_cases(
+    "ends in the other order-total", "same ends-stable", "to a point between-index", "to a point beyond-stable"
+)
 def test_they_have_the_map_of_the_one_spring(how: str, count: str) -> None:
     options = Options(tolerance=Fraction(1, 50), jobs=1)
     one, many = (certified_map(ptmcad.slice_from_mapping(bead(s, count)), options) for s in (TOGETHER, APART[how]))
@@ -113,7 +118,7 @@ def test_the_checker_confirms_them_everywhere() -> None:
 forces = st.fractions(min_value=-2, max_value=2, max_denominator=16)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=examples(15), deadline=None)
 @given(st.sampled_from(list(APART)), forces, forces)
 def test_they_have_the_equilibria_of_the_one_spring(how: str, force: Fraction, up: Fraction) -> None:
     one, many = poses(TOGETHER, force, up), poses(APART[how], force, up)

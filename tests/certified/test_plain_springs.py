@@ -84,6 +84,7 @@ def test_matrix_is_the_derivative_of_the_equations(mechanism: dict[str, Any]) ->
 
 
 @pytest.mark.parametrize("mechanism", [PLAIN_PTM, THREE_BARS])
+@pytest.mark.slow_cases("mechanism1")
 def test_determinant_in_a_chart_is_that_times_the_length(mechanism: dict[str, Any]) -> None:
     problem, direct = charts(mechanism)
     phi = 2 + len(problem.unknowns)
@@ -146,6 +147,7 @@ def _open(formulas: Sequence[Formula]) -> list[Formula]:
 
 
 @pytest.mark.parametrize("mechanism", [PLAIN_PTM, THREE_BARS])
+@pytest.mark.slow_cases("mechanism1")
 def test_moment_on_bodies_that_turn_is_that_of_the_equations(mechanism: dict[str, Any]) -> None:
     problem, at = charts(mechanism)
     scales = values(at.scales, POINT)

@@ -134,6 +134,7 @@ def cases(name: str) -> list[tuple[Frame, int]]:
 
 
 @pytest.mark.parametrize("name", MECHANISMS)
+@pytest.mark.slow_cases("cart")
 def test_formulas_are_the_energys_derivatives(name: str) -> None:
     """Against difference quotients of an energy that is read off the record by other means."""
     slice, rng = slice_of(name), random.Random(3)

@@ -15,6 +15,7 @@ pytest.importorskip("numba")
 
 
 @pytest.mark.parametrize("path", OTHER_FREE, ids=lambda path: path.stem)
+@pytest.mark.slow_cases("three-cables")
 def test_the_record_s_own_figures(path: Path) -> None:
     record = yaml.safe_load(path.read_text(encoding="utf-8"))
     known, asked = record["reference"], record["count"]

@@ -31,6 +31,7 @@ def true() -> RegionMap:
     return ptmcad.classify(ptmcad.load(CONFIGS / "fig4.yaml"))
 
 
+@pytest.mark.slow
 def test_error_costs_almost_nothing_where_curves_are_smooth() -> None:
     result = fine()
     assert result.status is Status.CERTIFIED
@@ -99,6 +100,7 @@ def test_the_map_is_verified_and_tubes_beside_the_curves_are_not() -> None:
     assert not verify(false, boxes=5).ok
 
 
+@pytest.mark.slow
 def test_it_is_drawn_and_gone_on_from() -> None:
     assert len(fine().boundaries()) >= 2
     grid = fine().grid(24)

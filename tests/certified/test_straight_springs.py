@@ -18,6 +18,8 @@ from hypothesis import strategies as st
 
 pytest.importorskip("numba")
 
+from support.examples import examples
+
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.certified.engine import certified_map
@@ -91,7 +93,7 @@ small = st.fractions(min_value=-2, max_value=2, max_denominator=8)
 lengths = st.fractions(min_value=Fraction(1, 8), max_value=2, max_denominator=8)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.sampled_from(sorted(GUIDES)), lengths, lengths, lengths, small, small)
 def test_a_slider_has_the_equilibria_of_every_side(
     guide: str, free: Fraction, other: Fraction, stiff: Fraction, a: Fraction, force: Fraction
@@ -138,7 +140,7 @@ def yoke_by_algebra(a: Fraction, free: Fraction, force: Fraction, up: Fraction) 
                 yield bool(derivative > 0)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(small, lengths, small, small)
 def test_a_yoke_has_the_index_that_algebra_tells(a: Fraction, free: Fraction, force: Fraction, up: Fraction) -> None:
     assume(abs(a) != 1 and up != 0)

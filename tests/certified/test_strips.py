@@ -65,6 +65,7 @@ def box_around(p: list[Fraction], q: list[Fraction], low: float, high: float) ->
     st.sampled_from((inf, 1e-2, 1e-6, 0.0)),
     st.sampled_from(("plain", "mixed", "curved")),
 )
+@pytest.mark.slow
 def test_points_of_a_curve_are_in_pieces_of_its_strips(
     p: list[Fraction], q: list[Fraction], middle: float, width: float, area: float, kind: str
 ) -> None:

@@ -20,7 +20,7 @@ AREAS = {"pendulum": 3 * pi / 8, "cusp": 2 * (4 / 27) ** 0.5 * 2**2.5 * 2 / 5, "
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.slow_cases("ptm", "platform")
+@pytest.mark.slow_cases("ptm", "platform", "chain")
 def test_what_init_writes_runs_as_it_is(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "mine.yaml"
     assert run(["init", name, "--out", str(path)]) == 0

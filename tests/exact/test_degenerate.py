@@ -254,6 +254,7 @@ def test_wrong_options(options: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize("stage", ["discriminant_variety", "project", "region_areas"])
+@pytest.mark.slow_cases("discriminant_variety", "region_areas")
 def test_a_limit_leaves_the_best_map_so_far(stage: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever was reached is a partial map that can be written, read and asked, and gives no undecided count."""
     record = load(CONFIGS / "stiffness.yaml")

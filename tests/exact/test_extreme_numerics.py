@@ -303,6 +303,7 @@ def usual_work() -> int:
 
 
 @pytest.mark.parametrize("force", [pytest.param(Fraction(1, 10**6), marks=pytest.mark.slow), Fraction(1, 10**20)])
+@pytest.mark.slow
 def test_areas_next_to_a_limit_take_little_more_work(force: Fraction) -> None:
     """The loaded curve runs along the unloaded lines, several branches within force^(2/3) of each other."""
     nearly = Question({"F3": -force, "F4": -force}, FIG4.axes)

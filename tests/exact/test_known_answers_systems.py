@@ -330,6 +330,9 @@ PLATFORM: dict[str, Any] = {
         pytest.param(PLATFORM, 20, id="platform on a leg and two springs, one free length [Vikas's thesis]"),
     ],
 )
+@pytest.mark.slow_cases(
+    "chain of 3 [C(2 n, n), REFERENCE]", "platform on a leg and two springs, one free length [Vikas's thesis]"
+)
 def test_numbers_of_complex_solutions(record: dict[str, Any], number: int) -> None:
     """At three points; with multiplicities and without."""
     problem = problem_of(ptmcad.slice_from_mapping(record))

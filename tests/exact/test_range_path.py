@@ -408,6 +408,7 @@ PENDULUMS: dict[str, Any] = {
 """Two pendulums that do not act upon each other, each upright between springs: folds at H = +-0.65 for W = 1/8."""
 
 
+@pytest.mark.slow
 def test_a_pose_goes_on_between_two_critical_values_near_each_other() -> None:
     """The hanging pendulums fold nowhere, whatever the upright ones do at 0.649519 and 0.649528."""
     slice = ptmcad.slice_from_mapping(PENDULUMS)

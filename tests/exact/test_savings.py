@@ -327,6 +327,7 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
 # ------------------------------------------------------------------------------------------------- the certified engine
 
 
+@pytest.mark.slow
 def test_curves_of_the_certified_engine() -> None:
     pytest.importorskip("numba")
     from ptmcad.certified.plain.curves import curves

@@ -626,9 +626,10 @@ def contents(out: Path) -> dict[str, bytes]:
 
 
 @linux
-def test_killed_at_50_random_moments(tmp_path: Path) -> None:
+@pytest.mark.parametrize("times", [20, pytest.param(50, marks=pytest.mark.slow)])
+def test_killed_at_random_moments(tmp_path: Path, times: int) -> None:
     """The old result or the new one, whole; and a later run clears what was left."""
-    killed_at_random(tmp_path, "json", times=50, seed=1)
+    killed_at_random(tmp_path, "json", times, seed=1)
 
 
 @linux

@@ -144,13 +144,19 @@ def test_latex_rows_are_set_and_of_like_width(name: str, tmp_path: Path) -> None
 LONG = f"F3: -1/3 + {10**30 + 1}/{10**31 + 7}*L2"
 
 
-@pytest.mark.parametrize("format", FORMATS)
-def test_titles_and_long_values_break_nothing(format: str, tmp_path: Path) -> None:
-    """A title may have any characters, a value may be long; both appear in comments at most."""
-    record = tmp_path / "odd.yaml"
+@pytest.fixture(scope="module", name="odd")
+def odd_fixture(tmp_path_factory: pytest.TempPathFactory) -> ptmcad.SliceVariety:
+    """A title may have any characters, a value may be long."""
+    record = tmp_path_factory.mktemp("odd") / "odd.yaml"
     title = "'ends *) ] #\u2026'"
     record.write_text(f"title: {title}\naxes: {{rho: [1, 2], L2: [1, 2]}}\nparameters:\n  {LONG}\n", encoding="utf-8")
-    text = ptmcad.slice_variety(ptmcad.load(record)).text(format)
+    return ptmcad.slice_variety(ptmcad.load(record))
+
+
+@pytest.mark.parametrize("format", FORMATS)
+def test_titles_and_long_values_break_nothing(format: str, odd: ptmcad.SliceVariety) -> None:
+    """Both appear in comments at most."""
+    text = odd.text(format)
     assert text.endswith("\n")
     assert text.isascii()
     if format == "sympy":

@@ -165,6 +165,7 @@ def test_ffmpeg_gets_every_picture(short: Motion, tmp_path: Path, monkeypatch: p
 
 
 @pytest.mark.parametrize("reads", [True, False], ids=["at the end", "at once"])
+@pytest.mark.slow_cases("at the end")
 def test_what_ffmpeg_refuses_is_said(
     reads: bool, short: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -244,6 +245,7 @@ def test_a_system_cannot_be_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[
         found.save(tmp_path / "film.gif")
 
 
+@pytest.mark.slow
 def test_a_certified_map_has_films_too(tmp_path: Path) -> None:
     pytest.importorskip("numba")
     record = {

@@ -318,6 +318,7 @@ def test_png_has_the_size_that_dpi_tells(dpi: int, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
+@pytest.mark.slow_cases("pdf")
 def test_the_same_bytes_twice(suffix: str, tmp_path: Path) -> None:
     for k in range(2):
         draw(classified("fig3", "index"), tmp_path / f"{k}.{suffix}")

@@ -81,6 +81,7 @@ def test_poses_without_room_are_refused_with_the_least_width(
     assert imread(tmp_path / "fig4.png").shape[:2] == (600, 840)
 
 
+@pytest.mark.slow
 def test_poses_that_are_too_tall_are_refused_by_the_option_with_a_size_that_does(
     stored: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -353,6 +353,7 @@ def test_the_legend_says_of_how_many_solutions_even_where_these_differ() -> None
 
 
 @pytest.mark.parametrize("size", ["3.5x3in", "8x5in"])
+@pytest.mark.slow_cases("8x5in")
 def test_no_text_is_smaller_than_is_read_on_paper(size: str) -> None:
     """Even where the legend's own text is as small as that: details, numbers at insets and labels of arrows."""
     made = figure(bands(SLIVERS), styled(size=size, font_size=6))

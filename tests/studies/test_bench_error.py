@@ -265,6 +265,7 @@ def test_error_of_a_certified_map() -> None:
     assert damaged["wrong"][0] > result.undetermined + Fraction(1, 20)
 
 
+@pytest.mark.slow
 def test_error_of_a_certified_map_with_slanted_pieces() -> None:
     """What is between tubes is shown: the error is near the undetermined share, and another count is seen."""
     pytest.importorskip("numba")

@@ -236,6 +236,7 @@ SLOW = ("5.2-real", "5.2-degree-328")
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in CLAIMS]
 )
+@pytest.mark.slow_cases("4.3-widest", "5.2-spurious")
 def test_verdict(name: str) -> None:
     """The verdict, what each kind of verdict must come with, and the facts: known from the paper or docs/errata.md."""
     found = outcome(name)

@@ -34,6 +34,7 @@ FLAT = 4
     pytest.param(UNLOADED, 124, 48, 6, id="unloaded: 124"),
     pytest.param(THIRTY, 124, 72, 30, id="30 equilibria"),
 ])  # fmt: skip
+@pytest.mark.slow_cases("unloaded: 124")
 def test_numbers_of_solutions(numbers: Numbers, total: int, real: int, equilibria: int) -> None:
     found = signed_solutions(numbers)
     flat = 0 if numbers == PAPER else FLAT

@@ -71,6 +71,8 @@ def judged(name: str) -> Row:
     "line-units-length-1e9",
     "line-symmetry-1e-30",
     "line-digits-40",
+    "map-window-1e9",
+    "window-beside-cusp-1e-20",
 )
 def test_ptmcad_is_right(case: Case) -> None:
     verdict = judged(case.name)

@@ -95,7 +95,9 @@ def at_random(claims: CertifiedClaims, rng: random.Random) -> tuple[Fraction, Fr
 
 
 @pytest.mark.parametrize(("name", "count"), CASES)
-@pytest.mark.slow_cases("paper-stable", "paper-index", "pair-index", "loop-total", "truss-stable")
+@pytest.mark.slow_cases(
+    "paper-stable", "paper-index", "pair-index", "loop-total", "truss-stable", "loop-stable", "pair-stable"
+)
 def test_places_have_all_solutions(name: str, count: str) -> None:
     """That balls alone find; and with places they find the same ones."""
     claims, rng, told = CertifiedClaims(a_map(name, count)), random.Random(name + count), 0
@@ -118,7 +120,14 @@ def test_places_have_all_solutions(name: str, count: str) -> None:
 
 @pytest.mark.parametrize(("name", "count"), CASES)
 @pytest.mark.slow_cases(
-    "paper-stable", "paper-index", "pair-index", "loop-total", "truss-stable", "sliding-stable", "loop-stable"
+    "paper-stable",
+    "paper-index",
+    "pair-index",
+    "loop-total",
+    "truss-stable",
+    "sliding-stable",
+    "loop-stable",
+    "pair-stable",
 )
 def test_places_over_a_box_have_those_over_its_points(name: str, count: str) -> None:
     claims, rng, told = CertifiedClaims(a_map(name, count)), random.Random(name), 0
@@ -146,7 +155,7 @@ def inside(at: tuple[float, ...], box: Box) -> bool:
 
 
 @pytest.mark.parametrize(("name", "count"), CASES)
-@pytest.mark.slow_cases("paper-index")
+@pytest.mark.slow_cases("paper-index", "paper-stable", "loop-total")
 def test_formulas_are_those_of_the_balls(name: str, count: str) -> None:
     """Equations and Jacobian at random configurations, by compiled forms and by balls, which share the waves alone."""
     claims, rng = CertifiedClaims(a_map(name, count)), random.Random(count)
@@ -181,8 +190,9 @@ def numbers_of(tape: Any, box: Any) -> Any:
     return forms[:, CENTER]
 
 
-def test_a_search_that_is_spent_leaves_what_it_has(monkeypatch: pytest.MonkeyPatch) -> None:
-    claims = CertifiedClaims(a_map("paper", "index"))
+@pytest.mark.parametrize("name", ["truss", pytest.param("paper", marks=pytest.mark.slow)])
+def test_a_search_that_is_spent_leaves_what_it_has(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    claims = CertifiedClaims(a_map(name, "index"))
     at = at_random(claims, random.Random(1))
     true = counting_of(claims).at(claims, *claims.off_lattice(*at))
     for budget, left in ((1, 512), (5, 512), (40, 512), (4000, 6)):

@@ -163,6 +163,7 @@ def test_a_false_map_is_rejected(kind: str, flat: RegionMap) -> None:
     assert counted(FALSE[kind](flat)) is False
 
 
+@pytest.mark.slow
 def test_a_slice_that_is_flat_everywhere_is_not_decided() -> None:
     true = map_of({"F": ["15", "19"], "l0": ["11/50", "6/25"]}, L2="1", rho="2", k="100", F3="F", F4="-F")
     assert counted(true) is None

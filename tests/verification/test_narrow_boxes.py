@@ -95,7 +95,9 @@ def forged(name: str, count: str, radius: Fraction, off: Fraction) -> CertifiedC
 
 
 @pytest.mark.parametrize(("name", "count"), CASES)
-@pytest.mark.slow_cases("ptm-index", "chain-index", "chain-total", "loop-stable", "loop-total")
+@pytest.mark.slow_cases(
+    "ptm-index", "chain-index", "chain-total", "loop-stable", "loop-total", "ptm-total", "ptm-stable"
+)
 def test_a_narrow_box_is_decided(name: str, count: str) -> None:
     """Whether its middle is off by less than its half width, or by a little more, or by less than doubles tell."""
     radius = Fraction(1, 10**30)

@@ -138,6 +138,7 @@ def test_points_on_components_are_drawn_again(shipped: Shipped) -> None:
 
 
 @pytest.mark.parametrize("name", FAMILIES)
+@pytest.mark.slow_cases("pencil")
 def test_false_exponents_and_missing_curves_are_rejected(name: str, shipped: Shipped) -> None:
     """Whichever component is dropped or foreign, at whatever points."""
     for seed in range(20):

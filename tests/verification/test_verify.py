@@ -101,7 +101,8 @@ def is_accepted(altered: RegionMap, table: str) -> bool:
 @pytest.mark.parametrize(
     ("name", "number"),
     [
-        ("fig2", 150),
+        ("fig2", 50),
+        pytest.param("fig2", 150, marks=pytest.mark.slow),
         pytest.param("fig3", 1500, marks=pytest.mark.slow),
         pytest.param("fig4", 300, marks=pytest.mark.slow),
     ],

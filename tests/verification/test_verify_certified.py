@@ -504,6 +504,7 @@ def test_sweep_and_subdivision_agree(cover: Cover) -> None:
     assert len(set(names.values())) == len(names)
 
 
+@pytest.mark.slow
 def test_sweep_and_subdivision_agree_where_strips_change_in_parts() -> None:
     """Many small rectangles that touch, so that most of a strip goes on while parts of it begin and end."""
     rng = random.Random(11)
@@ -630,6 +631,7 @@ def test_derivatives_are_those_of_the_potential(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
+@pytest.mark.slow_cases("1", "2")
 def test_a_box_of_parameters_has_the_count_of_its_points(seed: int, stable: RegionMap) -> None:
     rng = random.Random(seed)
     x, y = Fraction(rng.randint(1050, 1450), 1000), Fraction(rng.randint(800, 1200), 1000)

@@ -433,6 +433,9 @@ FOR_SLOW |= {(kind, "loop") for kind in ALL} - {(kind, "loop") for kind in ("mor
     "signs-slider-crank",
     "signs-well",
     "signs-oscillators",
+    "more solutions-loop",
+    "counts of another cell-well",
+    "counts of a region-slider-crank",
 )
 def test_a_false_map_is_rejected(kind: str, name: str) -> None:
     change, by = ALL[kind]

@@ -98,6 +98,7 @@ def form(mechanism: dict[str, Any]) -> Form:
 
 
 @pytest.mark.parametrize("name", list(CASES))
+@pytest.mark.slow_cases("pair", "loop")
 def test_true_maps_are_proved(name: str) -> None:
     report = ptmcad.verify(made(name), seed=1, boxes=2)
     assert report.ok
@@ -200,6 +201,7 @@ def test_what_continues_a_side_hides_no_equilibrium_a_turn_away(at: tuple[str, s
     assert ModelCounting(form(BEHIND))._at({"l": free, "F": force, "G": up}, Count.INDEX).counts.index == (2, 1)
 
 
+@pytest.mark.slow
 def test_counts_without_a_potential_agree_with_the_engines() -> None:
     """Moments that depend on the other angle: the balance in half angles is that of virtual work."""
     from ptmcad.certified.plain.points import plain_counter
@@ -218,6 +220,7 @@ def test_counts_without_a_potential_agree_with_the_engines() -> None:
 
 
 @pytest.mark.parametrize("mechanism", [CRANK, BEHIND])
+@pytest.mark.slow_cases("mechanism0")
 def test_counts_agree_with_the_engines(mechanism: dict[str, Any]) -> None:
     from ptmcad.certified.plain.points import plain_counter
     from ptmcad.certified.plain.poses import point_slice

@@ -13,6 +13,7 @@ import pytest
 from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 from support.held_sliders import FREE, PAIR, SLANTED, STIFF
 from support.multistart import Model, model_of, solutions
 
@@ -112,7 +113,7 @@ def pairs(draw: st.DrawFn) -> dict[str, Fraction]:
     )
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 @given(pairs())
 def test_no_equilibrium_is_beyond_the_checkers_bounds(values: dict[str, Fraction]) -> None:
     bounds = half_widths(form(PAIR), balls(values))

@@ -206,6 +206,7 @@ def test_true_maps_are_accepted(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in SMALL else pytest.mark.slow) for n in RECORDS])
+@pytest.mark.slow_cases("moment", "stable where", "duffing", "potential with an inequality")
 def test_false_alterations_are_rejected(name: str) -> None:
     """One place of each kind of the forger."""
     tally = judged(name, map_of(name), 1, 0)

@@ -103,6 +103,7 @@ def test_lines_are_told_from_the_vectors() -> None:
     assert chosen("c, s", "1/2, 1/2") == 2
 
 
+@pytest.mark.slow
 def test_lists_that_contradict_themselves_are_refused_where_no_bound_is_proved(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two sliders that only springs hold: without its way to bound them the checker still sees what is listed."""
     monkeypatch.setattr(_Bounds, "held", lambda *_: None)

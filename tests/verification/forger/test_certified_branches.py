@@ -344,6 +344,7 @@ def test_texts_that_are_too_large_are_not_checked(text: str, words: str) -> None
     assert words in found
 
 
+@pytest.mark.slow
 def test_a_spring_as_long_as_its_free_length_is_not_told() -> None:
     r = made("slack", "admissible")
     with pytest.raises(Unproved, match="a spring may be as long as its free"):
