@@ -72,8 +72,8 @@ def names() -> dict[str, Any]:
         known |= {f"{name}{suffix}": e for name, e in found.items()}
     known |= {f"q{n}": sp.factor(known["sextic"].coeff(t2, n)) for n in range(7)}
     known |= {"sin12": s1 * c2 + c1 * s2, "cos12": c1 * c2 - s1 * s2}
-    known |= {name: partial(placed, values) for name, values in PLACES.items()} | {f.__name__: f for f in FUNCTIONS}
-    found = known["numerator"](known["symmetric"](known["E2"] * k).subs(t1, OTHER))
+    known |= {name: partial(placed, values) for name, values in PLACES.items()} | FUNCTIONS
+    found = numerator(placed(PLACES["symmetric"], known["E2"] * k).subs(t1, OTHER))
     return known | {"eliminated_12": sp.expand(sp.quo(found, 1 + t2**2, t2))}
 
 
@@ -121,26 +121,7 @@ def numerator(e: Expr) -> Expr:
     return sp.expand(sp.numer(sp.together(symbolic.half_angles(e))))
 
 
-def unequal(e: Expr) -> Expr:
-    """For equal rods and forces, by t2, where the angles differ."""
-    return sp.factor(sp.cancel(sp.together(symbolic.half_angles(placed(PLACES["symmetric"], e)).subs(t1, OTHER))))
-
-
 # ------------------------------------------------------------------------------------------------------------ numbers
-
-
-def degree(e: Expr, unknown: Expr) -> int:
-    return int(sp.degree(numerator(e), unknown))
-
-
-def terms(e: Expr, *unknowns: Expr) -> int:
-    """How many terms a polynomial has, in all its symbols unless some are named."""
-    return len(sp.Poly(e, *unknowns).terms())
-
-
-def parameters(*expressions: Expr) -> int:
-    """On how many parameters expressions depend."""
-    return len(set().union(*(e.free_symbols for e in expressions)) - set(ANGLES))
 
 
 def independent() -> int:
@@ -158,14 +139,6 @@ def equilibria(**values: Expr) -> Poses:
     return solve(**at)
 
 
-def total(**values: Expr) -> int:
-    return len(equilibria(**values).equilibria)
-
-
-def stable(**values: Expr) -> int:
-    return equilibria(**values).stable
-
-
 def flat_stable(e1: int = 0, e2: int = 0, **values: Expr) -> int:
     """How many flat equilibria are stable; of these, with the sign of a cosine, if it is given."""
     flat = [p.cosines_sines[::2] for p in equilibria(**values).equilibria if p.stable is True and p.flat]
@@ -178,7 +151,17 @@ def equal_angles(**values: Expr) -> int:
     return sum(a.low <= b.high and b.low <= a.high for a, b in pairs)
 
 
-FUNCTIONS: tuple[Callable[..., Any], ...] = (
-    at, flat, triangle, squared, unequal, numerator, degree, terms, parameters, independent,
-    total, stable, flat_stable, equal_angles, sp.diff, sp.factor,
-)  # fmt: skip
+FUNCTIONS: dict[str, Callable[..., Any]] = {
+    **{f.__name__: f for f in (at, flat, triangle, squared, numerator, independent, flat_stable, equal_angles)},
+    "diff": sp.diff,
+    "factor": sp.factor,
+    # for equal rods and forces, by t2, where the angles differ
+    "unequal": lambda e: sp.factor(symbolic.half_angles(placed(PLACES["symmetric"], e)).subs(t1, OTHER)),
+    "degree": lambda e, unknown: int(sp.degree(numerator(e), unknown)),
+    # in all symbols unless some are named
+    "terms": lambda e, *unknowns: len(sp.Poly(e, *unknowns).terms()),
+    # on how many parameters expressions depend
+    "parameters": lambda *all_: len(set().union(*(e.free_symbols for e in all_)) - set(ANGLES)),
+    "total": lambda **values: len(equilibria(**values).equilibria),
+    "stable": lambda **values: equilibria(**values).stable,
+}
