@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from itertools import groupby, product
-from math import pi
 from typing import Any
 
 from flint import arb, ctx
@@ -150,7 +149,8 @@ def _reference(parameters: Mapping[str, Fraction], starts: Sequence[IndexedPose]
 def _apart(first: IndexedPose, second: IndexedPose) -> arb:
     """The larger of the distances of both angles, on the circle."""
     gaps = [arb(a) - b for a, b in ((first.th1, second.th1), (first.th2, second.th2))]
-    one, other = (abs(gap - 2 * arb.pi() * round(float(gap.mid()) / (2 * pi))) for gap in gaps)
+    turn = 2 * arb.pi()
+    one, other = (abs(gap - turn * (gap / turn + 0.5).mid().floor()) for gap in gaps)
     return arb(one.max(other))
 
 
