@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from math import inf
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -121,7 +122,7 @@ def command(
 
             with clock_stopped(limit), ProgressBar() as progress:  # the time that compiling takes is not the cases'
                 load_certified(progress, DEFAULTS)
-        deadline = None if timeout is None else perf_counter() + timeout
+        deadline = perf_counter() + (inf if timeout is None else timeout)
         with ProgressBar() as progress:
             found = campaign(cases, seed=seed, repeats=repeats, deadline=deadline, progress=progress)
         written = save(found, out, formats)

@@ -59,9 +59,10 @@ def judge(case: Case, found: Any) -> Row:
     TypeError
         When the answer is of another kind than the question.
     """
-    if not isinstance(found, {"point": Poses, "line": CountIntervals}.get(case.question.kind, RegionMap)):
+    kinds: dict[str, Any] = {"point": (Poses, _point), "line": (CountIntervals, _line)}
+    kind, judgement = kinds.get(case.question.kind, (RegionMap, _map))
+    if not isinstance(found, kind):
         raise TypeError(f"{case.name}: the answer is of another kind than the question")
-    judgement: Any = {Poses: _point, CountIntervals: _line, RegionMap: _map}[type(found)]
     with ctx.workprec(_BITS):
         checks, row = judgement(case, found)
     remarks = [remark for holds, remark in checks if not holds]
