@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from math import inf
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -38,18 +39,15 @@ def save(found: Row, folder: Path, formats: tuple[str, ...]) -> tuple[str, ...]:
     from ptmcad.studies.stress.campaign import markdown, to_csv, to_json
 
     name = NAME if found["complete"] else f"{NAME}.partial"
+    texts = {"json": to_json, "csv": to_csv, "md": markdown}
     writers: dict[str, Writer] = {}
-    for suffix in formats:
-        if suffix == "csv":
-            writers[f"{name}.csv"] = text_writer(to_csv(found))
-        elif suffix == "md":
-            writers[f"{name}.md"] = text_writer(markdown(found))
-        elif suffix in ("png", "svg"):
+    for suffix in sorted(formats, key="json".__eq__):  # which vouches for the others
+        if suffix in texts:
+            writers[f"{name}.{suffix}"] = text_writer(texts[suffix](found))
+        elif suffix != "table":
             writers[f"{name}.{suffix}"] = picture(f"{name}.{suffix}", partial(_draw, found))
     if "json" in formats:
-        text = to_json(found)
-        writers[f"{name}.json"] = text_writer(text)
-        write_result(folder, writers, f"{name}.json", text)
+        write_result(folder, writers, f"{name}.json", to_json(found))
     elif writers:
         write_files(folder, writers)
     return tuple(writers)
@@ -124,7 +122,7 @@ def command(
 
             with clock_stopped(limit), ProgressBar() as progress:  # the time that compiling takes is not the cases'
                 load_certified(progress, DEFAULTS)
-        deadline = None if timeout is None else perf_counter() + timeout
+        deadline = perf_counter() + (inf if timeout is None else timeout)
         with ProgressBar() as progress:
             found = campaign(cases, seed=seed, repeats=repeats, deadline=deadline, progress=progress)
         written = save(found, out, formats)

@@ -530,6 +530,14 @@ def test_what_was_not_shown_corrects_nothing(name: str) -> None:
     assert changed(name, shown=[first, *others, "rho = 0"]).verdict is Verdict.UNDECIDED
 
 
+def test_a_fact_of_another_value_confirms_nothing() -> None:
+    """Facts are compared with the values that the text demands, and must be there."""
+    assert changed("4.3-similar", printed=[{"stable": [1, 3], "regions with two": 1}]).verdict is Verdict.UNDECIDED
+    assert changed("4.3-similar", printed=[{"stable": [1, 2]}, "1 = 2"]).verdict is Verdict.UNDECIDED
+    with pytest.raises(KeyError):
+        changed("4.3-similar", printed=[{"unstable": [1, 2]}])
+
+
 def test_statements() -> None:
     assert holds("s1^2 + c1^2 = 1") and not holds("s1^2 + c2^2 = 1") and holds("not s1 = c1")
     assert holds("at(rho, rho=2) > 1") and not holds("at(rho, rho=2) > 3")

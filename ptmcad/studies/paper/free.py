@@ -27,9 +27,9 @@ ELIMINATED: Design = ("7/10", "1", "3/2", "1/5", "-1/10", "-1/10")
 ZEROS = {"l1 = 0": [16, 0, 121], "l3 = 0": [-3, 0, 32]}
 """Polynomials in t2: where A4 is at A1 at the design, and as far from A1 as A3, so that the two may meet."""
 
-MAPS: Mapping[str, tuple[Mapping[str, str], Mapping[str, tuple[str, str]]]] = {
-    "l0 = 1/20": ({"l0": "1/20"}, {"rho": ("1/4", "2"), "L2": ("0", "2")}),
-    "L2 = 3/2": ({"L2": "3/2"}, {"rho": ("1/4", "5/4"), "l0": ("0", "1/4")}),
+MAPS = {
+    "l0 = 1/20": ("rho in [1/4, 2], L2 in [0, 2]", {"l0": "1/20"}, {"rho": ("1/4", "2"), "L2": ("0", "2")}),
+    "L2 = 3/2": ("rho in [1/4, 5/4], l0 in [0, 1/4]", {"L2": "3/2"}, {"rho": ("1/4", "5/4"), "l0": ("0", "1/4")}),
 }
 """The plane of fig. 4 with a free length, and the free length against the input; `ELIMINATED` is in the second."""
 TOLERANCE = "1/10"
@@ -131,7 +131,7 @@ def roots_within(designs: Sequence[Design], least: int, most: int) -> Facts:
 @cache
 def certified(name: str) -> RegionMap:
     """The certified map of one of the slices with free lengths."""
-    parameters, axes = MAPS[name]
+    _, parameters, axes = MAPS[name]
     slice = ptm_slice("free", axes, L1=1, k=100, F3=-10, F4=-10, **parameters)
     return classify(slice, tolerance=TOLERANCE, count="stable")
 
@@ -142,8 +142,7 @@ def difficult() -> Facts:
     counts = {name: {r.stable for r in m.regions} for name, m in maps.items()}
     limit = rational(TOLERANCE)
     sentences = [
-        ", ".join(f"{axis} in [{low}, {high}]" for axis, (low, high) in MAPS[name][1].items())
-        + f" with L1 = 1, {name}, F3 = F4 = -10, k = 100: the number of stable equilibria is proved to be "
+        f"{MAPS[name][0]} with L1 = 1, {name}, F3 = F4 = -10, k = 100: the number of stable equilibria is proved to be "
         f"{' or '.join(sorted(map(str, counts[name])))} on all but {float(m.undetermined):.2g} of the window"
         for name, m in maps.items()
     ]

@@ -96,7 +96,8 @@ def seen_counts() -> frozenset[tuple[int, int]]:
     for _ in range(RANDOM_POINTS):
         at = {n: Fraction(draw.randint(1, 300), 100) for n in ("L2", "rho")}
         at |= {n: Fraction(draw.randint(-20000, 20000), 100) for n in ("F3", "F4", "F3x", "F4x")}
-        seen.add((statements.total(**at), statements.stable(**at)))
+        poses = statements.equilibria(**at)
+        seen.add((len(poses.equilibria), poses.stable))
     return frozenset(seen)
 
 

@@ -22,12 +22,32 @@ import sympy as sp
 from ptmcad.answer.poses import Poses
 from ptmcad.ask.solving import solve
 from ptmcad.studies.paper import symbolic
-from ptmcad.studies.paper.symbolic import CIRCLES, F3, F4, HORIZONTAL, L1, L2, Expr, c1, c2, k, l0, rho, s1, s2, t1, t2
+from ptmcad.studies.paper.symbolic import CIRCLES, F3, F4, HORIZONTAL, L1, L2, Expr, c1, c2, l0, rho, s1, s2, t1, t2
 
-OTHER = -(F4 * t2 + 2 * k * rho) / (F4 - 2 * k * rho * t2)
-COS1 = (4 * rho**2 + L1**2 - L2**2) / (4 * rho * L1)
-COS2 = (4 * rho**2 + L2**2 - L1**2) / (4 * rho * L2)
 T, e1, e2, height, scale = sp.symbols("T e1 e2 height scale")
+ANGLES = (*CIRCLES[0], *CIRCLES[1])
+_ALL = (*symbolic.PARAMETERS, *symbolic.LENGTHS, *ANGLES, t1, t2, T, e1, e2, height, scale)
+SYMBOLS = {str(symbol): symbol for symbol in _ALL}
+DEFINITIONS = {
+    "sin12": "s1*c2 + c1*s2",
+    "cos12": "c1*c2 - s1*s2",
+    "COS1": "(4*rho^2 + L1^2 - L2^2)/(4*rho*L1)",
+    "COS2": "(4*rho^2 + L2^2 - L1^2)/(4*rho*L2)",
+    "OTHER": "-(F4*t2 + 2*k*rho)/(F4 - 2*k*rho*t2)",
+    "detH": "expand(H11*H22 - H12^2)",
+    "E1": "expand(cancel(half_angles(g1)*(1 + t1^2)*(1 + t2^2)/(L1*k)))",
+    "E2": "expand(cancel(half_angles(g2)*(1 + t1^2)*(1 + t2^2)/(L2*k)))",
+    "a": "expand(at(E1.coeff(t1, 2)*E2.coeff(t1, 1) - E2.coeff(t1, 2)*E1.coeff(t1, 1), k=1))",
+    "b": "expand(at(E1.coeff(t1, 2)*E2.coeff(t1, 0) - E2.coeff(t1, 2)*E1.coeff(t1, 0), k=1))",
+    "resultant": "expand(b^2 - a*at(E1.coeff(t1, 1)*E2.coeff(t1, 0) - E2.coeff(t1, 1)*E1.coeff(t1, 0), k=1))",
+    "sextic": "quo(resultant, 1 + t2^2, t2)",
+}
+"""Of names without horizontal loads, and with them, in the language of statements; a t1 + b is what two polynomials of
+degree 2 in t1 leave without t1^2."""
+PLAIN = {f"q{n}": f"factor(sextic.coeff(t2, {n}))" for n in range(7)} | {
+    "eliminated_12": "expand(quo(numerator(at(symmetric(k*E2), t1=OTHER)), 1 + t2^2, t2))"
+}
+"""Of those that are used without horizontal loads alone."""
 
 
 def holds(statement: str) -> bool:
@@ -46,41 +66,22 @@ def expression(text: str) -> Expr:
 @cache
 def names() -> dict[str, Any]:
     """What names stand for."""
-    symbols = (*symbolic.PARAMETERS.values(), *symbolic.LENGTHS, *HALF_ANGLES, *ANGLES, T, e1, e2, height, scale)
-    known = {str(s): s for s in symbols} | {"OTHER": OTHER, "COS1": COS1, "COS2": COS2}
+    known = SYMBOLS | FUNCTIONS
     known |= {f"{name}{axis}": x for name, at in symbolic.points().items() for axis, x in zip("xy", at, strict=True)}
-    derived = dict(zip(
-        ("U", "g1", "g2", "H11", "H12", "H22"), (symbolic.potential(), *symbolic.gradient(), *symbolic.hessian()),
-        strict=True,
-    ))  # fmt: skip
+    found = (symbolic.potential(), *symbolic.gradient(), *symbolic.hessian())
+    derived = dict(zip(("U", "g1", "g2", "H11", "H12", "H22"), found, strict=True))
     known |= {f"{name}_l": e for name, e in derived.items()}
-    derived = {name: symbolic.without(e, l0) for name, e in derived.items()}
-    derived["detH"] = sp.expand(derived["H11"] * derived["H22"] - derived["H12"] ** 2)
-    for number, length in ((1, L1), (2, L2)):
-        cleared = symbolic.half_angles(derived[f"g{number}"]) * symbolic.CLEAR / (length * k)
-        derived[f"E{number}"] = sp.expand(sp.cancel(cleared))
-    known |= {f"{name}_h": e for name, e in derived.items()}
-    known |= {name: sp.expand(symbolic.without(e, *HORIZONTAL)) for name, e in derived.items()}
-    for suffix in ("", "_h"):
-        # two polynomials of degree 2 in t1: their combination a t1 + b, and their resultant
-        (p0, p1, p2), (q0, q1, q2) = (
-            [sp.expand(known[f"{name}{suffix}"].subs(k, 1)).coeff(t1, n) for n in range(3)] for name in ("E1", "E2")
-        )
-        a, b = sp.expand(p2 * q1 - q2 * p1), sp.expand(p2 * q0 - q2 * p0)
-        resultant = sp.expand(b**2 - a * (p1 * q0 - q1 * p0))
-        found = {"a": a, "b": b, "resultant": resultant, "sextic": sp.quo(resultant, 1 + t2**2, t2)}
-        known |= {f"{name}{suffix}": e for name, e in found.items()}
-    known |= {f"q{n}": sp.factor(known["sextic"].coeff(t2, n)) for n in range(7)}
-    known |= {"sin12": s1 * c2 + c1 * s2, "cos12": c1 * c2 - s1 * s2}
-    known |= {name: partial(placed, values) for name, values in PLACES.items()} | {f.__name__: f for f in FUNCTIONS}
-    found = known["numerator"](known["symmetric"](known["E2"] * k).subs(t1, OTHER))
-    return known | {"eliminated_12": sp.expand(sp.quo(found, 1 + t2**2, t2))}
+    for suffix, absent, texts in (("_h", (l0,), DEFINITIONS), ("", (l0, *HORIZONTAL), DEFINITIONS | PLAIN)):
+        local = {name: sp.expand(symbolic.without(e, *absent)) for name, e in derived.items()}
+        for name, text in texts.items():
+            local[name] = sp.sympify(text, locals=known | local)
+        known |= {f"{name}{suffix}": e for name, e in local.items()}
+    return known
 
 
 # --------------------------------------------------------------------------------- expressions in other circumstances
 
 
-HALF_ANGLES, ANGLES = (t1, t2), (*CIRCLES[0], *CIRCLES[1])
 PLACES = {
     "unloaded": {F3: 0, F4: 0}, "symmetric": {L2: L1, F3: F4}, "same": {t1: t2}, "swapped": {t1: t2, t2: t1},
 }  # fmt: skip
@@ -94,7 +95,7 @@ def placed(values: dict[Expr, Expr], e: Expr) -> Expr:
 
 def at(e: Expr, **values: Expr) -> Expr:
     """The same, by names."""
-    return sp.sympify(e).subs({names()[name]: value for name, value in values.items()}, simultaneous=True)
+    return sp.sympify(e).subs({SYMBOLS[name]: value for name, value in values.items()}, simultaneous=True)
 
 
 def flat(e: Expr) -> Expr:
@@ -105,8 +106,9 @@ def flat(e: Expr) -> Expr:
 
 def triangle(e: Expr) -> Expr:
     """Without loads in the poses of the triangle with the sides L1, L2 and 2 rho; ``height`` is L1 s1 = L2 s2."""
-    there = placed({F3: 0, F4: 0, s1: height / L1, s2: height / L2, c1: COS1, c2: COS2}, e)
-    return sp.factor(sp.rem(there, height**2 - L1**2 * (1 - COS1**2), height))
+    cosine, other = expression("COS1"), expression("COS2")
+    there = placed({F3: 0, F4: 0, s1: height / L1, s2: height / L2, c1: cosine, c2: other}, e)
+    return sp.factor(sp.rem(there, height**2 - L1**2 * (1 - cosine**2), height))
 
 
 def squared(e: Expr) -> Expr:
@@ -121,26 +123,7 @@ def numerator(e: Expr) -> Expr:
     return sp.expand(sp.numer(sp.together(symbolic.half_angles(e))))
 
 
-def unequal(e: Expr) -> Expr:
-    """For equal rods and forces, by t2, where the angles differ."""
-    return sp.factor(sp.cancel(sp.together(symbolic.half_angles(placed(PLACES["symmetric"], e)).subs(t1, OTHER))))
-
-
 # ------------------------------------------------------------------------------------------------------------ numbers
-
-
-def degree(e: Expr, unknown: Expr) -> int:
-    return int(sp.degree(numerator(e), unknown))
-
-
-def terms(e: Expr, *unknowns: Expr) -> int:
-    """How many terms a polynomial has, in all its symbols unless some are named."""
-    return len(sp.Poly(e, *unknowns).terms())
-
-
-def parameters(*expressions: Expr) -> int:
-    """On how many parameters expressions depend."""
-    return len(set().union(*(e.free_symbols for e in expressions)) - set(ANGLES))
 
 
 def independent() -> int:
@@ -158,14 +141,6 @@ def equilibria(**values: Expr) -> Poses:
     return solve(**at)
 
 
-def total(**values: Expr) -> int:
-    return len(equilibria(**values).equilibria)
-
-
-def stable(**values: Expr) -> int:
-    return equilibria(**values).stable
-
-
 def flat_stable(e1: int = 0, e2: int = 0, **values: Expr) -> int:
     """How many flat equilibria are stable; of these, with the sign of a cosine, if it is given."""
     flat = [p.cosines_sines[::2] for p in equilibria(**values).equilibria if p.stable is True and p.flat]
@@ -178,7 +153,18 @@ def equal_angles(**values: Expr) -> int:
     return sum(a.low <= b.high and b.low <= a.high for a, b in pairs)
 
 
-FUNCTIONS: tuple[Callable[..., Any], ...] = (
-    at, flat, triangle, squared, unequal, numerator, degree, terms, parameters, independent,
-    total, stable, flat_stable, equal_angles, sp.diff, sp.factor,
-)  # fmt: skip
+FUNCTIONS: dict[str, Callable[..., Any]] = {
+    f.__name__: f
+    for f in (at, flat, triangle, squared, numerator, independent, flat_stable, equal_angles, symbolic.half_angles)
+}
+FUNCTIONS |= {name: partial(placed, values) for name, values in PLACES.items()} | {
+    # for equal rods and forces, by t2, where the angles differ
+    "unequal": lambda e: sp.factor(symbolic.half_angles(placed(PLACES["symmetric"], e)).subs(t1, expression("OTHER"))),
+    "degree": lambda e, unknown: int(sp.degree(numerator(e), unknown)),
+    # in all symbols unless some are named
+    "terms": lambda e, *unknowns: len(sp.Poly(e, *unknowns).terms()),
+    # on how many parameters expressions depend
+    "parameters": lambda *all_: len(set().union(*(e.free_symbols for e in all_)) - set(ANGLES)),
+    "total": lambda **values: len(equilibria(**values).equilibria),
+    "stable": lambda **values: equilibria(**values).stable,
+}

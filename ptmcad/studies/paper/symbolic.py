@@ -33,11 +33,11 @@ HALF |= {c2: (1 - t2**2) / (1 + t2**2), s2: 2 * t2 / (1 + t2**2)}
 CLEAR = (1 + t1**2) * (1 + t2**2)
 
 _MECHANISM = ptm()
-PARAMETERS = {str(s): s for s in (L1, L2, rho, k, l0, F3, F4, F3x, F4x)}
+PARAMETERS = (L1, L2, rho, k, l0, F3, F4, F3x, F4x)
 _ALIASES = dict.fromkeys(_MECHANISM.stiffnesses, k) | dict.fromkeys(_MECHANISM.free_lengths, l0)
 _RING: Any = SimpleNamespace(
     constant=lambda value: sp.Rational(value.numerator, value.denominator),
-    parameter=(PARAMETERS | _ALIASES).__getitem__,
+    parameter=({str(s): s for s in PARAMETERS} | _ALIASES).__getitem__,
     cos=lambda angle: CIRCLES[_MECHANISM.angles.index(angle)][0],
     sin=lambda angle: CIRCLES[_MECHANISM.angles.index(angle)][1],
 )

@@ -15,7 +15,7 @@ import platform
 import sys
 from collections.abc import Callable, Sequence
 from itertools import groupby
-from math import isfinite
+from math import inf, isfinite
 from statistics import median
 from time import perf_counter, process_time
 from typing import Any
@@ -40,7 +40,12 @@ Progress = Callable[[str, int, int], None]
 
 
 def campaign(
-    cases: Sequence[Case], *, seed: int, repeats: int, deadline: float | None = None, progress: Progress | None = None
+    cases: Sequence[Case],
+    *,
+    seed: int,
+    repeats: int,
+    deadline: float = inf,
+    progress: Progress = lambda _name, _done, _total: None,
 ) -> Row:
     """Run the cases: what came out, a row for each, and what is needed to judge it.
 
@@ -60,10 +65,9 @@ def campaign(
         require(Extra.certified)
     rows: list[Row] = []
     for k, case in enumerate(cases):
-        if deadline is not None and perf_counter() > deadline:
+        if perf_counter() > deadline:
             break
-        if progress is not None:
-            progress(case.name, k, len(cases))
+        progress(case.name, k, len(cases))
         rows.append(run(case, 1 if case.slow else repeats))
     return {
         "kind": "ptmcad stress", "complete": len(rows) == len(cases), "seed": seed, "repeats": repeats,

@@ -19,10 +19,10 @@ from typing import Any
 from flint import arb, ctx
 
 from ptmcad.answer.intervals import CountIntervals, lower, upper
-from ptmcad.answer.poses import Poses
+from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.mechanism import ptm
-from ptmcad.studies.equilibria import IndexedPose, angle_error, newton_pose, scale
+from ptmcad.studies.equilibria import IndexedPose, newton_pose, scale
 from ptmcad.studies.stress.case import Case
 from ptmcad.studies.stress.methods import double_poses, sextic_poses
 from ptmcad.text.balls import ball_of, exact
@@ -59,9 +59,10 @@ def judge(case: Case, found: Any) -> Row:
     TypeError
         When the answer is of another kind than the question.
     """
-    if not isinstance(found, {"point": Poses, "line": CountIntervals}.get(case.question.kind, RegionMap)):
+    kinds: dict[str, Any] = {"point": (Poses, _point), "line": (CountIntervals, _line)}
+    kind, judgement = kinds.get(case.question.kind, (RegionMap, _map))
+    if not isinstance(found, kind):
         raise TypeError(f"{case.name}: the answer is of another kind than the question")
-    judgement: Any = {Poses: _point, CountIntervals: _line, RegionMap: _map}[type(found)]
     with ctx.workprec(_BITS):
         checks, row = judgement(case, found)
     remarks = [remark for holds, remark in checks if not holds]
@@ -102,24 +103,23 @@ def as_float(value: Fraction) -> float:
 
 
 def _point(case: Case, found: Poses) -> tuple[Checks, Row]:
-    parameters, poses = case.question.parameters, found.equilibria
+    parameters = case.question.parameters
     double = double_poses(parameters)
-    known = _reference(parameters, found, double or ())
-    text, other = f"{len(poses)}/{found.stable}", _shown(known)
-    error = _error(found, known)
+    ours = [_boxed(pose) for pose in found.equilibria]
+    known = _reference(parameters, [*(double or ()), *ours])
+    text, other, error = f"{len(ours)}/{found.stable}", _shown(known), _error(ours, known)
     checks = [
         (found.status in DECIDED, f"status {found.status.value}: {found.remark}"),
         (text == other, f"the second method finds {other}"),
         (case.expected in ("", text), f"{text} equilibria and stable ones, but {case.expected} by construction"),
         (error is not None, "an enclosure does not contain the reference to 100 digits"),
     ]
-    angles = [(float(r.th1.mid()), float(r.th2.mid())) for r in known]
-    errors = [min(max(angle_error(p.th1, a), angle_error(p.th2, b)) for a, b in angles) for p in double or () if angles]
-    smallest = min((abs(e.center) for p in poses for e in p.eigenvalues), default=Fraction(0))
+    errors = [min(float(_apart(p, r).mid()) for r in known) for p in double or () if known]
+    smallest = min((abs(e.center) for p in found.equilibria for e in p.eigenvalues), default=Fraction(0))
     largest = Fraction(scale({name: float(value) for name, value in parameters.items()}))
     return checks, {
         "expected": case.expected or other,
-        "found": text if poses else "undecided",
+        "found": text if ours else "undecided",
         "double": _shown(double),
         "double_right": _shown(double) == other,
         "error": as_float(error or Fraction(0)),
@@ -129,39 +129,42 @@ def _point(case: Case, found: Poses) -> tuple[Checks, Row]:
     }
 
 
-def _reference(
-    parameters: Mapping[str, Fraction], found: Poses, double: Sequence[IndexedPose]
-) -> tuple[IndexedPose, ...]:
+def _boxed(pose: Pose) -> IndexedPose:
+    """A pose of ptmcad's with balls that hold its enclosures."""
+    first, second = (ball_of(angle.low).union(ball_of(angle.high)) for angle in pose.angles)
+    return IndexedPose(first, second, -1 if pose.index is None else pose.index)
+
+
+def _reference(parameters: Mapping[str, Fraction], starts: Sequence[IndexedPose]) -> Sequence[IndexedPose]:
     """The equilibria to 100 digits; with free lengths those from the starts of either method, each proved anew."""
     if not any(parameters.get(name) for name in ptm().free_lengths):
         return sextic_poses(parameters)
-    starts = [(pose.th1, pose.th2) for pose in double]
-    starts += [(float(pose.angles[0]), float(pose.angles[1])) for pose in found.equilibria]
     known: list[IndexedPose] = []
     for start in starts:
-        pose = newton_pose(parameters, start)
-        if pose is not None and not any(_apart((pose.th1, pose.th2), other).contains(0) for other in known):
+        pose = newton_pose(parameters, (start.th1, start.th2))
+        if pose is not None and not any(_apart(pose, other).contains(0) for other in known):
             known.append(pose)
-    return tuple(known)
+    return known
 
 
-def _apart(angles: Sequence[arb], pose: IndexedPose) -> arb:
-    """The larger of the distances of two angles, on the unit circle."""
-    first, second = (abs(2 * ((a - b) / 2).sin()) for a, b in zip(angles, (pose.th1, pose.th2), strict=True))
-    return arb(first.max(second))
+def _apart(first: IndexedPose, second: IndexedPose) -> arb:
+    """The larger of the distances of both angles, on the circle."""
+    gaps = [arb(a) - b for a, b in ((first.th1, second.th1), (first.th2, second.th2))]
+    turn = 2 * arb.pi()
+    one, other = (abs(gap - turn * (gap / turn + 0.5).mid().floor()) for gap in gaps)
+    return arb(one.max(other))
 
 
-def _error(found: Poses, reference: Sequence[IndexedPose]) -> Fraction | None:
+def _error(found: Sequence[IndexedPose], reference: Sequence[IndexedPose]) -> Fraction | None:
     """The largest error of an angle; None unless each pose encloses one of the references, with its index."""
     left, largest = list(reference), Fraction(0)
-    for pose in found.equilibria:
-        boxes = [ball_of(angle.low).union(ball_of(angle.high)) for angle in pose.angles]
-        inside = [r for r in left if r.index == pose.index and _apart(boxes, r).contains(0)]
+    for pose in found:
+        inside = [r for r in left if r.index == pose.index and _apart(pose, r).contains(0)]
         if not inside:
             return None
         left.remove(inside[0])
-        middles = [ball_of(angle.center) for angle in pose.angles]
-        largest = max(largest, exact(_apart(middles, inside[0]).mid()))
+        middle = IndexedPose(pose.th1.mid(), pose.th2.mid(), pose.index)
+        largest = max(largest, exact(_apart(middle, inside[0]).mid()))
     return None if left else largest
 
 

@@ -65,22 +65,18 @@ def _candidates(p: Mapping[str, fmpq]) -> list[tuple[arb, arb] | None]:
     """The angles that belong to the real roots of N, None where the precision is too low for a sign."""
     polynomial, v, w, square = (fmpq_poly(list(c)) for c in sextic(p))
     missing = 6 - polynomial.degree()
-    if missing > 6:
-        raise Degenerate("the sextic vanishes")
     # at th2 = pi, V = -F3 and W = F4
     flat = p["F3"] == 0 and p["F4"] == 0
     if missing not in ((0, 2) if flat else (0, 1)) or (missing == 1 and p["F3"] == 0):
-        raise Degenerate("th2 = pi is a multiple solution")
+        raise Degenerate("the sextic vanishes, or th2 = pi is a multiple solution")
     found = _angles(p, None, flat) if missing else []
     for factor, multiplicity in polynomial.numer().factor()[1]:
         v_zero, w_zero, square_zero = ((q % fmpq_poly(factor)).degree() < 0 for q in (v, w, square))
         both = v_zero and w_zero
         pairs: Any = factor.complex_roots()  # FLINT's stub says otherwise
         for root in (root.real for root, _ in pairs if root.imag == 0):
-            if multiplicity != (2 if both else 1):
-                raise Degenerate("the sextic has a multiple root")
-            if both and square_zero:
-                raise Degenerate("the first equation leaves th1 free")
+            if multiplicity != (2 if both else 1) or (both and square_zero):
+                raise Degenerate("the sextic has a multiple root, or the first equation leaves th1 free")
             found += _angles(p, root, both)
     return found
 
