@@ -89,15 +89,8 @@ class Job:
 
 
 class Case(NamedTuple):
-    """What the methods are asked about.
-
-    Attributes
-    ----------
-    record : the slice's own file.
-    exact : its map; None where there is none.
-    known : what errors are measured against, by count; None where there is none.
-    folder : with the question as ``question.json``; answers go there too.
-    quick : fewer and coarser settings.
+    """What the methods are asked about: a slice with its own file, its map and what errors are measured against where
+    there are such, a folder for answers, whether settings have to be few and coarse, and a seed.
     """
 
     slice: Slice
