@@ -79,9 +79,9 @@ def command(
         return _compare(*compare)
     slices = _slices(configs)
     require(Extra.bench, key="bench")
-    from ptmcad.studies.bench.measuring import measure
     from ptmcad.studies.bench.methods import RIVALS
     from ptmcad.studies.bench.report import PAGE, SUFFIXES, save, save_page, terminal
+    from ptmcad.studies.bench.study import measure
     from ptmcad.verification import verify
 
     check_writable(out, (*(f"{slice.name}.{suffix}" for slice, _ in slices for suffix in SUFFIXES), PAGE))

@@ -20,29 +20,15 @@ def page(*blocks: str | Iterable[str]) -> str:
     return "\n\n".join(text.strip("\n") for text in texts if text) + "\n"
 
 
-def columns(rows: Sequence[Sequence[str]], unbounded: Sequence[bool] = ()) -> list[str]:
-    """Rows as lines with aligned columns, two spaces apart.
-
-    Parameters
-    ----------
-    unbounded : for each row, whether its third cell may reach over those behind it.
-    """
-    loose = unbounded or [False] * len(rows)
-    widths = [
-        max((len(row[k]) for row, free in zip(rows, loose, strict=True) if k != 2 or not free), default=0)
-        for k in range(len(rows[0]) if rows else 0)
-    ]
+def columns(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Rows as lines with aligned columns, two spaces apart."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
 def listed(found: Mapping[str, str]) -> str:
     """What a machine or a version is, in one sentence."""
     return "; ".join(f"{key} {value}" for key, value in found.items()) + "."
-
-
-def measured_with(found: Mapping[str, Mapping[str, str]]) -> tuple[str, str]:
-    """The paragraphs on the machine and the versions of a document."""
-    return f"Machine: {listed(found['machine'])}", f"Versions: {listed(found['versions'])}"
 
 
 def installed(packages: Iterable[str]) -> dict[str, str]:

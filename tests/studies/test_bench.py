@@ -39,7 +39,7 @@ def test_maps_with_free_lengths_are_not_timed_by_default(
 
 
 def value(terms: programs.Terms, x: float, y: float, t: float) -> float:
-    return math.fsum(c * x**i * y**j * t**n for i, j, n, c in terms)
+    return math.fsum(float(c) * x**i * y**j * t**n for i, j, n, c in terms)
 
 
 def roots(terms: programs.Terms, x: float, y: float) -> list[float]:
@@ -84,21 +84,21 @@ def test_unloaded_slice_has_no_sextic() -> None:
 
 def test_text_for_qepcad() -> None:
     asked = programs.Question(
-        sextic=((0, 0, 2, 3), (1, 2, 0, -1)),
-        slope=((0, 0, 1, 1),),
-        v=((0, 0, 1, 1),),
-        w=((1, 0, 1, -2),),
+        sextic=[(0, 0, 2, Fraction(3, 2)), (1, 2, 0, Fraction(-1))],
+        slope=[(0, 0, 1, Fraction(1))],
+        v=[(0, 0, 1, Fraction(1))],
+        w=[(1, 0, 1, Fraction(-2))],
         axes=config.slice_from_mapping({"axes": {"rho": ["1/2", 2], "F3": [-30, 0]}}).axes,
     )
     lines = asked.problem(programs.Task.SIX, swapped=True).splitlines()
     assert lines[1:5] == [
         "(y,x,t)",
         "2",
-        "(X6 t)[ 3 t^2 - x y^2 = 0 ].",
-        r"assume [ 2 x - 1 > 0 /\ x - 2 < 0 /\ y + 30 > 0 /\ y < 0 ]",
+        "(X6 t)[ 3/2 t^2 - x y^2 = 0 ].",
+        r"assume [ x > 1/2 /\ x < 2 /\ y > -30 /\ y < 0 ]",
     ]
     stable = asked.problem(programs.Task.TWO_STABLE)
-    assert r"(X2 t)[ 3 t^2 - x y^2 = 0 /\ [[t > 0 /\ -2 x t > 0 /\ t < 0] \/" in stable
+    assert r"(X2 t)[ 3/2 t^2 - x y^2 = 0 /\ [[t > 0 /\ -2 x t > 0 /\ t < 0] \/" in stable
 
 
 def test_process_that_fails_and_process_that_hangs() -> None:

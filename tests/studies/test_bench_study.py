@@ -33,7 +33,6 @@ from ptmcad.studies.bench.study import (
     compare,
     comparison_table,
     measurement,
-    smallest_grid,
     study_of,
     write_study,
     write_table,
@@ -165,11 +164,9 @@ def test_rounding_keeps_bounds(a: Fraction, b: Fraction) -> None:
 
 
 def test_smallest_grids() -> None:
-    assert smallest_grid(STUDY, "companion", "index", seen=False) == 400
-    assert smallest_grid(STUDY, "companion", "index", seen=True) == 800
-    assert smallest_grid(STUDY, "companion", "stable", seen=True) is None
     said = " ".join(sentences(STUDY))
-    assert "a pixel in each is 400 x 400; with at least 99% of each, 800 x 800" in said
+    assert "by index: the smallest grid with a pixel in each is 400 x 400; with at least 99% of each, 800 x 800" in said
+    assert "by equilibria: the smallest grid with a pixel in each is none up to 800 x 800" in said
     assert "no error after 0.30 s; the 400 x 400 grid has 5.0 times that time" in said
 
 
@@ -346,8 +343,9 @@ def test_what_is_written_for_the_report_is_positive(tmp_path: Path) -> None:
 
 def test_page_tells_what_is_left_out_and_what_is_claimed() -> None:
     text = page([STUDY])
-    assert "| companion | N = 1600 | left out: the 60 s for each method were used up | - |" in text
-    assert r"\* qepcad: claimed" in text
+    assert "- companion, N = 1600: left out: the 60 s for each method were used up" in text
+    assert "- gcad: gcad is not installed" in text
+    assert r"- \* qepcad: claimed" in text
     assert "passed `ptmcad verify`" in text
     assert "did NOT pass" in page([{**STUDY, "verified": False}])
     assert "](fig4.bench.svg)" in text

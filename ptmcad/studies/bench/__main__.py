@@ -11,7 +11,7 @@ from pathlib import Path
 import pandas as pd
 
 from ptmcad.errors import PtmcadError
-from ptmcad.process.output import text_writer, write_files
+from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.studies.bench import records, scaling
 from ptmcad.studies.bench.harness import made_with, table
 
@@ -39,25 +39,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for name in ("rounds", "timeout"):
         if not getattr(options, name) > 0:
             parser.error(f"--{name} must be positive")
+    name, measure, _ = STUDIES[options.study]
+    found = {"format": f"ptmcad-{name}/2", **made_with(), "seed": options.seed, "rounds": options.rounds}
     try:
-        return _study(options)
+        if options.out is not None:
+            check_writable(options.out, (f"{name}.json",))
+        rows = measure(options)
+        if options.out is not None:
+            found["rows"] = [row.dropna().to_dict() for _, row in rows.iterrows()]
+            text = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
+            write_files(options.out, {f"{name}.json": text_writer(text)})
+            if options.study == "scaling":
+                scaling.save_picture(rows, options.out)
     except (PtmcadError, OSError) as error:
         print(f"{options.study}: {error}", file=sys.stderr)
         return 2
-
-
-def _study(options: argparse.Namespace) -> int:
-    name, measure, _ = STUDIES[options.study]
-    if options.out is not None:
-        options.out.mkdir(parents=True, exist_ok=True)
-    found = {"format": f"ptmcad-{name}/2", **made_with(), "seed": options.seed, "rounds": options.rounds}
-    rows = measure(options)
-    if options.out is not None:
-        found["rows"] = [row.dropna().to_dict() for _, row in rows.iterrows()]
-        text = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
-        write_files(options.out, {f"{name}.json": text_writer(text)})
-        if options.study == "scaling":
-            scaling.save_picture(rows, options.out)
     print(table(rows))
     return int("differs" in rows and any(rows["differs"].dropna()))
 

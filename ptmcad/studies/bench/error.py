@@ -142,21 +142,15 @@ def truth(result: RegionMap, shown: list[int], lines: Sequence[Sequence[Chain]],
         here = [*(region_of[n] for n in stack.cells), -1]
         polylines = [(np.array(line.points, dtype=float), float(line.distance)) for line in of_stack]
         polylines.append((np.array([[left, 1.0], [right, 1.0]]), 0.0))
-        walls = (Wall(*line, *sides) for line, sides in zip(polylines, pairwise(here), strict=True))
-        stacks.append([wall for wall in walls if wall.below != wall.above])
+        found = (Wall(*line, *sides) for line, sides in zip(polylines, pairwise(here), strict=True))
+        stacks.append([wall for wall in found if wall.below != wall.above])
     upright = [
         (at, *part)
         for at, (before, after) in zip(ends[1:-1], pairwise(stacks), strict=True)
         for part in _between(before, after)
     ]
-    numbers = [counts[n] for n in range(len(counts))]
-    return Truth(
-        result.base,
-        region_of,
-        numbers,
-        list(chain.from_iterable(stacks)),
-        np.array(upright, dtype=float).reshape(-1, 3),
-    )
+    walls = list(chain.from_iterable(stacks))
+    return Truth(result.base, region_of, [*counts.values()], walls, np.array(upright, dtype=float).reshape(-1, 3))
 
 
 def _between(left: Sequence[Wall], right: Sequence[Wall]) -> Iterator[tuple[float, float]]:
@@ -228,14 +222,11 @@ def cover_error(truth: Truth, result: RegionMap, count: str) -> Figures | None:
     free = (tree.state == FREE) & (parts.owner >= 0)
     pieces = rectangles[free]
     shown = np.array([counts[cells[n]] if n in cells else -1 for n in parts.owner[free].tolist()], dtype=np.int64)
-    loose = 1 - float(_areas(pieces).sum()) - float(result.undetermined)
+    areas = np.diff(pieces[:, :2], axis=1) * np.diff(pieces[:, 2:], axis=1)
+    loose = 1 - float(areas.sum()) - float(result.undetermined)
     drawn = rectangles[tree.state == COVERED], MAX_PIECE
     found = _error(truth, pieces, shown, drawn, float(result.undetermined), max(loose, 0.0))
     return found | {"undetermined": outward(0, result.undetermined)[1]}
-
-
-def _areas(rectangles: Floats) -> Floats:
-    return (rectangles[:, 1] - rectangles[:, 0]) * (rectangles[:, 3] - rectangles[:, 2])
 
 
 def _error(
@@ -326,17 +317,12 @@ def distance(truth: Truth, drawn: Floats, spacing: float) -> Bounds | None:
     if not len(segments) or not len(drawn):
         return (0.0, 0.0) if not len(segments) and not len(drawn) else None
     apart = max((w.distance for w in walls), default=0.0)
-    left, right, bottom, top = drawn.T
-    wide = right - left > top - bottom
-    across, up = (left + right) / 2, (bottom + top) / 2
-    middles = np.where(
-        wide[:, None],
-        np.stack([left, up, right, up], axis=1),
-        np.stack([across, bottom, across, top], axis=1),
-    )
-    thick = np.minimum(right - left, top - bottom) / 2
+    low_ends, high_ends = drawn[:, ::2], drawn[:, 1::2]
+    size, centre = high_ends - low_ends, (low_ends + high_ends) / 2
+    along = np.eye(2)[size.argmax(axis=1)] * size / 2
+    middle_lines = np.concatenate([centre - along, centre + along], axis=1)
     true, of_wall = _points(segments, spacing, np.zeros(len(segments)))
-    shown, of_drawn = _points(middles, spacing, thick)
+    shown, of_drawn = _points(middle_lines, spacing, size.min(axis=1) / 2)
 
     from scipy.spatial import cKDTree
 

@@ -15,7 +15,7 @@ import shutil
 import statistics
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -89,15 +89,8 @@ class Job:
 
 
 class Case(NamedTuple):
-    """What the methods are asked about.
-
-    Attributes
-    ----------
-    record : the slice's own file.
-    exact : its map; None where there is none.
-    known : what errors are measured against, by count; None where there is none.
-    folder : with the question as ``question.json``; answers go there too.
-    quick : fewer and coarser settings.
+    """What the methods are asked about: a slice with its own file, its map and what errors are measured against where
+    there are such, a folder for answers, whether settings have to be few and coarse, and a seed.
     """
 
     slice: Slice
@@ -137,30 +130,30 @@ def times(seconds: Sequence[float]) -> Row:
     return {"runs": len(seconds)} | {name: round(x, 4) for name, x in spread.items()}
 
 
-def summary(jobs: Sequence[Job], over: str = "", figure: str = "processor") -> pd.DataFrame:
+def summary(jobs: Sequence[Job], over: str = "", figure: str = "processor_seconds") -> pd.DataFrame:
     """A row for each job: medians over its runs, or the reason why there are none.
 
     Parameters
     ----------
     over : what the first job is: the column "over ..." has medians of the ratios to it within a round. None when empty.
-    figure : of which ratios are taken, "seconds" or "processor".
+    figure : of a `Usage`, of which ratios are taken.
     """
-    runs = pd.DataFrame(
-        [
-            (number, turn, usage.seconds, usage.processor_seconds, usage.peak_mebibytes)
-            for number, job in enumerate(jobs)
-            for turn, usage in enumerate(job.usages if not job.reason else ())
-        ],
-        columns=["job", "round", "seconds", "processor", "peak"],
-    )
+    measured = [
+        {"job": number, "round": turn, **asdict(usage)}
+        for number, job in enumerate(jobs)
+        for turn, usage in enumerate(job.usages if not job.reason else ())
+    ]
+    runs = pd.DataFrame(measured, columns=["job", "round", *(part.name for part in fields(Usage))])
     rows = pd.DataFrame([(job.subject, job.what, job.setting) for job in jobs], columns=["subject", "what", "setting"])
-    by_job = runs.groupby("job")
-    rows["runs"] = by_job.size().astype("Int64")
-    rows["seconds"] = by_job["seconds"].median().round(4)
-    rows["least"] = by_job["seconds"].min().round(4)
-    rows["most"] = by_job["seconds"].max().round(4)
-    rows["processor"] = by_job["processor"].median().round(4)
-    rows["peak MiB"] = by_job["peak"].max().round(1)
+    figures = runs.groupby("job").agg(
+        runs=("seconds", "size"),
+        seconds=("seconds", "median"),
+        least=("seconds", "min"),
+        most=("seconds", "max"),
+        processor=("processor_seconds", "median"),
+        peak=("peak_mebibytes", "max"),
+    )
+    rows = rows.join(figures.round(4)).astype({"runs": "Int64"}).rename(columns={"peak": "peak MiB"})
     if over:
         by_round = runs.pivot(index="round", columns="job", values=figure).reindex(columns=range(len(jobs)))
         rows[f"over {over}"] = by_round.div(by_round[0], axis=0).median().round(3)
@@ -190,4 +183,4 @@ def table(rows: pd.DataFrame) -> str:
     shown = rows.dropna(axis=1, how="all").map(
         lambda x: "-" if pd.isna(x) else f"{x:.4g}" if isinstance(x, float) else str(x)
     )
-    return "\n".join(columns([list(shown), *shown.to_numpy().tolist()]))
+    return "\n".join(columns([list(map(str, shown)), *shown.to_numpy().tolist()]))

@@ -149,9 +149,9 @@ RIVALS = {
     "qepcad": Rival("QEPCAD", "{}", (programs.CELLS, "where 6, where 4", "where 2 stable"), 3,
                     programs.start_qepcad, programs.read_qepcad),
     "singular": Rival("Singular, critical curve alone", "{}", ("critical curve",), 1,
-                      programs.start_singular, programs.read_singular),
+                      programs.start_singular, partial(programs.beside, programs.by_singular)),
     "msolve": Rival("msolve, critical curve alone", "{}", ("critical curve",), 1,
-                    programs.start_msolve, programs.read_msolve),
+                    programs.start_msolve, partial(programs.beside, programs.by_msolve)),
     "gcad": Rival("gcad on the finished curves, no counts", "{}", ("curves",), 1,
-                  programs.start_gcad, programs.read_gcad, "gcad"),
+                  programs.start_gcad, partial(programs.beside, programs.by_gcad), "gcad"),
 }  # fmt: skip

@@ -9,6 +9,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 from math import floor, log10
+from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -20,7 +21,7 @@ from ptmcad.text.numerals import power_of_ten
 
 WIDE, TALL = 9.2, 6.4
 DPI = 110
-STYLES = (
+STYLES: tuple[dict[str, Any], ...] = (
     {"color": "#0b5394", "marker": "o"},
     {"color": "#38761d", "marker": "s"},
     {"color": "#741b47", "marker": "D"},

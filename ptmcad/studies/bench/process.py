@@ -76,7 +76,8 @@ def run(command: Sequence[str], *, text: str = "", timeout: float = threading.TI
         output, wrong = (path.read_text(encoding="utf-8", errors="replace") for path in said)
         measured = json.loads(figures.read_text()) if figures.exists() else ("failed", 0.0, 0.0, 0.0)
     outcome = Outcome(measured[0])
-    return Usage(outcome, *measured[1:], output, "" if outcome is Outcome.DONE else wrong[-_MESSAGE_LENGTH:].strip())
+    message = "" if outcome is Outcome.DONE else wrong[-_MESSAGE_LENGTH:].strip()
+    return Usage(outcome, measured[1], measured[2], measured[3], output, message)
 
 
 def _measure(figures: str, timeout: str, *command: str) -> None:

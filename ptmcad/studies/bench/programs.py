@@ -17,7 +17,6 @@ and V p' < 0.
 from __future__ import annotations
 
 import json
-import math
 import re
 import shutil
 import sys
@@ -34,7 +33,6 @@ from ptmcad.exact.slicevariety import slice_variety
 from ptmcad.exact.stages import domain_limits, problem_of
 from ptmcad.question.config import load
 from ptmcad.question.slice import Axis, Slice
-from ptmcad.show.polynomial_text import Style, symbols
 from ptmcad.studies.bench.error import figures
 from ptmcad.studies.bench.harness import Case, Job, Make, Row
 from ptmcad.studies.bench.process import Usage
@@ -60,6 +58,17 @@ _ERROR = re.compile(r"^\s*\? .*$|^.*(?:\bError\b|Failure|Reason for|expected!).*
 _CELL = re.compile(r"Information about the cell \(\d+,\d+\) -+$(.*?)^-{50,}$", re.MULTILINE | re.DOTALL)
 _TRUE = re.compile(r"^Truth value\s*: T", re.MULTILINE)
 _COORDINATE = re.compile(r"^Coordinate [12] = (-?\d+(?:/\d+)?)$", re.MULTILINE)
+_SINGULAR_SCRIPT = """ring r = 0, ({names}), dp;
+short = 0;
+ideal i = {ideal};
+ideal e = eliminate(std(i), {unknowns});
+poly common = 0;
+for (int n = 1; n <= size(e); n++) {{ common = gcd(common, e[n]); }}
+list factors = factorize(common);
+for (n = 1; n <= size(factors[1]); n++) {{ if (deg(factors[1][n]) > 0) {{ print(string(factors[1][n])); }} }}
+print("{end}");
+quit;
+"""
 _GCAD_SCRIPT = """
 import json, time
 import gcad, sympy
@@ -79,112 +88,81 @@ print(json.dumps({{"cells": sum(map(len, sides)), "computing": time.perf_counter
 # ---------------------------------------------------------------------------- the critical curve by elimination
 
 
-class Elimination(NamedTuple):
-    """A system in msolve's form, and the names of its unknowns and of the axes there."""
+def elimination(slice: Slice, has_map: bool) -> tuple[list[str], list[str]]:
+    """The system from which the unknowns have to be eliminated; the variety's own where that is within reach.
 
-    text: str
-    unknowns: tuple[str, ...]
-    axes: tuple[str, ...]
-
-
-def elimination(slice: Slice, has_map: bool) -> Elimination:
-    """The system from which the unknowns have to be eliminated; the variety's own where that is within reach."""
+    Returns
+    -------
+    The names of the variables, the axes u0 and u1 being the last two, and the polynomials.
+    """
     if has_map:
         system = slice_variety(slice).system
     else:
         problem = problem_of(slice)
         limits = domain_limits(problem.system, problem.parameters)
         system = elimination_system(problem.system, problem.parameters, slice.axis_names, limits, False)
-    variables = symbols((*system.unknowns, *system.axes), Style.MSOLVE)
-    polynomials = ",\n".join(text.replace(" ", "") for text in system.texts(variables))
-    return Elimination(f"{','.join(variables)}\n0\n{polynomials}\n", variables[:-2], variables[-2:])
-
-
-def singular_script(asked: Elimination) -> str:
-    """The factors of the elimination ideal's common divisor, one on a line.
-
-    A basis in the cheap order comes first: it saves most of the time. The variables are called v0,
-    v1 and so on, because an axis may have the name of something else in Singular.
-    """
-    numbered = {name: f"v{n}" for n, name in enumerate((*asked.unknowns, *asked.axes))}
-    polynomials = "".join(asked.text.splitlines()[2:])
-    ideal = re.sub(r"[^\W\d]\w*", lambda name: numbered[name[0]], polynomials)
-    names = list(numbered.values())
-    return f"""ring r = 0, ({",".join(names)}), dp;
-short = 0;
-ideal i = {ideal};
-ideal e = eliminate(std(i), {"*".join(names[: len(asked.unknowns)])});
-poly common = 0;
-for (int n = 1; n <= size(e); n++) {{ common = gcd(common, e[n]); }}
-list factors = factorize(common);
-for (n = 1; n <= size(factors[1]); n++) {{ if (deg(factors[1][n]) > 0) {{ print(string(factors[1][n])); }} }}
-print("{END}");
-quit;
-"""
+    names = [*(f"v{n}" for n in range(len(system.unknowns))), "u0", "u1"]
+    return names, [text.replace(" ", "") for text in system.texts(tuple(names))]
 
 
 def start_singular(case: Case, _: str, make: Make) -> Job | str:
+    """The factors of the elimination ideal's common divisor, one on a line.
+
+    A basis in the cheap order comes first: it saves most of the time.
+    """
     if shutil.which("Singular") is None:
         return "Singular is not installed"
-    script = singular_script(elimination(case.slice, case.exact is not None))
+    names, polynomials = elimination(case.slice, case.exact is not None)
+    script = _SINGULAR_SCRIPT.format(
+        names=",".join(names), ideal=",".join(polynomials), unknowns="*".join(names[:-2]), end=END
+    )
     return make(["Singular", "--quiet", "--no-rc"], script, check=lambda usage: incomplete(END, usage))
 
 
-def read_singular(case: Case, job: Job) -> Row:
-    def compared(result: RegionMap) -> tuple[bool, str]:
-        first = len(elimination(case.slice, True).unknowns)
-        factors = job.said().partition(END)[0].split()
-        return same_curves(result, curves(factors, (f"v{first}", f"v{first + 1}"), factors=True))
-
-    return _beside(case, compared)
+def by_singular(result: RegionMap, said: str) -> tuple[bool, str]:
+    """Whether the curves are the map's."""
+    return same_curves(result, curves(said.partition(END)[0].split(), factors=True))
 
 
 def start_msolve(case: Case, _: str, make: Make) -> Job | str:
+    """A Groebner basis of the elimination ideal."""
     program = msolve.program()
     if program is None:
         return "msolve is not installed"
-    asked = elimination(case.slice, case.exact is not None)
+    names, polynomials = elimination(case.slice, case.exact is not None)
     system, target = case.folder / "system.ms", case.folder / "msolve"
-    system.write_text(asked.text, encoding="ascii")
-    command = [program, "-e", str(len(asked.unknowns)), "-g", "2", "-f", str(system), "-o", str(target)]
+    system.write_text(f"{','.join(names)}\n0\n" + ",\n".join(polynomials) + "\n", encoding="ascii")
+    command = [program, "-e", str(len(names) - 2), "-g", "2", "-f", str(system), "-o", str(target)]
     return make(command, answer=target)
 
 
-def read_msolve(case: Case, job: Job) -> Row:
-    def compared(result: RegionMap) -> tuple[bool, str]:
-        lines = "".join(line for line in job.said().splitlines() if not line.startswith("#"))
-        return same_curves(result, curves(lines.strip("[]: \n").split(","), elimination(case.slice, True).axes))
-
-    return _beside(case, compared)
+def by_msolve(result: RegionMap, said: str) -> tuple[bool, str]:
+    """Whether the curves are the map's."""
+    lines = "".join(line for line in said.splitlines() if not line.startswith("#"))
+    return same_curves(result, curves(lines.strip("[]: \n").split(",")))
 
 
-def _beside(case: Case, compared: Callable[[RegionMap], tuple[bool, str]]) -> Row:
+def beside(compared: Callable[[RegionMap, str], tuple[bool, str]], case: Case, job: Job) -> Row:
     """What an answer without counts is beside the map, with "DIFFERS" where it is another or cannot be read."""
     if case.exact is None:
         return {}
     try:
-        same, words = compared(case.exact)
+        same, words = compared(case.exact, job.said())
     except ValueError as error:
         same, words = False, f"cannot be read: {error}"
     return {"note": f"no counts; {words if same else f'DIFFERS: {words}'}"}
 
 
-def curves(polynomials: Sequence[str], axes: Sequence[str], *, factors: bool = False) -> set[PlanePolynomial]:
-    """The irreducible curves on which all the polynomials vanish.
-
-    Parameters
-    ----------
-    factors : the polynomials are factors of one, so the curves are those of any of them.
+def curves(polynomials: Sequence[str], *, factors: bool = False) -> set[PlanePolynomial]:
+    """The irreducible curves on which all the polynomials in u0 and u1 vanish, or any if they are factors of one.
 
     Raises
     ------
     ValueError
-        When one is no polynomial in the axes.
+        When one is no such polynomial.
     """
-    numbered = {name: f"u{n}" for n, name in enumerate(axes)}
-    named = re.sub(r"[^\W\d]\w*", lambda name: numbered.get(name[0], name[0]), ",".join(polynomials))
     try:
-        basis = msolve.parsed_basis(f"[{named}]:", len(axes))
+        basis = msolve.parsed_basis(f"[{','.join(polynomials)}]:", 2)
     except msolve.MsolveError as error:
         raise ValueError(str(error)) from None
     read = [from_terms((i, j, to_fraction(c)) for (i, j), c in terms.items())[0] for terms in basis]
@@ -203,27 +181,27 @@ def same_curves(result: RegionMap, found: set[PlanePolynomial]) -> tuple[bool, s
 # ------------------------------------------------------------------------------------------------- cells of the curves
 
 
-def gcad_script(result: RegionMap) -> str:
-    """A script that prints the number of open cells of the window that gcad makes of the map's curves.
+def start_gcad(case: Case, _: str, make: Make) -> Job | str:
+    """The number of open cells that gcad makes of the map's curves, in an interpreter of its own.
 
     gcad takes inequalities, so the product of the curves is asked to be positive, and then negative.
     """
-    curves = [c.polynomial.text(("x", "y")) for c in result.components if not c.left_out]
+    if case.exact is None:
+        return NO_CURVES
+    curves = [c.polynomial.text(("x", "y")) for c in case.exact.components if not c.left_out]
     product = "*".join(f"({curve.replace('^', '**')})" for curve in curves) or "1"
-    window = [(str(a.low), str(a.high)) for a in result.slice.axes]
-    return _GCAD_SCRIPT.format(product=product, window=window, step=1 if result.base == 0 else -1)
+    window = [(str(a.low), str(a.high)) for a in case.slice.axes]
+    script = _GCAD_SCRIPT.format(product=product, window=window, step=1 - 2 * case.exact.base)
+    return make([sys.executable, "-"], script)
 
 
-def start_gcad(case: Case, _: str, make: Make) -> Job | str:
-    return NO_CURVES if case.exact is None else make([sys.executable, "-"], gcad_script(case.exact))
-
-
-def read_gcad(case: Case, job: Job) -> Row:
-    number = json.loads(job.said())["cells"]
-    return _beside(case, lambda result: (True, f"{number} cells, the map has {len(result.cells)}"))
+def by_gcad(result: RegionMap, said: str) -> tuple[bool, str]:
+    """The number of cells, which may be another."""
+    return True, f"{json.loads(said)['cells']} cells, the map has {len(result.cells)}"
 
 
 def start_qepcad(case: Case, setting: str, make: Make) -> Job | str:
+    """Cells of the curves, or formulas for where there are so many equilibria, with the map's base axis first."""
     if setting == CELLS and case.exact is None:
         return NO_CURVES
     command = qepcad_command()
@@ -248,8 +226,9 @@ def start_qepcad(case: Case, setting: str, make: Make) -> Job | str:
 
 
 def read_qepcad(case: Case, job: Job) -> Row:
+    """What is known of either answer."""
     if job.setting == CELLS:
-        return _beside(case, lambda result: same_cells(result, qepcad_samples(job.said())))
+        return beside(by_qepcad, case, job)
     count = "stable" if "stable" in job.setting else "total"
     return {"figures": {count: figures((0.0, 0.0), 0.0)}, "note": FORMULA}
 
@@ -278,22 +257,17 @@ def incomplete(end: str, usage: Usage) -> str:
     return "" if end in usage.output else "stopped within its script"
 
 
-def qepcad_samples(output: str) -> list[tuple[Fraction, Fraction]]:
-    """The samples of the open cells of the window, in the order of QEPCAD's variables.
+def by_qepcad(result: RegionMap, said: str) -> tuple[bool, str]:
+    """Whether each of the map's cells has the sample of an open cell at least, and each sample lies in a cell.
 
     Raises
     ------
     ValueError
-        When there are none, or a cell has no rational sample.
+        When there are no cells, or one has no rational sample.
     """
-    samples = [_COORDINATE.findall(cell) for cell in _CELL.findall(output) if _TRUE.search(cell)]
+    samples = [_COORDINATE.findall(cell) for cell in _CELL.findall(said) if _TRUE.search(cell)]
     if not samples or any(len(sample) != 2 for sample in samples):
         raise ValueError("no cells, or one without a rational sample")
-    return [(Fraction(x), Fraction(y)) for x, y in samples]
-
-
-def same_cells(result: RegionMap, samples: Sequence[tuple[Fraction, Fraction]]) -> tuple[bool, str]:
-    """Whether each of the map's cells has one of the samples at least, and each sample lies in a cell."""
     names = result.slice.axis_names
     order = names if result.base == 0 else names[::-1]
     seen = {result.locate(dict(zip(order, sample, strict=True))).cell for sample in samples}
@@ -312,19 +286,12 @@ class Task(Enum):
     TWO_STABLE = "2 stable equilibria"
 
 
-Terms = tuple[tuple[int, int, int, int], ...]
-"""A polynomial in x, y and t: ``(i, j, n, c)`` means c x^i y^j t^n, c an integer, the content being 1."""
+Terms = list[tuple[int, int, int, Fraction]]
+"""A polynomial in x, y and t: ``(i, j, n, c)`` means c x^i y^j t^n."""
 
 
 class Question(NamedTuple):
-    """The sextic over a window, ready to be put to QEPCAD.
-
-    Attributes
-    ----------
-    sextic, slope : the sextic and its derivative in t, up to a positive factor.
-    v, w : numerators of V and W, up to a positive factor.
-    axes : the window.
-    """
+    """The sextic over a window, its derivative in t, and the numerators of V and W, up to positive factors."""
 
     sextic: Terms
     slope: Terms
@@ -341,22 +308,19 @@ class Question(NamedTuple):
         then : the commands that are given once the decomposition is made.
         """
         p, slope, v, w = (
-            " ".join(signed_terms((((i, j, n), c) for i, j, n, c in terms), "xyt", times=" ")) for terms in self[:4]
+            " ".join(signed_terms((((i, j, n), c) for i, j, n, c in terms), "xyt", times=" ", number=str))
+            for terms in self[:4]
         )
         condition = f"{p} = 0"
         if task is Task.TWO_STABLE:
             condition += rf" /\ [[{v} > 0 /\ {w} > 0 /\ {slope} < 0] \/ [{v} < 0 /\ {w} < 0 /\ {slope} > 0]]"
-        number = {Task.SIX: 6, Task.FOUR: 4, Task.TWO_STABLE: 2}[task]
-        window = r" /\ ".join(
-            f"{_line(name, axis.low)} > 0 /\\ {_line(name, axis.high)} < 0"
-            for name, axis in zip("xy", self.axes, strict=True)
-        )
+        (x0, x1), (y0, y1) = ((axis.low, axis.high) for axis in self.axes)
         return "\n".join((
             f"[ x is {self.axes[0].name}, y is {self.axes[1].name} ]",
             "(y,x,t)" if swapped else "(x,y,t)",
             "2",
-            f"(X{number} t)[ {condition} ].",
-            f"assume [ {window} ]",
+            f"(X{task.value.split()[0]} t)[ {condition} ].",
+            rf"assume [ x > {x0} /\ x < {x1} /\ y > {y0} /\ y < {y1} ]",
             "measure-zero-error",
             *("go",) * 3,
             *then,
@@ -379,13 +343,4 @@ def question(slice: Slice) -> Question | str:
 
 
 def _terms(polynomial: Sequence[Expression]) -> Terms:
-    terms = [(i, j, n, c) for n, coefficient in enumerate(polynomial) for i, j, c in coefficient.numerator]
-    scale = math.lcm(*(c.denominator for *_, c in terms))
-    content = math.gcd(*(int(c * scale) for *_, c in terms))
-    return tuple((i, j, n, int(c * scale) // content) for i, j, n, c in terms)
-
-
-def _line(name: str, end: Fraction) -> str:
-    """The line q name - p, positive where ``name > p/q``."""
-    terms = ((1,), end.denominator), ((0,), -end.numerator)
-    return " ".join(signed_terms((term for term in terms if term[1]), name, times=" "))
+    return [(i, j, n, c) for n, coefficient in enumerate(polynomial) for i, j, c in coefficient.numerator]

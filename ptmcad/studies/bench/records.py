@@ -101,7 +101,7 @@ def _without(
     made[0].usages.clear()
     turns(made, options)
     results = [RegionMap.from_json(job.said()) if job.usages else None for job in made]
-    rows = summary(made, "all made", "processor")
+    rows = summary(made, "all made")
     rows["differs"] = [
         None if results[0] is None or result is None else difference(results[0], result) for result in results
     ]
@@ -129,7 +129,7 @@ def difference(one: RegionMap, other: RegionMap) -> str:
     the same pairs of neighbours and areas whose bounds overlap.
     """
     pairs: set[tuple[int, int]] = set()
-    for first, second, step in ((one, other, 1), (other, one, -1)):
+    for first, second in ((one, other), (other, one)):
         for cell in first.cells:
             at = second.locate(**dict(cell.sample))
             counts = ((cell.total, at.total), (cell.stable, at.stable), (cell.index, at.index))
@@ -137,7 +137,7 @@ def difference(one: RegionMap, other: RegionMap) -> str:
                 continue
             if any(mine != yours and None not in (mine, yours) for mine, yours in counts):
                 return f"other counts at {dict(cell.sample)}"
-            pairs.add((cell.region, at.region)[::step])
+            pairs.add((cell.region, at.region) if first is one else (at.region, cell.region))
     if one.cover is not None:
         return ""
     partner = dict(pairs)

@@ -7,7 +7,7 @@ JSON, which vouches for the others, last.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,118 +19,115 @@ from ptmcad.studies import tables
 from ptmcad.studies.bench.harness import Row
 from ptmcad.studies.bench.methods import RIVALS
 from ptmcad.studies.bench.picture import DPI, draw
-from ptmcad.studies.bench.study import SEEN_SHARE, finest, read_study, smallest_grid, write_study, write_table
+from ptmcad.studies.bench.study import finest, frame, read_study, records, write_study, write_table
 
 SUFFIXES = ("bench.csv", "bench.svg", "bench.png", "error-time.json", "bench.json")
 PAGE = "error-time.md"
+SEEN_SHARE = 0.99
+"""A grid sees a region when it shows this share of it, at least, with its count."""
 CURVE_FORMAT = "ptmcad-error-time/1"
 """What ``ptmcad report`` reads."""
 _NAMES = {"stable": "stable equilibria", "total": "equilibria", "index": "index"}
 _HEADER = ("method", "setting", "seconds (least-largest)", "wrong or undetermined", "regions missed",
            "faintest region", "boundary off by", "area bounds apart")  # fmt: skip
+_DRAWN = {
+    "seconds_median": "x",
+    "seconds_min": "least",
+    "seconds_max": "most",
+    "wrong_low": "low",
+    "wrong_high": "high",
+}
 _LABELLED = {"certified": "tolerance ", "companion": "N = ", "multistart": "N = ", "qepcad": "where "}
 """Methods whose points have their setting beside them in the picture, without these words."""
 
 
-def sentences(study: Row) -> tuple[str, ...]:
+def sentences(study: Row) -> list[str]:
     """Which grid is the first to see every region, and where the exact engine is beside the grids."""
-    table = finest(study).dropna(subset="seconds_median")
+    table = frame(study)
     grids = table[(table["method"] == "companion") & table["wrong_low"].notna()]
-    if grids.empty:
-        return ()
     sizes = grids["setting"].str.removeprefix("N = ").astype(int)
     found = []
-    for count, name in _NAMES.items():
+    for count, name in _NAMES.items() if len(grids) else ():
+        own = grids["count"] == count
         first, whole = (
-            f"{n} x {n}" if n else f"none up to {sizes.max()} x {sizes.max()}"
-            for n in (smallest_grid(study, "companion", count, seen) for seen in (False, True))
+            f"{n} x {n}" if (n := sizes[own & fit].min()) > 0 else f"none up to {sizes.max()} x {sizes.max()}"
+            for fit in (grids["missed"] == 0, grids["faintest_low"] >= SEEN_SHARE)
         )
         found.append(
             f"Regions by {name}: the smallest grid with a pixel in each is {first}; with at least "
             f"{SEEN_SHARE:.0%} of each, {whole}."
         )
     exact = table["seconds_median"][table["method"] == "exact"].min()
-    for m in grids[sizes == 400].itertuples():
-        if exact > 0:
+    for m in records(finest(study)):
+        if (m["method"], m["setting"]) == ("companion", "N = 400") and m["seconds_median"] / exact > 0:
             found.append(
                 f"The exact engine has no error after {exact:.2f} s; the 400 x 400 grid has "
-                f"{m.seconds_median / exact:.1f} times that time and {_about(m.wrong_low, m.wrong_high)} of the "
-                "window wrong."
+                f"{m['seconds_median'] / exact:.1f} times that time and {_about(m, 'wrong')} of the window wrong."
             )
-    return tuple(found)
+    return found
 
 
-def rows(study: Row) -> Iterator[tuple[str, ...]]:
-    """The cells of the table, one row for each measurement, for the finest count that the method gives."""
-    for m in finest(study).itertuples():
-        if pd.isna(m.seconds_median):
-            yield (m.method, m.setting or "-", m.reason, *("-",) * 5)
-            continue
-        spread = f" ({m.seconds_min:.2f}-{m.seconds_max:.2f})" if m.runs > 1 else ""
-        yield (
-            m.method,
-            m.setting,
-            f"{m.seconds_median:.2f}{spread}",
-            _about(m.wrong_low, m.wrong_high) + " *" * bool(m.note),
-            "-" if pd.isna(m.missed) else f"{m.missed} of {m.regions}",
-            "-" if pd.isna(m.faintest_low) else f"{m.faintest_low:.2%}",
-            _about(m.distance_low, m.distance_high),
-            "-" if pd.isna(m.area_width) else f"{m.area_width:.1e}",
-        )
+def rows(study: Row) -> list[tuple[str, ...]]:
+    """The cells of the table, one row for each method and setting that was run, with the finest count it gives."""
+    return [_cells(m) for m in records(finest(study).dropna(subset="seconds_median"))]
 
 
-def _about(low: float, high: float) -> str:
+def _cells(m: Row) -> tuple[str, ...]:
+    spread = " ({seconds_min:.2f}-{seconds_max:.2f})".format(**m) if m["runs"] > 1 else ""
+    return (
+        m["method"],
+        m["setting"],
+        f"{m['seconds_median']:.2f}{spread}",
+        _about(m, "wrong") + (" *" if m["note"] else ""),
+        "-" if pd.isna(m["missed"]) else f"{m['missed']} of {m['regions']}",
+        "-" if pd.isna(m["faintest_low"]) else f"{m['faintest_low']:.2%}",
+        _about(m, "distance"),
+        "-" if pd.isna(m["area_width"]) else f"{m['area_width']:.1e}",
+    )
+
+
+def _about(m: Row, name: str) -> str:
     """Bounds as one number where two digits agree."""
+    low, high = m[f"{name}_low"], m[f"{name}_high"]
     if pd.isna(low):
         return "-"
     first, last = (f"{x:.1e}" if x else "0" for x in (low, high))
     return first if first == last else f"{first} to {last}"
 
 
+def notes(study: Row) -> list[str]:
+    """What the errors with a star rest on, and why there are none of other methods."""
+    done = [f"* {m['method']}: {m['note']}" for m in study["measurements"] if m["note"] and m["seconds"]]
+    left = [f"{m['method']}, {m['setting']}: {m['reason']}" for m in study["measurements"] if not m["seconds"]]
+    return list(dict.fromkeys([*done, *(line.replace(", :", ":") for line in left)]))
+
+
 def terminal(study: Row) -> str:
-    """The table in columns, and the sentences."""
-    cells = [_HEADER, *rows(study)]
-    # a reason stands in a column of times, and may be long
-    lines = tables.columns(cells, [row[3] == row[5] == "-" for row in cells])
-    return "\n".join([*lines, *_notes(study), "", *sentences(study)])
-
-
-def _notes(study: Row) -> tuple[str, ...]:
-    """What the errors with a star rest on."""
-    noted = (m for m in study["measurements"] if m["note"] and m["seconds"])
-    return tuple(dict.fromkeys(f"* {m['method']}: {m['note']}" for m in noted))
+    """The table in columns, the notes and the sentences."""
+    return "\n".join([*tables.columns([_HEADER, *rows(study)]), *notes(study), "", *sentences(study)])
 
 
 def points(study: Row) -> pd.DataFrame:
     """What can be drawn of a study, as of `draw`: every measurement with a time and an error, and widths of areas."""
-    table = finest(study).dropna(subset="seconds_median")
-    titles = pd.Series({name: rival.title for name, rival in RIVALS.items()})
-    ranks = pd.Series({name: rank for rank, name in enumerate(RIVALS)})
-    found = pd.DataFrame({
-        "curve": table["method"].map(titles),
-        "style": table["method"].map(ranks),
-        "x": table["seconds_median"],
-        "least": table["seconds_min"],
-        "most": table["seconds_max"],
-        "low": table["wrong_low"],
-        "high": table["wrong_high"],
-        "label": [
-            m.setting.removeprefix(_LABELLED[m.method]) if m.method in _LABELLED else "" for m in table.itertuples()
-        ],
-    })  # fmt: skip
-    exact = (table["method"] == "exact") & (table["area_width"] > 0)
-    widths = found[exact].assign(low=table["area_width"], high=table["area_width"])
-    widths["curve"] += ": width of the area bounds"  # another kind of error
-    found = pd.concat([found, widths]).dropna(subset="low").sort_values("style", kind="stable")
-    found.loc[found["curve"].str.endswith("bounds"), "style"] = len(RIVALS)
-    return found
+    table = finest(study).dropna(subset="seconds_median").rename(columns=_DRAWN)
+    table["curve"] = [RIVALS[method].title for method in table["method"]]
+    table["rank"] = table["style"] = [[*RIVALS].index(method) for method in table["method"]]
+    table["label"] = [m["setting"].removeprefix(_LABELLED.get(m["method"], m["setting"])) for m in records(table)]
+    widths = table[(table["method"] == "exact") & (table["area_width"] > 0)]
+    widths = widths.assign(
+        low=widths["area_width"],
+        high=widths["area_width"],
+        curve=widths["curve"].astype(str) + ": width of the area bounds",  # another kind of error
+        style=len(RIVALS),
+    )
+    return pd.concat([table, widths]).dropna(subset="low").sort_values("rank", kind="stable")
 
 
 def curve_file(study: Row) -> str:
     """The measurements for ``ptmcad report``, which draws positive errors only."""
     shown = points(study).query("high > 0")
     series: list[dict[str, Any]] = [
-        {"name": name, "points": [[m.x, (m.low + m.high) / 2] for m in curve.itertuples()]}
+        {"name": name, "points": [[m["x"], (m["low"] + m["high"]) / 2] for m in records(curve)]}
         for name, curve in shown.groupby("curve", sort=False)
     ]
     text = (
@@ -189,7 +186,7 @@ def page(studies: Sequence[Row]) -> str:
         if not points(study).empty:
             blocks.append(f"![Error against seconds for {study['slice']}]({study['slice']}.bench.svg)")
         blocks += [[f"- {s}" for s in sentences(study)], tables.markdown(_HEADER, rows(study))]
-        blocks.append([f"\\{note}  " for note in _notes(study)])
+        blocks.append([f"- {note}".replace("- *", "- \\*") for note in notes(study)])
     first = studies[0]
     floor = "{median:g} s ({minimum:g}-{maximum:g})".format(**first["floor"])
     return tables.page(

@@ -1,12 +1,12 @@
 """How cost grows: families of slices, each growing in one respect, as whole processes, with fitted exponents.
 
-Guarantee: the numbers of regions of the slices are known from how they are made, and a run that
-finds another number is a failure. The same measurements give the same fits.
+Guarantee: the numbers of regions of the slices are known from how they are made, and a run that finds another number is
+a failure. The same measurements give the same fits.
 
-A parameter p becomes p + q(x, y) with a dense polynomial q that is small enough for the picture to
-stay, so that the degree of the curves grows alone; numbers get more digits; and Chebyshev polynomials
-fold the window: T_n maps each of the n intervals between neighbouring points cos(i pi / n) onto
-[-1, 1]. Without loads the stable count is 2 where |L2 - L1| < 2 rho < L2 + L1, and 1 elsewhere.
+A parameter p becomes p + q(x, y) with a dense polynomial q that is small enough for the picture to stay, so that the
+degree of the curves grows alone; numbers get more digits; and Chebyshev polynomials fold the window: T_n maps each of
+the n intervals between neighbouring points cos(i pi / n) onto [-1, 1]. Without loads the stable count is 2 where
+|L2 - L1| < 2 rho < L2 + L1, and 1 elsewhere.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import argparse
 import json
 import random
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
@@ -29,14 +29,10 @@ from ptmcad.show.render.printing import save
 from ptmcad.studies.bench.harness import PTMCAD, Job, Row, summary, turns
 from ptmcad.studies.bench.picture import draw
 from ptmcad.studies.bench.process import Usage
-from ptmcad.text.expressions import Expression, Term, axis, constant
-from ptmcad.text.terms import signed_terms
 
 SHIFT = Fraction(1, 100)
 """What a bend's coefficients' moduli add up to at most: the window's edge meets the same curves in the same order."""
 MAX_COEFFICIENT, DIGITS = 9, 400
-
-Record = dict[str, Any]
 
 
 class Family(NamedTuple):
@@ -44,63 +40,47 @@ class Family(NamedTuple):
 
     title: str
     sizes: tuple[int, ...]
-    record: Callable[[int, int], Record]
+    record: Callable[[int, int], Row]
     regions: Callable[[int], int]
 
 
-def _record(axes: dict[str, tuple[str, str]], **parameters: Any) -> Record:
-    values = {name: str(value) for name, value in parameters.items()}
-    windows = {name: list(ends) for name, ends in axes.items()}
-    return {"mechanism": "ptm", "parameters": {"L1": "1", "k": "100"} | values, "axes": windows}
+def _record(axes: dict[str, Sequence[Any]], **parameters: Any) -> Row:
+    return {"mechanism": "ptm", "parameters": {"L1": 1, "k": 100, **parameters}, "axes": axes}
 
 
-def written(e: Expression) -> str:
-    """A polynomial in the axes x and y as a record has it."""
-    return " ".join(signed_terms((((i, j), c) for i, j, c in e.numerator), "xy", number=str))
+def chebyshev(n: int, x: str) -> str:
+    """T_n as text; up to n = 40 its coefficients are whole in doubles, too."""
+    return " + ".join(f"({c:.0f})*{x}^{k}" for k, c in enumerate(np.polynomial.chebyshev.cheb2poly([0] * n + [1])) if c)
 
 
-def chebyshev(n: int, x: Expression) -> Expression:
-    """T_n(x), by its recurrence T_(n+1) = 2 x T_n - T_(n-1)."""
-    before, last = x, constant(1)  # T_(-1) = T_1
-    for _ in range(n):
-        before, last = last, 2 * x * last - before
-    return last
-
-
-def bend(n: int, seed: int) -> Expression:
-    """A dense polynomial of total degree n whose coefficients' moduli add up to at most `SHIFT`."""
-    source = random.Random(f"bend {n} {seed}")
-    powers = [(i, j) for i in range(n + 1) for j in range(n + 1 - i)]
-    scale = SHIFT / (MAX_COEFFICIENT * len(powers))
-    sizes = ((i, j, source.choice((-1, 1)) * source.randint(1, MAX_COEFFICIENT)) for i, j in powers)
-    terms: list[Term] = [(i, j, scale * c) for i, j, c in sizes]
-    return Expression(tuple(sorted(terms)))
-
-
-def unloaded(n: int, seed: int) -> Record:
+def unloaded(n: int, seed: int) -> Row:
     """No loads, rho = 1 + x, L2 = 1 + y + q(x, y): three curves, dense, of total degree n each; four regions."""
-    ends = ("-9/10", "19/20")
-    return _record({"x": ends, "y": ends}, rho="1 + x", L2=written(1 + axis(1) + bend(n, seed)))
+    source = random.Random(f"bend {n} {seed}")
+    rows = [range(n + 1 - i) for i in range(n + 1)]  # of the powers of y, for each power of x
+    scale = SHIFT / (MAX_COEFFICIENT * sum(map(len, rows)))
+    sizes = ([source.choice((-1, 1)) * source.randint(1, MAX_COEFFICIENT) for _ in row] for row in rows)
+    terms = (f"x^{i}*({' + '.join(f'({c * scale})*y^{j}' for j, c in enumerate(row))})" for i, row in enumerate(sizes))
+    ends = ["-9/10", "19/20"]
+    return _record({"x": ends, "y": ends}, rho="1 + x", L2=" + ".join(["1 + y", *terms]))
 
 
-def digits(n: int, seed: int) -> Record:
+def digits(n: int, seed: int) -> Row:
     """Equal bars and loads as in the paper's figure 3, with numbers of about n digits for L, k and F/y."""
     source = random.Random(f"digits {seed}")
     length, stiffness, force = ("".join(source.choice("1379") for _ in range(DIGITS))[:n] for _ in range(3))
     bar, load = f"1.00{length}", f"1.00{force}*F"
-    axes = {"rho": ("0", "2"), "F": ("-10", "0")}
-    return _record(axes, L1=bar, L2=bar, k=f"100.00{stiffness}", F3=load, F4=load)
+    return _record({"rho": [0, 2], "F": [-10, 0]}, L1=bar, L2=bar, k=f"100.00{stiffness}", F3=load, F4=load)
 
 
-def fold(n: int, seed: int = 0) -> Record:
+def fold(n: int, seed: int = 0) -> Row:
     """rho = y and L2 = 1 + T_n(x)/2: n folds along x, over -1 < x < 1 and 0 < y < 2."""
-    return _record({"x": ("-1", "1"), "y": ("0", "2")}, rho="y", L2=written(1 + chebyshev(n, axis(0)) / 2))
+    return _record({"x": [-1, 1], "y": [0, 2]}, rho="y", L2=f"1 + ({chebyshev(n, 'x')})/2")
 
 
-def grid(n: int, seed: int = 0) -> Record:
+def grid(n: int, seed: int = 0) -> Row:
     """L2 = 1 + T_n(x)/2 and rho = 1/2 + T_n(y)/3: n by n copies, mirrored in turn, of one square."""
-    rho, bar = Fraction(1, 2) + chebyshev(n, axis(1)) / 3, 1 + chebyshev(n, axis(0)) / 2
-    return _record({"x": ("-1", "1"), "y": ("-1", "1")}, rho=written(rho), L2=written(bar))
+    rho, bar = f"1/2 + ({chebyshev(n, 'y')})/3", f"1 + ({chebyshev(n, 'x')})/2"
+    return _record({"x": [-1, 1], "y": [-1, 1]}, rho=rho, L2=bar)
 
 
 def regions_of_grid(n: int) -> int:
@@ -156,9 +136,9 @@ def measure(options: argparse.Namespace) -> pd.DataFrame:
     rows = rows.merge(seconds.assign(setting=seconds.pop("n").map(str)), on=["subject", "setting"], how="left")
     laws = [
         {"subject": name, "what": FAMILIES[name].title, "setting": f"fit: {stage}", **law}
-        for name, sizes in taken.groupby("subject", sort=False)
-        for stage, column in sizes.droplevel("subject").items()
-        if (law := fit(column.dropna()))
+        for name in names
+        for stage, seconds in (taken.loc[name].items() if name in taken.index else ())
+        if (law := fit(seconds.dropna()))
     ]
     return pd.concat([rows, pd.DataFrame(laws)], ignore_index=True)
 
@@ -177,8 +157,8 @@ def fit(taken: pd.Series[float]) -> Row | None:
 
     Returns
     -------
-    The exponent p by least squares in logarithms; that over the upper half of the range, which predicts; and the largest
-    factor by which a value is off the line. None when there are fewer than two, or something is not positive.
+    The exponent p by least squares in logarithms; that over the upper half of the range, which predicts; and the
+    largest factor by which a value is off the line. None when there are fewer than two, or one is not positive.
     """
     if len(taken) < 2 or min(*taken.index, *taken) <= 0:
         return None

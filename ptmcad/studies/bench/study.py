@@ -1,30 +1,39 @@
 """A study: error against run time of several methods on one slice, as rows that are stored, read back and compared.
 
-Guarantee: figures of error are rounded outwards, so that bounds stay bounds; everything but times,
-memory and the machine is the same whenever the study is made again with the same seed.
-`study_of(write_study(s))` equals s; a file that is not such a document is refused with the place
-of the fault. ``docs/bench.schema.json`` is its schema, and says what each key means.
+Guarantee: all methods are run at their first setting before any is at its second; there each round runs every method
+once, in an order drawn from the seed, beside the reference job. Nothing is measured while something else is run.
+Figures of error are rounded outwards, so that bounds stay bounds; everything but times, memory and the machine is the
+same whenever the study is made again with the same seed. `study_of(write_study(s))` equals s; a file that is not such a
+document is refused with the place of the fault. ``docs/bench.schema.json`` is its schema, and says what each key means.
 
-Of two studies an error is worse only if its bounds do not overlap the earlier ones. Times are compared
-as multiples of each study's own floor, so that machines of different speed compare; one is slower
-only if its fastest run is slower than the slowest run of the other by `MARGIN`, with the spread of
-both floors allowed for.
-
-Not guaranteed: that a small change is found; a median within the spread of the earlier runs says nothing.
+Of two studies an error is worse only if its bounds do not overlap the earlier ones. Times are compared as multiples of
+each study's own floor, so that machines of different speed compare; one is slower only if its fastest run is slower
+than the slowest run of the other by `MARGIN`, with the spread of both floors allowed for. That a small change is found
+is not guaranteed.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+import random
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from ptmcad.errors import ConfigError
-from ptmcad.studies.bench.error import Figures
-from ptmcad.studies.bench.harness import Row
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.ask.classification import classify
+from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.question.slice import Slice
+from ptmcad.studies.bench.error import Figures, truths
+from ptmcad.studies.bench.harness import Case, Job, Row, made_with, take_turns, times
+from ptmcad.studies.bench.methods import RIVALS, finest_count, jobs
+from ptmcad.studies.bench.process import Outcome
 from ptmcad.studies.tables import columns
 from ptmcad.text.codec import NATURAL, POSITIVE, SECONDS, TRUTH, WHOLE, Codec, line, listed, named, optional, record
 from ptmcad.text.node import Node, opened
@@ -32,8 +41,6 @@ from ptmcad.text.textfile import read_as
 
 FORMAT = "ptmcad-bench/1"
 MAX_BYTES = 10_000_000
-SEEN_SHARE = 0.99
-"""A grid sees a region when it shows this share of it, at least, with its count."""
 MARGIN = 1.1
 SINGLE_RUN_MARGIN = 1.5
 """The same where one of the two was run once only, so that its spread is not known."""
@@ -51,6 +58,136 @@ _SHORT = {
     "seconds_minimum": "seconds_min", "seconds_maximum": "seconds_max", "seconds_runs": "runs", "peak": "peak_mib"
 }  # fmt: skip
 _WHOLE = ["runs", "wrong_centres", "regions", "missed"]
+FLOOR = (
+    sys.executable,
+    "-c",
+    "import flint, numpy, click, yaml; numpy.linalg.eigvals(numpy.random.default_rng(1).random((8000, 6, 6)))",
+)
+"""The reference job: start-up, and some linear algebra that is always the same."""
+MAX_REPEATED_SECONDS = 1.25
+"""Seconds from which on a job is not repeated."""
+MAP_SECONDS = 120.0
+"""For the map that errors are measured against, at least; without it shares are the engines'."""
+WARM_UP_SECONDS = 300.0
+
+
+def measure(
+    slice: Slice,
+    record: Path,
+    verified: Callable[[RegionMap], bool],
+    *,
+    methods: Sequence[str] = tuple(RIVALS),
+    rounds: int = 3,
+    seed: int = 1,
+    time_limit: float = 60.0,
+    quick: bool = False,
+    warm_up: bool = True,
+    report: Callable[[str], None] = lambda _: None,
+) -> Row:
+    """Measure error against run time on one slice.
+
+    Parameters
+    ----------
+    record : the slice's own file.
+    verified : whether an independent check confirms a map, such as `ptmcad.verify`; the errors rest on it.
+    rounds : runs of each job that takes no longer than `MAX_REPEATED_SECONDS`; others are run once.
+    seed : of the order within a round, and of the starts of the scipy grid.
+    time_limit : seconds for each method's measured runs; settings that do not fit are left out, with the reason.
+    quick : fewer and coarser settings.
+    warm_up : run the certified engine once before, because the first run on a machine compiles.
+    report : called with what is being done.
+
+    Raises
+    ------
+    PtmcadError
+        When the slice has no map, or an answer of ours contradicts the reference.
+    """
+    exact, known, sound = None, None, None
+    if not slice.has_free_lengths:
+        report(f"{slice.name}: the exact map that errors are measured against")
+        with suppress(LimitReached):
+            exact = classify(slice, count=finest_count(slice), timeout=max(MAP_SECONDS, time_limit))
+            sound = verified(exact)
+            known = truths(exact)
+    with tempfile.TemporaryDirectory() as name:
+        case = Case(slice, record.resolve(), exact, known, Path(name), quick, seed)
+        found = {method: jobs(method, case) for method in methods}
+        ranked = [asked for asked in found.values() if not isinstance(asked, str)]
+        floor = Job(slice.name, "", "reference job", FLOOR)
+        floor.attempt(WARM_UP_SECONDS)  # fills caches
+        for job in [asked[0] for asked in ranked if asked[0].saves and warm_up]:
+            job.attempt(WARM_UP_SECONDS)  # compiles
+            job.usages.clear()
+        floor.usages.clear()
+        _run_all(ranked, floor, rounds, seed, time_limit, report)
+        report(f"{slice.name}: errors")
+        measured = [_measured(case, job) for asked in ranked for job in asked]
+    return {
+        "format": FORMAT,
+        "slice": slice.name,
+        "heading": slice.heading,
+        **made_with(),
+        "seed": seed,
+        "rounds": rounds,
+        "time_limit": time_limit,
+        "quick": quick,
+        "verified": sound,
+        "floor": times([usage.seconds for usage in floor.usages]),
+        "measurements": (
+            *measured,
+            *(measurement(method, "", reason=why) for method, why in found.items() if isinstance(why, str)),
+        ),
+    }
+
+
+def _run_all(
+    ranked: Sequence[Sequence[Job]], floor: Job, rounds: int, seed: int, limit: float, report: Callable[[str], None]
+) -> None:
+    """Run all jobs, so that those of a method have so many seconds together."""
+    left = {asked[0].what: limit for asked in ranked}
+
+    def attempt(job: Job) -> None:
+        if job is floor:
+            job.attempt(WARM_UP_SECONDS)
+            return
+        taken = job.usages[-1].seconds if job.usages else 0.0
+        if taken > MAX_REPEATED_SECONDS or left[job.what] <= taken:
+            if not job.usages:
+                job.reason = f"left out: the {limit:g} s for each method were used up"
+            return
+        report(f"{job.what}, {job.setting}")
+        usage = job.attempt(left[job.what])
+        left[job.what] -= usage.seconds
+        if usage.outcome is Outcome.TIMED_OUT:
+            job.reason = f"stopped: the {limit:g} s for each method were used up"
+
+    order = random.Random(seed)
+    for rank in zip_longest(*ranked):
+        take_turns([floor, *filter(None, rank)], rounds, order, attempt)
+
+
+def _measured(case: Case, job: Job) -> Row:
+    """The figures of a job's runs, and of its answer."""
+    if not job.usages:
+        return measurement(job.what, job.setting, reason=job.reason or "not run")
+    return measurement(
+        job.what,
+        job.setting,
+        seconds=times([usage.seconds for usage in job.usages]),
+        computing=_computing(job),
+        peak=round(max(usage.peak_mebibytes for usage in job.usages), 1),
+        **RIVALS[job.what].read(case, job),
+    )
+
+
+def _computing(job: Job) -> Row | None:
+    """The seconds of the computation alone, where the process says them, as JSON."""
+    said = job.usages[-1].output if job.answer is None or job.answer.suffix != ".json" else job.said()
+    if not said.startswith("{"):
+        return None
+    found = json.loads(said)
+    seconds = found["timings"]["total"] if "timings" in found else found.get("computing")
+    return times([seconds]) if seconds else None
 
 
 def measurement(method: str, setting: str, **more: Any) -> Row:
@@ -90,17 +227,9 @@ def finest(study: Row) -> pd.DataFrame:
     return table.loc[ranks.sort_values(kind="stable").index].drop_duplicates(["method", "setting"]).sort_index()
 
 
-def smallest_grid(study: Row, method: str, count: str, seen: bool) -> int | None:
-    """The smallest grid that finds every region of a count, or that sees every one; None when none of them does.
-
-    Parameters
-    ----------
-    seen : ask for grids that see every region (see `SEEN_SHARE`), and not just find some pixel of it.
-    """
-    table = frame(study)
-    fit = table["faintest_low"] >= SEEN_SHARE if seen else table["missed"] == 0
-    sizes = table["setting"][fit.fillna(False) & (table["method"] == method) & (table["count"] == count)]
-    return min((int(setting.removeprefix("N = ")) for setting in sizes), default=None)
+def records(table: pd.DataFrame) -> list[Row]:
+    """The rows of a table."""
+    return [{str(name): x for name, x in row.items()} for row in table.to_dict("records")]
 
 
 def write_study(study: Row) -> str:
@@ -156,9 +285,9 @@ _MEASUREMENT: Codec[Row] = record(
     area_width=optional(SECONDS),
 )  # fmt: skip
 _STUDY: Codec[Row] = record(
-    lambda **keys: {"format": FORMAT, **keys}, slice=line(200), heading=line(1000), machine=named(line(300)), versions=named(line(300)),
-    seed=WHOLE, rounds=POSITIVE, time_limit=_TAKEN, quick=TRUTH, verified=optional(TRUTH), floor=_TIMES,
-    measurements=listed(_MEASUREMENT),
+    lambda **keys: {"format": FORMAT, **keys}, slice=line(200), heading=line(1000), machine=named(line(300)),
+    versions=named(line(300)), seed=WHOLE, rounds=POSITIVE, time_limit=_TAKEN, quick=TRUTH, verified=optional(TRUTH),
+    floor=_TIMES, measurements=listed(_MEASUREMENT),
 )  # fmt: skip
 
 
