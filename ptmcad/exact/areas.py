@@ -38,7 +38,9 @@ def areas_of(
     # the halves before and behind an abscissa need no cuts, and are the cheapest
     reflections = sorted(problem.reflections, key=lambda change: (change.axes, change.axis_signs[base]))
     for change in () if alone else reflections[:1]:
-        parts = _half(parts._replace(images=_images(problem, variety, known, change)), change, base)
+        images = _images(problem, variety, known, change)
+        if images is not None:
+            parts = _half(parts._replace(images=images), change, base)
     bounds, bits = region_areas(parts, tolerance, check)
     if alone:
         bounds = tuple(_sum_of([bounds[n] for n in cells], problem.area) for cells in members(region_of))
@@ -62,8 +64,8 @@ def _half(parts: RegionStacks, change: Involution, base: int) -> RegionStacks:
     return below(parts, RationalPolynomial([from_fraction(change.shifts[1 - base]) / 2]))
 
 
-def _images(problem: SliceProblem, variety: Variety, known: Cells, change: Involution) -> tuple[int, ...]:
-    """The image of each region.
+def _images(problem: SliceProblem, variety: Variety, known: Cells, change: Involution) -> tuple[int, ...] | None:
+    """The image of each region; None where all samples of one have their images on lines over critical abscissae.
 
     Raises
     ------
@@ -76,7 +78,9 @@ def _images(problem: SliceProblem, variety: Variety, known: Cells, change: Invol
         points = (change.at((to_fraction(x), to_fraction(y))) for x, y in (known.stacks.points[n] for n in cells))
         places = (cell_at(problem, variety, known[:2], (from_fraction(x), from_fraction(y))) for x, y in points)
         image = next((n for n in places if n is not None), None)
-        if image is None or keys[image] != keys[cells[0]]:
+        if image is None:
+            return None
+        if keys[image] != keys[cells[0]]:
             raise ArithmeticError("a region's mirror image is no region of the same count")
         images.append(region_of[image])
     if any(images[images[i]] != i for i in images):

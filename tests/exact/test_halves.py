@@ -26,6 +26,8 @@ SYSTEMS = {
     "in the second axis, beside zero": (["x^3 - a*x + b - 3"], {"a": ["1/2", 2], "b": [2, 4]}),
     "in a point": (["x^3 - a*b*x + b"], {"a": [-2, 2], "b": [-1, 1]}),
     "exchange": (["x^2 + a*y - b", "y^2 + b*x - a"], {"a": [-2, 2], "b": [-2, 2]}),
+    "exchange beside the diagonal": (["x^2 + a*y - b + 3", "y^2 + (b - 3)*x - a"], {"a": [-1, 2], "b": [2, 5]}),
+    "exchange and reflection beside it": (["x^3 - x*(a - b + 3) + a*(b - 3)"], {"a": [-1, 2], "b": [1, 4]}),
     "exchange and reflection": (["x^2 - a", "y^2 + b", "z^3 - z + a*b*x*y"], {"a": [-1, 2], "b": [-2, 1]}),
 }
 """Equations in x, y and z that an involution keeps, over a window."""
