@@ -280,7 +280,9 @@ class _Run:
 
     def _whole(self, cover: Cover) -> Cover:
         """The cover of the window, of that of what was searched."""
-        return cover if self.change is None else with_images(cover, self.change.axes, self.change.axis_signs)
+        if self.change is None:
+            return cover
+        return with_images(cover, START_TILES, self.change.axes, self.change.axis_signs)
 
     def _box_cover(self) -> Cover:
         return combined(self.lattice.cover(box_rectangles(self.enclosures)))

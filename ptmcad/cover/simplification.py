@@ -39,10 +39,17 @@ def images(rectangles: Integers, steps: int, axes: Sequence[int], signs: Sequenc
     return np.concatenate(sides, axis=1)
 
 
-def with_images(cover: Cover, axes: Sequence[int], signs: Sequence[int]) -> Cover:
-    """A cover of the same points and of their `images`; where there are slanted pieces, of more."""
-    array = rectangle_array(framed(cover))
-    return cover_of(_fewer(np.concatenate([array, images(array, cover.steps, axes, signs)])), cover.steps)
+def with_images(cover: Cover, tiles: int, axes: Sequence[int], signs: Sequence[int]) -> Cover:
+    """A cover with the `images` of what is not in a tile that is its own image; slanted pieces become their frames.
+
+    Parameters
+    ----------
+    tiles : number of them along each axis.
+    """
+    array, size = rectangle_array(framed(cover)), cover.steps // tiles
+    around = array[:, [0, 0, 2, 2]] // size * size + np.array([0, size, 0, size])
+    alone = (around == images(around, cover.steps, axes, signs)).all(axis=1) & (array <= around)[:, [1, 3]].all(axis=1)
+    return cover_of(_fewer(np.concatenate([array, images(array[~alone], cover.steps, axes, signs)])), cover.steps)
 
 
 def gathered(cover: Cover, most: int) -> Cover:
