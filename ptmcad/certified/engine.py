@@ -24,6 +24,7 @@ from ptmcad.certified.headway import PARTS, Headway
 from ptmcad.certified.loading import load, may_be_slanted
 from ptmcad.certified.pace import SAFETY, Pace
 from ptmcad.certified.plain.curves import curves
+from ptmcad.certified.plain.involution import halving
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.refinement import Enclosure, begin, refine
 from ptmcad.certified.search import Boxes
@@ -33,8 +34,9 @@ from ptmcad.certified.statement import plan_of
 from ptmcad.certified.tape import enclosing_floats
 from ptmcad.cover import union_area
 from ptmcad.cover.rectangles import MAX_STEPS, Cover
-from ptmcad.cover.simplification import combined, gathered
+from ptmcad.cover.simplification import combined, gathered, images, with_images
 from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.mechanism.involutions import Involution
 from ptmcad.options import DEFAULTS, Options
 from ptmcad.process.handover import LAST_SECONDS, leave_if_asked
 from ptmcad.question.domain import prove_slice
@@ -120,7 +122,10 @@ class _Run:
         self.lattice = Lattice(((horizontal.low, horizontal.high), (vertical.low, vertical.high)), steps)
         self.resumed = None if options.resume is None else options.resume.cover
         wanted = curves(slice, slice.count, options.without)
-        self.enclosures: list[Enclosure] = begin(wanted, _rectangles(slice, self.resumed))
+        whole = self.resumed is not None or may_be_slanted(options) or "mirror-images" in options.without
+        self.change = None if whole else halving(slice)
+        """An involution that takes the half of the window that is searched to the other one."""
+        self.enclosures: list[Enclosure] = begin(wanted, _rectangles(slice, self.resumed, self.change))
         self.assembler = Assembler(slice, plain_counter(slice), plan_of(slice, wanted, options.without), _versions())
         self.best: RegionMap | None = None
         """The map with the least undetermined area of those that were handed over."""
@@ -161,7 +166,7 @@ class _Run:
             if not in_time:
                 return self._stopped(self._at_limit())
             cover = self._box_cover()
-            undetermined = _share(cover)
+            undetermined = _share(self._whole(cover))
             if undetermined > tolerance and self._slantable(undetermined):
                 slanted = self._slanted(undetermined, self.area * 4.0**-level)
                 if slanted is not None:
@@ -235,7 +240,7 @@ class _Run:
             return None
         start = self.clock()
         strips = self._strips()
-        target = float(allowed) * self.area
+        target = float(allowed) * self.area / (1 if self.change is None else 2)
         enough = strips.least() <= STRIP_TARGET_SHARE * target and strips.number(target) <= MAX_RECTANGLES
         cover = strips.cover(target) if enough else None
         self.seconds["curves"] += self.clock() - start
@@ -262,6 +267,7 @@ class _Run:
     def map(self, cover: Cover, status: Status) -> RegionMap:
         """The map of a cover; what is not counted when the time is over is undetermined."""
         start, boxes = self.clock(), self.boxes()
+        cover = self._whole(cover)
         times = self.seconds | {"total": start - self.pace.started}
         result = self.assembler.map(cover, status, times, self._must_hand_over)
         self.seconds["regions"] += self.clock() - start
@@ -271,6 +277,12 @@ class _Run:
     def _must_hand_over(self) -> bool:
         """Whether there is only time left to put a map into other hands."""
         return self.pace.left() < SAFETY * self.pace.text.of(self.boxes())
+
+    def _whole(self, cover: Cover) -> Cover:
+        """The cover of the window, of that of what was searched."""
+        if self.change is None:
+            return cover
+        return with_images(cover, START_TILES, self.change.axes, self.change.axis_signs)
 
     def _box_cover(self) -> Cover:
         return combined(self.lattice.cover(box_rectangles(self.enclosures)))
@@ -301,7 +313,7 @@ class _Run:
         if self.options.partial is not None and self.pace.due(boxes):
             start = self.clock()
             self._thinned = None
-            enclosed = _share(self._box_cover())
+            enclosed = _share(self._whole(self._box_cover()))
             self.pace.looked(self.clock() - start)
             if enclosed <= (FIRST_MAP_SHARE if self.best is None else MAP_SHRINK_RATIO * self.enclosed):
                 self._hand_over(enclosed)
@@ -374,11 +386,19 @@ class _Run:
         return min(self._least(), enclosed + self.uncounted) if in_time else self._least()
 
 
-def _rectangles(slice: Slice, resume: Cover | None) -> Boxes:
-    """The rectangles (low x, low y, high x, high y) with which the search begins, rounded outwards."""
+def _rectangles(slice: Slice, resume: Cover | None, change: Involution | None) -> Boxes:
+    """The rectangles (low x, low y, high x, high y) with which the search begins, rounded outwards.
+
+    Parameters
+    ----------
+    change : an involution of the window, of which a tile or its image is enough.
+    """
     if resume is None:
         steps = START_TILES
-        rectangles = tuple((i, i + 1, j, j + 1) for i in range(steps) for j in range(steps))
+        tiles = tuple((i, i + 1, j, j + 1) for i in range(steps) for j in range(steps))
+        axes, signs = ((0, 1), (1, 1)) if change is None else (change.axes, change.axis_signs)
+        others = images(np.array(tiles), steps, axes, signs).tolist()
+        rectangles = tuple(tile for tile, other in zip(tiles, others, strict=True) if list(tile) <= other)
     else:
         most = min(Fraction(MAX_TILES), START_TILES**2 / max(_share(resume), Fraction(1, MAX_TILES)))
         steps, rectangles = resume.steps, gathered(resume, int(most)).rectangles

@@ -115,7 +115,7 @@ def _quotient(search: _Search, changes: Sequence[Involution], whole: Chart) -> I
 
     Minima are searched all about one involution's fixed points; else what is far from all of them as without any.
     """
-    near = not search.stable or len(changes) > 1
+    near = not search.stable or len(changes) > 1 or changes[0].odd > 1
     for change in changes:
         around = list(frames(search.problem, change, search.ranges))
         for frame in around:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 
-from ptmcad.certified.plain.problem import Problem
+from ptmcad.certified.plain.problem import Problem, problem_of
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.mechanism.involutions import Involution, involutions
 from ptmcad.question.slice import Slice
@@ -27,6 +27,19 @@ def mirrors(slice: Slice, problem: Problem) -> list[Involution]:
         if each.odd and each.has_fixed_unknowns and _squares(problem) == _squares(problem, each)
     ]
     return sorted(found, key=lambda each: -each.odd)
+
+
+def halving(slice: Slice) -> Involution | None:
+    """One that takes the window to itself, and does not keep its points; a reflection if there is any.
+
+    Of admissible equilibria it is not asked where a spring has no free length: such ones are kept as a sum only.
+    """
+    if any(excess.boundary != (excess.value,) for excess in problem_of(slice).excesses):
+        return None
+    x, y = slice.axes
+    found = involutions(slice.model, slice.parameters, ((x.low, x.high), (y.low, y.high)))
+    moving = [each for each in found if not each.keeps_points]
+    return min(moving, key=lambda each: (each.axes, -sum(each.axis_signs)), default=None)
 
 
 def square_of(vector: tuple[TrigonometricPolynomial, TrigonometricPolynomial]) -> TrigonometricPolynomial:

@@ -29,9 +29,9 @@ from ptmcad.certified.plain.geometry import Geometry
 from ptmcad.certified.plain.opening import Coordinates, Opening, coordinates, opening, stiffness
 from ptmcad.certified.plain.springs import Matrix
 
-NEAR = Fraction(1, 256)
+NEAR = Fraction(1, 1024)
 """The distance from their images below which configurations are searched about the fixed points."""
-MOST = 0.0626
+MOST = 0.0314
 """A little more than the odd coordinates there, or shares of the reach, and twice the tangents of half of these."""
 
 
