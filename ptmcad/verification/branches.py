@@ -97,7 +97,7 @@ def integrals_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort, run:
     PrecisionTooLow
     """
     if abs(run) == 2 and (at := effort.points[run > 0]) is not None:
-        meeting = _beside(branch, at, (left, right)[:: -1 if run > 0 else 1], effort)
+        meeting = _beside(branch, at, (left, right) if run < 0 else (right, left), effort)
         if meeting is not None:
             return meeting
     low, high = effort.heights

@@ -17,6 +17,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from typing import Any
 
 from ptmcad.cover.rectangles import Cover
 from ptmcad.verification.certified.slanted import Frame, Part
@@ -93,7 +94,7 @@ class Sweep:
                 k += 1
 
 
-def _right(item: Item) -> int:
+def _right(item: Item) -> Any:
     return item.right
 
 
@@ -237,7 +238,7 @@ def _zones(changed: Sequence[Entry], row: Sequence[Item]) -> list[tuple[int, int
     return found
 
 
-def _left(item: Item) -> int:
+def _left(item: Item) -> Any:
     return item.left
 
 
