@@ -222,7 +222,8 @@ def _beside(branch: Branch, at: fmpq, ends: tuple[fmpq, fmpq], effort: Effort) -
         slope, v = over.derivative(), height.mid()
         for _ in range(_NEWTON):
             v = (v - slope(v) / slope.derivative()(v)).mid()
-        if not abs(over(v)) * _SPREAD < abs(slope.derivative()(v)) * (height - v) ** 2:
+        reach = (height - v) ** 2 + (near - at) ** 2
+        if not abs(over(v)) * _SPREAD < abs(slope.derivative()(v)) * reach:
             return None
         rows = recentered([row(arb_poly([at, 1 if far > at else -1])) for row in branch.value], v)
         for k in (2, 1):
