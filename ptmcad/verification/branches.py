@@ -12,9 +12,6 @@ with k = 1, a_10/s, which are nothing at the point itself, and little where U an
 real s from some sigma on they are numbers, or numbers times t, that are at most as large as at sigma. So what a disk
 proves of all polynomials with such numbers in their place, whatever they are, holds of t at each such s.
 
-Of a polynomial in v^2 the same is done with w = v^2, of half the degree, where the disk proves that |w| <= M and that w
-is not zero: v is analytic there then and |v| <= sqrt(M), which takes the place of r.
-
 Guarantee: what is returned contains the integral of the branch that was asked for.
 """
 
@@ -29,50 +26,24 @@ from flint import arb, arb_poly, ctx, fmpq
 from ptmcad.verification.claims import PlaneCurve
 from ptmcad.verification.disks import Disk, PrecisionTooLow, disk, recentered
 from ptmcad.verification.roots import numbered_root
-from ptmcad.verification.sturm import changes_of
 
 
 @dataclass(frozen=True)
 class Branch:
-    """A wall: the curve, the number of its root, and the curve's coefficients, in Z[u] and in Z[v], for balls.
-
-    Attributes
-    ----------
-    squares : where the polynomial is one in v^2, its coefficients in Z[u] as such.
-    """
+    """A wall: the curve, the number of its root, and the curve's coefficients, in Z[u] and in Z[v], for balls."""
 
     curve: PlaneCurve
     root: int
     value: list[arb_poly]
     columns: list[arb_poly]
-    squares: list[arb_poly] | None
 
     @classmethod
     def of(cls, curve: PlaneCurve, root: int) -> Branch:
-        value = [arb_poly(c) for c in curve.in_v]
-        even = curve.exponent_gcd(1) % 2 == 0
-        return cls(curve, root, value, [arb_poly(c) for c in curve.in_u], value[::2] if even else None)
+        return cls(curve, root, [arb_poly(c) for c in curve.in_v], [arb_poly(c) for c in curve.in_u])
 
     def height(self, u: fmpq, low: fmpq, high: fmpq) -> arb | None:
         """The branch over u; None when there are not so many roots between the heights."""
-        p = self.curve.over(u)
-        if self.squares is None or high <= 0:
-            return numbered_root(p, low, high, self.root)
-        # as many roots below zero as above it, each the other one's negative
-        p = p.deflate(2)
-        if low >= 0:
-            found = numbered_root(p, low * low, high * high, self.root)
-            return None if found is None else found.sqrt()
-        changes = changes_of(p)
-        below = changes(fmpq(0)) - changes(low * low) - (p(low * low) == 0)
-        if self.root < below:
-            found = numbered_root(p, fmpq(0), low * low, below - 1 - self.root)
-            return None if found is None else -found.sqrt()
-        zero = int(p[0] == 0)
-        if zero and self.root == below:
-            return arb(0)
-        found = numbered_root(p, fmpq(0), high * high, self.root - below - zero)
-        return None if found is None else found.sqrt()
+        return numbered_root(self.curve.over(u), low, high, self.root)
 
 
 @dataclass(frozen=True)
@@ -126,7 +97,7 @@ def integrals_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort, run:
     PrecisionTooLow
     """
     if abs(run) == 2 and (at := effort.points[run > 0]) is not None:
-        meeting = _beside(branch, at, (left, right)[:: -1 if run > 0 else 1], effort)
+        meeting = _beside(branch, at, (left, right) if run < 0 else (right, left), effort)
         if meeting is not None:
             return meeting
     low, high = effort.heights
@@ -187,45 +158,36 @@ def _by_series(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Ef
     PrecisionTooLow
     """
     best: tuple[arb, fmpq] | None = None
-    for rows in (branch.squares, branch.value):
-        if rows is None or best is not None:
-            continue
-        shifted = [c(arb_poly([middle, 1])) for c in rows]
-        for degree in effort.degrees:
-            if best is not None and best[1] * _POOR > half:
-                break
-            found = _along(shifted, half, height, degree, effort, rows is branch.squares)
-            if found is not None and (best is None or found[1] > best[1]):
-                best = found
+    shifted = [c(arb_poly([middle, 1])) for c in branch.value]
+    for degree in effort.degrees:
+        if best is not None and best[1] * _POOR > half:
+            break
+        found = _along(shifted, half, height, degree, effort)
+        if found is not None and (best is None or found[1] > best[1]):
+            best = found
     return best
 
 
-def _along(
-    rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effort: Effort, squares: bool = False
-) -> tuple[arb, fmpq] | None:
-    """As `_by_series`, of the polynomial with these coefficients of the powers of v, or of v^2."""
-    found = disk(rows, half, height * height if squares else height, degree)
-    if found is None or (squares and not found.center > found.slack + found.reach):
+def _along(rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effort: Effort) -> tuple[arb, fmpq] | None:
+    """As `_by_series`, of the polynomial with these coefficients of the powers of v."""
+    found = disk(rows, half, height, degree)
+    if found is None:
         return None
-    bound = (found.center + found.slack + found.reach).sqrt() if squares else found.reach
-    proved = found.proved
-    coefficients, tail = _terms(found, bound, effort.share)
-    if squares:
-        coefficients = _root(coefficients, height)
-    total, power = arb(0), arb(proved)
+    coefficients, tail = _terms(found, effort.share)
+    total, power = arb(0), arb(found.proved)
     for k in range(0, len(coefficients), 2):
         total += coefficients[k] * power * fmpq(2, k + 1)
-        power = power * proved * proved
-    if total.rad() > effort.share and total.rad() * 2**_ROUNDED_BITS > arb(proved) * bound:
+        power = power * found.proved * found.proved
+    if total.rad() > effort.share and total.rad() * 2**_ROUNDED_BITS > arb(found.proved) * found.reach:
         raise PrecisionTooLow  # the disk alone says nearly as much as the series
-    return total + arb(0).union(2 * tail) - tail, proved
+    return total + arb(0).union(2 * tail) - tail, found.proved
 
 
-def _terms(found: Disk, bound: arb, share: arb) -> tuple[list[arb], arb]:
+def _terms(found: Disk, share: arb) -> tuple[list[arb], arb]:
     """A disk's power series to an order at which the tail is negligible, and a bound of the tail's integral."""
     ratio, order = 1 / arb(found.factor), 4
     while True:
-        tail = 2 * arb(found.proved) * bound * ratio**order / ((order + 1) * (1 - ratio))
+        tail = 2 * arb(found.proved) * found.reach * ratio**order / ((order + 1) * (1 - ratio))
         if tail < share or order >= ctx.prec:
             return found.coefficients(order), tail
         order += 4
@@ -233,6 +195,8 @@ def _terms(found: Disk, bound: arb, share: arb) -> tuple[list[arb], arb]:
 
 _NEWTON = 8
 """Steps to a point at which branches meet, from a place that is very near to it."""
+_SPREAD = 2**20
+"""So many times as large as what is left out beside a critical value is a panel there at least."""
 _NEAREST = 2**40
 """Part of a panel beside a critical value that is a rational number: so much is left out."""
 
@@ -246,6 +210,8 @@ def _beside(branch: Branch, at: fmpq, ends: tuple[fmpq, fmpq], effort: Effort) -
     ends : of the panel, the one next to the critical value first.
     """
     (near, far), (low, high) = ends, effort.heights
+    if abs(near - at) * _SPREAD > abs(far - near):
+        return None  # this is no end of the stack
     if near == at:
         near += (far - at) / _NEAREST
     with ctx.workprec(2 * ctx.prec):
@@ -256,6 +222,9 @@ def _beside(branch: Branch, at: fmpq, ends: tuple[fmpq, fmpq], effort: Effort) -
         slope, v = over.derivative(), height.mid()
         for _ in range(_NEWTON):
             v = (v - slope(v) / slope.derivative()(v)).mid()
+        reach = (height - v) ** 2 + (near - at) ** 2
+        if not abs(over(v)) * _SPREAD < abs(slope.derivative()(v)) * reach:
+            return None
         rows = recentered([row(arb_poly([at, 1 if far > at else -1])) for row in branch.value], v)
         for k in (2, 1):
             found = _from_point(rows, k, abs(near - at), abs(far - at), height - v, effort)
@@ -301,7 +270,7 @@ def _from_point(
     # the branch is that of the disk over the nearest place, and so over all others
     if found is None or not (root.rad() < found.reach and abs(there - found.center - found.along(sigma)) < found.reach):
         return None
-    coefficients, tail = _terms(found, found.reach, effort.share)
+    coefficients, tail = _terms(found, effort.share)
     h, total = arb(found.proved), arb(0)
     for n, c in enumerate(coefficients, k + 1):
         total += c * (h**n - sigma**n) * fmpq(k, n)
@@ -320,15 +289,6 @@ def _divided(row: arb_poly, k: int, j: int, sigma: arb) -> arb_poly:
 
 _ROUNDED_BITS = 20
 """By so many bits is a series to be better known than by the disk's size."""
-
-
-def _root(coefficients: Sequence[arb], constant: arb) -> list[arb]:
-    """The square root of a power series, of which the constant coefficient, not zero, is known."""
-    found = [constant]
-    for k in range(1, len(coefficients)):
-        products = sum((found[i] * found[k - i] for i in range(1, k)), arb(0))
-        found.append((coefficients[k] - products) / (2 * constant))
-    return found
 
 
 def _enclosed(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> tuple[fmpq, fmpq]:

@@ -146,6 +146,11 @@ class Claims:
         except PoleError as error:
             raise Violation(str(error)) from error
 
+    def place(self, x: Fraction, y: Fraction) -> str:
+        """A point of the plane in words."""
+        one, two = self.result.slice.axis_names
+        return f"{one}={text_of(x)}, {two}={text_of(y)}"
+
     def fibre_at(self, x: Fraction, y: Fraction) -> Fibre:
         """The solutions over a point.
 
@@ -160,10 +165,7 @@ class Claims:
             self._fibres[x, y] = fibre(self.model, self.parameters_at(x, y))
             return self._fibres[x, y]
         except NotFinite:
-            names = self.result.slice.axis_names
-            raise Violation(
-                f"there are infinitely many solutions at {names[0]}={text_of(x)}, {names[1]}={text_of(y)}"
-            ) from None
+            raise Violation(f"there are infinitely many solutions at {self.place(x, y)}") from None
 
     def level(self, u: fmpq, v: fmpq) -> int:
         """How many roots of the curves over u lie below v."""

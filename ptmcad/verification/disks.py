@@ -124,7 +124,7 @@ def _shifted(rows: Sequence[arb_poly], by: arb_poly) -> list[arb_poly]:
     return shifted
 
 
-_EVENED = 8
+_EVENED = 12
 """Terms of the polynomial by which `_evening` evens the steepness out."""
 
 

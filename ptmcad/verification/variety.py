@@ -36,7 +36,6 @@ from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpz_poly
 from ptmcad.answer.regionmap import HARMLESS, Kind
 from ptmcad.mechanism import ClosedMechanism, System
 from ptmcad.text.flint_numbers import to_fraction
-from ptmcad.text.numerals import text_of
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.derivation import coordinates_of
@@ -371,5 +370,4 @@ def _foreign_poles(point: FibrePoint) -> int:
 
 
 def _at(claims: Claims, point: FibrePoint) -> str:
-    names = claims.result.slice.axis_names
-    return f"{names[0]}={text_of(point.x)}, {names[1]}={text_of(point.y)}"
+    return claims.place(point.x, point.y)

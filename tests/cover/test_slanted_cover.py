@@ -15,7 +15,8 @@ from ptmcad.cover import components, tubes, union_area
 from ptmcad.cover.rectangles import Cover, Patch, Tube
 from ptmcad.cover.slanted import shown, stepped
 from ptmcad.cover.subdivision import FREE
-from ptmcad.verification.certified.slanted import Frame, slanted_sweep
+from ptmcad.verification.certified.slanted import Frame
+from ptmcad.verification.certified.sweep import sweep
 from ptmcad.verification.report import Violation
 
 STEPS = 2**20
@@ -65,7 +66,7 @@ def covers(draw: st.DrawFn) -> Cover:
 @settings(deadline=None, max_examples=examples(60))
 @given(covers(), st.integers(0, 10**6))
 def test_engine_and_checker_see_the_same_components(cover: Cover, seed: int) -> None:
-    one, two = components(cover), slanted_sweep(cover)
+    one, two = components(cover), sweep(cover)
     rng = random.Random(seed)
     label: dict[int, int] = {}
     for _ in range(60):
@@ -185,7 +186,7 @@ def test_a_tube_that_turns_outside_of_its_frame_would_part_it_in_three() -> None
     with pytest.raises(ValueError, match="neither stays"):
         components(Cover(64, (), (patch,)))
     with pytest.raises(Violation, match="turns back"):
-        slanted_sweep(Cover(64, (), (patch,)))
+        sweep(Cover(64, (), (patch,)))
 
 
 def test_frames_that_overlap_are_refused() -> None:
@@ -197,4 +198,4 @@ def test_frames_that_overlap_are_refused() -> None:
         with pytest.raises(ValueError, match="meets another one, or a rectangle"):
             components(cover)
         with pytest.raises(Violation, match="meets"):
-            slanted_sweep(cover)
+            sweep(cover)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import pytest
-from flint import arb, ctx, fmpq, fmpz_poly
+from flint import Ordering, arb, ctx, fmpq, fmpz_mpoly_ctx, fmpz_poly
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from support.few import few
 
 from ptmcad.text.plane import PlanePolynomial
@@ -206,3 +209,78 @@ def test_precision_that_rounding_uses_up_is_asked_for() -> None:
     expected = fmpq(3, 32) + fmpq(1, 4 * 10**6) + 3 * fmpq(1, 4)
     assert [p.tried for p in found] == [True]
     assert abs(found[0].integral - expected) < fmpq(1, 10**8)
+
+
+ROOM = fmpq(1, 10**12)
+"""Beside the critical value, which `ROOM` is left out of, as of a stack."""
+
+
+def part_beside(terms: Terms, root: int, at: fmpq, far: fmpq, error: fmpq, heights: tuple[fmpq, fmpq]) -> list[Part]:
+    """What is proved from a critical value on of a branch, whose critical value is known but for an error."""
+    near = at + ROOM * (1 if far > at else -1)
+    effort = Effort(arb(2) ** -40, fmpq(1, 10**9), fmpq(1, 10**15), heights, (2,), (at + error, at + error))
+    run = -2 if far > at else 2
+    return integrals_over(branch_of(terms, root), min(near, far), max(near, far), effort, run)
+
+
+@pytest.mark.parametrize("error", [fmpq(0), fmpq(1, 10**30), fmpq(-1, 10**30)])
+@pytest.mark.parametrize("name", [name for name in POINTS if name[:4] in ("turn", "node")])
+def test_one_series_reaches_a_turning_point_or_a_node(name: str, error: fmpq) -> None:
+    terms, root, antiderivative = POINTS[name]
+    with ctx.workprec(128):
+        first = part_beside(terms, root, fmpq(0), fmpq(1, 16), error, HEIGHTS)[0]
+        assert (first.tried, first.left) == (True, ROOM)
+        assert first.right > fmpq(1, 17)
+        expected = antiderivative(arb(first.right)) - antiderivative(arb(first.left))
+        assert first.integral.overlaps(expected - HEIGHTS[0] * (first.right - first.left))
+        assert first.integral.rad() < 1e-9
+
+
+def turned(a: int, b: int, c: int, d: int, p: int, q: int) -> tuple[Terms, Terms, fmpq, fmpq]:
+    """A fold and a node at (p/8, q/8) on curves that go on as polynomials: their terms, and the point.
+
+    The fold is on (u - p/8) = (v - q/8)^2 (1 + a (v - q/8)/4), and the node on the product of the lines v - q/8 =
+    c (u - p/8) and v - q/8 = d (u - p/8), plus b times the cube of u - p/8.
+    """
+    ring = fmpz_mpoly_ctx.get(("u", "v"), Ordering.lex)
+    x, y = 8 * ring.gen(0) - p, 8 * ring.gen(1) - q
+    fold = 32 * 8 * x - 32 * y * y - a * y * y * y
+    node = 8 * (y - c * x) * (y - d * x) + b * x * x * x
+    fold_terms, node_terms = ([(int(i), int(j), int(k)) for (i, j), k in f.terms()] for f in (fold, node))
+    return fold_terms, node_terms, fmpq(p, 8), fmpq(q, 8)
+
+
+@settings(deadline=None, max_examples=40)
+@given(
+    a=st.integers(-8, 8), b=st.integers(-3, 3),
+    slopes=st.lists(st.integers(-3, 3), min_size=2, max_size=2, unique=True),
+    place=st.tuples(st.integers(-8, 8), st.integers(-8, 8)), side=st.sampled_from([1, -1]), lower=st.booleans(),
+    error=st.sampled_from([0, 1, -1]), is_fold=st.booleans(),
+)  # fmt: skip
+def test_areas_beside_folds_and_nodes_are_those_of_many_strips(
+    a: int, b: int, slopes: list[int], place: tuple[int, int], side: int, lower: bool, error: int, is_fold: bool
+) -> None:
+    """Against sums of the branch's heights, each found by counting roots: bounds of an integral of what is monotone."""
+    fold, node, u, v = turned(a, b, *sorted(slopes), *place)
+    side = 1 if is_fold else side
+    heights = (v - fmpq(1, 4), v + fmpq(1, 4))
+    terms, far = fold if is_fold else node, u + side * fmpq(1, 64)
+    near, number = u + side * ROOM, 0 if lower else 1
+    with ctx.workprec(128):
+        branch = branch_of(terms, number)
+        found = part_beside(terms, number, u, far, fmpq(error, 10**30), heights)
+        assert sum((p.right - p.left for p in found), fmpq(0)) == abs(far - near)
+        first = found[0]
+        strips = 64
+        width = (first.right - first.left) / strips
+        at = [
+            height for k in range(strips + 1) if (height := branch.height(first.left + k * width, *heights)) is not None
+        ]
+        assert len(at) == strips + 1
+        low, high = (sum((pick(*ends) for ends in pairwise(at)), arb(0)) * width for pick in (min, max))
+        floor = heights[0] * (first.right - first.left)
+        assert not first.integral + floor < low
+        assert not first.integral + floor > high
+        assert near in (first.left, first.right)
+        assert first.tried
+        assert first.integral.rad() < 1e-9

@@ -13,7 +13,6 @@ from fractions import Fraction
 
 from ptmcad.answer.regionmap import Cell
 from ptmcad.question.slice import Count
-from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.boxes import Unproved, Zero
 from ptmcad.verification.certified.counted import Counted, Places, differs, stored
 from ptmcad.verification.certified.models import ModelCounting
@@ -56,7 +55,7 @@ def check_points(
     undecided: list[str] = []
     for n, cell in enumerate(claims.result.cells):
         report(n, len(claims.result.cells))
-        where = _where(claims, *cell.sample)
+        where = f"at {claims.place(*cell.sample)}"
         try:
             found = check_cell(claims, counting, cell, places)
         except Unproved as reason:
@@ -79,11 +78,6 @@ def counting_of(claims: Claims) -> ModelCounting:
     """How the solutions of the map's model are counted."""
     asked = claims.result.slice.count is Count.ADMISSIBLE
     return ModelCounting(form_of(claims.result.slice), excesses_of(claims.model) if asked else ())
-
-
-def _where(claims: Claims, x: Fraction, y: Fraction) -> str:
-    one, two = claims.result.slice.axis_names
-    return f"at {one}={text_of(x)}, {two}={text_of(y)}"
 
 
 def check_cell(claims: CertifiedClaims, counting: ModelCounting, cell: Cell, places: Places | None = None) -> int:
@@ -143,7 +137,7 @@ def _decided(
         except Unproved:
             continue
         if differs(cell, there.counts):
-            raise Violation(f"said to have {stored(cell)}; {_where(claims, *at)}, in the same cell, there are "
+            raise Violation(f"said to have {stored(cell)}; at {claims.place(*at)}, in the same cell, there are "
                             f"{there.counts}")  # fmt: skip
         return at, there
     return None
@@ -205,7 +199,7 @@ def _check_beside(
     if (found := _decided(claims, counting, cell, places)) is None:
         raise reason
     if in_boxes is not None:
-        raise _InBoxes(f"{reason}; the counts are those {_where(claims, *found[0])}") from in_boxes
+        raise _InBoxes(f"{reason}; the counts are those at {claims.place(*found[0])}") from in_boxes
     return len(cell.solutions)
 
 

@@ -25,7 +25,6 @@ from math import ceil, isqrt
 from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
-from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.counted import Counted, Places, differs, stored
 from ptmcad.verification.certified.points import HOPELESS, counting_of
@@ -89,7 +88,7 @@ def check_boxes(
         report(k, len(tried))
         if not points and missing == HOPELESS:
             return Unchecked(f"none of the first {missing} points could be decided; seed {seed}")
-        there = _check_point(claims, places, box, box.u, box.v)
+        there = check_point(claims, box.cell, box.u, box.v, places)
         if there is not None:
             points += 1
         if not with_box:
@@ -103,7 +102,7 @@ def check_boxes(
         # where constancy is not proved, a change of the count would show in a corner
         for side1 in (-1, 1):
             for side2 in (-1, 1):
-                _check_point(claims, places, box, box.u + side1 * box.half, box.v + side2 * box.half)
+                check_point(claims, box.cell, box.u + side1 * box.half, box.v + side2 * box.half, places)
         missing += 1
     text = f"{proved} boxes, {100 * float(area):.2g} % of the window, {points} points; seed {seed}"
     if missing:
@@ -234,20 +233,29 @@ def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> SampleBox | None
     return SampleBox(u, v, half, claims.cell_of[component])
 
 
-def _check_point(
-    claims: CertifiedClaims, places: Places | None, box: SampleBox, u: Fraction, v: Fraction
+def check_point(
+    claims: CertifiedClaims, number: int, u: Fraction, v: Fraction, places: Places | None = None, reason: str = ""
 ) -> Counted | None:
-    """The counts at a point are those of the cell; its equilibria, None if they were not proved."""
+    """The counts at a point are those of the cell; its equilibria, None if they were not proved.
+
+    Parameters
+    ----------
+    number : of the cell.
+    reason : to look there, in words that are added to what is wrong.
+
+    Raises
+    ------
+    Violation
+    """
     x, y = claims.off_lattice(u, v)
-    cell = claims.result.cells[box.cell]
+    cell = claims.result.cells[number]
     try:
         there = counting_of(claims).at(claims, x, y, places and places((u, u), (v, v)))
     except Unproved:
         return None
     if differs(cell, there.counts):
-        one, two = claims.result.slice.axis_names
-        raise Violation(f"at {one}={text_of(x)}, {two}={text_of(y)} in cell {box.cell}, which is said to have "
-                        f"{stored(cell)}, there are {there.counts}")  # fmt: skip
+        raise Violation(f"at {claims.place(x, y)} in cell {number}, which is said to have {stored(cell)}, there are "
+                        f"{there.counts}{reason}")  # fmt: skip
     return there
 
 

@@ -14,7 +14,6 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.mechanism import ClosedMechanism, Mechanism, System
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import approximate_text, text_of
-from ptmcad.verification.certified.slanted import SlantedSweep, slanted_sweep
 from ptmcad.verification.certified.sweep import Sweep, sweep
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import shorthands_of, tells_stability
@@ -37,10 +36,10 @@ class CertifiedClaims(Claims):
     """The result, and what follows from its cover."""
 
     @cached_property
-    def sweep(self) -> Sweep | SlantedSweep:
+    def sweep(self) -> Sweep:
         cover = self.result.cover
         assert cover is not None
-        return slanted_sweep(cover) if cover.patches else sweep(cover)
+        return sweep(cover)
 
     @cached_property
     def slack(self) -> int:

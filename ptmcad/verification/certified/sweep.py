@@ -1,10 +1,10 @@
-"""What a cover leaves free, found by a sweep: horizontal strips between the rectangles' edges and the gaps in them.
+"""What a cover leaves free, found by a sweep: gaps, blocks and frames of slanted pieces, strip by strip.
 
-Guarantee: exact; all coordinates are integers or rationals. Two gaps in neighbouring strips are joined when the open
-intervals overlap, because both strips' rectangles, being closed, block the line between the strips.
+Guarantee: what is said to be connected is so, and bounds of areas hold; without slanted pieces they are exact. All
+coordinates are integers or rationals.
 
-From strip to strip gaps and blocks go on, each with its number, but in zones of blocks that beginning or ending
-rectangles meet, with the gaps on both sides of these: what is new there is joined with what was there.
+From strip to strip gaps and blocks go on, but in zones in which rectangles begin or end, with what touches these: what
+is new there is joined with what was there. Beside frames all begin anew, as frames' sides change with the height.
 
 The engine finds the same by subdivision of the window.
 """
@@ -13,25 +13,103 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right, insort
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
+from typing import Any
 
-from ptmcad.cover.rectangles import Cover, Rectangle
+from ptmcad.cover.rectangles import Cover
+from ptmcad.verification.certified.slanted import Frame, Part
+from ptmcad.verification.report import Violation
 
-Interval = tuple[int, int]
-Part = tuple[int, int, int]
-"""A gap or a block: left, right, and its number."""
+Entry = tuple[int, int, int]
+"""Of a rectangle or a frame: left, right, and the frame's number; -1 for a rectangle."""
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """Something of a strip from left to right: a gap or a block with its node, or a frame."""
+
+    left: int
+    right: int
+    free: bool
+    node: int
+    frame: int = -1
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """The strips from below with what is in them, from the left.
+
+    Attributes
+    ----------
+    lines : heights of the edges; strip k lies between lines k and k + 1.
+    component_of : of each node its component or, of closed ones, its cluster: what closed blocks that meet are
+        together.
+    first_part : of each frame the node of the part below its tubes.
+    areas : of components, at most; cluster_areas : at least.
+    touching : pairs (component, cluster) that share boundary points.
+    """
+
+    steps: int
+    lines: tuple[int, ...]
+    rows: tuple[tuple[Item, ...], ...]
+    frames: tuple[Frame, ...]
+    component_of: tuple[int, ...]
+    first_part: tuple[int, ...]
+    areas: dict[int, Fraction]
+    cluster_areas: dict[int, Fraction]
+    touching: frozenset[tuple[int, int]]
+
+    def locate(self, u: Fraction, v: Fraction) -> int | None:
+        """The component of a point of the open window; None where it is in the cover, or on a frame's side."""
+        found = {self._at(item, u, v) for item in self._items((u, v), (u, v))}
+        return found.pop() if len(found) == 1 else None
+
+    def _at(self, item: Item, u: Fraction, v: Fraction) -> int | None:
+        if item.frame < 0:
+            return self.component_of[item.node] if item.free else None
+        frame = self.frames[item.frame]
+        number = frame.place(u, v) if frame.patch.along == 0 else frame.place(v, u)
+        return None if number is None else self.component_of[self.first_part[item.frame] + number]
+
+    def free_around(self, u: Fraction, v: Fraction, half: Fraction) -> bool:
+        """Whether the closed square of this half width around a point is free."""
+        if min(u, v) < half or max(u, v) + half > self.steps:
+            return False
+        low, high = (u - half, v - half), (u + half, v + half)
+        return all(
+            item.free if item.frame < 0 else self.frames[item.frame].avoids(low, high)
+            for item in self._items(low, high)
+        )
+
+    def _items(self, low: tuple[Fraction, Fraction], high: tuple[Fraction, Fraction]) -> Iterator[Item]:
+        """What of the strips a closed rectangle meets."""
+        first, last = bisect_left(self.lines, low[1]) - 1, bisect_right(self.lines, high[1])
+        for row in self.rows[max(first, 0) : max(last, 0)]:
+            k = max(bisect_left(row, low[0], key=_right), 0)
+            while k < len(row) and row[k].left <= high[0]:
+                yield row[k]
+                k += 1
+
+
+def _right(item: Item) -> Any:
+    return item.right
 
 
 @dataclass(slots=True)
-class Sets:
-    """Disjoint sets of numbers, which grow together."""
+class _Sets:
+    """Disjoint sets of gaps or of blocks, which grow together, with what is known of their areas so far."""
 
     parent: list[int]
+    free: list[bool]
+    areas: list[Fraction | int]
 
-    def add(self) -> int:
+    def add(self, free: bool, area: Fraction | int) -> int:
         self.parent.append(len(self.parent))
+        self.free.append(free)
+        self.areas.append(area)
         return len(self.parent) - 1
 
     def top(self, n: int) -> int:
@@ -45,199 +123,167 @@ class Sets:
         self.parent[max(one, two)] = min(one, two)
 
 
-@dataclass(frozen=True, slots=True)
-class Sweep:
-    """The strips from below with their gaps, from the left.
-
-    Attributes
-    ----------
-    lines : heights of the edges; strip k lies between lines k and k + 1.
-    gaps : for each strip the open gaps (left, right, number), numbers being `top` ones of components.
-    areas : of the components.
-    cluster_areas : of the clusters, which are what closed blocks that meet are together.
-    touching : pairs (component, cluster) that share boundary points.
-    """
-
-    steps: int
-    lines: tuple[int, ...]
-    gaps: tuple[tuple[Part, ...], ...]
-    areas: dict[int, int]
-    cluster_areas: dict[int, int]
-    touching: frozenset[tuple[int, int]]
-
-    def locate(self, u: Fraction, v: Fraction) -> int | None:
-        """The component that a point of the open window lies in, None in a closed rectangle."""
-        k = bisect_right(self.lines, v) - 1
-        found = self._gap(k, u)
-        if found is not None and v == self.lines[k] and k > 0:
-            # on a line between strips: free only when it is in both
-            return found if self._gap(k - 1, u) is not None else None
-        return found
-
-    def free_around(self, u: Fraction, v: Fraction, half: Fraction) -> bool:
-        """Whether the closed square of this half width around a point is in one gap after the other."""
-        if min(u, v) < half or max(u, v) + half > self.steps:
-            return False
-        first, last = bisect_left(self.lines, v - half), bisect_right(self.lines, v + half)
-        # strips that the closed square meets, also along a line only
-        for strip in range(max(first - 1, 0), min(last, len(self.gaps))):
-            gaps = self.gaps[strip]
-            k = bisect_left(gaps, u, key=_left) - 1
-            if k < 0 or not (gaps[k][0] < u - half and u + half < gaps[k][1]):
-                return False
-        return True
-
-    def _gap(self, strip: int, u: Fraction) -> int | None:
-        gaps = self.gaps[strip]
-        k = bisect_left(gaps, u, key=_left) - 1
-        if k < 0:
-            return None
-        left, right, number = gaps[k]
-        return number if left < u < right else None
-
-
-def _left(gap: Part) -> Fraction:
-    return Fraction(gap[0])
-
-
 def sweep(cover: Cover) -> Sweep:
     """Sweep the window from below.
 
     Parameters
     ----------
     cover : whose rectangles lie in the window (`ptmcad.verification.certified.structure` checks it).
+
+    Raises
+    ------
+    Violation
+        When a patch is none, or a frame meets something else.
     """
-    steps = cover.steps
-    begin: dict[int, list[Rectangle]] = defaultdict(list)
-    end: dict[int, list[Rectangle]] = defaultdict(list)
-    for rectangle in cover.rectangles:
-        begin[rectangle[2]].append(rectangle)
-        end[rectangle[3]].append(rectangle)
-    lines = sorted({0, steps, *begin, *end})
-    free, full, pairs = _Parts(), _Parts(), set[tuple[int, int]]()
-    rows: list[list[Part]] = []
-    gaps: list[Part] = []
-    blocks: list[Part] = []
-    active: list[Interval] = []
-    for low in lines[:-1]:
-        for left, right, _, _ in end[low]:
-            del active[bisect_left(active, (left, right))]
-        for left, right, _, _ in begin[low]:
-            insort(active, (left, right))
-        changed = [(left, right) for left, right, _, _ in (*end[low], *begin[low])]
+    frames = tuple(Frame(patch, k) for k, patch in enumerate(cover.patches))
+    begin: dict[int, list[Entry]] = defaultdict(list)
+    end: dict[int, list[Entry]] = defaultdict(list)
+    pieces = [(r, -1) for r in cover.rectangles] + [(patch.frame, k) for k, patch in enumerate(cover.patches)]
+    for (left, right, bottom, top), number in pieces:
+        begin[bottom].append((left, right, number))
+        end[top].append((left, right, number))
+    lines = sorted({0, cover.steps, *begin, *end})
+    sets = _Sets([], [], [])
+    first_part, first_tube = [], []
+    for frame in frames:
+        first_part.append(len(sets.free))
+        for area in frame.parts:
+            sets.add(True, area)
+        first_tube.append(len(sets.free))
+        rest = (frame.high - frame.low) * (frame.top - frame.bottom) - sum(frame.parts)
+        for k in range(len(frame.centers)):
+            # all of what no part has is the first one's: where tubes are not in one cluster the rest is at least 0
+            sets.add(False, max(rest, 0) if k == 0 and len(frame.centers) == 1 else 0)
+    pairs = {
+        (part, tube + k)
+        for frame, first, tube in zip(frames, first_part, first_tube, strict=True)
+        for k in range(len(frame.centers))
+        for part in (first + k, first + k + 1)
+        if sets.areas[part] >= 1
+    }
+
+    def meet(below: Iterator[Part], above: Iterator[Part], low: Fraction | int, high: Fraction | int) -> None:
+        others = list(above)
+        for a, b, open_one, one in below:
+            for c, d, open_two, two in others:
+                start, stop = max(a, c, low), min(b, d, high)
+                if open_one and open_two:
+                    if start < stop:
+                        sets.join(one, two)
+                elif start <= stop:
+                    if open_one == open_two:
+                        sets.join(one, two)
+                    else:
+                        pairs.add((one, two) if open_one else (two, one))
+
+    def parts(item: Item, axis: int, side: int, ends: tuple[int, int]) -> Iterator[Part]:
+        if item.frame < 0:
+            yield *ends, item.free, item.node
+            return
+        for a, b, is_open, number in frames[item.frame].side(axis, side):
+            yield a, b, is_open, (first_part if is_open else first_tube)[item.frame] + number
+
+    def grow(items: Sequence[Item], height: int) -> None:
+        """What begins or ends at a line: of areas what is below the line is taken off, or added."""
+        for item in items:
+            if item.frame < 0:
+                sets.areas[item.node] += (item.right - item.left) * height
+
+    rows: list[tuple[Item, ...]] = []
+    row: list[Item] = []
+    active: list[Entry] = []
+    for low, high in pairwise(lines):
+        for entry in end[low]:
+            del active[bisect_left(active, entry)]
+        for entry in begin[low]:
+            insort(active, entry)
         # from the right, so that the numbers of what is left of a zone stay
-        for first, last in reversed(_zones(changed, blocks) if low else [(0, 0)]):
-            sides = blocks[max(first - 1, 0) : first], blocks[last : last + 1]
-            bottom = max((b for _, b, _ in sides[0]), default=0)
-            top = min((a for a, _, _ in sides[1]), default=steps)
-            inner = active[bisect_right(active, (bottom, steps)) if sides[0] else 0 : bisect_left(active, (top,))]
-            at = slice(bisect_left(gaps, (bottom,)), bisect_left(gaps, (top,)))
-            new_blocks = full.begin(_merged(inner), low)
-            new_gaps = free.begin(_between(new_blocks, bottom, top), low)
-            # a gap that ends at a block which goes on is joined with the old one that ended there
-            pairs.update(_meeting(new_gaps, new_blocks, closed=True))
-            old_blocks, old_gaps = blocks[first:last], gaps[at]
-            full.end(old_blocks, low)
-            free.end(old_gaps, low)
-            for one, two in _meeting(old_gaps, new_gaps, closed=False):
-                free.sets.join(one, two)
-            for one, two in _meeting(old_blocks, new_blocks, closed=True):
-                full.sets.join(one, two)
-            pairs.update(_meeting(old_gaps, new_blocks, closed=True))
-            pairs.update((gap, block) for block, gap in _meeting(old_blocks, new_gaps, closed=True))
-            blocks[first:last], gaps[at] = new_blocks, new_gaps
-        rows.append(list(gaps))
-    full.end(blocks, steps)
-    free.end(gaps, steps)
-    top_of = [free.sets.top(n) for n in range(len(free.sets.parent))]
+        for first, last in [(0, len(row))] if frames or not row else reversed(_zones([*end[low], *begin[low]], row)):
+            old = row[first:last]
+            bottom, top = (old[0].left, old[-1].right) if old else (0, cover.steps)
+            inner = active[bisect_left(active, (bottom,)) : bisect_left(active, (top,))]
+            new = [
+                Item(left, right, free, -1 if number >= 0 else sets.add(free, -(right - left) * low), number)
+                for left, right, free, number in _row(inner, bottom, top)
+            ]
+            grow(old, low)
+            for one, two in pairwise([*row[max(first - 1, 0) : first], *new, *row[last : last + 1]]):
+                meet(parts(one, 0, 1, (low, high)), parts(two, 0, 0, (low, high)), low, high)
+            for one, two in _touching(old, new):
+                # what a frame that goes on across the line meets there, it meets along its upright sides in one strip
+                if _ends(one, frames, low, 3) and _ends(two, frames, low, 2):
+                    span = max(one.left, two.left), min(one.right, two.right)
+                    meet(parts(one, 1, 1, (one.left, one.right)), parts(two, 1, 0, (two.left, two.right)), *span)
+            row[first:last] = new
+        rows.append(tuple(row))
+    grow(row, cover.steps)
+    component_of = tuple(map(sets.top, sets.parent))
+    found: tuple[dict[int, Fraction], dict[int, Fraction]] = defaultdict(Fraction), defaultdict(Fraction)
+    for n, is_free in enumerate(sets.free):
+        found[not is_free][component_of[n]] += sets.areas[n]
     return Sweep(
-        steps,
-        tuple(lines),
-        tuple(tuple((a, b, top_of[n]) for a, b, n in row) for row in rows),
-        free.areas_of_sets(),
-        full.areas_of_sets(),
-        frozenset((top_of[gap], full.sets.top(block)) for gap, block in pairs),
-    )
+        cover.steps, tuple(lines), tuple(rows), frames, component_of, tuple(first_part),
+        {n: area for n, area in found[0].items() if area > 0}, dict(found[1]),
+        frozenset((component_of[a], component_of[b]) for a, b in pairs),
+    )  # fmt: skip
 
 
-class _Parts:
-    """Gaps, or blocks, that go on through strips as long as nothing next to them changes."""
-
-    def __init__(self) -> None:
-        self.sets = Sets([])
-        self._areas: list[int] = []
-
-    def begin(self, intervals: Iterable[Interval], low: int) -> list[Part]:
-        """New ones, from a line on; what is counted of an area is below the line so far."""
-        found = [(a, b, self.sets.add()) for a, b in intervals]
-        self._areas += [-(b - a) * low for a, b, _ in found]
-        return found
-
-    def end(self, some: Iterable[Part], high: int) -> None:
-        """They end at a line."""
-        for a, b, n in some:
-            self._areas[n] += (b - a) * high
-
-    def areas_of_sets(self) -> dict[int, int]:
-        """Areas by the sets' `top` numbers, when all have ended."""
-        found: dict[int, int] = defaultdict(int)
-        for n, area in enumerate(self._areas):
-            found[self.sets.top(n)] += area
-        return dict(found)
+def _zones(changed: Sequence[Entry], row: Sequence[Item]) -> list[tuple[int, int]]:
+    """The items of a strip that changes meet, as disjoint parts: from which one to before which one, from the left."""
+    found: list[tuple[int, int]] = []
+    met = ((bisect_left(row, left, key=_right), bisect_right(row, right, key=_left)) for left, right, _ in changed)
+    for zone in sorted(met):
+        before = found.pop() if found and zone[0] <= found[-1][1] else zone
+        found.append((before[0], max(before[1], zone[1])))
+    return found
 
 
-def _zones(changed: Iterable[Interval], blocks: list[Part]) -> list[Interval]:
-    """Of blocks in their order the parts that changes meet: from which one to before which one, from the left.
+def _left(item: Item) -> Any:
+    return item.left
 
-    Between two of them is a block that meets none. A part is empty where rectangles begin in a gap.
+
+def _ends(item: Item, frames: Sequence[Frame], line: int, side: int) -> bool:
+    """Whether an item has its bottom (side 2) or its top (3) on the line between two strips."""
+    return item.frame < 0 or frames[item.frame].patch.frame[side] == line
+
+
+def _row(active: list[Entry], bottom: int, top: int) -> Iterator[tuple[int, int, bool, int]]:
+    """Gaps, blocks and frames of a part of a strip: left, right, whether it is free, the frame's number or -1.
+
+    Raises
+    ------
+    Violation
+        When a frame overlaps something.
     """
-    met = sorted(
-        (bisect_left(blocks, left, key=_end), bisect_right(blocks, right, key=_begin)) for left, right in changed
-    )
-    return list(_merged(met))
+    at = bottom
+    block: tuple[int, int] | None = None
+    for left, right, number in [*active, (top, top, -2)]:
+        if block is not None and (number != -1 or left > block[1]):
+            yield *block, False, -1
+            at, block = block[1], None
+        if number == -1:
+            if block is None and left < at:
+                raise Violation("a slanted piece's frame meets a rectangle")
+            if block is None and left > at:
+                yield at, left, True, -1
+            block = (left, right) if block is None else (block[0], max(block[1], right))
+            continue
+        if left < at:
+            raise Violation("a slanted piece's frame meets another one, or a rectangle")
+        if left > at:
+            yield at, left, True, -1
+        if number >= 0:
+            yield left, right, False, number
+        at = right
 
 
-def _begin(part: Part) -> int:
-    return part[0]
-
-
-def _end(part: Part) -> int:
-    return part[1]
-
-
-def _merged(active: list[Interval]) -> Iterator[Interval]:
-    """The union of sorted closed intervals, as disjoint ones."""
-    current: Interval | None = None
-    for left, right in active:
-        if current is None:
-            current = (left, right)
-        elif left <= current[1]:
-            current = (current[0], max(current[1], right))
-        else:
-            yield current
-            current = (left, right)
-    if current is not None:
-        yield current
-
-
-def _between(blocks: list[Part], bottom: int, top: int) -> Iterator[Interval]:
-    """The open intervals that blocks leave of (bottom, top)."""
-    edge = bottom
-    for left, right, _ in blocks:
-        if left > edge:
-            yield edge, left
-        edge = right
-    if edge < top:
-        yield edge, top
-
-
-def _meeting(one: list[Part], two: list[Part], closed: bool) -> Iterator[tuple[int, int]]:
-    """Pairs of numbers of intervals, sorted in both lists, that overlap; or have an end in common when ``closed``."""
+def _touching(below: Sequence[Item], above: Sequence[Item]) -> Iterator[tuple[Item, Item]]:
+    """Pairs of items of neighbouring strips whose closed intervals meet."""
     j = 0
-    for a, b, n in one:
-        while j < len(two) and (two[j][1] < a or (not closed and two[j][1] == a)):
+    for one in below:
+        while j < len(above) and above[j].right < one.left:
             j += 1
         k = j
-        while k < len(two) and (two[k][0] < b or (closed and two[k][0] == b)):
-            yield n, two[k][2]
+        while k < len(above) and above[k].left <= one.right:
+            yield one, above[k]
             k += 1

@@ -10,12 +10,11 @@ from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.counted import Places, differs, stored
-from ptmcad.verification.certified.points import counting_of
+from ptmcad.verification.certified.counted import Places
+from ptmcad.verification.certified.sampling import check_point
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.report import Unchecked, Violation
+from ptmcad.verification.report import Unchecked
 
 EFFORT, MAX_EFFORT = 2, 10
 BOXES_AT_FIRST, GROWTH = 10_000, 4
@@ -180,13 +179,4 @@ def _check_at(claims: CertifiedClaims, u: Fraction, v: Fraction) -> None:
     component = claims.sweep.locate(u, v)
     if component is None or component not in claims.cell_of:
         return
-    number = claims.cell_of[component]
-    cell, (x, y) = claims.result.cells[number], claims.off_lattice(u, v)
-    try:
-        there = counting_of(claims).at(claims, x, y)
-    except Unproved:
-        return
-    if differs(cell, there.counts):
-        one, two = claims.result.slice.axis_names
-        raise Violation(f"at {one}={text_of(x)}, {two}={text_of(y)} in cell {number}, which is said to have "
-                        f"{stored(cell)}, there are {there.counts}; a critical curve was found there")  # fmt: skip
+    check_point(claims, claims.cell_of[component], u, v, reason="; a critical curve was found there")

@@ -5,7 +5,7 @@ Guarantee: exact.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations, product
 from typing import NamedTuple
@@ -38,7 +38,18 @@ class Spring(NamedTuple):
     slopes: tuple[Pair, ...]
     weights: tuple[Pair, ...]
     bends: tuple[Pair, ...]
-    name: str
+    cone: Cone
+
+    @property
+    def name(self) -> str:
+        """That of the spring."""
+        return self.cone.name
+
+    @property
+    def line(self) -> Line:
+        """That along which the vector stays."""
+        assert self.cone.line is not None
+        return self.cone.line
 
 
 class Equations:
@@ -143,31 +154,38 @@ class Equations:
             return tuple(zip(across, up, strict=True))
 
         vector = self.waves(cone.vector[0]), self.waves(cone.vector[1])
-        return Spring(self.terms(cone.pull), vector, pairs(slopes), pairs(weights), pairs(bends), cone.name)
+        return Spring(self.terms(cone.pull), vector, pairs(slopes), pairs(weights), pairs(bends), cone)
 
-    def equations(self, directions: Mapping[int, Pair]) -> list[int]:
-        """The equations, with the directions of the springs."""
+    def equations(self, directions: Mapping[int, Pair], without: int | None = None) -> list[int]:
+        """The equations, with the directions of the springs; without the part of one, what balances it."""
         f = self.list
+        some = [(k, s) for k, s in enumerate(self.springs) if k != without]
         return [
-            f.subtract(
-                smooth,
-                f.sum(f.multiply(s.pull, f.dot(directions[k], s.weights[i])) for k, s in enumerate(self.springs)),
-            )
+            f.subtract(smooth, f.sum(f.multiply(s.pull, f.dot(directions[k], s.weights[i])) for k, s in some))
             for i, smooth in enumerate(self.smooth)
         ]
 
-    def hessian(self, directions: Mapping[int, Pair], without: int | None = None) -> list[list[int]]:
-        """The equations' Jacobian, rows divided by the factors; of one spring only what has not its inverse length."""
+    def hessian(
+        self, directions: Mapping[int, Pair], without: int | None = None, left_out: int | None = None
+    ) -> list[list[int]]:
+        """The equations' Jacobian, rows divided by the factors; of one spring only what has not its inverse length.
+
+        Parameters
+        ----------
+        left_out : a spring of which nothing is in it.
+        """
         f, n = self.list, self.form.size
         rows = [list(row) for row in self.jacobian]
         for k, s in enumerate(self.springs):
+            if k == left_out:
+                continue
             u = directions[k]
             turning, pushed = ([f.cross(u, g) for g in some] for some in (s.slopes, s.weights))
             for i in range(n):
                 for j in range(n):
                     part = f.dot(u, s.bends[i * n + j])
                     if s.name in self.sides:
-                        part = f.add(part, f.multiply(f.number(self._spin(s.name, j)), pushed[i]))
+                        part = f.add(part, f.multiply(f.number(self._spin(s, j)), pushed[i]))
                     elif k != without:
                         inverse = f.inverse_length(*s.vector)
                         whole = f.multiply(turning[j], self.factors[j])
@@ -175,89 +193,64 @@ class Equations:
                     rows[i][j] = f.subtract(rows[i][j], f.multiply(s.pull, part))
         return rows
 
-    def _rest(self, k: int) -> list[list[int]]:
-        """The Jacobian without all of one spring."""
-        f, n, s, u = self.list, self.form.size, self.springs[k], self.list.direction(*self.springs[k].vector)
-        rows = self.hessian(self.directions(), without=k)
-        return [
-            [f.add(rows[i][j], f.multiply(s.pull, f.dot(u, s.bends[i * n + j]))) for j in range(n)] for i in range(n)
-        ]
-
     def directions(self) -> dict[int, Pair]:
         """Those of all springs, from their vectors; of those on one line each, on the side that is looked at."""
         return {
-            k: self._pointed(s.name) if s.name in self.sides else self.list.direction(*s.vector)
+            k: self._pointed(s) if s.name in self.sides else self.list.direction(*s.vector)
             for k, s in enumerate(self.springs)
         }
 
-    def _line(self, name: str) -> Line:
-        """That of a spring on one line."""
-        line = next(c for c in self.form.cones if c.name == name).line
-        assert line is not None
-        return line
-
-    def _ahead(self, name: str) -> Pair:
+    def _ahead(self, s: Spring) -> Pair:
         """The vector along which such a spring points, on its side, before its line turns."""
-        x, y = (self.list.multiply(self.list.number(self.sides[name]), self.terms(t)) for t in self._line(name).vector)
+        x, y = (self.list.multiply(self.list.number(self.sides[s.name]), self.terms(t)) for t in s.line.vector)
         return x, y
 
-    def _spin(self, name: str, j: int) -> Fraction:
+    def _spin(self, s: Spring, j: int) -> Fraction:
         """How fast such a line turns along the j-th vector of the basis."""
-        return Fraction(sum(a * b for a, b in zip(self._line(name).twice, self.basis[j], strict=True)), 2)
+        return Fraction(sum(a * b for a, b in zip(s.line.twice, self.basis[j], strict=True)), 2)
 
-    def _with_line(self, name: str, vector: Pair) -> Pair:
+    def _with_line(self, s: Spring, vector: Pair) -> Pair:
         """A vector turned as such a line is."""
-        f, (x, y), twice = self.list, vector, self._line(name).twice
+        f, (x, y), twice = self.list, vector, s.line.twice
         if not any(twice):
             return vector
         angle = f.sum(f.multiply(f.number(Fraction(n, 2)), q) for n, q in zip(twice, self.unknowns, strict=True))
-        c, s = f.cosine(angle), f.sine(angle)
-        return f.subtract(f.multiply(x, c), f.multiply(y, s)), f.add(f.multiply(x, s), f.multiply(y, c))
+        across, up = f.cosine(angle), f.sine(angle)
+        return f.subtract(f.multiply(x, across), f.multiply(y, up)), f.dot((x, y), (up, across))
 
-    def _pointed(self, name: str) -> Pair:
-        f, (x, y) = self.list, self._ahead(name)
+    def _pointed(self, s: Spring) -> Pair:
+        f, (x, y) = self.list, self._ahead(s)
         p, q = f.constant(x), f.constant(y)
         if p is not None and q is not None and (p == 0 or q == 0):
-            return self._with_line(name, (f.number((p > 0) - (p < 0)), f.number((q > 0) - (q < 0))))
-        return self._with_line(name, f.direction(x, y))
+            return self._with_line(s, (f.number((p > 0) - (p < 0)), f.number((q > 0) - (q < 0))))
+        return self._with_line(s, f.direction(x, y))
 
     def ahead(self, k: int) -> int:
         """What is positive where a spring on one line is on its side."""
         s = self.springs[k]
-        return self.list.dot(self._with_line(s.name, self._ahead(s.name)), s.vector)
+        return self.list.dot(self._with_line(s, self._ahead(s)), s.vector)
 
     def without(self, k: int) -> list[int]:
         """The equations without the part of one spring, which is what balances it."""
-        f, directions = self.list, self.directions()
-        others = [(m, s) for m, s in enumerate(self.springs) if m != k]
-        return [
-            f.subtract(smooth, f.sum(f.multiply(s.pull, f.dot(directions[m], s.weights[i])) for m, s in others))
-            for i, smooth in enumerate(self.smooth)
-        ]
+        return self.equations(self.directions(), without=k)
+
+    def _adjugates(self, k: int) -> Iterator[tuple[Pair, int]]:
+        """For each two unknowns adj(A) r and K det(A), with the weights of a spring as rows of A."""
+        f, s, rest = self.list, self.springs[k], self.without(k)
+        for i, j in combinations(range(self.form.size), 2):
+            (ai, bi), (aj, bj) = s.weights[i], s.weights[j]
+            x, y = f.cross((bj, bi), (rest[j], rest[i])), f.cross((ai, aj), (rest[i], rest[j]))
+            yield (x, y), f.multiply(s.pull, f.cross((ai, bi), (aj, bj)))
 
     def directed(self, k: int) -> list[int]:
         """What is zero at equilibria and has the direction of a spring only next to det A: adj(A) r - K det(A) u."""
-        f, s, rest = self.list, self.springs[k], self.without(k)
-        u, found = self.directions()[k], []
-        for i, j in combinations(range(self.form.size), 2):
-            (ai, bi), (aj, bj) = s.weights[i], s.weights[j]
-            z = f.multiply(s.pull, f.cross((ai, bi), (aj, bj)))
-            x = f.subtract(f.multiply(bj, rest[i]), f.multiply(bi, rest[j]))
-            y = f.subtract(f.multiply(ai, rest[j]), f.multiply(aj, rest[i]))
-            found += [f.subtract(x, f.multiply(z, u[0])), f.subtract(y, f.multiply(z, u[1]))]
-        return found
+        f, u = self.list, self.directions()[k]
+        return [f.subtract(x, f.multiply(z, v)) for both, z in self._adjugates(k) for x, v in zip(both, u, strict=True)]
 
     def balances(self, k: int) -> list[int]:
         """What is zero at equilibria whatever the direction of a spring: |adj(A) r|^2 - (K det A)^2."""
-        f, s, rest = self.list, self.springs[k], self.without(k)
-        found = []
-        for i, j in combinations(range(self.form.size), 2):
-            (ai, bi), (aj, bj) = s.weights[i], s.weights[j]
-            x = f.subtract(f.multiply(bj, rest[i]), f.multiply(bi, rest[j]))
-            y = f.subtract(f.multiply(ai, rest[j]), f.multiply(aj, rest[i]))
-            z = f.multiply(s.pull, f.cross((ai, bi), (aj, bj)))
-            found.append(f.subtract(f.add(f.power(x, 2), f.power(y, 2)), f.power(z, 2)))
-        return found
+        f = self.list
+        return [f.subtract(f.dot(both, both), f.power(z, 2)) for both, z in self._adjugates(k)]
 
     def outweighs(self, k: int, i: int) -> int:
         """(K |g|)^2 - r^2 for the i-th unknown: not negative where a spring without length balances the rest."""
@@ -301,7 +294,7 @@ class Equations:
         slopes = [(f.multiply(c, g[0]), f.multiply(c, g[1])) for c, g in zip(self.factors, s.slopes, strict=True)]
         gram = f.sum(f.power(f.cross(g, h), 2) for g, h in combinations(slopes, 2))
         size = f.sum(f.dot(g, g) for g in slopes)
-        rows = self._rest(k)
+        rows = self.hessian(self.directions(), left_out=k)
         trace = f.sum(
             f.multiply(c, f.add(rows[i][i], f.multiply(s.pull, f.length(*s.bends[i * n + i]))))
             for i, c in enumerate(self.factors)
@@ -310,14 +303,13 @@ class Equations:
 
     def reach(self, k: int) -> Fraction:
         """About the largest length of a spring: the sum of the factors of its vector in the middle of the window."""
-        cone = next(c for c in self.form.cones if c.name == self.springs[k].name)
         at = [(a.low + a.high) / 2 for a in self.claims.result.slice.axes]
         values = {name: Fraction(0) for name in self.claims.model.free_lengths}
         try:
             values |= {n: e.evaluate(*at) for n, e in self.claims.result.slice.parameters.items()}
         except ExpressionError:
             return Fraction(1)
-        factors = (evaluated(terms, values) for row in cone.vector for terms in row.values())
+        factors = (evaluated(terms, values) for row in self.springs[k].cone.vector for terms in row.values())
         return sum(map(abs, factors), Fraction(0)) or Fraction(1)
 
 

@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ptmcad.cover.rectangles import Patch, Rectangle
-from ptmcad.verification.certified.slanted import SlantedSweep
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.sweep import Sweep
 
@@ -79,10 +78,7 @@ def pieces_of(claims: CertifiedClaims, wider: int = 0) -> Pieces:
             if len(t.controls) <= MAX_CONTROLS
         ]
     cells, found = claims.cell_of, claims.sweep
-    if isinstance(found, SlantedSweep):
-        rows += _open_in_strips(found, cells) + _open_in_frames(found, cells)
-    else:
-        rows += _gaps(found, cells)
+    rows += _open_in_strips(found, cells) + _open_in_frames(found, cells)
     return _in_arrays(rows, cover.steps)
 
 
@@ -103,16 +99,7 @@ def widened(claims: CertifiedClaims, wider: int) -> float:
     return total / cover.steps**2 * (1 + 1e-9)
 
 
-def _gaps(found: Sweep, cells: dict[int, int]) -> list[Row]:
-    return [
-        Row((left, right, low, high))
-        for (low, high), row in zip(pairwise(found.lines), found.gaps, strict=True)
-        for left, right, n in row
-        if n not in cells
-    ]
-
-
-def _open_in_strips(found: SlantedSweep, cells: dict[int, int]) -> list[Row]:
+def _open_in_strips(found: Sweep, cells: dict[int, int]) -> list[Row]:
     return [
         Row((item.left, item.right, low, high))
         for (low, high), row in zip(pairwise(found.lines), found.rows, strict=True)
@@ -121,7 +108,7 @@ def _open_in_strips(found: SlantedSweep, cells: dict[int, int]) -> list[Row]:
     ]
 
 
-def _open_in_frames(found: SlantedSweep, cells: dict[int, int]) -> list[Row]:
+def _open_in_frames(found: Sweep, cells: dict[int, int]) -> list[Row]:
     rows = []
     for frame, first in zip(found.frames, found.first_part, strict=True):
         patch = frame.patch
