@@ -15,7 +15,7 @@ from ptmcad.mechanism.angles import PI, split_angle, without_quarter_turns
 from ptmcad.mechanism.description import Kind, Parameter, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate, value_at
 from ptmcad.mechanism.sizes import Size, Sizes
-from ptmcad.text.codec import Codec, Key, choice, named, part, reading, record
+from ptmcad.text.codec import Codec, Key, choice, part, reading, record
 from ptmcad.text.entry import as_written
 from ptmcad.text.node import MAX_ENTRIES, Node
 from ptmcad.text.numerals import FINITE
@@ -143,21 +143,27 @@ _PARAMETER: Codec[dict[str, Any]] = record(
     ),
 )  # fmt: skip
 _UNKNOWN = choice(UnknownKind)
+
+
+def by_names(entry: Mapping[str, Any], most: int) -> dict[str, Any]:
+    """The schema of several of the same by names that are given here."""
+    return {"type": "object", "maxProperties": most, "propertyNames": NAME_SCHEMA, "additionalProperties": entry}
+
+
 DEFINITIONS = {
     "parameters": {
-        **named(_PARAMETER, most=MAX_ENTRIES).schema, "propertyNames": NAME_SCHEMA,
+        **by_names(_PARAMETER.schema, MAX_ENTRIES),
         "description": "Names to what they measure, defaults and usual ranges. Something has to use each: the "
         "description, or an expression under the record's parameters.",
     },
     "unknowns": {
-        **named(_UNKNOWN, most=MAX_UNKNOWNS).schema, "minProperties": 1, "propertyNames": NAME_SCHEMA,
+        **by_names(_UNKNOWN.schema, MAX_UNKNOWNS), "minProperties": 1,
         "description": "Names to where they live: angle on the circle; length and real on the line.",
     },
 }  # fmt: skip
 """Schemas of what mechanisms and systems have."""
-POINTS = {
-    "type": "object", "maxProperties": MAX_ENTRIES, "propertyNames": NAME_SCHEMA, "additionalProperties": two(VALUE),
-}  # fmt: skip
+
+POINTS = by_names(two(VALUE), MAX_ENTRIES)
 
 
 class Context:

@@ -11,9 +11,9 @@ from typing import Any
 
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism.derivative import negative, product, total
-from ptmcad.mechanism.reading import MAX_UNKNOWNS, NAME_SCHEMA, ZERO, Context, new_name, two
+from ptmcad.mechanism.reading import MAX_UNKNOWNS, NAME_SCHEMA, ZERO, Context, by_names, new_name, two
 from ptmcad.mechanism.xjoint import LEVEL, XJoint
-from ptmcad.text.codec import Codec, named, part, reading, record
+from ptmcad.text.codec import Codec, part, reading, record
 from ptmcad.text.entry import as_written
 from ptmcad.text.node import Node
 from ptmcad.text.tree import Tree, names_of
@@ -68,7 +68,7 @@ def xjoints(context: Context) -> Codec[tuple[XJoint, ...]]:
         node.gathered(read, node.mapping(MAX_UNKNOWNS, like).values())
         return tuple(found.values())
 
-    return reading(read_all, **{**named(joint, most=MAX_UNKNOWNS).schema, "propertyNames": NAME_SCHEMA})
+    return reading(read_all, **by_names(joint.schema, MAX_UNKNOWNS))
 
 
 def _two_names(entry: Node, like: str) -> tuple[Node, Node]:

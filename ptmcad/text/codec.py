@@ -200,46 +200,36 @@ def record(make: Callable[..., T], like: str = "", /, **keys: Codec[Any] | Key) 
     entries = {name: key if isinstance(key, Key) else Key(key) for name, key in keys.items()}
     known = [name for key, entry in entries.items() for name in entry.beside or (key,)]
     needed = [name for name, key in entries.items() if key.default is ... and not key.beside]
-    writers, readers, checked, instead = [], [], [], dict[str, object]()
-    for name, key in entries.items():
-        codec, get = _codec(key), key.get or attrgetter(key.field or name)
-        writers.append((name, get, codec.write, ... if key.always else key.default, bool(key.beside)))
-        if key.made:
-            readers.append((name, key.field or name, codec.read, key.default, bool(key.beside)))
-            instead[key.field or name] = key.instead
-        if key.checked:
-            checked.append((name, get, codec.write))
+    parts = [(n, key, _codec(key), key.get or attrgetter(key.field or n), key.default) for n, key in entries.items()]
+    checked = {name: (get, codec) for name, key, codec, get, _ in parts if key.checked}
 
     def write(value: T) -> dict[str, Any]:
         found = {}
-        for name, get, convert, default, beside in writers:
+        for name, key, codec, get, default in parts:
             part = get(value)
-            if beside:
-                found.update(convert(part))
-            elif default is ... or part != default:
-                found[name] = part if convert is _itself else convert(part)
+            if key.beside:
+                found.update(codec.write(part))
+            elif key.always or default is ... or part != default:
+                found[name] = codec.write(part)
         return found
 
     def read(node: Node) -> T:
         given = node.record(known, needed, like)
         values = {}
-        for name, argument, read_part, default, beside in readers:
-            place = node if beside else given.get(name)
-            if node.faults is None:
-                values[argument] = default if place is None else read_part(place)
+        for name, key, codec, _, default in parts:
+            if not key.made:
                 continue
-            values[argument] = instead[argument]
-            with node.faults:
-                if place is not None:
-                    values[argument] = read_part(place)
-                elif default is not ...:
-                    values[argument] = default
-        if node.faults is not None and ... in values.values():
+            place = node if key.beside else given.get(name)
+            if place is not None:
+                values[key.field or name] = node.attempt(codec.read, place, key.instead)
+            else:
+                values[key.field or name] = key.instead if default is ... else default
+        if ... in values.values():
             raise node.noted()
         found = node.made(make, **values)
-        if checked and all(name in given for name, *_ in checked):
-            for name, get, convert in checked:
-                if given[name].value != (other := convert(get(found))):
+        if all(name in given for name in checked):
+            for name, (get, codec) in checked.items():
+                if given[name].value != (other := codec.write(get(found))):
                     raise given[name].fault(f"is not {str(other)[:60]!r}, as the rest says")
         return found
 

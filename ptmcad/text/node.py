@@ -203,15 +203,18 @@ class Node(NamedTuple):
         """What is read of the entries of a list; of a record without those that are wrong, which are noted."""
         return tuple(self.gathered(read, self.items(length, most, like)))
 
+    def attempt(self, read: Callable[[Part], Item], part: Part, instead: Any) -> Any:
+        """What is read of a part; of a record something else where it is wrong, which is noted."""
+        if self.faults is None:
+            return read(part)
+        with self.faults:
+            return read(part)
+        return instead
+
     def gathered(self, read: Callable[[Part], Item], parts: Iterable[Part]) -> list[Item]:
         """What is read of some entries; of a record without those that are wrong, which are noted."""
-        if self.faults is None:
-            return [read(part) for part in parts]
-        found = []
-        for part in parts:
-            with self.faults:
-                found.append(read(part))
-        return found
+        found = (self.attempt(read, part, ...) for part in parts)
+        return [one for one in found if one is not ...]
 
     # ------------------------------------------------------------------------------------- values of JSON's documents
 

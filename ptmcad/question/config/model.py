@@ -6,7 +6,7 @@ record's folder, or in folders below, are read.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -241,22 +241,8 @@ def _doubtful(model: Model, keys: Iterable[str]) -> frozenset[str]:
     names = {step[1] for step in steps if step[0] == "parameters" and len(step) > 1}
     if any(step[0] == "parameters" and len(step) == 1 for step in steps):
         return frozenset(model.parameters)
-    if isinstance(model, System):
-        names |= _hidden(model, steps)
+    if isinstance(model, System):  # what is not listed may be something else, where faults hide what it is
+        undeclared = model.parameters.keys() - model.source.get("parameters", {})
+        told = all(step[0] in ("parameters", "name", "title", *_EXPRESSIONS) for step in steps)
+        names |= undeclared - {*model.variables} if told else undeclared
     return frozenset(names | {name for name, p in model.parameters.items() if p.alias_of in names})
-
-
-def _hidden(model: System, faulty: Sequence[list[str]]) -> set[str]:
-    """The names that a system does not list, and of which faults hide what they are: parameters, or something else."""
-    undeclared = {name for name in model.parameters if name not in model.source.get("parameters", {})}
-    if any(step[0] not in ("parameters", "name", "title", *_EXPRESSIONS) for step in faulty):
-        return undeclared
-    hidden: set[str] = set()
-    right: set[str] = set()
-    for key in _EXPRESSIONS:
-        found = model.source.get(key, ())
-        texts = enumerate(found, 1) if isinstance(found, list | tuple) else [("", found)]
-        for n, text in texts:
-            if isinstance(text, str):
-                (hidden if [key, *filter(None, (str(n),))] in faulty else right).update(NAME.findall(text))
-    return undeclared & (hidden - right)

@@ -46,7 +46,7 @@ def point_from_mapping(values: Mapping[str, object], model: Model | None = None)
         place = Place(name)
         if name not in model.parameters:
             raise ConfigError(unknown_parameter(name, model))
-        given[name] = number_text(from_python(plain(value), place))
+        given[name] = number_text(from_python(value, place, plain))
     return point_of(Record(model, values=given), {})
 
 
@@ -89,7 +89,7 @@ def point_from(
     ConfigError
         For anything wrong, with the name.
     """
-    given = {name: number_text(from_python(plain(value), Place(name))) for name, value in values.items()}
+    given = {name: number_text(from_python(value, Place(name), plain)) for name, value in values.items()}
     if not isinstance(question, Slice):
         return _at_point(record_of(tree_of(question, expected=_EXPECTED)), given, (), None)
     names = question.axis_names
