@@ -109,8 +109,8 @@ def named(
     """Several of the same by at most so many names; ``name`` reads one, and may refuse it."""
 
     def read(node: Node) -> Mapping[str, T]:
-        parts = node.mapping(most, like).values()
-        return dict(node.gathered(lambda part: (name(part, part.name), codec.read(part)), parts))
+        parts = node.mapping(most, like).items()
+        return dict(node.gathered(lambda part: (name(part[1], part[0]), codec.read(part[1])), parts))
 
     return Codec(
         lambda values: {name: codec.write(v) for name, v in values.items()}, read,
@@ -210,7 +210,7 @@ def record(make: Callable[..., T], like: str = "", /, **keys: Codec[Any] | Key) 
             if key.beside:
                 found.update(codec.write(part))
             elif key.always or default is ... or part != default:
-                found[name] = codec.write(part)
+                found[name] = part if codec.write is _itself else codec.write(part)
         return found
 
     def read(node: Node) -> T:
@@ -249,7 +249,7 @@ def _schema_of(entries: Mapping[str, Key]) -> Schema:
         schema: Schema = {"const": True} if flag else _codec(key).schema
         said: dict[str, object] = {"description": key.help} if key.help else {}
         said |= {} if key.shown is ... else {"default": key.shown}
-        properties |= schema["properties"] if key.beside else {name: {**schema, **said}}
+        properties |= schema["properties"] if key.beside else {name: {**schema, **said} if said else schema}
         alternatives |= {"oneOf": schema["oneOf"]} if key.beside else {}
     needed = [name for name, key in entries.items() if key.default is ... and not key.beside]
     return {

@@ -40,7 +40,7 @@ class Node(NamedTuple):
     value : of a record what is written there, of a document JSON's data.
     place : of a record a `Place`, of a document a text such as ``cells[3].sample``.
     faults : of a record, where what is wrong is noted; None of a document.
-    name : the last step of the place.
+    name : of a record, the last step of the place.
     """
 
     value: Any
@@ -49,7 +49,7 @@ class Node(NamedTuple):
     name: Any = ""
 
     @classmethod
-    def of(cls, written: Written, faults: Faults, name: Any = "") -> Node:
+    def of(cls, written: Written, faults: Faults | None, name: Any = "") -> Node:
         """A part of a record."""
         return cls(written, written.place, faults, name)
 
@@ -106,10 +106,7 @@ class Node(NamedTuple):
     # ------------------------------------------------------------------------------------------------------- shapes
 
     def below(self, step: str | int, value: Any) -> Node:
-        """An entry of this one, or where one would be."""
-        if self.faults is None:
-            inner = f"[{step}]" if isinstance(step, int) else f".{step[:40]}" if self.place else step[:40]
-            return Node(value, f"{self.place}{inner}", None, step)
+        """An entry of this part of a record, or where one would be."""
         if isinstance(value, Scalar | Sequence | Tree):
             return Node.of(value, self.faults, step)
         return Node(value, self.place.below(str(step)), self.faults, step)
@@ -125,9 +122,13 @@ class Node(NamedTuple):
         if not isinstance(inside, Mapping):
             raise self._unlike("is not an object", "a mapping", like, expected)
         self._check_size(len(inside), most, "keys")
-        if self.faults is None and (hidden := next((key for key in inside if not key.isprintable()), None)):
-            raise self.fault(f"has the key {hidden[:40]!r} with a character that is not printable")
-        return {key: self.below(key, value) for key, value in inside.items()}
+        if self.faults is not None:
+            return {key: self.below(key, value) for key, value in inside.items()}
+        for key in inside:
+            if not key.isprintable():
+                raise self.fault(f"has the key {key[:40]!r} with a character that is not printable")
+        start = f"{self.place}." if self.place else ""
+        return {key: Node(value, start + key[:40]) for key, value in inside.items()}
 
     def items(
         self, length: int | None = None, most: int | None = None, like: str = "", expected: str = ""
@@ -139,7 +140,9 @@ class Node(NamedTuple):
         self._check_size(len(inside), most, "entries")
         if length is not None and len(inside) != length:
             raise self.fault(f"has {len(inside)} entries, not {length}")
-        return [self.below(k, value) for k, value in enumerate(inside, self.faults is not None)]
+        if self.faults is not None:
+            return [self.below(k, value) for k, value in enumerate(inside, 1)]
+        return [Node(value, f"{self.place}[{k}]") for k, value in enumerate(inside)]
 
     def pair(self, what: str, like: str, expected: str = "") -> tuple[Node, Node]:
         """The two entries of a list that has two; ``what`` it is, for a record's message."""
@@ -169,6 +172,8 @@ class Node(NamedTuple):
     ) -> dict[str, Node]:
         """The entries of a mapping; every key that is not known, and every one that is missing, is a fault."""
         found = self.mapping(like=like, expected=expected)
+        if found.keys() >= {*needed} and found.keys() <= {*known}:
+            return found
         unknown = [name for name in found if name not in known]
         missing = [name for name in needed if name not in found]
         for name in unknown:
@@ -187,7 +192,7 @@ class Node(NamedTuple):
         return name in self._inside
 
     def at(self, name: str) -> Node:
-        """What a mapping has under a key, or where it would be."""
+        """What a record's mapping has under a key, or where it would be."""
         return self.below(name, self._inside.get(name))
 
     def entry(self, key: str) -> Node:
