@@ -332,7 +332,7 @@ class Context:
 
 
 class _Names(Sizes):
-    """The ring in which trees have their sizes as values, and names are refused that have none here.
+    """The ring of sizes, in which names are refused that have no meaning: of angles when their cosine is asked for.
 
     Parameters
     ----------
@@ -363,11 +363,7 @@ class _Names(Sizes):
                 "(1 - t^2)/(1 + t^2) and 2*t/(1 + t^2), t the tangent of its half"
             )
         self._check(angle, self.angles)
-        return super().parameter(f"cos {angle}")
-
-    def sin(self, angle: str) -> Size:
-        self._check(angle, self.angles)  # the cosine was asked for before
-        return super().parameter(f"sin {angle}")
+        return super().cos(angle)
 
     def _check(self, name: str, known: Mapping[str, None]) -> None:
         if name in self.doubtful:

@@ -22,7 +22,7 @@ from ptmcad.question.domain import MAX_DEGREE, fault, fault_of_part, unproved
 from ptmcad.question.examples import AXES
 from ptmcad.question.positivity import READING_WORK
 from ptmcad.question.slice import NOTHING_ADMISSIBLE, Axis, Count, Slice, have_free_lengths
-from ptmcad.text.entry import Place, Tree
+from ptmcad.text.entry import Place, Scalar, Tree
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.parsing import names_in
 from ptmcad.text.syntax import did_you_mean, parse
@@ -293,35 +293,31 @@ def _texts(
     A k that the springs do not have by default, say, is no parameter of the mechanism, but "k/10" says nothing without
     it. No engine looks at the sign of such a name, so it has to be proved here.
     """
-    texts = {name: _written(name, record) for name in effective}
-    waiting = list(texts.values())
-    while waiting:
-        for name in names_in(waiting.pop()):
-            if name in texts or name in record.axes:
-                continue
-            problem = (
-                ""
-                if resolved[name].is_constant
-                else unproved(name, record.model.kind(name), resolved[name], axes, READING_WORK)
-            )
-            if problem:
-                raise record.place_of(name).error(problem)
-            texts[name] = _written(name, record)
-            waiting.append(texts[name])
+    written = _reached(effective, record)
+    for name in written.keys() - {*effective}:
+        value = resolved[name]
+        if not value.is_constant and (problem := unproved(name, record.model.kind(name), value, axes, READING_WORK)):
+            raise record.place_of(name).error(problem)
+    texts = {**written, **{name: name for name in effective if name in record.axes}}
     return {name: texts[name] for name in record.model.parameters if name in texts}
+
+
+def _reached(names: Iterable[str], record: Record) -> dict[str, str]:
+    """Parameters that are no axes as they are written, and every parameter that such a text names."""
+    texts: dict[str, str] = {}
+    waiting = [*names]
+    while waiting:
+        name = waiting.pop()
+        if name not in texts and name in record.model.parameters and name not in record.axes:
+            texts[name] = _written(name, record)
+            waiting += names_in(texts[name])
+    return texts
 
 
 def written_in(record: Record, member: Slice) -> dict[str, str]:
     """Each parameter of a family's members as the record writes it, and every parameter that such a text names."""
-    texts = {}
-    waiting = [*member.parameters]
-    while waiting:
-        name = waiting.pop()
-        if name not in texts and name in record.model.parameters and name not in record.axes:
-            free = record.free is not None and name == record.free[0]
-            texts[name] = name if free else _written(name, record)
-            waiting += names_in(texts[name])
-    return texts
+    texts = {} if record.free is None else {record.free[0]: Scalar(record.free[0], Place())}
+    return _reached(member.parameters, record._replace(values={**record.values, **texts}))
 
 
 def _written(name: str, record: Record) -> str:
