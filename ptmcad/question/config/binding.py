@@ -33,7 +33,7 @@ def with_numbers(record: Record, numbers: Mapping[str, Fraction], places: Mappin
         for name, number in numbers.items()
         if name in known
     }
-    return record._replace(values={**record.values, **values, **fixed})
+    return record._replace(values={**record.values, **values, **fixed}, unread=record.unread - numbers.keys())
 
 
 def released_names(record: Record, free: str | None) -> set[str]:

@@ -16,8 +16,8 @@ from ptmcad.mechanism.reading import NUMBER, two
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.objects import plain, tree_of
 from ptmcad.question.config.options import ranges_of
-from ptmcad.question.config.record import AXIS_NAME, Record, Window, check_axis_name, described_record, window_of
-from ptmcad.question.config.resolution import axis_of, note_values, unread_names
+from ptmcad.question.config.record import AXIS_NAME, Record, Window, check_axis_name, window_of
+from ptmcad.question.config.resolution import axis_of, described_record, note_values
 from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
 from ptmcad.question.design import Condition, condition_of, named
 from ptmcad.question.examples import A_DESIGN, FIRST, SECOND
@@ -167,7 +167,7 @@ def checked_design(tree: Tree, given: Mapping[str, Written] | None = None) -> De
         with faults:
             if asked is not None:
                 raise tree.entries[other].place.error(f"a design has no {other!r}: its parameters are those of 'over'")
-    unread = unread_names(record, tree, faults) | _entries(entries.get("over")).keys()
+    unread = record.unread | _entries(entries.get("over")).keys()
     if faults.found and (not entries or len(record.axes) != 2):
         note_values(record._replace(unread=unread), faults)
     record = record._replace(design=None, unread=unread if faults.found else frozenset())

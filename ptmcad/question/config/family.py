@@ -15,8 +15,8 @@ from typing import NamedTuple
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism import Model
 from ptmcad.question.config.binding import bound, member_name
-from ptmcad.question.config.record import MAX_MEMBERS, Record, Window, check_members, described_record
-from ptmcad.question.config.resolution import axis_of, note_values, slice_of, unread_names, written_in
+from ptmcad.question.config.record import MAX_MEMBERS, Record, Window, check_members
+from ptmcad.question.config.resolution import axis_of, described_record, note_values, slice_of, written_in
 from ptmcad.question.config.scalars import number_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.entry import Scalar, Sequence, Tree, Written
@@ -124,7 +124,7 @@ def checked_family(tree: Tree) -> Family:
             if "free" not in tree.entries:
                 missing = tree.place.below("free")
                 raise missing.error("is missing: a family has a third parameter, such as free: {F: [-20, 0]}")
-        note_values(record._replace(unread=unread_names(record, tree, faults)), faults)
+        note_values(record, faults)
     return family_of(record, faults)
 
 

@@ -111,21 +111,6 @@ def record_of(tree: Tree) -> Record:
     return record
 
 
-def described_record(tree: Tree) -> tuple[Record, Faults]:
-    """A record as `read_record` has it, and what is wrong with it, where there is a model.
-
-    Raises
-    ------
-    ConfigError
-        Without one: then nothing can be said of the values.
-    """
-    faults = Faults()
-    record = read_record(tree, faults)
-    if record.described is None:
-        faults.check()
-    return record, faults
-
-
 def read_record(tree: Tree, faults: Faults) -> Record:
     """A record as far as its keys and shapes are right; what is not is noted, and left out or replaced by 1.
 

@@ -16,7 +16,7 @@ from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.moments import foreign
 from ptmcad.mechanism.parts import fault_of_number, parts
 from ptmcad.question.config.names import Resolution
-from ptmcad.question.config.record import Record, Window, described_record, swept_names
+from ptmcad.question.config.record import Record, Window, read_record, swept_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of
 from ptmcad.question.domain import MAX_DEGREE, fault, fault_of_part, unproved
 from ptmcad.question.examples import AXES
@@ -37,11 +37,25 @@ def checked_slice(tree: Tree) -> Slice:
     ConfigError
         That knows all faults of the record, those of keys and shapes and those of what is written there.
     """
-    record, faults = described_record(tree)
-    return slice_of(record._replace(unread=unread_names(record, tree, faults)), faults)
+    return slice_of(*described_record(tree))
 
 
-def unread_names(record: Record, tree: Tree, faults: Faults) -> frozenset[str]:
+def described_record(tree: Tree) -> tuple[Record, Faults]:
+    """A record as `read_record` has it, with its `unread` names, and what is wrong with it, where there is a model.
+
+    Raises
+    ------
+    ConfigError
+        Without one: then nothing can be said of the values.
+    """
+    faults = Faults()
+    record = read_record(tree, faults)
+    if record.described is None:
+        faults.check()
+    return record._replace(unread=_unread(record, tree, faults)), faults
+
+
+def _unread(record: Record, tree: Tree, faults: Faults) -> frozenset[str]:
     """The names in a record's values of which nothing can be said, because what would tell what they are is faulty."""
     faulty = {fault.key or "" for fault in faults.found}
     found, hidden = set(), False
