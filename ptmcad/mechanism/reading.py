@@ -116,7 +116,7 @@ def point_name(name: object, key: str, points: Mapping[str, object]) -> str:
 
 def ends(entry: Node, points: Mapping[str, object]) -> tuple[str, str]:
     """The names of two different points."""
-    start, end = (point_name(end.plain, entry.key, points) for end in entry.pair("two points,", "[A1, A3]"))
+    start, end = (point_name(end.plain, entry.key, points) for end in entry.pair("two points", "[A1, A3]"))
     if start == end:
         raise entry.fault(f"both ends are {start}")
     return start, end
@@ -273,10 +273,6 @@ class Context:
             raise entry.fault(f"there is no unknown {quoted(name)}{hint}")
         return name
 
-    def point(self) -> Codec[str]:
-        """The name of a point that there is."""
-        return reading(lambda entry: self.known_point(entry, entry.plain), **NAME_SCHEMA)
-
     def value(self, moving: bool = False) -> Codec[Tree]:
         """The codec of an expression in the parameters, and in the unknowns where it may move."""
         return reading(lambda entry: self.tree(entry, moving), **VALUE)
@@ -306,7 +302,7 @@ class Context:
         self, entry: Node, moving: bool = False, what: str = "coordinates", like: str = "[rho, 0]"
     ) -> tuple[Tree, Tree]:
         """Two coordinates or components; what they are, and an example, are for messages."""
-        first, second = (self.tree(one, moving) for one in entry.pair(f"two {what},", like))
+        first, second = (self.tree(one, moving) for one in entry.pair(f"two {what}", like))
         return first, second
 
     def angle(self, entry: Node) -> tuple[Tree, int]:

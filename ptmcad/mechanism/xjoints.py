@@ -37,12 +37,12 @@ def xjoints(context: Context) -> Codec[tuple[XJoint, ...]]:
         base=part(context.between(), "Left and right end of what the joint stands on."),
         bars=part(context.value(), "Their length, which is not the base's."),
         angles=part(
-            reading(lambda entry: _two_names(entry, "[th, psi]"), **names),
+            reading(lambda entry: entry.pair("two names", "[th, psi]"), **names),
             "Of the bars from the base's left and right end, against the base: an unknown, and a new name for the one "
             "that follows from it.",
         ),
         top=part(
-            reading(lambda entry: _two_names(entry, "[C, D]"), **names),
+            reading(lambda entry: entry.pair("two names", "[C, D]"), **names),
             "New points: where the bar from the base's right end arrives, and the one from the left end.",
         ),
     )  # fmt: skip
@@ -69,10 +69,6 @@ def xjoints(context: Context) -> Codec[tuple[XJoint, ...]]:
         return tuple(found.values())
 
     return reading(read_all, **by_names(joint.schema, MAX_UNKNOWNS))
-
-
-def _two_names(entry: Node, like: str) -> tuple[Node, Node]:
-    return entry.pair("two names,", like, f"expected two names, such as {like}")
 
 
 def _joint(name: str, said: Mapping[str, Any], context: Context, below: Mapping[str, XJoint]) -> XJoint:

@@ -88,7 +88,11 @@ def optional(codec: Codec[T]) -> Codec[T | None]:
     """The same or None."""
     convert = codec.write
     write = _itself if convert is _itself else lambda value: None if value is None else convert(value)
-    return Codec(write, lambda node: node.optional(codec.read), {"anyOf": [{"type": "null"}, codec.schema]})
+    return Codec(
+        write,
+        lambda node: None if node.value is None else codec.read(node),
+        {"anyOf": [{"type": "null"}, codec.schema]},
+    )
 
 
 COUNT = optional(NATURAL)

@@ -120,7 +120,7 @@ class Node(NamedTuple):
         """
         inside = self._inside
         if not isinstance(inside, Mapping):
-            raise self._unlike("is not an object", "a mapping", like, expected)
+            raise self._unlike("a mapping", like, expected, "is not an object")
         self._check_size(len(inside), most, "keys")
         if self.faults is not None:
             return {key: self.below(key, value) for key, value in inside.items()}
@@ -136,7 +136,7 @@ class Node(NamedTuple):
         """The entries of a list of at most so many, or of just so many."""
         inside = self._inside
         if not isinstance(inside, list | tuple) or isinstance(inside, Scalar):
-            raise self._unlike("is not a list", "a list", like, expected)
+            raise self._unlike("a list", like, expected, "is not a list")
         self._check_size(len(inside), most, "entries")
         if length is not None and len(inside) != length:
             raise self.fault(f"has {len(inside)} entries, not {length}")
@@ -144,14 +144,14 @@ class Node(NamedTuple):
             return [self.below(k, value) for k, value in enumerate(inside, 1)]
         return [Node(value, f"{self.place}[{k}]") for k, value in enumerate(inside)]
 
-    def pair(self, what: str, like: str, expected: str = "") -> tuple[Node, Node]:
-        """The two entries of a list that has two; ``what`` it is, for a record's message."""
-        found = self.items(like=like, expected=expected)
-        if len(found) != 2:
-            raise self.fault(f"expected {what} such as {like}")
-        return found[0], found[1]
+    def pair(self, what: str, like: str) -> tuple[Node, Node]:
+        """The two entries of a record's list that has two; ``what`` it is, for the message."""
+        if not isinstance(self.value, Sequence) or len(self.value.items) != 2:
+            raise self._unlike(what, like)
+        first, second = self.items()
+        return first, second
 
-    def _unlike(self, problem: str, shape: str, like: str, expected: str) -> Exception:
+    def _unlike(self, shape: str, like: str, expected: str = "", problem: str = "") -> Exception:
         if self.faults is None:
             return self.fault(problem)
         if not expected and isinstance(self.value, Scalar) and self.value.is_null:
@@ -265,9 +265,6 @@ class Node(NamedTuple):
         if not 0 <= self.value < 1e9:
             raise self.fault("is not a number of seconds")
         return float(self.value)
-
-    def optional(self, read: Callable[[Node], Item]) -> Item | None:
-        return None if self.value is None else read(self)
 
     def fraction(self) -> Fraction:
         """A point's coordinate or the like: what is computed from it grows with its length."""

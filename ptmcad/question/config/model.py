@@ -24,7 +24,7 @@ from ptmcad.mechanism import (
     without_loops,
 )
 from ptmcad.mechanism.parts import check_numbers
-from ptmcad.question.config.starters import NAMES, starter_mechanism
+from ptmcad.question.config.starters import mechanism_names, starter_mechanism
 from ptmcad.text.entry import Place, Scalar, Tree, place_at, plain_data, scalars
 from ptmcad.text.syntax import NAME, did_you_mean, names_in
 from ptmcad.text.yamltree import read_file
@@ -116,8 +116,7 @@ def described_in(record: Tree, faults: Faults) -> Described:
     known = starter_mechanism(mechanism.text)
     if isinstance(known, Tree):
         return Described(_read(known, faults, used).model)
-    names = tuple(name for name in NAMES if starter_mechanism(name) is not None)
-    hint = did_you_mean(mechanism.text, names) or f"; built in are {', '.join(names)}"
+    hint = did_you_mean(mechanism.text, mechanism_names()) or f"; built in are {', '.join(mechanism_names())}"
     raise mechanism.place.error(
         f"unknown mechanism{hint}; a file that holds one ends in .yaml, and a mapping describes one"
     )

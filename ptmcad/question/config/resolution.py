@@ -24,8 +24,7 @@ from ptmcad.question.positivity import READING_WORK
 from ptmcad.question.slice import NOTHING_ADMISSIBLE, Axis, Count, Slice, have_free_lengths
 from ptmcad.text.entry import Place, Scalar, Tree
 from ptmcad.text.expressions import Expression, axis, constant
-from ptmcad.text.parsing import names_in
-from ptmcad.text.syntax import did_you_mean, parse
+from ptmcad.text.syntax import did_you_mean, names_in, parse
 from ptmcad.text.tree import names_of
 
 
@@ -50,8 +49,6 @@ def described_record(tree: Tree) -> tuple[Record, Faults]:
     """
     faults = Faults()
     record = read_record(tree, faults)
-    if record.described is None:
-        faults.check()
     return record._replace(unread=_unread(record, tree, faults)), faults
 
 

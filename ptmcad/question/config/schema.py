@@ -15,7 +15,7 @@ from ptmcad.mechanism.record import mechanism_codec
 from ptmcad.mechanism.systems import system_codec
 from ptmcad.question.config.designs import DESIGN
 from ptmcad.question.config.record import record_codec
-from ptmcad.question.config.starters import NAMES, starter_mechanism
+from ptmcad.question.config.starters import mechanism_names
 from ptmcad.question.config.sweeps import SWEEP
 from ptmcad.text.entry import Place, Scalar, plain_data
 from ptmcad.text.syntax import MAX_TEXT, NAME
@@ -46,8 +46,12 @@ def record_schema() -> dict[str, Any]:
         name: {**VALUE, "description": MEANINGS[name], "default": plain_data(Scalar(parameter.default, Place()))}
         for name, parameter in paper.parameters.items()
     }
-    whole, names = read["properties"], [name for name in NAMES if starter_mechanism(name) is not None]
-    models = [{"enum": names}, {"type": "string", "pattern": "[.](yaml|yml|YAML|YML)$"}, {"$ref": "#/$defs/mechanism"}]
+    whole = read["properties"]
+    models = [
+        {"enum": [*mechanism_names()]},
+        {"type": "string", "pattern": "[.](yaml|yml|YAML|YML)$"},
+        {"$ref": "#/$defs/mechanism"},
+    ]
     own: dict[str, Any] = {
         "mechanism": {"anyOf": models},
         "system": {"$ref": "#/$defs/system"},
