@@ -334,8 +334,7 @@ class _Names(Sizes):
     ----------
     constants : parameters, and unknowns on the line where they may stand.
     angles : that may stand in cosines and sines.
-    excluded : unknowns that may not occur.
-    doubtful : unknowns of which nothing more is said.
+    excluded, doubtful : unknowns that may not occur, and those of which nothing more is said.
     """
 
     def __init__(

@@ -1,8 +1,8 @@
 """Codecs: how a value is written into a JSON document, how it is read, and the JSON Schema of what is written.
 
 Guarantee: all three come of one description, which is the class's annotations where nothing else is said. What a codec
-reads from what it has written is equal to what was written; every fault of a document is a ValueError that names its
-place. Records, which people write, are read by codecs too (`part`, `reading`), and all of their faults are noted.
+reads from what it has written is equal to what was written; every fault names its place. Records are read by codecs
+too (`part`, `reading`).
 """
 
 from __future__ import annotations
@@ -65,7 +65,6 @@ SHORT_DECIMAL: Codec[Fraction] = Codec(shortest_text, Node.fraction, _RATIONAL)
 """As a decimal where one is exact."""
 SECONDS: Codec[float] = Codec(_itself, Node.number, {"type": "number", "minimum": 0})
 DATA: Codec[Mapping[str, Any]] = Codec(dict, Node.data, {"type": "object"})
-"""An object of any shape."""
 
 
 def line(most: int) -> Codec[str]:
@@ -154,9 +153,7 @@ class Key(NamedTuple):
     checked : whether what is read has to be what the object, once it is made, gives; not in a document that lacks one
         of the keys that are checked, as an earlier version wrote it.
     beside : where it is not empty, the codec writes an object with some of these keys, which stand beside the others.
-    help, shown : what it means, and its default, for people.
-    instead : of a record that a person writes, what is taken where the key is wrong or missing; without it nothing is
-        read of the object then.
+    instead : of a record, what is taken where the key is wrong or missing; without it nothing is read of the object.
     """
 
     codec: Codec[Any] | None = None
@@ -167,8 +164,6 @@ class Key(NamedTuple):
     made: bool = True
     checked: bool = False
     beside: tuple[str, ...] = ()
-    help: str = ""
-    shown: object = ...
     instead: object = ...
 
 
@@ -178,9 +173,10 @@ _DEFAULT = object()
 def part(
     codec: Codec[Any], help: str = "", default: object = ..., instead: object = _DEFAULT, shown: object = ...
 ) -> Key:
-    """A key of what a person writes, with its meaning."""
-    instead = default if instead is _DEFAULT else instead
-    return Key(codec, None, default, always=True, help=help, instead=instead, shown=shown)
+    """A key of what a person writes; ``help`` is what it means, and ``shown`` its default, for people."""
+    said = {"description": help, "default": shown}
+    told = codec.narrowed(**{keyword: value for keyword, value in said.items() if value not in ("", ...)})
+    return Key(told, None, default, always=True, instead=default if instead is _DEFAULT else instead)
 
 
 def reading(read: Callable[[Node], T], **schema: Any) -> Codec[T]:
@@ -251,9 +247,7 @@ def _schema_of(entries: Mapping[str, Key]) -> Schema:
     for name, key in entries.items():
         flag = key.default is False and not key.always
         schema: Schema = {"const": True} if flag else _codec(key).schema
-        said: dict[str, object] = {"description": key.help} if key.help else {}
-        said |= {} if key.shown is ... else {"default": key.shown}
-        properties |= schema["properties"] if key.beside else {name: {**schema, **said} if said else schema}
+        properties |= schema["properties"] if key.beside else {name: schema}
         alternatives |= {"oneOf": schema["oneOf"]} if key.beside else {}
     needed = [name for name, key in entries.items() if key.default is ... and not key.beside]
     return {
@@ -404,20 +398,3 @@ def _without(schema: Any, shared: Collection[str]) -> Any:
     if (name := schema.get(_CLASS)) in shared:
         return {"$ref": f"#/$defs/{name}"}
     return {key: _without(part, shared) for key, part in schema.items() if key != _CLASS}
-
-
-def merged(one: Schema, other: Schema) -> Schema:
-    """The schema of what has one of two shapes, which differ in few keys."""
-    if one == other:
-        return one
-    if one.get("type") == other.get("type") == "array":
-        return {**one, "items": merged(one["items"], other["items"])}
-    if "properties" not in one or "properties" not in other:
-        return {"anyOf": [one, other]}
-    both = {**one["properties"], **other["properties"]}
-    shared = one["properties"].keys() & other["properties"].keys()
-    properties = {
-        n: merged(one["properties"][n], other["properties"][n]) if n in shared else s for n, s in both.items()
-    }
-    needed = [name for name in one["required"] if name in other["required"]]
-    return {**one, "properties": properties, "required": needed}
