@@ -23,7 +23,8 @@ from ptmcad.question.config.scalars import number_of
 from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Place, Scalar, Sequence
 from ptmcad.text.numerals import text_of
-from ptmcad.text.parsing import names_in, rational
+from ptmcad.text.parsing import rational
+from ptmcad.text.syntax import names_in
 
 POSITIONS = 400
 """A slider has at most about so many, at round decimals."""

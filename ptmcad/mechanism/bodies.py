@@ -8,8 +8,8 @@ from __future__ import annotations
 from typing import Any
 
 from ptmcad.mechanism.angles import cosine_and_sine
-from ptmcad.mechanism.reading import MAX_BODIES, NAME_SCHEMA, POINTS, VALUE, ZERO, Context, new_name, two
-from ptmcad.text.codec import Codec, named, part, reading, record
+from ptmcad.mechanism.reading import MAX_BODIES, NAME_SCHEMA, POINTS, VALUE, ZERO, Context, by_names, new_name, two
+from ptmcad.text.codec import Codec, part, reading, record
 from ptmcad.text.node import Node
 from ptmcad.text.tree import Chain, Step, Tree
 
@@ -53,7 +53,7 @@ def bodies(context: Context) -> Codec[dict[str, tuple[str, ...]]]:
 
     return reading(
         lambda node: dict(node.gathered(read, node.mapping(MAX_BODIES).values())),
-        **{**named(body, most=MAX_BODIES).schema, "propertyNames": NAME_SCHEMA},
+        **by_names(body.schema, MAX_BODIES),
     )
 
 

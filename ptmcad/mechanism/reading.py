@@ -15,7 +15,7 @@ from ptmcad.mechanism.angles import PI, split_angle, without_quarter_turns
 from ptmcad.mechanism.description import Kind, Parameter, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate, value_at
 from ptmcad.mechanism.sizes import Size, Sizes
-from ptmcad.text.codec import Codec, Key, choice, named, part, reading, record
+from ptmcad.text.codec import Codec, Key, choice, part, reading, record
 from ptmcad.text.entry import as_written
 from ptmcad.text.node import MAX_ENTRIES, Node
 from ptmcad.text.numerals import FINITE
@@ -116,7 +116,7 @@ def point_name(name: object, key: str, points: Mapping[str, object]) -> str:
 
 def ends(entry: Node, points: Mapping[str, object]) -> tuple[str, str]:
     """The names of two different points."""
-    start, end = (point_name(end.plain, entry.key, points) for end in entry.pair("two points,", "[A1, A3]"))
+    start, end = (point_name(end.plain, entry.key, points) for end in entry.pair("two points", "[A1, A3]"))
     if start == end:
         raise entry.fault(f"both ends are {start}")
     return start, end
@@ -143,21 +143,27 @@ _PARAMETER: Codec[dict[str, Any]] = record(
     ),
 )  # fmt: skip
 _UNKNOWN = choice(UnknownKind)
+
+
+def by_names(entry: Mapping[str, Any], most: int) -> dict[str, Any]:
+    """The schema of several of the same by names that are given here."""
+    return {"type": "object", "maxProperties": most, "propertyNames": NAME_SCHEMA, "additionalProperties": entry}
+
+
 DEFINITIONS = {
     "parameters": {
-        **named(_PARAMETER, most=MAX_ENTRIES).schema, "propertyNames": NAME_SCHEMA,
+        **by_names(_PARAMETER.schema, MAX_ENTRIES),
         "description": "Names to what they measure, defaults and usual ranges. Something has to use each: the "
         "description, or an expression under the record's parameters.",
     },
     "unknowns": {
-        **named(_UNKNOWN, most=MAX_UNKNOWNS).schema, "minProperties": 1, "propertyNames": NAME_SCHEMA,
+        **by_names(_UNKNOWN.schema, MAX_UNKNOWNS), "minProperties": 1,
         "description": "Names to where they live: angle on the circle; length and real on the line.",
     },
 }  # fmt: skip
 """Schemas of what mechanisms and systems have."""
-POINTS = {
-    "type": "object", "maxProperties": MAX_ENTRIES, "propertyNames": NAME_SCHEMA, "additionalProperties": two(VALUE),
-}  # fmt: skip
+
+POINTS = by_names(two(VALUE), MAX_ENTRIES)
 
 
 class Context:
@@ -267,10 +273,6 @@ class Context:
             raise entry.fault(f"there is no unknown {quoted(name)}{hint}")
         return name
 
-    def point(self) -> Codec[str]:
-        """The name of a point that there is."""
-        return reading(lambda entry: self.known_point(entry, entry.plain), **NAME_SCHEMA)
-
     def value(self, moving: bool = False) -> Codec[Tree]:
         """The codec of an expression in the parameters, and in the unknowns where it may move."""
         return reading(lambda entry: self.tree(entry, moving), **VALUE)
@@ -300,7 +302,7 @@ class Context:
         self, entry: Node, moving: bool = False, what: str = "coordinates", like: str = "[rho, 0]"
     ) -> tuple[Tree, Tree]:
         """Two coordinates or components; what they are, and an example, are for messages."""
-        first, second = (self.tree(one, moving) for one in entry.pair(f"two {what},", like))
+        first, second = (self.tree(one, moving) for one in entry.pair(f"two {what}", like))
         return first, second
 
     def angle(self, entry: Node) -> tuple[Tree, int]:
@@ -326,14 +328,13 @@ class Context:
 
 
 class _Names(Sizes):
-    """The ring in which trees have their sizes as values, and names are refused that have none here.
+    """The ring of sizes, in which names are refused that have no meaning: of angles when their cosine is asked for.
 
     Parameters
     ----------
     constants : parameters, and unknowns on the line where they may stand.
     angles : that may stand in cosines and sines.
-    excluded : unknowns that may not occur.
-    doubtful : unknowns of which nothing more is said.
+    excluded, doubtful : unknowns that may not occur, and those of which nothing more is said.
     """
 
     def __init__(
@@ -357,11 +358,7 @@ class _Names(Sizes):
                 "(1 - t^2)/(1 + t^2) and 2*t/(1 + t^2), t the tangent of its half"
             )
         self._check(angle, self.angles)
-        return super().parameter(f"cos {angle}")
-
-    def sin(self, angle: str) -> Size:
-        self._check(angle, self.angles)  # the cosine was asked for before
-        return super().parameter(f"sin {angle}")
+        return super().cos(angle)
 
     def _check(self, name: str, known: Mapping[str, None]) -> None:
         if name in self.doubtful:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import Any
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism.angles import angle_name
@@ -17,24 +17,24 @@ from ptmcad.mechanism.description import Closing, Load, Mechanism, Moment, Sprin
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.parts import check_numbers
 from ptmcad.mechanism.proofs import check_bars, check_springs, check_symmetries, check_unknowns
-from ptmcad.mechanism.reading import NUMBER, POINTS, VALUE, ZERO, Context, constant, new_name, two
+from ptmcad.mechanism.reading import NAME_SCHEMA, NUMBER, POINTS, VALUE, ZERO, Context, constant, new_name, two
 from ptmcad.mechanism.sizes import check_sizes
 from ptmcad.mechanism.work import split_moments
 from ptmcad.mechanism.xjoints import second_angles, xjoints
-from ptmcad.text.codec import Codec, choice, listed, named, part, reading, record
+from ptmcad.text.codec import Codec, choice, converted, listed, named, part, reading, record
 from ptmcad.text.entry import Place, as_written, from_python
 from ptmcad.text.node import MAX_ENTRIES, Node
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Name, Negative, Number, Tree
 
-S = TypeVar("S")
-T = TypeVar("T")
 DEFAULT_NAME = "mechanism"
 NAMED_RESTS = {
     "0": (1, 0), "pi/2": (0, 1), "pi": (-1, 0), "-pi": (-1, 0), "-pi/2": (0, -1), "3*pi/2": (0, -1),
 }  # fmt: skip
 """Cosine and sine of the angles that have both rational and are written with pi."""
 _ONE: Tree = Number(Fraction(1))
+_UNWRITTEN: Callable[[Any], Any] = list
+"""Of what is only read."""
 
 
 def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
@@ -90,7 +90,7 @@ def mechanism_codec(context: Context) -> Codec[dict[str, Any]]:
             "The angle at which it is relaxed, or its cosine and sine.", (Fraction(1), Fraction(0)), shown=0,
         ),
         at=part(
-            context.point(),
+            reading(lambda entry: context.known_point(entry, entry.plain), **NAME_SCHEMA),
             "The point at which it is drawn, where bodies, bars and supports do not tell the joint; it changes no "
             "result.", "",
         ),
@@ -126,24 +126,24 @@ def mechanism_codec(context: Context) -> Codec[dict[str, Any]]:
             "What holds a point, for drawings.", {},
         ),
         springs=part(
-            _read_as(_springs, listed(spring, None, MAX_ENTRIES, "[{between: [A, P], k: 1}]")),
+            converted(listed(spring, None, MAX_ENTRIES, "[{between: [A, P], k: 1}]"), _UNWRITTEN, _springs),
             "Springs between points, along their lines.", (),
         ),
         torsion=part(
-            _read_as(_torsion, listed(torsion, None, MAX_ENTRIES, "[{angle: th, k: 1}]")),
+            converted(listed(torsion, None, MAX_ENTRIES, "[{angle: th, k: 1}]"), _UNWRITTEN, _torsion),
             "Springs between directions: energy k (1 - cos(angle - rest)), moment k sin(angle - rest). For small "
             "angles that is the linear spring of energy k (angle - rest)^2/2, which is no polynomial in cosines and "
             "sines and no function on a circle.", (),
         ),
         loads=part(
-            _read_as(
+            converted(
+                named(_load(context), context.known_point, MAX_ENTRIES, "{P: [0, -W]}"), _UNWRITTEN,
                 lambda loads: tuple(Load(point, x, y) for point, (x, y) in loads.items()),
-                named(_load(context), context.known_point, MAX_ENTRIES, "{P: [0, -W]}"),
             ), "Dead forces at points: two components, or a weight, in parameters.", ()),
         moments=part(
-            _read_as(
+            converted(
+                named(moving, context.known_unknown, MAX_ENTRIES, "{th: M}"), _UNWRITTEN,
                 lambda moments: tuple(Moment(*moment) for moment in moments.items()),
-                named(moving, context.known_unknown, MAX_ENTRIES, "{th: M}"),
             ),
             "Generalised forces on unknowns. Of one that depends on its own unknown the part that varies is the slope "
             "of an energy; the work of the constant part is in no energy that is shown. With one that depends on "
@@ -211,11 +211,6 @@ def _points(node: Node, context: Context) -> dict[str, tuple[Tree, Tree]]:
 
     node.gathered(read, entries.values())
     return context.points
-
-
-def _read_as(make: Callable[[S], T], codec: Codec[S]) -> Codec[T]:
-    """What is made of what a codec reads."""
-    return reading(lambda node: make(codec.read(node)), **codec.schema)
 
 
 def _springs(found: tuple[dict[str, Any], ...]) -> tuple[Spring, ...]:

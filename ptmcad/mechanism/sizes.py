@@ -58,10 +58,10 @@ class Sizes:
         return Size(1, frozenset({name}), 1)
 
     def cos(self, angle: str) -> Size:
-        return self.parameter(f"cos {angle}")
+        return Size(1, frozenset({f"cos {angle}"}), 1)
 
     def sin(self, angle: str) -> Size:
-        return self.parameter(f"sin {angle}")
+        return Size(1, frozenset({f"sin {angle}"}), 1)
 
 
 def size_of(tree: Tree) -> Size:

@@ -11,9 +11,9 @@ from typing import Any
 
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism.derivative import negative, product, total
-from ptmcad.mechanism.reading import MAX_UNKNOWNS, NAME_SCHEMA, ZERO, Context, new_name, two
+from ptmcad.mechanism.reading import MAX_UNKNOWNS, NAME_SCHEMA, ZERO, Context, by_names, new_name, two
 from ptmcad.mechanism.xjoint import LEVEL, XJoint
-from ptmcad.text.codec import Codec, named, part, reading, record
+from ptmcad.text.codec import Codec, part, reading, record
 from ptmcad.text.entry import as_written
 from ptmcad.text.node import Node
 from ptmcad.text.tree import Tree, names_of
@@ -37,12 +37,12 @@ def xjoints(context: Context) -> Codec[tuple[XJoint, ...]]:
         base=part(context.between(), "Left and right end of what the joint stands on."),
         bars=part(context.value(), "Their length, which is not the base's."),
         angles=part(
-            reading(lambda entry: _two_names(entry, "[th, psi]"), **names),
+            reading(lambda entry: entry.pair("two names", "[th, psi]"), **names),
             "Of the bars from the base's left and right end, against the base: an unknown, and a new name for the one "
             "that follows from it.",
         ),
         top=part(
-            reading(lambda entry: _two_names(entry, "[C, D]"), **names),
+            reading(lambda entry: entry.pair("two names", "[C, D]"), **names),
             "New points: where the bar from the base's right end arrives, and the one from the left end.",
         ),
     )  # fmt: skip
@@ -68,11 +68,7 @@ def xjoints(context: Context) -> Codec[tuple[XJoint, ...]]:
         node.gathered(read, node.mapping(MAX_UNKNOWNS, like).values())
         return tuple(found.values())
 
-    return reading(read_all, **{**named(joint, most=MAX_UNKNOWNS).schema, "propertyNames": NAME_SCHEMA})
-
-
-def _two_names(entry: Node, like: str) -> tuple[Node, Node]:
-    return entry.pair("two names,", like, f"expected two names, such as {like}")
+    return reading(read_all, **by_names(joint.schema, MAX_UNKNOWNS))
 
 
 def _joint(name: str, said: Mapping[str, Any], context: Context, below: Mapping[str, XJoint]) -> XJoint:

@@ -21,7 +21,7 @@ from math import comb, lcm
 from typing import NamedTuple
 
 from ptmcad.question.slice import Axis
-from ptmcad.text.expressions import Expression, Term
+from ptmcad.text.expressions import Expression, Term, polynomial_value
 from ptmcad.text.numerals import approximate_text
 
 MAX_SPLITS = 400
@@ -139,11 +139,6 @@ def number(value: Fraction) -> str:
         return str(value)
     # a value of a high power at a point of many digits may be longer than Python writes out
     return f"about {approximate_text(value)}"
-
-
-def polynomial_value(terms: tuple[Term, ...], x: Fraction, y: Fraction) -> Fraction:
-    """The exact value of a polynomial."""
-    return sum((c * x**i * y**j for i, j, c in terms), Fraction(0))
 
 
 def _decided(terms: tuple[Term, ...], window: Box, strict: bool, max_work: int | None) -> Verdict:

@@ -13,7 +13,8 @@ from ptmcad.mechanism.description import UnknownKind
 from ptmcad.mechanism.evaluate import multiples
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
-from ptmcad.text.parsing import names_in, parse
+from ptmcad.text.parsing import parse
+from ptmcad.text.syntax import names_in
 from ptmcad.text.tree import Tree, names_of
 
 _LENGTH, _FORCE, _STIFFNESS, _MOMENT = ("length",), ("force",), ("force", "/", "length"), ("force", "·", "length")

@@ -18,16 +18,14 @@ import os
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager, suppress
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.answer.sweep import CountedArea, Member, State, Summary, Sweep, Widest
+from ptmcad.answer.sweep import Member, State, Summary, Sweep
 from ptmcad.errors import ConfigError, OutputError
 from ptmcad.process.output import locked, reason
-from ptmcad.sweeping.member import Failed, Found, Outcome, Refused
-from ptmcad.text.codec import listed, row_of
+from ptmcad.sweeping.member import AREAS, WIDEST, Failed, Found, Outcome, Refused
 from ptmcad.text.node import Node
 from ptmcad.text.numerals import fraction_of
 from ptmcad.text.textfile import read_bytes
@@ -175,8 +173,8 @@ class Index:
                 "WHERE number = ?",
                 (
                     found.status, found.cells, found.regions, found.undetermined,
-                    json.dumps(_AREAS.write(found.areas)),
-                    None if found.widest is None else json.dumps(_WIDEST.write(found.widest)),
+                    json.dumps(AREAS.write(found.areas)),
+                    None if found.widest is None else json.dumps(WIDEST.write(found.widest)),
                     file, hashlib.sha256(data).hexdigest(), len(data), outcome.seconds, number,
                 ),
             )  # fmt: skip
@@ -355,8 +353,8 @@ def _member(folder: Path, names: Sequence[str], row: tuple[Any, ...]) -> Member:
         values = json.loads(parameters)
         exact = [values[name] for name in names]
         if state == State.DONE.value:
-            counted = _AREAS.read(Node(json.loads(areas), "areas"))
-            told = None if widest is None else _WIDEST.read(Node(json.loads(widest), "widest"))
+            counted = AREAS.read(Node(json.loads(areas), "areas"))
+            told = None if widest is None else WIDEST.read(Node(json.loads(widest), "widest"))
             summary = Summary(status, cells, regions, open_share, counted, told)
             exact += [open_share, *(bound for area in counted for bound in area.area if bound)]
             if file != _name(number if same_as is None else same_as):
@@ -365,16 +363,6 @@ def _member(folder: Path, names: Sequence[str], row: tuple[Any, ...]) -> Member:
                 raise ValueError("it has a result, and says why it has none")
         _ = [fraction_of(text) for text in exact]
         return Member(number, values, State(state), summary, same_as, error, file, digest, seconds, attempts)
-
-
-def _told(*values: Any) -> Widest:
-    """A width; an index that was written before attainment was told says of limits that they are attained."""
-    found = Widest(*values)
-    return found if len(values) > 5 or not found.proof else replace(found, proof=found.attainment)
-
-
-_AREAS = listed(row_of(CountedArea))
-_WIDEST = row_of(Widest, _told)
 
 
 def member_map(sweep: Sweep, member: Member) -> RegionMap:

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from time import perf_counter
+from typing import Any
 
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import RegionMap
@@ -21,6 +22,7 @@ from ptmcad.errors import ConfigError, HypothesisError, LimitReached, PtmcadErro
 from ptmcad.options import Options
 from ptmcad.question.config.sweeps import Sweeping
 from ptmcad.question.slice import Slice
+from ptmcad.text.codec import listed, row_of
 from ptmcad.text.numerals import decimal, text_of
 from ptmcad.version import __version__
 
@@ -191,3 +193,14 @@ def _widest(slice: Slice, along: str) -> Widest:
 def _width(maxima: tuple[Maximum, ...]) -> Bounds:
     """The bounds of the largest width of all: each of the maxima may be it."""
     return bounds(max(m.width.low for m in maxima), max(m.width.high for m in maxima))
+
+
+def _told(*values: Any) -> Widest:
+    """A width; an index that was written before attainment was told says of limits that they are attained."""
+    found = Widest(*values)
+    return found if len(values) > 5 or not found.proof else replace(found, proof=found.attainment)
+
+
+AREAS = listed(row_of(CountedArea))
+WIDEST = row_of(Widest, _told)
+"""How these are written in an index."""

@@ -1,8 +1,8 @@
 """Codecs: how a value is written into a JSON document, how it is read, and the JSON Schema of what is written.
 
 Guarantee: all three come of one description, which is the class's annotations where nothing else is said. What a codec
-reads from what it has written is equal to what was written; every fault of a document is a ValueError that names its
-place. Records, which people write, are read by codecs too (`part`, `reading`), and all of their faults are noted.
+reads from what it has written is equal to what was written; every fault names its place. Records are read by codecs
+too (`part`, `reading`).
 """
 
 from __future__ import annotations
@@ -65,7 +65,6 @@ SHORT_DECIMAL: Codec[Fraction] = Codec(shortest_text, Node.fraction, _RATIONAL)
 """As a decimal where one is exact."""
 SECONDS: Codec[float] = Codec(_itself, Node.number, {"type": "number", "minimum": 0})
 DATA: Codec[Mapping[str, Any]] = Codec(dict, Node.data, {"type": "object"})
-"""An object of any shape."""
 
 
 def line(most: int) -> Codec[str]:
@@ -88,7 +87,11 @@ def optional(codec: Codec[T]) -> Codec[T | None]:
     """The same or None."""
     convert = codec.write
     write = _itself if convert is _itself else lambda value: None if value is None else convert(value)
-    return Codec(write, lambda node: node.optional(codec.read), {"anyOf": [{"type": "null"}, codec.schema]})
+    return Codec(
+        write,
+        lambda node: None if node.value is None else codec.read(node),
+        {"anyOf": [{"type": "null"}, codec.schema]},
+    )
 
 
 COUNT = optional(NATURAL)
@@ -109,8 +112,8 @@ def named(
     """Several of the same by at most so many names; ``name`` reads one, and may refuse it."""
 
     def read(node: Node) -> Mapping[str, T]:
-        parts = node.mapping(most, like).values()
-        return dict(node.gathered(lambda part: (name(part, part.name), codec.read(part)), parts))
+        parts = node.mapping(most, like).items()
+        return dict(node.gathered(lambda part: (name(part[1], part[0]), codec.read(part[1])), parts))
 
     return Codec(
         lambda values: {name: codec.write(v) for name, v in values.items()}, read,
@@ -150,9 +153,7 @@ class Key(NamedTuple):
     checked : whether what is read has to be what the object, once it is made, gives; not in a document that lacks one
         of the keys that are checked, as an earlier version wrote it.
     beside : where it is not empty, the codec writes an object with some of these keys, which stand beside the others.
-    help, shown : what it means, and its default, for people.
-    instead : of a record that a person writes, what is taken where the key is wrong or missing; without it nothing is
-        read of the object then.
+    instead : of a record, what is taken where the key is wrong or missing; without it nothing is read of the object.
     """
 
     codec: Codec[Any] | None = None
@@ -163,8 +164,6 @@ class Key(NamedTuple):
     made: bool = True
     checked: bool = False
     beside: tuple[str, ...] = ()
-    help: str = ""
-    shown: object = ...
     instead: object = ...
 
 
@@ -174,9 +173,10 @@ _DEFAULT = object()
 def part(
     codec: Codec[Any], help: str = "", default: object = ..., instead: object = _DEFAULT, shown: object = ...
 ) -> Key:
-    """A key of what a person writes, with its meaning."""
-    instead = default if instead is _DEFAULT else instead
-    return Key(codec, None, default, always=True, help=help, instead=instead, shown=shown)
+    """A key of what a person writes; ``help`` is what it means, and ``shown`` its default, for people."""
+    said = {"description": help, "default": shown}
+    told = codec.narrowed(**{keyword: value for keyword, value in said.items() if value not in ("", ...)})
+    return Key(told, None, default, always=True, instead=default if instead is _DEFAULT else instead)
 
 
 def reading(read: Callable[[Node], T], **schema: Any) -> Codec[T]:
@@ -200,46 +200,36 @@ def record(make: Callable[..., T], like: str = "", /, **keys: Codec[Any] | Key) 
     entries = {name: key if isinstance(key, Key) else Key(key) for name, key in keys.items()}
     known = [name for key, entry in entries.items() for name in entry.beside or (key,)]
     needed = [name for name, key in entries.items() if key.default is ... and not key.beside]
-    writers, readers, checked, instead = [], [], [], dict[str, object]()
-    for name, key in entries.items():
-        codec, get = _codec(key), key.get or attrgetter(key.field or name)
-        writers.append((name, get, codec.write, ... if key.always else key.default, bool(key.beside)))
-        if key.made:
-            readers.append((name, key.field or name, codec.read, key.default, bool(key.beside)))
-            instead[key.field or name] = key.instead
-        if key.checked:
-            checked.append((name, get, codec.write))
+    parts = [(n, key, _codec(key), key.get or attrgetter(key.field or n), key.default) for n, key in entries.items()]
+    checked = {name: (get, codec) for name, key, codec, get, _ in parts if key.checked}
 
     def write(value: T) -> dict[str, Any]:
         found = {}
-        for name, get, convert, default, beside in writers:
+        for name, key, codec, get, default in parts:
             part = get(value)
-            if beside:
-                found.update(convert(part))
-            elif default is ... or part != default:
-                found[name] = part if convert is _itself else convert(part)
+            if key.beside:
+                found.update(codec.write(part))
+            elif key.always or default is ... or part != default:
+                found[name] = part if codec.write is _itself else codec.write(part)
         return found
 
     def read(node: Node) -> T:
         given = node.record(known, needed, like)
         values = {}
-        for name, argument, read_part, default, beside in readers:
-            place = node if beside else given.get(name)
-            if node.faults is None:
-                values[argument] = default if place is None else read_part(place)
+        for name, key, codec, _, default in parts:
+            if not key.made:
                 continue
-            values[argument] = instead[argument]
-            with node.faults:
-                if place is not None:
-                    values[argument] = read_part(place)
-                elif default is not ...:
-                    values[argument] = default
-        if node.faults is not None and ... in values.values():
+            place = node if key.beside else given.get(name)
+            if place is not None:
+                values[key.field or name] = node.attempt(codec.read, place, key.instead)
+            else:
+                values[key.field or name] = key.instead if default is ... else default
+        if ... in values.values():
             raise node.noted()
         found = node.made(make, **values)
-        if checked and all(name in given for name, *_ in checked):
-            for name, get, convert in checked:
-                if given[name].value != (other := convert(get(found))):
+        if all(name in given for name in checked):
+            for name, (get, codec) in checked.items():
+                if given[name].value != (other := codec.write(get(found))):
                     raise given[name].fault(f"is not {str(other)[:60]!r}, as the rest says")
         return found
 
@@ -257,9 +247,7 @@ def _schema_of(entries: Mapping[str, Key]) -> Schema:
     for name, key in entries.items():
         flag = key.default is False and not key.always
         schema: Schema = {"const": True} if flag else _codec(key).schema
-        said: dict[str, object] = {"description": key.help} if key.help else {}
-        said |= {} if key.shown is ... else {"default": key.shown}
-        properties |= schema["properties"] if key.beside else {name: {**schema, **said}}
+        properties |= schema["properties"] if key.beside else {name: schema}
         alternatives |= {"oneOf": schema["oneOf"]} if key.beside else {}
     needed = [name for name, key in entries.items() if key.default is ... and not key.beside]
     return {
@@ -410,20 +398,3 @@ def _without(schema: Any, shared: Collection[str]) -> Any:
     if (name := schema.get(_CLASS)) in shared:
         return {"$ref": f"#/$defs/{name}"}
     return {key: _without(part, shared) for key, part in schema.items() if key != _CLASS}
-
-
-def merged(one: Schema, other: Schema) -> Schema:
-    """The schema of what has one of two shapes, which differ in few keys."""
-    if one == other:
-        return one
-    if one.get("type") == other.get("type") == "array":
-        return {**one, "items": merged(one["items"], other["items"])}
-    if "properties" not in one or "properties" not in other:
-        return {"anyOf": [one, other]}
-    both = {**one["properties"], **other["properties"]}
-    shared = one["properties"].keys() & other["properties"].keys()
-    properties = {
-        n: merged(one["properties"][n], other["properties"][n]) if n in shared else s for n, s in both.items()
-    }
-    needed = [name for name in one["required"] if name in other["required"]]
-    return {**one, "properties": properties, "required": needed}

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from ptmcad.text.numerals import integer_text, magnitude, text_of
+from ptmcad.text.numerals import decimal_places, integer_text, magnitude, text_of
 
 DIGITS = 10
 """Significant digits of a text unless another number is asked for."""
@@ -127,13 +127,9 @@ def exact_text(value: Fraction) -> str:
     >>> exact_text(Fraction(-3, 2)), exact_text(Fraction(10) ** 30), exact_text(Fraction(1, 3))
     ('-1.5', '1e30', '1/3')
     """
-    twos = (value.denominator & -value.denominator).bit_length() - 1
-    rest = value.denominator >> twos
-    fives = rest.bit_length() * 43067655807 // 10**11  # divided by the logarithm of 5 to base 2, so off by one at most
-    fives = next((k for k in range(max(0, fives - 1), fives + 2) if 5**k == rest), -1)
-    if fives < 0:
+    places = decimal_places(value)
+    if places is None:
         return text_of(value)
-    places = max(twos, fives)
     digits = integer_text(abs(value.numerator) * 10**places // value.denominator).rstrip("0")
     return Enclosure(value, value).text(max(1, len(digits)))
 

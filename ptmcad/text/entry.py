@@ -5,13 +5,15 @@ Guarantee: scalars keep the text that was written, and numbers are exact.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from decimal import Decimal
 from typing import Any, NamedTuple
 
 from ptmcad.errors import ConfigError, ExpressionError, excerpt, quoted
 from ptmcad.text.numerals import exactly, text_of
 
+MAX_DEPTH = 20
+"""Levels of lists and mappings."""
 _NULLS = frozenset({"", "~", "null", "Null", "NULL"})
 _BOOLEANS = frozenset({"true", "false", "yes", "no", "on", "off", "y", "n"})
 
@@ -72,21 +74,35 @@ class Tree(NamedTuple):
 Written = Scalar | Sequence | Tree
 
 
-def from_python(value: object, place: Place) -> Written:
+def from_python(
+    value: object, place: Place, convert: Callable[[object], object] = lambda value: value, depth: int = 0
+) -> Written:
     """The same tree from Python data: mappings, lists, tuples, str, bool, None, and numbers, as `exactly` takes them.
+
+    Parameters
+    ----------
+    convert : what a value, or a key, of another kind stands for.
 
     Raises
     ------
     ConfigError
-        For any other type, and for a float that is no number.
+        For any other type, for a float that is no number, and for data that is nested deeper than a file may be, as
+        what contains itself is.
     """
+    if depth > MAX_DEPTH:
+        raise place.error(f"more than {MAX_DEPTH} levels of nesting, or data that contains itself")
+    value = convert(value)
     if isinstance(value, Mapping):
-        for key in value:
+        entries = {}
+        for given, entry in value.items():
+            key = convert(given)
             if not isinstance(key, str):
                 raise place.error(f"the key {key!r} is not text")
-        return Tree({key: from_python(entry, place.below(key)) for key, entry in value.items()}, place)
+            entries[key] = from_python(entry, place.below(key), convert, depth + 1)
+        return Tree(entries, place)
     if isinstance(value, list | tuple):
-        return Sequence(tuple(from_python(item, place.below(str(n))) for n, item in enumerate(value, 1)), place)
+        parts = (from_python(item, place.below(str(n)), convert, depth + 1) for n, item in enumerate(value, 1))
+        return Sequence(tuple(parts), place)
     if value is None or isinstance(value, bool):
         return Scalar({None: "null", True: "true", False: "false"}[value], place)
     if isinstance(value, str):

@@ -82,12 +82,12 @@ class Expression:
         PoleError
             If the denominator vanishes there.
         """
-        denominator = _value(self.denominator, x, y)
+        denominator = polynomial_value(self.denominator, x, y)
         if denominator == 0:
             raise PoleError(
                 f"division by zero: the denominator of {self} vanishes at x = {text_of(x)}, y = {text_of(y)}"
             )
-        value = _value(self.numerator, x, y)
+        value = polynomial_value(self.numerator, x, y)
         return value if denominator == 1 else value / denominator
 
     def to_text(self, names: tuple[str, str] = ("x", "y")) -> str:
@@ -179,7 +179,8 @@ def _as_expression(value: Expression | Fraction | int) -> Expression:
     return value if isinstance(value, Expression) else constant(value)
 
 
-def _value(terms: tuple[Term, ...], x: Fraction, y: Fraction) -> Fraction:
+def polynomial_value(terms: tuple[Term, ...], x: Fraction, y: Fraction) -> Fraction:
+    """The exact value of a polynomial."""
     total = Fraction(0)
     for i, j, c in terms:
         # most parameters are numbers or an axis: powers that are 1 would be most of the work

@@ -40,7 +40,7 @@ class Node(NamedTuple):
     value : of a record what is written there, of a document JSON's data.
     place : of a record a `Place`, of a document a text such as ``cells[3].sample``.
     faults : of a record, where what is wrong is noted; None of a document.
-    name : the last step of the place.
+    name : of a record, the last step of the place.
     """
 
     value: Any
@@ -49,7 +49,7 @@ class Node(NamedTuple):
     name: Any = ""
 
     @classmethod
-    def of(cls, written: Written, faults: Faults, name: Any = "") -> Node:
+    def of(cls, written: Written, faults: Faults | None, name: Any = "") -> Node:
         """A part of a record."""
         return cls(written, written.place, faults, name)
 
@@ -106,10 +106,7 @@ class Node(NamedTuple):
     # ------------------------------------------------------------------------------------------------------- shapes
 
     def below(self, step: str | int, value: Any) -> Node:
-        """An entry of this one, or where one would be."""
-        if self.faults is None:
-            inner = f"[{step}]" if isinstance(step, int) else f".{step[:40]}" if self.place else step[:40]
-            return Node(value, f"{self.place}{inner}", None, step)
+        """An entry of this part of a record, or where one would be."""
         if isinstance(value, Scalar | Sequence | Tree):
             return Node.of(value, self.faults, step)
         return Node(value, self.place.below(str(step)), self.faults, step)
@@ -123,11 +120,15 @@ class Node(NamedTuple):
         """
         inside = self._inside
         if not isinstance(inside, Mapping):
-            raise self._unlike("is not an object", "a mapping", like, expected)
+            raise self._unlike("a mapping", like, expected, "is not an object")
         self._check_size(len(inside), most, "keys")
-        if self.faults is None and (hidden := next((key for key in inside if not key.isprintable()), None)):
-            raise self.fault(f"has the key {hidden[:40]!r} with a character that is not printable")
-        return {key: self.below(key, value) for key, value in inside.items()}
+        if self.faults is not None:
+            return {key: self.below(key, value) for key, value in inside.items()}
+        for key in inside:
+            if not key.isprintable():
+                raise self.fault(f"has the key {key[:40]!r} with a character that is not printable")
+        start = f"{self.place}." if self.place else ""
+        return {key: Node(value, start + key[:40]) for key, value in inside.items()}
 
     def items(
         self, length: int | None = None, most: int | None = None, like: str = "", expected: str = ""
@@ -135,20 +136,22 @@ class Node(NamedTuple):
         """The entries of a list of at most so many, or of just so many."""
         inside = self._inside
         if not isinstance(inside, list | tuple) or isinstance(inside, Scalar):
-            raise self._unlike("is not a list", "a list", like, expected)
+            raise self._unlike("a list", like, expected, "is not a list")
         self._check_size(len(inside), most, "entries")
         if length is not None and len(inside) != length:
             raise self.fault(f"has {len(inside)} entries, not {length}")
-        return [self.below(k, value) for k, value in enumerate(inside, self.faults is not None)]
+        if self.faults is not None:
+            return [self.below(k, value) for k, value in enumerate(inside, 1)]
+        return [Node(value, f"{self.place}[{k}]") for k, value in enumerate(inside)]
 
-    def pair(self, what: str, like: str, expected: str = "") -> tuple[Node, Node]:
-        """The two entries of a list that has two; ``what`` it is, for a record's message."""
-        found = self.items(like=like, expected=expected)
-        if len(found) != 2:
-            raise self.fault(f"expected {what} such as {like}")
-        return found[0], found[1]
+    def pair(self, what: str, like: str) -> tuple[Node, Node]:
+        """The two entries of a record's list that has two; ``what`` it is, for the message."""
+        if not isinstance(self.value, Sequence) or len(self.value.items) != 2:
+            raise self._unlike(what, like)
+        first, second = self.items()
+        return first, second
 
-    def _unlike(self, problem: str, shape: str, like: str, expected: str) -> Exception:
+    def _unlike(self, shape: str, like: str, expected: str = "", problem: str = "") -> Exception:
         if self.faults is None:
             return self.fault(problem)
         if not expected and isinstance(self.value, Scalar) and self.value.is_null:
@@ -169,6 +172,8 @@ class Node(NamedTuple):
     ) -> dict[str, Node]:
         """The entries of a mapping; every key that is not known, and every one that is missing, is a fault."""
         found = self.mapping(like=like, expected=expected)
+        if found.keys() >= {*needed} and found.keys() <= {*known}:
+            return found
         unknown = [name for name in found if name not in known]
         missing = [name for name in needed if name not in found]
         for name in unknown:
@@ -187,7 +192,7 @@ class Node(NamedTuple):
         return name in self._inside
 
     def at(self, name: str) -> Node:
-        """What a mapping has under a key, or where it would be."""
+        """What a record's mapping has under a key, or where it would be."""
         return self.below(name, self._inside.get(name))
 
     def entry(self, key: str) -> Node:
@@ -203,15 +208,18 @@ class Node(NamedTuple):
         """What is read of the entries of a list; of a record without those that are wrong, which are noted."""
         return tuple(self.gathered(read, self.items(length, most, like)))
 
+    def attempt(self, read: Callable[[Part], Item], part: Part, instead: Any) -> Any:
+        """What is read of a part; of a record something else where it is wrong, which is noted."""
+        if self.faults is None:
+            return read(part)
+        with self.faults:
+            return read(part)
+        return instead
+
     def gathered(self, read: Callable[[Part], Item], parts: Iterable[Part]) -> list[Item]:
         """What is read of some entries; of a record without those that are wrong, which are noted."""
-        if self.faults is None:
-            return [read(part) for part in parts]
-        found = []
-        for part in parts:
-            with self.faults:
-                found.append(read(part))
-        return found
+        found = (self.attempt(read, part, ...) for part in parts)
+        return [one for one in found if one is not ...]
 
     # ------------------------------------------------------------------------------------- values of JSON's documents
 
@@ -257,9 +265,6 @@ class Node(NamedTuple):
         if not 0 <= self.value < 1e9:
             raise self.fault("is not a number of seconds")
         return float(self.value)
-
-    def optional(self, read: Callable[[Node], Item]) -> Item | None:
-        return None if self.value is None else read(self)
 
     def fraction(self) -> Fraction:
         """A point's coordinate or the like: what is computed from it grows with its length."""

@@ -93,14 +93,26 @@ def text_of(value: Fraction | int) -> str:
     return f"{integer_text(value.numerator)}/{integer_text(value.denominator)}"
 
 
+def decimal_places(value: Fraction) -> int | None:
+    """How many decimals an exact number has; None where they do not end.
+
+    >>> decimal_places(Fraction(-3, 40)), decimal_places(Fraction(7)), decimal_places(Fraction(1, 3))
+    (3, 0, None)
+    """
+    twos = (value.denominator & -value.denominator).bit_length() - 1
+    rest = value.denominator >> twos
+    fives = rest.bit_length() * 43067655807 // 10**11  # divided by the logarithm of 5 to base 2, so off by one at most
+    return next((max(twos, k) for k in range(max(0, fives - 1), fives + 2) if 5**k == rest), None)
+
+
 def shortest_text(value: Fraction) -> str:
     """An exact number as a decimal where it is one with few digits, else as a fraction.
 
     >>> shortest_text(Fraction(-1, 8)), shortest_text(Fraction(1, 10**12)), shortest_text(Fraction(1, 3))
     ('-0.125', '1e-12', '1/3')
     """
-    digits = next((k for k in range(1, 25) if 10**k % value.denominator == 0), 0)
-    if value.denominator == 1 or digits == 0:
+    digits = decimal_places(value)
+    if not digits or digits > MAX_SHORT:
         return text_of(value)
     scaled = value.numerator * (10**digits // value.denominator)
     if abs(scaled) == 1 and digits > 6:

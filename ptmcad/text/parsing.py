@@ -25,7 +25,6 @@ from ptmcad.errors import ConfigError, ExpressionError, shown
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.numerals import exactly
 from ptmcad.text.syntax import NOT_INTEGER, unknown_name
-from ptmcad.text.syntax import names_in as names_in_text
 from ptmcad.text.syntax import parse as tree_of
 from ptmcad.text.tree import Call, Name, Number, Power, Step, Tree, interpret
 
@@ -118,19 +117,6 @@ def share_for(key: str, value: object) -> Fraction:
     if not 0 < share < 1:
         raise ConfigError(f"{shown(str(value), 60)} is not between 0 and 1", key=key)
     return share
-
-
-def names_in(text: str | int | Fraction) -> tuple[str, ...]:
-    """The names that occur in a text, in order of appearance, each once.
-
-    Raises
-    ------
-    ExpressionError
-        If a character cannot stand in an expression.
-    """
-    if not isinstance(text, str):
-        return ()
-    return names_in_text(text)
 
 
 class _InTheAxes:

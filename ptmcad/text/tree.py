@@ -12,6 +12,8 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import NamedTuple, Protocol, TypeVar
 
+from ptmcad.text.numerals import decimal_places
+
 MAX_DIGITS = 2_000
 MAX_DECIMAL_EXPONENT = 1_000
 FUNCTIONS = ("cos", "sin")
@@ -205,14 +207,8 @@ def _within(tree: Tree, lowest: int) -> str:
 
 def _number_text(value: Fraction) -> str:
     """A number as it is read, or a quotient."""
-    places, denominator = 0, value.denominator
-    for prime in (2, 5):
-        power = 0
-        while denominator % prime == 0:
-            denominator //= prime
-            power += 1
-        places = max(places, power)
-    if denominator != 1:
+    places = decimal_places(value)
+    if places is None:
         return f"{value.numerator}/{value.denominator}"
     sign = "-" if value < 0 else ""
     digits = str(abs(value.numerator) * 10**places // value.denominator)

@@ -16,10 +16,9 @@ import yaml
 
 from ptmcad.errors import ConfigError, shown
 from ptmcad.text import textfile
-from ptmcad.text.entry import Place, Scalar, Sequence, Tree, Written
+from ptmcad.text.entry import MAX_DEPTH, Place, Scalar, Sequence, Tree, Written
 
 MAX_BYTES = 200_000
-MAX_DEPTH = 20
 MAX_VALUES = 10_000
 MAX_KEY = 100
 """Longer keys make no sense; every place in a tree holds the path of keys to it."""

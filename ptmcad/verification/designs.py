@@ -25,7 +25,8 @@ from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import shortest_text
-from ptmcad.text.parsing import names_in, parse
+from ptmcad.text.parsing import parse
+from ptmcad.text.syntax import names_in
 from ptmcad.verification.attainment import Lines, check_maxima
 from ptmcad.verification.derivation import parameters_of
 from ptmcad.verification.line import Line, NotKnown

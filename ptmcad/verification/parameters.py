@@ -19,8 +19,9 @@ from ptmcad.errors import ExpressionError
 from ptmcad.mechanism import Mechanism, Model, System
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
-from ptmcad.text.parsing import names_in, parse
+from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.syntax import names_in
 from ptmcad.verification.claims import PLANE, Claims
 from ptmcad.verification.derivation import has_index
 from ptmcad.verification.model import equation_factors

@@ -271,7 +271,7 @@ def change(*path: str | int) -> Callable[[Any], Change]:
         (change("parameters", "k", "alias")(["k1", "k1"]), "parameters.k.alias.2", "'k1' is given twice"),
         (change("parameters", "L1", "kind")("lenght"), "parameters.L1.kind", "did you mean 'length'?"),
         (change("parameters", "L1", "min")(0), "parameters.L1.min", "unknown key"),
-        (change("parameters", "L1", "range")([0]), "parameters.L1.range", "a range such as"),
+        (change("parameters", "L1", "range")([0]), "parameters.L1.range", "a range, such as"),
         (change("parameters", "L1", "default")("rho"), "parameters.L1.default", "expected a number"),
         (change("parameters", "1a")({}), "parameters.1a", "is no name"),
         (change("unknowns", "rho")("angle"), "unknowns.rho", "given twice"),

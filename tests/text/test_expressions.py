@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from ptmcad.errors import ExpressionError, PoleError
 from ptmcad.text.expressions import Expression, axis, constant
-from ptmcad.text.parsing import names_in, parse, rational
+from ptmcad.text.parsing import parse, rational
+from ptmcad.text.syntax import names_in
 
 NAMES = {"rho": axis(0), "L2": axis(1)}
 small = st.fractions(min_value=-5, max_value=5, max_denominator=12)

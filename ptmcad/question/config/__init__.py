@@ -17,7 +17,7 @@ from typing import Any
 
 from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, Faults, expect
 from ptmcad.mechanism import Kind, Parameter, ptm
-from ptmcad.question.config.binding import bound, member_name, released_names, settled
+from ptmcad.question.config.binding import released_names, settled
 from ptmcad.question.config.family import Family, checked_family, family_of, fault_of_member, member_like
 from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, tree_of
@@ -32,7 +32,7 @@ from ptmcad.question.config.record import (
     with_place,
 )
 from ptmcad.question.config.resolution import checked_slice, slice_of
-from ptmcad.question.config.scalars import file_name, number_of, portable_file
+from ptmcad.question.config.scalars import file_name, portable_file
 from ptmcad.question.domain import MAX_DEGREE
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.shipped import record_tree
@@ -195,22 +195,18 @@ def record_from_options(typed: Typed) -> Record:
         record = record._replace(free=(name, window), members=None, values=values, title="", reference={})
     released = None if record.free is None else record.free[0]
     given_sets, given_ranges = settings_of(sets, record.model, released_names(record, released)), ranges_of(ranges)
-    if released is not None and released in given_sets:
-        number = number_of(given_sets.pop(released), f"the value of {released}")
-        record = bound(record, released, number)._replace(name=member_name(record, released, number))
-    elif record.free is not None and slice is not None and released in [name.strip() for name in slice.split(",")]:
+    names = [] if slice is None else [name.strip() for name in slice.split(",")]
+    if record.free is not None and released in names and released not in given_sets:
         given_ranges = dict([record.free]) | given_ranges  # an axis is free, too
         record = record._replace(free=None, members=None)
     if slice is not None:
         record = with_axes(record, slice, given_sets, given_ranges)
     elif config is None:
         raise ConfigError(f"give a problem record (a YAML file), or two axes such as --slice {FIRST},{SECOND}")
-    if record.sweep is not None:
-        record, given_sets = settled(record, given_sets)
     for name, value in given_sets.items():
         if name in record.axes:
             raise value.place.error(f"{name} is an axis and cannot be fixed too: choose other axes with --slice")
-        record = record._replace(values={**record.values, name: value})
+    record = settled(record, given_sets)
     for name, window in given_ranges.items():
         if name not in record.axes:
             axes = " and ".join(record.axes)

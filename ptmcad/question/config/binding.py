@@ -33,7 +33,7 @@ def with_numbers(record: Record, numbers: Mapping[str, Fraction], places: Mappin
         for name, number in numbers.items()
         if name in known
     }
-    return record._replace(values={**record.values, **values, **fixed})
+    return record._replace(values={**record.values, **values, **fixed}, unread=record.unread - numbers.keys())
 
 
 def released_names(record: Record, free: str | None) -> set[str]:
@@ -55,21 +55,27 @@ def member_name(record: Record, name: str, value: Fraction) -> str:
     return f"{start}{text_of(value).replace('/', '_')}"
 
 
-def settled(record: Record, given: Mapping[str, Scalar]) -> tuple[Record, dict[str, Scalar]]:
-    """A record of whose sweep some names have been given a value, or made axes, and the other values.
+def settled(record: Record, given: Mapping[str, Scalar]) -> Record:
+    """The record with values of parameters, and with numbers in place of what is free or swept in it.
 
     Raises
     ------
     ConfigError
-        When other parameters are still swept.
+        When there is a sweep, and other parameters are still swept.
     """
-    swept = swept_names(record)
-    new = {name: number_of(given[name], "a value") for name in given if name not in record.model.parameters}
-    left = {name: place for name, place in swept.items() if name not in given and name not in record.axes}
-    for name, place in left.items():
-        raise place.error(f"{name} is swept too: add --set {name}=VALUE, or ask `ptmcad sweep` for all of its values")
-    settled = with_numbers(record, new, {})._replace(sweep=None)
-    return settled, {name: scalar for name, scalar in given.items() if name not in new}
+    left = dict(given)
+    if record.free is not None and (name := record.free[0]) in left:
+        number = number_of(left.pop(name), f"the value of {name}")
+        record = bound(record, name, number)._replace(name=member_name(record, name, number))
+    if record.sweep is not None:
+        for name, place in swept_names(record).items():
+            if name not in left and name not in record.axes:
+                raise place.error(
+                    f"{name} is swept too: add --set {name}=VALUE, or ask `ptmcad sweep` for all of its values"
+                )
+        new = {name: number_of(left.pop(name), "a value") for name in given if name not in record.model.parameters}
+        record = with_numbers(record, new, {})._replace(sweep=None)
+    return record._replace(values={**record.values, **left})
 
 
 def _with_numbers(scalar: Scalar, numbers: Mapping[str, Fraction]) -> Scalar:

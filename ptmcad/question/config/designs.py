@@ -16,15 +16,15 @@ from ptmcad.mechanism.reading import NUMBER, two
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.objects import plain, tree_of
 from ptmcad.question.config.options import ranges_of
-from ptmcad.question.config.record import AXIS_NAME, Record, Window, check_axis_name, described_record, window_of
-from ptmcad.question.config.resolution import axis_of, note_values, unread_names
+from ptmcad.question.config.record import AXIS_NAME, Record, Window, check_axis_name, window_of
+from ptmcad.question.config.resolution import axis_of, described_record, note_values
 from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
 from ptmcad.question.design import Condition, condition_of, named
 from ptmcad.question.examples import A_DESIGN, FIRST, SECOND
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Axis
 from ptmcad.text.codec import Codec, part, reading, record
-from ptmcad.text.entry import Place, Scalar, Sequence, Tree, Written, from_python
+from ptmcad.text.entry import Place, Scalar, Tree, Written, from_python
 from ptmcad.text.node import Node
 from ptmcad.text.syntax import did_you_mean
 
@@ -109,7 +109,7 @@ def design_from(question: str | Path | Mapping[str, Any] | Design, **changes: An
             raise ConfigError("a design that was read is complete: give the record instead", key=given[0])
         return question
     return checked_design(
-        tree_of(question), {n: from_python(plain(v), Place(f"design.{n}")) for n, v in changes.items() if v is not None}
+        tree_of(question), {n: from_python(v, Place(f"design.{n}"), plain) for n, v in changes.items() if v is not None}
     )
 
 
@@ -129,18 +129,14 @@ def design_from_options(
     ConfigError
         For anything wrong, with file, line and key, or the option.
     """
-    given: dict[str, Written] = {}
-    for key, value in (("maximise", maximise), ("along", along), ("pose", pose)):
-        if value is not None:
-            given[key] = Scalar(value, Place(f"--{key}"))
-    if windows := ranges_of(over, "--over"):
-        place = Place("--over")
-        given["over"] = Tree({n: Sequence((w.low, w.high), w.place) for n, w in windows.items()}, place)
-    for key, value in where.items():
-        if value not in (None, (), False):
-            option = Place(f"--{key.removesuffix('s') if key == 'conditions' else key}")
-            node = from_python(list(value) if isinstance(value, tuple) else value, option)
-            given["where"] = Tree({**_entries(given.get("where")), key: node}, option)
+    windows = {name: [window.low.text, window.high.text] for name, window in ranges_of(over, "--over").items()}
+    asked = {"maximise": maximise, "along": along, "pose": pose, "over": windows or None}
+    given = {key: from_python(value, Place(f"--{key}")) for key, value in asked.items() if value is not None}
+    conditions = {key: value for key, value in where.items() if value not in (None, (), False)}
+    if conditions:
+        places = {key: Place("--condition" if key == "conditions" else f"--{key}") for key in conditions}
+        parts = {key: from_python(value, places[key]) for key, value in conditions.items()}
+        given["where"] = Tree(parts, next(iter(places.values())))
     return checked_design(record_tree(config), given)
 
 
@@ -171,7 +167,7 @@ def checked_design(tree: Tree, given: Mapping[str, Written] | None = None) -> De
         with faults:
             if asked is not None:
                 raise tree.entries[other].place.error(f"a design has no {other!r}: its parameters are those of 'over'")
-    unread = unread_names(record, tree, faults) | _entries(entries.get("over")).keys()
+    unread = record.unread | _entries(entries.get("over")).keys()
     if faults.found and (not entries or len(record.axes) != 2):
         note_values(record._replace(unread=unread), faults)
     record = record._replace(design=None, unread=unread if faults.found else frozenset())

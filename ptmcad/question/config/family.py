@@ -15,15 +15,16 @@ from typing import NamedTuple
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism import Model
 from ptmcad.question.config.binding import bound, member_name
-from ptmcad.question.config.record import MAX_MEMBERS, Record, Window, check_members, described_record
-from ptmcad.question.config.resolution import axis_of, note_values, slice_of, unread_names, written_in
+from ptmcad.question.config.record import MAX_MEMBERS, Record, Window, check_members
+from ptmcad.question.config.resolution import axis_of, described_record, note_values, slice_of, written_in
 from ptmcad.question.config.scalars import number_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.entry import Scalar, Sequence, Tree, Written
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.node import Node
 from ptmcad.text.numerals import text_of
-from ptmcad.text.parsing import names_in, parse
+from ptmcad.text.parsing import parse
+from ptmcad.text.syntax import names_in
 
 MEMBERS = 9
 """Where nothing is stated: so many values, evenly spaced."""
@@ -85,19 +86,15 @@ def family_of(record: Record, faults: Faults | None = None) -> Family:
     faults = faults or Faults()
     assert record.free is not None
     name, window = record.free
-    free = None
+    free: Axis | None = None
+    values: tuple[Fraction, ...] = ()
     with faults:
         _check_name(record, name, window)
         free = axis_of(name, window, record.model)
+        values = _values(free, record.members, faults)
     if free is None or faults.found:  # of the values only what does not depend on the free parameter
-        with faults:
-            if free is not None:
-                _values(free, record.members, faults)
         note_values(record._replace(unread=record.unread | {name}), faults)
     assert free is not None
-    values: tuple[Fraction, ...] = (free.low, free.high)
-    with faults:
-        values = _values(free, record.members, faults)
     slices = [_located(record, name, value, faults) for value in values]
     faults.check()
     first = slices[0]
@@ -124,7 +121,7 @@ def checked_family(tree: Tree) -> Family:
             if "free" not in tree.entries:
                 missing = tree.place.below("free")
                 raise missing.error("is missing: a family has a third parameter, such as free: {F: [-20, 0]}")
-        note_values(record._replace(unread=unread_names(record, tree, faults)), faults)
+        note_values(record, faults)
     return family_of(record, faults)
 
 

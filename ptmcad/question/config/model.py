@@ -6,7 +6,7 @@ record's folder, or in folders below, are read.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -24,7 +24,7 @@ from ptmcad.mechanism import (
     without_loops,
 )
 from ptmcad.mechanism.parts import check_numbers
-from ptmcad.question.config.starters import NAMES, starter_mechanism
+from ptmcad.question.config.starters import mechanism_names, starter_mechanism
 from ptmcad.text.entry import Place, Scalar, Tree, place_at, plain_data, scalars
 from ptmcad.text.syntax import NAME, did_you_mean, names_in
 from ptmcad.text.yamltree import read_file
@@ -116,8 +116,7 @@ def described_in(record: Tree, faults: Faults) -> Described:
     known = starter_mechanism(mechanism.text)
     if isinstance(known, Tree):
         return Described(_read(known, faults, used).model)
-    names = tuple(name for name in NAMES if starter_mechanism(name) is not None)
-    hint = did_you_mean(mechanism.text, names) or f"; built in are {', '.join(names)}"
+    hint = did_you_mean(mechanism.text, mechanism_names()) or f"; built in are {', '.join(mechanism_names())}"
     raise mechanism.place.error(
         f"unknown mechanism{hint}; a file that holds one ends in .yaml, and a mapping describes one"
     )
@@ -241,22 +240,8 @@ def _doubtful(model: Model, keys: Iterable[str]) -> frozenset[str]:
     names = {step[1] for step in steps if step[0] == "parameters" and len(step) > 1}
     if any(step[0] == "parameters" and len(step) == 1 for step in steps):
         return frozenset(model.parameters)
-    if isinstance(model, System):
-        names |= _hidden(model, steps)
+    if isinstance(model, System):  # what is not listed may be something else, where faults hide what it is
+        undeclared = model.parameters.keys() - model.source.get("parameters", {})
+        told = all(step[0] in ("parameters", "name", "title", *_EXPRESSIONS) for step in steps)
+        names |= undeclared - {*model.variables} if told else undeclared
     return frozenset(names | {name for name, p in model.parameters.items() if p.alias_of in names})
-
-
-def _hidden(model: System, faulty: Sequence[list[str]]) -> set[str]:
-    """The names that a system does not list, and of which faults hide what they are: parameters, or something else."""
-    undeclared = {name for name in model.parameters if name not in model.source.get("parameters", {})}
-    if any(step[0] not in ("parameters", "name", "title", *_EXPRESSIONS) for step in faulty):
-        return undeclared
-    hidden: set[str] = set()
-    right: set[str] = set()
-    for key in _EXPRESSIONS:
-        found = model.source.get(key, ())
-        texts = enumerate(found, 1) if isinstance(found, list | tuple) else [("", found)]
-        for n, text in texts:
-            if isinstance(text, str):
-                (hidden if [key, *filter(None, (str(n),))] in faulty else right).update(NAME.findall(text))
-    return undeclared & (hidden - right)

@@ -15,7 +15,6 @@ from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, System, built_in
 from ptmcad.question.config.model import model_of
 from ptmcad.question.shipped import record_tree
 from ptmcad.text.entry import Place, Tree, from_python
-from ptmcad.text.yamltree import MAX_DEPTH
 
 
 def make_mechanism(description: Mapping[Any, Any] | None = None, /, **entries: Any) -> Mechanism | ClosedMechanism:
@@ -75,7 +74,7 @@ def tree_of(question: object, key: str = "question", expected: str = A_RECORD) -
     if not isinstance(question, Mapping):
         assert isinstance(question, str | Path)
         return record_tree(question)
-    node = from_python(plain(question), Place())
+    node = from_python(question, Place(), plain)
     assert isinstance(node, Tree)
     return node
 
@@ -86,25 +85,14 @@ def plain(value: object) -> object:
     Raises
     ------
     ConfigError
-        For what depends on an undefined function of SymPy's, such as ``q(t)``, and for data that is nested deeper than
-        a file may be, as what contains itself is.
+        For what depends on an undefined function of SymPy's, such as ``q(t)``.
     """
-    return _plain(value, 0)
-
-
-def _plain(value: object, depth: int) -> object:
-    if depth > MAX_DEPTH:
-        raise ConfigError(f"more than {MAX_DEPTH} levels of nesting, or data that contains itself")
     if isinstance(value, Model):
         return value.name if value.name in built_in() else {"name": value.name, **value.source}
-    if isinstance(value, Mapping):
-        return {_text(key) if _is_symbolic(key) else key: _plain(entry, depth + 1) for key, entry in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(entry, depth + 1) for entry in value]
     shape: Any = getattr(value, "shape", None)
     if isinstance(shape, tuple) and shape:  # an array of numpy's; SymPy's matrices give their entries row by row
         entries: Any = value
-        return [_plain(entry, depth + 1) for entry in entries]
+        return [*entries]
     return _text(value) if _is_symbolic(value) else value
 
 
@@ -142,6 +130,6 @@ def _model(kind: str, description: Mapping[Any, Any] | None, entries: Mapping[st
     given = {**(description or {}), **entries}
     if kind == "mechanism" and {"equations", "potential"} & given.keys():
         raise ConfigError("equations or a potential describe a system: use ptmcad.System", key=kind)
-    node = from_python({kind: plain(given)}, Place())
+    node = from_python({kind: given}, Place(), plain)
     assert isinstance(node, Tree)
     return model_of(node)

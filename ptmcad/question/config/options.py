@@ -3,7 +3,7 @@
 Guarantee: whatever is wrong is a `ConfigError` that names the option.
 """
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -39,36 +39,33 @@ class Typed(NamedTuple):
 
 def settings_of(sets: Iterable[str], model: Model, released: Collection[str] = ()) -> dict[str, Scalar]:
     """``NAME=VALUE`` texts, for parameters of a model and what is free or swept in a record."""
-    settings = {}
-    for name, value, place in _named(sets, "--set", "NAME=VALUE", f"{FIRST}=3/2"):
+    settings: dict[str, Scalar] = {}
+    for text in sets:
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if not equals or not name or not value:
+            raise ConfigError(f"{text[:80]!r} is not NAME=VALUE, such as {FIRST}=3/2", key="--set")
+        place = Place(f"--set {name[:40]}")
         if name not in model.parameters and name not in released:
             raise place.error(unknown_parameter(name, model))
+        if name in settings:
+            raise place.error("is given twice: leave one out")
         settings[name] = Scalar(value, place)
     return settings
 
 
 def ranges_of(ranges: Iterable[str], option: str = "--range") -> dict[str, Window]:
     """``NAME=LO:HI`` texts of an option."""
-    windows = {}
-    for name, window, place in _named(ranges, option, "NAME=LO:HI", f"{FIRST}=0:2"):
-        low, _, high = (part.strip() for part in window.partition(":"))
+    windows: dict[str, Window] = {}
+    for text in ranges:
+        name, equals, window = (part.strip() for part in text.partition("="))
+        low, colon, high = (part.strip() for part in window.partition(":"))
+        if not (equals and name and colon and low and high):
+            raise ConfigError(f"{text[:80]!r} is not NAME=LO:HI, such as {FIRST}=0:2", key=option)
+        place = Place(f"{option} {name[:40]}")
+        if name in windows:
+            raise place.error("is given twice: leave one out")
         windows[name] = Window(Scalar(low, place), Scalar(high, place), place)
     return windows
-
-
-def _named(texts: Iterable[str], option: str, form: str, like: str) -> Iterator[tuple[str, str, Place]]:
-    """Names with what texts say of them, and their places; each once."""
-    known = set()
-    for text in texts:
-        name, _, value = (part.strip() for part in text.partition("="))
-        ends = value.split(":", form.count(":"))
-        if not name or len(ends) <= form.count(":") or not all(end.strip() for end in ends):
-            raise ConfigError(f"{text[:80]!r} is not {form}, such as {like}", key=option)
-        place = Place(f"{option} {name[:40]}")
-        if name in known:
-            raise place.error("is given twice: leave one out")
-        known.add(name)
-        yield name, value, place
 
 
 def with_axes(record: Record, slice: str, sets: Mapping[str, Scalar], ranges: Mapping[str, Window]) -> Record:

@@ -9,10 +9,10 @@ from typing import Any
 
 from ptmcad.errors import A_RECORD, A_SLICE, ConfigError
 from ptmcad.mechanism import Model, ptm
-from ptmcad.question.config.binding import bound, released_names, settled
+from ptmcad.question.config.binding import released_names, settled
 from ptmcad.question.config.objects import plain, tree_of
 from ptmcad.question.config.options import settings_of
-from ptmcad.question.config.record import Record, record_of, swept_names, unknown_parameter
+from ptmcad.question.config.record import Record, record_of, unknown_parameter
 from ptmcad.question.config.resolution import point_of, without_shorthands
 from ptmcad.question.config.scalars import number_of, number_text
 from ptmcad.question.shipped import record_tree
@@ -46,7 +46,7 @@ def point_from_mapping(values: Mapping[str, object], model: Model | None = None)
         place = Place(name)
         if name not in model.parameters:
             raise ConfigError(unknown_parameter(name, model))
-        given[name] = number_text(from_python(plain(value), place))
+        given[name] = number_text(from_python(value, place, plain))
     return point_of(Record(model, values=given), {})
 
 
@@ -89,7 +89,7 @@ def point_from(
     ConfigError
         For anything wrong, with the name.
     """
-    given = {name: number_text(from_python(plain(value), Place(name))) for name, value in values.items()}
+    given = {name: number_text(from_python(value, Place(name), plain)) for name, value in values.items()}
     if not isinstance(question, Slice):
         return _at_point(record_of(tree_of(question, expected=_EXPECTED)), given, (), None)
     names = question.axis_names
@@ -118,28 +118,20 @@ def _at_point(
 ) -> tuple[Model, dict[str, Fraction]]:
     released = None if record.free is None else record.free[0]
     given = settings_of(sets, record.model, released_names(record, released))
-    if released in given:
-        record = bound(record, released, number_of(given.pop(released), f"the value of {released}"))
-        released = None
     axes: dict[str, Expression] = {}
     where = record.place.file or "the record"
-    if released is not None and released not in at:
+    if released is not None and released not in at and released not in given:
         raise ConfigError(f"{released} is free in {where} and has no value: add {released}=VALUE", key=option)
     for name, scalar in at.items():
         if name in given:
             raise scalar.place.error("is given with --set too: leave one out")
-        if name == released:
-            record = bound(record, name, number_of(scalar, f"the value of {name}"))
-            continue
-        if name in record.model.parameters or name in swept_names(record):
+        if name in record.model.parameters or name in released_names(record, released):
             given[name] = scalar
         elif name in record.axes:
             axes[name] = constant(number_of(scalar, "the value of this axis"))
         else:
             raise scalar.place.error(unknown_parameter(name, record.model))
-    if record.sweep is not None:
-        record, given = settled(record, given)
     for name in record.axes:
         if name not in given and name not in axes:
             raise ConfigError(f"{name} is an axis of {where} and has no value: add {name}=VALUE", key=option)
-    return record.model, point_of(record._replace(values={**record.values, **given}), axes)
+    return record.model, point_of(settled(record, given), axes)

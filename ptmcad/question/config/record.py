@@ -76,25 +76,23 @@ class Record(NamedTuple):
     design: Written | None = None
     count_place: Place = Place("count")
     values_place: Place | None = None
-    described: Described | None = None
+    described: Described = Described(ptm())
     unread: frozenset[str] = frozenset()
 
     def place_of(self, name: str) -> Place:
         """Where a parameter's value is written, or what describes it, or where a value would be given."""
         if name in self.values:
             return self.values[name].place
-        found = self.described.place_of(name) if self.described is not None else None
-        return found or (self.values_place or self.place).below(name)
+        return self.described.place_of(name) or (self.values_place or self.place).below(name)
 
     @property
     def doubtful(self) -> frozenset[str]:
         """Names of which nothing can be said, because what describes them is faulty."""
-        return self.unread | (self.described.doubtful if self.described is not None else frozenset())
+        return self.unread | self.described.doubtful
 
     def place_of_part(self, key: str) -> Place:
         """Where a part of the description stands, such as ``springs.2.k``."""
-        found = self.described.place_of_part(key) if self.described is not None else None
-        return found or Place(key)
+        return self.described.place_of_part(key) or Place(key)
 
 
 def record_of(tree: Tree) -> Record:
@@ -111,28 +109,13 @@ def record_of(tree: Tree) -> Record:
     return record
 
 
-def described_record(tree: Tree) -> tuple[Record, Faults]:
-    """A record as `read_record` has it, and what is wrong with it, where there is a model.
-
-    Raises
-    ------
-    ConfigError
-        Without one: then nothing can be said of the values.
-    """
-    faults = Faults()
-    record = read_record(tree, faults)
-    if record.described is None:
-        faults.check()
-    return record, faults
-
-
 def read_record(tree: Tree, faults: Faults) -> Record:
     """A record as far as its keys and shapes are right; what is not is noted, and left out or replaced by 1.
 
     Raises
     ------
     ConfigError
-        At once for a file that ptmcad wrote itself: each of its keys would be a fault of its own.
+        At once for a file that ptmcad wrote itself: each of its keys would be a fault of its own. And without a model.
     """
     kind = tree.entries.get("format")
     if isinstance(kind, Scalar) and kind.text.startswith("ptmcad-"):
@@ -147,8 +130,7 @@ def read_record(tree: Tree, faults: Faults) -> Record:
             name = name_of_file(tree.place.file)
     with faults:
         described = described_in(tree, faults)
-    model = None if described is None else described.model
-    read: dict[str, Any] = record_codec(model).read(node)
+    read: dict[str, Any] = record_codec(None if described is None else described.model).read(node)
     for key in ("notes", "mechanism", "system"):
         del read[key]
     if read["members"] is not None and "free" not in tree.entries:
@@ -156,8 +138,11 @@ def read_record(tree: Tree, faults: Faults) -> Record:
             raise node.at("members").fault(
                 "there are members where a parameter is free: add one, such as free: {F: [-20, 0]}"
             )
+    if described is None:  # then nothing can be said of the values
+        faults.check()
+    assert described is not None
     return Record(
-        model or ptm(),  # without one nothing is known: the rest is read as if it were of the built-in one
+        described.model,
         **{**read, "name": read["name"] or name}, described=described, place=tree.place,
         count_place=node.at("count").place, values_place=node.at("parameters").place,
     )  # fmt: skip
@@ -247,12 +232,8 @@ def with_place(error: ConfigError | HypothesisError, record: Record) -> PtmcadEr
             return error
         if error.key == "count" and record.counting is not None:
             return record.count_place.error(error.message)
-        described = record.described
-        return (
-            error
-            if described is None or not described.has_part(error.key or "-")
-            else (record.place_of_part(error.key or "").error(error.message))
-        )
+        key = error.key or "-"
+        return record.place_of_part(key).error(error.message) if record.described.has_part(key) else error
     place = _place_of_fault(error, record)
     return error if place is None else place.error(str(error))
 
@@ -264,7 +245,7 @@ def _place_of_fault(error: HypothesisError, record: Record) -> Place | None:
         if name not in record.values and name not in record.axes:
             name = record.model.parameters[name].alias_of or name
         return record.axes[name].place if name in record.axes else record.place_of(name)
-    if record.described is not None and (place := record.described.place_of_part("")) is not None:
+    if (place := record.described.place_of_part("")) is not None:
         return place
     axes = next(iter(record.axes.values()), None)
     if axes is None or axes.place.file is None:
@@ -314,7 +295,7 @@ def _window(entry: Node) -> Window:
 
 def window_of(entry: Node, what: str, like: str) -> Window:
     """The range that a list of two ends is; what it is, and an example, are for messages."""
-    low, high = entry.pair(what, like, f"expected {what} such as {like}")
+    low, high = entry.pair(what, like)
     return Window(number_text(low), number_text(high), entry.place)
 
 

@@ -16,16 +16,15 @@ from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.moments import foreign
 from ptmcad.mechanism.parts import fault_of_number, parts
 from ptmcad.question.config.names import Resolution
-from ptmcad.question.config.record import Record, Window, described_record, swept_names
+from ptmcad.question.config.record import Record, Window, read_record, swept_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of
 from ptmcad.question.domain import MAX_DEGREE, fault, fault_of_part, unproved
 from ptmcad.question.examples import AXES
 from ptmcad.question.positivity import READING_WORK
 from ptmcad.question.slice import NOTHING_ADMISSIBLE, Axis, Count, Slice, have_free_lengths
-from ptmcad.text.entry import Place, Tree
+from ptmcad.text.entry import Place, Scalar, Tree
 from ptmcad.text.expressions import Expression, axis, constant
-from ptmcad.text.parsing import names_in
-from ptmcad.text.syntax import did_you_mean, parse
+from ptmcad.text.syntax import did_you_mean, names_in, parse
 from ptmcad.text.tree import names_of
 
 
@@ -37,11 +36,23 @@ def checked_slice(tree: Tree) -> Slice:
     ConfigError
         That knows all faults of the record, those of keys and shapes and those of what is written there.
     """
-    record, faults = described_record(tree)
-    return slice_of(record._replace(unread=unread_names(record, tree, faults)), faults)
+    return slice_of(*described_record(tree))
 
 
-def unread_names(record: Record, tree: Tree, faults: Faults) -> frozenset[str]:
+def described_record(tree: Tree) -> tuple[Record, Faults]:
+    """A record as `read_record` has it, with its `unread` names, and what is wrong with it, where there is a model.
+
+    Raises
+    ------
+    ConfigError
+        Without one: then nothing can be said of the values.
+    """
+    faults = Faults()
+    record = read_record(tree, faults)
+    return record._replace(unread=_unread(record, tree, faults)), faults
+
+
+def _unread(record: Record, tree: Tree, faults: Faults) -> frozenset[str]:
     """The names in a record's values of which nothing can be said, because what would tell what they are is faulty."""
     faulty = {fault.key or "" for fault in faults.found}
     found, hidden = set(), False
@@ -293,35 +304,31 @@ def _texts(
     A k that the springs do not have by default, say, is no parameter of the mechanism, but "k/10" says nothing without
     it. No engine looks at the sign of such a name, so it has to be proved here.
     """
-    texts = {name: _written(name, record) for name in effective}
-    waiting = list(texts.values())
-    while waiting:
-        for name in names_in(waiting.pop()):
-            if name in texts or name in record.axes:
-                continue
-            problem = (
-                ""
-                if resolved[name].is_constant
-                else unproved(name, record.model.kind(name), resolved[name], axes, READING_WORK)
-            )
-            if problem:
-                raise record.place_of(name).error(problem)
-            texts[name] = _written(name, record)
-            waiting.append(texts[name])
+    written = _reached(effective, record)
+    for name in written.keys() - {*effective}:
+        value = resolved[name]
+        if not value.is_constant and (problem := unproved(name, record.model.kind(name), value, axes, READING_WORK)):
+            raise record.place_of(name).error(problem)
+    texts = {**written, **{name: name for name in effective if name in record.axes}}
     return {name: texts[name] for name in record.model.parameters if name in texts}
+
+
+def _reached(names: Iterable[str], record: Record) -> dict[str, str]:
+    """Parameters that are no axes as they are written, and every parameter that such a text names."""
+    texts: dict[str, str] = {}
+    waiting = [*names]
+    while waiting:
+        name = waiting.pop()
+        if name not in texts and name in record.model.parameters and name not in record.axes:
+            texts[name] = _written(name, record)
+            waiting += names_in(texts[name])
+    return texts
 
 
 def written_in(record: Record, member: Slice) -> dict[str, str]:
     """Each parameter of a family's members as the record writes it, and every parameter that such a text names."""
-    texts = {}
-    waiting = [*member.parameters]
-    while waiting:
-        name = waiting.pop()
-        if name not in texts and name in record.model.parameters and name not in record.axes:
-            free = record.free is not None and name == record.free[0]
-            texts[name] = name if free else _written(name, record)
-            waiting += names_in(texts[name])
-    return texts
+    texts = {} if record.free is None else {record.free[0]: Scalar(record.free[0], Place())}
+    return _reached(member.parameters, record._replace(values={**record.values, **texts}))
 
 
 def _written(name: str, record: Record) -> str:

@@ -11,8 +11,8 @@ from ptmcad.mechanism.reading import MAX_TITLE, title_of
 from ptmcad.text.entry import Place, Scalar, Written
 from ptmcad.text.expressions import Expression
 from ptmcad.text.node import Node
-from ptmcad.text.parsing import names_in, parse
-from ptmcad.text.syntax import did_you_mean
+from ptmcad.text.parsing import parse
+from ptmcad.text.syntax import did_you_mean, names_in
 
 MAX_NAME = 100
 _PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")

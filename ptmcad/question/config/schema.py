@@ -15,8 +15,9 @@ from ptmcad.mechanism.record import mechanism_codec
 from ptmcad.mechanism.systems import system_codec
 from ptmcad.question.config.designs import DESIGN
 from ptmcad.question.config.record import record_codec
-from ptmcad.question.config.starters import NAMES, starter_mechanism
+from ptmcad.question.config.starters import mechanism_names
 from ptmcad.question.config.sweeps import SWEEP
+from ptmcad.text.entry import Place, Scalar, plain_data
 from ptmcad.text.syntax import MAX_TEXT, NAME
 from ptmcad.text.tree import FUNCTIONS
 
@@ -42,11 +43,15 @@ def record_schema() -> dict[str, Any]:
     read = record_codec(None).schema
     paper, nothing = ptm(), Context(Faults())
     parameters = {
-        name: {**VALUE, "description": MEANINGS[name], "default": _number(parameter.default)}
+        name: {**VALUE, "description": MEANINGS[name], "default": plain_data(Scalar(parameter.default, Place()))}
         for name, parameter in paper.parameters.items()
     }
-    whole, names = read["properties"], [name for name in NAMES if starter_mechanism(name) is not None]
-    models = [{"enum": names}, {"type": "string", "pattern": "[.](yaml|yml|YAML|YML)$"}, {"$ref": "#/$defs/mechanism"}]
+    whole = read["properties"]
+    models = [
+        {"enum": [*mechanism_names()]},
+        {"type": "string", "pattern": "[.](yaml|yml|YAML|YML)$"},
+        {"$ref": "#/$defs/mechanism"},
+    ]
     own: dict[str, Any] = {
         "mechanism": {"anyOf": models},
         "system": {"$ref": "#/$defs/system"},
@@ -65,18 +70,9 @@ def record_schema() -> dict[str, Any]:
         "properties": {name: {**said, **own.get(name, {})} for name, said in whole.items()},
         "not": {"required": ["mechanism", "system"]},
         "dependentRequired": {"members": ["free"]},
-        "if": {"$ref": "#/$defs/ptm"},
-        "then": {"$ref": "#/$defs/ptm-parameters"},
+        "if": {"properties": {"mechanism": {"const": paper.name}}, "not": {"required": ["system"]}},
+        "then": {"properties": {"parameters": {"propertyNames": {"enum": [*parameters]}}}},
         "$defs": {
-            "ptm": {
-                "description": "A record about the mechanism ptm.",
-                "properties": {"mechanism": {"const": paper.name}},
-                "not": {"required": ["system"]},
-            },
-            "ptm-parameters": {
-                "description": "Such a record knows no other parameters.",
-                "properties": {"parameters": {"propertyNames": {"enum": [*parameters]}}},
-            },
             "mechanism": {
                 "description": "A planar mechanism: points as expressions, bars, springs and loads.",
                 **mechanism_codec(nothing).schema,
@@ -89,7 +85,3 @@ def record_schema() -> dict[str, Any]:
             **_LEAVES,
         },
     }
-
-
-def _number(text: str) -> int | str:
-    return int(text) if text.isdecimal() else text

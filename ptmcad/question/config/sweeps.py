@@ -16,8 +16,8 @@ from ptmcad.mechanism import Model
 from ptmcad.mechanism.reading import NUMBER
 from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.objects import tree_of
-from ptmcad.question.config.record import AXIS_NAME, Record, check_axis_name, described_record, swept_names
-from ptmcad.question.config.resolution import check_number, note_values, slice_of, unread_names
+from ptmcad.question.config.record import AXIS_NAME, Record, check_axis_name, swept_names
+from ptmcad.question.config.resolution import check_number, described_record, note_values, slice_of
 from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
 from ptmcad.question.examples import A_SWEEP, FIRST
 from ptmcad.question.shipped import record_tree
@@ -104,8 +104,7 @@ def checked_sweep(tree: Tree) -> Sweeping:
         with faults:
             raise tree.place.below("sweep").error(f"is missing: say what is swept, such as {A_SWEEP}")
     if sweep is None:  # of the values only what does not depend on what is swept
-        unread = unread_names(record, tree, faults) | swept_names(record).keys()
-        note_values(record._replace(unread=unread), faults)
+        note_values(record._replace(unread=record.unread | swept_names(record).keys()), faults)
     assert sweep is not None
     slice_of(with_values(record, sweep[0]), faults)
     return Sweeping(record, sweep)

@@ -20,6 +20,7 @@ from ptmcad.text.codec import (
     RATIONAL,
     Codec,
     Key,
+    Schema,
     by_name,
     choice,
     converted,
@@ -78,6 +79,23 @@ def with_decimal(text: Callable[[Any], str | None]) -> Codec[Any]:
 def algebraic_with_decimal(text: Callable[[Any], str | None]) -> Codec[AlgebraicNumber]:
     """An algebraic number beside its decimal."""
     return record_of(AlgebraicNumber, {}, _algebraic, decimal=derived(text), polynomial=_POLYNOMIAL)
+
+
+def merged(one: Schema, other: Schema) -> Schema:
+    """The schema of what has one of two shapes, which differ in few keys."""
+    if one == other:
+        return one
+    if one.get("type") == other.get("type") == "array":
+        return {**one, "items": merged(one["items"], other["items"])}
+    if "properties" not in one or "properties" not in other:
+        return {"anyOf": [one, other]}
+    both = {**one["properties"], **other["properties"]}
+    shared = one["properties"].keys() & other["properties"].keys()
+    properties = {
+        n: merged(one["properties"][n], other["properties"][n]) if n in shared else s for n, s in both.items()
+    }
+    needed = [name for name in one["required"] if name in other["required"]]
+    return {**one, "properties": properties, "required": needed}
 
 
 def maximum(over: str, digits: int) -> Codec[Maximum]:

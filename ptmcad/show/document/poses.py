@@ -16,6 +16,7 @@ from ptmcad.answer.poses import MAX_DIGITS, Pose, Poses, Spring, TorsionSpring
 from ptmcad.answer.regionmap import Status
 from ptmcad.mechanism import mechanism_in
 from ptmcad.question.slice import check_names
+from ptmcad.show.document.numbers import merged
 from ptmcad.show.document.slice import MODEL, UNITS
 from ptmcad.text.codec import (
     COUNT,
@@ -31,7 +32,6 @@ from ptmcad.text.codec import (
     either,
     line,
     listed,
-    merged,
     named,
     optional,
     record,

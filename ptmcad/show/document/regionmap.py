@@ -29,7 +29,7 @@ from ptmcad.answer.regionmap import (
 )
 from ptmcad.question.slice import Count, Point, Slice
 from ptmcad.show.document.cover import COVER, cover_line
-from ptmcad.show.document.numbers import INDEX
+from ptmcad.show.document.numbers import INDEX, merged
 from ptmcad.show.document.slice import SLICE, polynomial_over
 from ptmcad.text.codec import (
     COUNT,
@@ -46,7 +46,6 @@ from ptmcad.text.codec import (
     converted,
     document_text,
     listed,
-    merged,
     named,
     record_of,
     unless_default,

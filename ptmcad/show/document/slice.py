@@ -7,6 +7,7 @@ description.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from fractions import Fraction
 from typing import Any
 
 from ptmcad.mechanism import Model, built_in, described, described_system, known_of, recognised, without_loops
@@ -61,24 +62,19 @@ MODEL = Key(
 """A model under one of two keys."""
 
 
-def _axes(node: Node) -> tuple[Axis, Axis]:
-    axes = [Axis(name, *ends.each(Node.fraction, 2)) for name, ends in node.mapping().items()]
-    if len(axes) != 2 or not all(NAME.fullmatch(a.name) for a in axes):
-        raise node.fault("does not hold two named axes")
-    for a in axes:
-        if a.low >= a.high:
-            raise node.fault(f"has an empty range for {a.name}")
-    return axes[0], axes[1]
+def _axes(found: Mapping[str, tuple[Fraction, ...]]) -> tuple[Axis, Axis]:
+    if len(found) != 2 or not all(map(NAME.fullmatch, found)):
+        raise ValueError("it does not hold two named axes")
+    first, second = (Axis(name, *ends) for name, ends in found.items())
+    for axis in first, second:
+        if axis.low >= axis.high:
+            raise ValueError(f"it has an empty range for {axis.name}")
+    return first, second
 
 
-_AXES: Codec[tuple[Axis, Axis]] = Codec(
-    lambda axes: {a.name: [RATIONAL.write(a.low), RATIONAL.write(a.high)] for a in axes},
-    _axes,
-    {
-        "type": "object", "minProperties": 2, "maxProperties": 2,
-        "additionalProperties": listed(RATIONAL, 2).schema,
-    },
-)  # fmt: skip
+_AXES: Codec[tuple[Axis, Axis]] = converted(
+    named(listed(RATIONAL, 2)), lambda axes: {axis.name: (axis.low, axis.high) for axis in axes}, _axes
+).narrowed(minProperties=2, maxProperties=2)
 
 
 def _file_name(node: Node) -> str:
@@ -89,7 +85,7 @@ def _file_name(node: Node) -> str:
 
 
 def _slice(node: Node) -> Slice:
-    first, second = _axes(node.entry("axes"))
+    first, second = _AXES.read(node.entry("axes"))
     found = slice_over((first.name, second.name)).read(node)
     for name in found.text.keys() - found.model.parameters.keys():
         raise node.entry("text").fault(f"has the unknown key {name[:40]!r}")

@@ -27,6 +27,11 @@ def starter_text(name: str) -> str:
     return files(__package__).joinpath(f"{name}.yaml").read_text(encoding="utf-8")
 
 
+def mechanism_names() -> tuple[str, ...]:
+    """The names of the mechanisms."""
+    return tuple(name for name in NAMES if starter_mechanism(name) is not None)
+
+
 def starter_mechanism(name: str) -> Written | None:
     """The description of a mechanism by its name; None when there is none."""
     return read_text(starter_text(name)).entries.get("mechanism") if name in NAMES else None
