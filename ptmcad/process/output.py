@@ -1,6 +1,6 @@
 """The files of a result: written under hidden names first, then put into place together, under a lock on their folder.
 
-The last file of a set is its *voucher* (the JSON); the others are pictures of what it says.
+The last file of a set is its *voucher* (the JSON); the others are pictures of what it says, and carry its hash.
 
 Guarantee: every file under its own name is whole. Whatever ends the process, at every moment the files that can be seen
 are of one set: the voucher is the old one or the new one, and the others are of the same set or missing. Nothing is put
@@ -33,6 +33,7 @@ from typing import Any
 
 from ptmcad.errors import ConfigError, OutputError
 from ptmcad.process.handover import Topic, remove, send, undisturbed
+from ptmcad.process.stamp import stamp
 from ptmcad.text.textfile import json_data, read_text
 
 Writer = Callable[[Path], None]
@@ -212,7 +213,10 @@ def _written(folder: Path, writers: Mapping[str, Writer]) -> Iterator[dict[Path,
                 current = folder / name
                 files[current] = hidden / name
                 write(files[current])
-                with files[current].open("rb+") as file:
+            *pictures, voucher = files.values()
+            stamp(pictures, voucher)
+            for path in files.values():
+                with path.open("rb+") as file:
                     os.fsync(file)
             yield files
     except OSError as error:
