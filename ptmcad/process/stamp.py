@@ -1,4 +1,4 @@
-"""A picture's stamp: the SHA-256 of the JSON that it was written with, by which one can tell whether they are of one set.
+"""A picture's stamp: the SHA-256 of the JSON that it was written with, which tells whether both are of one set.
 
 Guarantee: what is drawn stays as it was; readers of each format pass over the stamp, which ``grep -a sha256`` shows.
 It is a text chunk of a PNG, and a comment in an SVG, a PDF and an EPS.
@@ -31,9 +31,10 @@ def _postscript(content: bytes, stamp: bytes) -> bytes:
     return body + b"% " + stamp + b"\n" + end + rest
 
 
-_STAMPED: Mapping[str, Callable[[bytes, bytes], bytes]] = {
-    ".png": _png, ".svg": _svg, ".pdf": _postscript, ".eps": _postscript,
+_STAMPED: Mapping[bytes, Callable[[bytes, bytes], bytes]] = {
+    b"\x89PNG": _png, b"<?xm": _svg, b"%PDF": _postscript, b"%!PS": _postscript,
 }  # fmt: skip
+"""How pictures whose content begins so are stamped."""
 
 
 def stamp(pictures: list[Path], voucher: Path) -> None:
@@ -48,5 +49,6 @@ def stamp(pictures: list[Path], voucher: Path) -> None:
         return
     text = f"sha256 of {voucher.name}: {sha256(voucher.read_bytes()).hexdigest()}"
     for path in pictures:
-        if path.suffix in _STAMPED:
-            path.write_bytes(_STAMPED[path.suffix](path.read_bytes(), text.encode("ascii", "replace")))
+        content = path.read_bytes()
+        if content[:4] in _STAMPED:
+            path.write_bytes(_STAMPED[content[:4]](content, text.encode("ascii", "replace")))
