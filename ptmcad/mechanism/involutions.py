@@ -80,11 +80,6 @@ class Involution:
         return not any(j == k and s > 0 and h for k, (j, s, h) in enumerate(places))
 
     @property
-    def is_identity(self) -> bool:
-        """Whether nothing changes."""
-        return self.keeps_points and self.images == (*range(len(self.images)),) and not (self.odd or any(self.halves))
-
-    @property
     def keeps_points(self) -> bool:
         """Whether each point of the slice is its own image."""
         return self.axes == (0, 1) and self.axis_signs == (1, 1)
@@ -140,7 +135,7 @@ def involutions(model: Model, parameters: Mapping[str, Expression], window: Wind
                     Involution(images, *change.read(bits), axes, signs, shifts)
                     for bits in _solutions(system, len(kinds))
                 ]
-    return [each for each in dict.fromkeys(found) if not each.is_identity]
+    return list(dict.fromkeys(found))[1:]  # the identity comes first
 
 
 def _axis_changes(window: Window | None) -> Iterator[tuple[_Two, _Two, tuple[Fraction, Fraction]]]:

@@ -253,8 +253,8 @@ def test_wrong_options(options: dict[str, Any]) -> None:
         classify(load(CONFIGS / "fig2.yaml"), **options)
 
 
-@pytest.mark.parametrize("stage", ["discriminant_variety", "project", "region_areas"])
-@pytest.mark.slow_cases("discriminant_variety", "region_areas")
+@pytest.mark.parametrize("stage", ["stages.discriminant_variety", "stages.project", "areas.region_areas"])
+@pytest.mark.slow_cases("stages.discriminant_variety", "areas.region_areas")
 def test_a_limit_leaves_the_best_map_so_far(stage: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever was reached is a partial map that can be written, read and asked, and gives no undecided count."""
     record = load(CONFIGS / "stiffness.yaml")
@@ -263,11 +263,11 @@ def test_a_limit_leaves_the_best_map_so_far(stage: str, monkeypatch: pytest.Monk
     def stop(*_arguments: object) -> None:
         raise LimitReached("the limit of this test")
 
-    monkeypatch.setattr(f"ptmcad.exact.stages.{stage}", stop)
+    monkeypatch.setattr(f"ptmcad.exact.{stage}", stop)
     with pytest.raises(LimitReached) as stopped:
         classify(record)
     partial = stopped.value.partial
-    if stage == "discriminant_variety":
+    if stage == "stages.discriminant_variety":
         assert partial is None
         return
     assert isinstance(partial, RegionMap)
@@ -275,7 +275,7 @@ def test_a_limit_leaves_the_best_map_so_far(stage: str, monkeypatch: pytest.Monk
     assert RegionMap.from_json(partial.to_json()) == partial
     assert len(partial.table().splitlines()) == 5
     place = partial.locate(k=100, rho="7/10")
-    if stage == "project":
+    if stage == "stages.project":
         assert (place.status.value, place.stable) == ("undecided", None)
     else:
         assert place == expected

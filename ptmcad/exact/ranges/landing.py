@@ -10,7 +10,7 @@ is bounded on the torus.
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
+from collections.abc import Sequence
 from fractions import Fraction
 from math import pi
 from typing import NamedTuple
@@ -108,25 +108,19 @@ def _merged(
     if found is None or found.box is None:
         return None
     with ctx.workprec(BITS):
-        region = tuple(map(enclosure_of, found.box))
-        region = tuple(_exactly(x, k, family.angles, found.zero) for k, x in enumerate(region))
-        if found.mirror is not None and (angle := found.mirror.angle(number.low, number.high)) is not None:
-            region = tuple(_half_turned(x, angle) for x in region)
+        region = list(map(enclosure_of, found.box))
+        for k, mirror in found.fixed.items():
+            angle = mirror.angle(number.low, number.high)
+            if k >= family.angles:
+                region[k] = Enclosure(Fraction(0), Fraction(0))
+            elif angle is not None:
+                region[k] = _half_turned(region[k], angle)
     if number.exact is None:
-        return region
+        return tuple(region)
     poses = exact_poses(family.model, parameters_at(family, line, number.exact), DIGITS).equilibria
     near = [_turned((*pose.angles, *pose.reals), region, family.angles) for pose in poses]
     inside = [p for p in near if _overlap(p, region)]
-    return inside[0] if len(inside) == 1 else region
-
-
-def _exactly(x: Enclosure, k: int, angles: int, zero: Set[int]) -> Enclosure:
-    """An unknown of which the cosine or the sine, or which itself, is zero; as it is where nothing is known."""
-    if k >= angles:
-        return Enclosure(Fraction(0), Fraction(0)) if k + angles in zero else x
-    if not {2 * k, 2 * k + 1} & zero:
-        return x
-    return _half_turned(x, arb(0) if 2 * k + 1 in zero else arb.pi() / 2)
+    return inside[0] if len(inside) == 1 else tuple(region)
 
 
 def _half_turned(x: Enclosure, angle: arb) -> Enclosure:

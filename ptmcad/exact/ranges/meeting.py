@@ -11,12 +11,13 @@ Reference: Deimling, Nonlinear Functional Analysis, 1 (the degree; that it is th
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
 from flint import arb, arb_mat, ctx
 
+from ptmcad.algebra.polynomials import PLANE
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.exact.counting import equilibria
 from ptmcad.exact.models.system import on_slice, polynomial_at
@@ -31,6 +32,8 @@ from ptmcad.text.flint_numbers import from_fraction
 
 _MAX_GROUP = 8
 """Solutions of which all groupings are looked through: of eight there are 4140."""
+_QUARTERS = Mirror(PLANE.constant(1), PLANE.constant(0)), Mirror(PLANE.constant(0), PLANE.constant(1))
+"""The lines at which an angle is reflected that becomes its negative, or half a turn less it."""
 _MAX_PIECES = 4000
 _MAX_DEPTH = 60
 """Into how many pieces, and how often, a region's boundary is cut."""
@@ -56,10 +59,8 @@ class Meeting(NamedTuple):
     beyond : all solutions on the far side.
     box : where there is a region that no solution enters or leaves meanwhile, what it holds of each unknown, angles as
         the branch has them; else None.
-    zero : of the coordinates, cosine and sine of each angle and then the unknowns on the line, those that are zero
-        where the solutions meet: a symmetry that changes their signs takes the solutions that meet to one another.
-    mirror : where a reflection of all angles takes the solutions that meet to one another, its line: there each angle
-        is the line's, or opposite.
+    fixed : the unknowns, by number, that a symmetry reflects which takes the solutions that meet to one another: there
+        an angle is that of the line, or opposite, and an unknown on the line is zero.
     """
 
     meeting: tuple[int, ...]
@@ -67,22 +68,14 @@ class Meeting(NamedTuple):
     among: bool
     beyond: tuple[Solution, ...]
     box: Vector | None = None
-    zero: frozenset[int] = frozenset()
-    mirror: Mirror | None = None
+    fixed: Mapping[int, Mirror] = {}
 
 
 class _Symmetry(NamedTuple):
-    """How a change of coordinates that leaves the equations alone permutes a group.
-
-    Attributes
-    ----------
-    odd : which coordinates only change their signs.
-    mirror : its line where it is a reflection of all angles at once.
-    """
+    """How a change of the unknowns that leaves the equations alone permutes a group, and which unknowns it reflects."""
 
     images: tuple[int, ...]
-    odd: frozenset[int] = frozenset()
-    mirror: Mirror | None = None
+    fixed: Mapping[int, Mirror]
 
 
 class _Member(NamedTuple):
@@ -140,9 +133,8 @@ def what_meets(family: Family, line: Line, current: Reached, after: Fraction) ->
     met, left = (tuple(sorted(m.solution.negative for m in chosen if m.ahead is side)) for side in (False, True))
     own = next(iter(classes)) if len(classes) == 1 else frozenset()
     kept = [s for s in symmetries if own and {s.images[k] for k in own} == own]
-    zero: frozenset[int] = frozenset().union(*(s.odd for s in kept))
-    mirror = next((s.mirror for s in kept if s.mirror is not None), None)
-    return Meeting(met, left, len(classes) > 1, tuple(beyond), box, zero, mirror)
+    fixed = {k: line for s in kept for k, line in s.fixed.items()}
+    return Meeting(met, left, len(classes) > 1, tuple(beyond), box, fixed)
 
 
 def _solutions(family: Family, line: Line, value: Fraction) -> list[Solution] | None:
@@ -313,12 +305,16 @@ def _symmetries(family: Family, line: Line, group: Sequence[_Member], after: Fra
     with ctx.workprec(BITS):
         places = [coordinates_of(m.shifted, family.angles) for m in group]
         found = _reflections(family, line, group, places, after)
+        kinds = line.model.unknowns
+        ordered = [
+            k for name in (*line.model.angles, *line.model.reals) for k, known in enumerate(kinds) if name == known
+        ]
         for change in involutions(line.model, line.parameters):
-            coordinates = change.coordinates(tuple(line.model.unknowns.values()))
+            coordinates = change.coordinates(tuple(kinds.values()))
             images = _images(group, places, [[sign * place[k] for k, sign in coordinates] for place in places])
             if images is not None:
-                odd = frozenset(k for k, (i, sign) in enumerate(coordinates) if i == k and sign < 0)
-                found.append(_Symmetry(images, odd))
+                own = {n: k for n, k in enumerate(ordered) if change.images[k] == k and change.signs[k] < 0}
+                found.append(_Symmetry(images, {n: _QUARTERS[change.halves[k]] for n, k in own.items()}))
     return found
 
 
@@ -339,7 +335,7 @@ def _reflections(
             return []
         moved.append(coordinates_of(tuple(2 * turned - t for t in m.shifted), len(m.shifted)))
     images = _images(group, places, moved)
-    return [] if images is None else [_Symmetry(images, mirror=mirror)]
+    return [] if images is None else [_Symmetry(images, dict.fromkeys(range(family.angles), mirror))]
 
 
 def _images(
