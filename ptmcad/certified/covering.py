@@ -18,8 +18,13 @@ from ptmcad.certified.search import Boxes
 from ptmcad.certified.strips import NONE, Strips, areas_of_pieces, numbers_of_pieces, pieces, strips
 from ptmcad.cover import from_boxes, union_area
 from ptmcad.cover.rectangles import Cover, Window
+from ptmcad.cover.rounding import cover_of
 from ptmcad.cover.simplification import combined
+from ptmcad.cover.subdivision import Integers, rectangle_array
+from ptmcad.mechanism.involutions import Involution
 
+START_TILES = 8
+"""Tiles of the window along each axis, with which a search begins."""
 BATCH = 4096
 SLACK = 0.9
 """Pieces are made so thin that their areas sum up to this part of what may be left undetermined."""
@@ -31,14 +36,42 @@ HALVINGS = 200
 
 @dataclass(frozen=True, slots=True)
 class Lattice:
-    """Where covers lie: the window, and the number of lattice steps along each axis."""
+    """Where covers lie: the window, and the number of lattice steps along each axis.
+
+    Attributes
+    ----------
+    change : an involution that takes to itself the window, of each tile of which that or its image is searched.
+    """
 
     window: Window
     steps: int
+    change: Involution | None = None
 
     def cover(self, rectangles: Boxes) -> Cover:
-        """The cover of rectangles (left, bottom, right, top)."""
-        return from_boxes(self.window, rectangles[:, :2], rectangles[:, 2:], self.steps)
+        """The cover of rectangles (left, bottom, right, top), and of their images."""
+        found = from_boxes(self.window, rectangles[:, :2], rectangles[:, 2:], self.steps)
+        if self.change is None:
+            return found
+        array, size = rectangle_array(found), self.steps // START_TILES
+        around = array[:, [0, 0, 2, 2]] // size * size + np.array([0, size, 0, size])
+        # a tile that is its own image is searched whole
+        alone = (around == self.images(around, self.steps)).all(axis=1) & (array <= around)[:, [1, 3]].all(axis=1)
+        return cover_of(np.concatenate([array, self.images(array[~alone], self.steps)]), self.steps)
+
+    def images(self, rectangles: Integers, steps: int) -> Integers:
+        """Of rectangles on a lattice of so many steps, row by row."""
+        if self.change is None:
+            return rectangles
+        sides = [
+            rectangles[:, [2 * j, 2 * j + 1]] if sign > 0 else steps - rectangles[:, [2 * j + 1, 2 * j]]
+            for j, sign in zip(self.change.axes, self.change.axis_signs, strict=True)
+        ]
+        return np.concatenate(sides, axis=1)
+
+    @property
+    def copies(self) -> int:
+        """How often the window has what is searched, about."""
+        return 1 if self.change is None else 2
 
 
 def box_rectangles(enclosures: Sequence[Enclosure]) -> Boxes:
@@ -65,7 +98,7 @@ class Thinning:
 
     def least(self) -> float:
         """About the area that the finest pieces leave."""
-        return self.whole_area + float(areas_of_pieces(self.thin, 0.0).sum())
+        return self.whole_area + self.lattice.copies * float(areas_of_pieces(self.thin, 0.0).sum())
 
     def cover(self, area: float, most: int | None = None) -> Cover:
         """A cover whose area is about the given one, or the least; the more it may be the fewer the pieces are.
@@ -79,15 +112,16 @@ class Thinning:
 
     def number(self, area: float) -> int:
         """About how many rectangles `cover` has."""
-        return len(self.whole) + int(numbers_of_pieces(self.thin, self._step(area, None)).sum())
+        pieces_of_thin = int(numbers_of_pieces(self.thin, self._step(area, None)).sum())
+        return self.lattice.copies * (len(self.whole) + pieces_of_thin)
 
     def _step(self, area: float, most: int | None) -> float:
-        wanted = max(SLACK * area, 1.1 * self.least()) - self.whole_area
+        wanted = (max(SLACK * area, 1.1 * self.least()) - self.whole_area) / self.lattice.copies
         (left, right), (bottom, top) = self.lattice.window
         step = float((right - left) * (top - bottom))
         for _ in range(HALVINGS):
             enough = areas_of_pieces(self.thin, step).sum() <= wanted
-            if enough or (most is not None and numbers_of_pieces(self.thin, step).sum() > most):
+            if enough or (most is not None and numbers_of_pieces(self.thin, step).sum() > most / self.lattice.copies):
                 break
             step /= 2
         return step

@@ -19,7 +19,7 @@ import numpy as np
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified.assembly import Assembler
-from ptmcad.certified.covering import Lattice, Thinning, box_rectangles, thinning
+from ptmcad.certified.covering import START_TILES, Lattice, Thinning, box_rectangles, thinning
 from ptmcad.certified.headway import PARTS, Headway
 from ptmcad.certified.loading import load, may_be_slanted
 from ptmcad.certified.pace import SAFETY, Pace
@@ -34,9 +34,8 @@ from ptmcad.certified.statement import plan_of
 from ptmcad.certified.tape import enclosing_floats
 from ptmcad.cover import union_area
 from ptmcad.cover.rectangles import MAX_STEPS, Cover
-from ptmcad.cover.simplification import combined, gathered, images, with_images
+from ptmcad.cover.simplification import combined, gathered
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.mechanism.involutions import Involution
 from ptmcad.options import DEFAULTS, Options
 from ptmcad.process.handover import LAST_SECONDS, leave_if_asked
 from ptmcad.question.domain import prove_slice
@@ -46,10 +45,8 @@ from ptmcad.version import __version__
 
 TOLERANCE = Fraction(1, 1000)
 """Of the window's area, left undetermined unless another number is asked for."""
-START_TILES = 8
-"""Rectangles along each axis that the search begins with."""
 MAX_TILES = 1000
-"""... or with at most, when it goes on from a cover that is small: every one of them costs a search of all angles."""
+"""Rectangles that the search begins with at most, when it goes on from a cover: each costs a search of all angles."""
 FIRST_LEVEL, LAST_LEVEL = 4, 40
 """At level n, boxes are bisected until their projection has at most 4^-n of the window's area."""
 MAX_AXIS_END = Fraction(10**100)
@@ -119,13 +116,12 @@ class _Run:
         while steps * self.tolerance < 64 and steps < MAX_STEPS:
             steps *= 2
         horizontal, vertical = slice.axes
-        self.lattice = Lattice(((horizontal.low, horizontal.high), (vertical.low, vertical.high)), steps)
         self.resumed = None if options.resume is None else options.resume.cover
-        wanted = curves(slice, slice.count, options.without)
         whole = self.resumed is not None or may_be_slanted(options) or "mirror-images" in options.without
-        self.change = None if whole else halving(slice)
-        """An involution that takes the half of the window that is searched to the other one."""
-        self.enclosures: list[Enclosure] = begin(wanted, _rectangles(slice, self.resumed, self.change))
+        window = (horizontal.low, horizontal.high), (vertical.low, vertical.high)
+        self.lattice = Lattice(window, steps, None if whole else halving(slice))
+        wanted = curves(slice, slice.count, options.without)
+        self.enclosures: list[Enclosure] = begin(wanted, _rectangles(self.lattice, self.resumed))
         self.assembler = Assembler(slice, plain_counter(slice), plan_of(slice, wanted, options.without), _versions())
         self.best: RegionMap | None = None
         """The map with the least undetermined area of those that were handed over."""
@@ -166,7 +162,7 @@ class _Run:
             if not in_time:
                 return self._stopped(self._at_limit())
             cover = self._box_cover()
-            undetermined = _share(self._whole(cover))
+            undetermined = _share(cover)
             if undetermined > tolerance and self._slantable(undetermined):
                 slanted = self._slanted(undetermined, self.area * 4.0**-level)
                 if slanted is not None:
@@ -240,7 +236,7 @@ class _Run:
             return None
         start = self.clock()
         strips = self._strips()
-        target = float(allowed) * self.area / (1 if self.change is None else 2)
+        target = float(allowed) * self.area
         enough = strips.least() <= STRIP_TARGET_SHARE * target and strips.number(target) <= MAX_RECTANGLES
         cover = strips.cover(target) if enough else None
         self.seconds["curves"] += self.clock() - start
@@ -267,7 +263,6 @@ class _Run:
     def map(self, cover: Cover, status: Status) -> RegionMap:
         """The map of a cover; what is not counted when the time is over is undetermined."""
         start, boxes = self.clock(), self.boxes()
-        cover = self._whole(cover)
         times = self.seconds | {"total": start - self.pace.started}
         result = self.assembler.map(cover, status, times, self._must_hand_over)
         self.seconds["regions"] += self.clock() - start
@@ -277,12 +272,6 @@ class _Run:
     def _must_hand_over(self) -> bool:
         """Whether there is only time left to put a map into other hands."""
         return self.pace.left() < SAFETY * self.pace.text.of(self.boxes())
-
-    def _whole(self, cover: Cover) -> Cover:
-        """The cover of the window, of that of what was searched."""
-        if self.change is None:
-            return cover
-        return with_images(cover, START_TILES, self.change.axes, self.change.axis_signs)
 
     def _box_cover(self) -> Cover:
         return combined(self.lattice.cover(box_rectangles(self.enclosures)))
@@ -313,7 +302,7 @@ class _Run:
         if self.options.partial is not None and self.pace.due(boxes):
             start = self.clock()
             self._thinned = None
-            enclosed = _share(self._whole(self._box_cover()))
+            enclosed = _share(self._box_cover())
             self.pace.looked(self.clock() - start)
             if enclosed <= (FIRST_MAP_SHARE if self.best is None else MAP_SHRINK_RATIO * self.enclosed):
                 self._hand_over(enclosed)
@@ -386,23 +375,17 @@ class _Run:
         return min(self._least(), enclosed + self.uncounted) if in_time else self._least()
 
 
-def _rectangles(slice: Slice, resume: Cover | None, change: Involution | None) -> Boxes:
-    """The rectangles (low x, low y, high x, high y) with which the search begins, rounded outwards.
-
-    Parameters
-    ----------
-    change : an involution of the window, of which a tile or its image is enough.
-    """
+def _rectangles(lattice: Lattice, resume: Cover | None) -> Boxes:
+    """The rectangles (low x, low y, high x, high y) with which the search begins, rounded outwards."""
     if resume is None:
         steps = START_TILES
-        tiles = tuple((i, i + 1, j, j + 1) for i in range(steps) for j in range(steps))
-        axes, signs = ((0, 1), (1, 1)) if change is None else (change.axes, change.axis_signs)
-        others = images(np.array(tiles), steps, axes, signs).tolist()
+        tiles = [(i, i + 1, j, j + 1) for i in range(steps) for j in range(steps)]
+        others = lattice.images(np.array(tiles), steps).tolist()
         rectangles = tuple(tile for tile, other in zip(tiles, others, strict=True) if list(tile) <= other)
     else:
         most = min(Fraction(MAX_TILES), START_TILES**2 / max(_share(resume), Fraction(1, MAX_TILES)))
         steps, rectangles = resume.steps, gathered(resume, int(most)).rectangles
-    horizontal, vertical = slice.axes
+    horizontal, vertical = lattice.window
 
     def value(axis_low: Fraction, axis_high: Fraction, step: int, towards: float) -> float:
         low, high = enclosing_floats(axis_low + (axis_high - axis_low) * Fraction(step, steps))
@@ -411,10 +394,10 @@ def _rectangles(slice: Slice, resume: Cover | None, change: Involution | None) -
     result = np.empty((len(rectangles), 4))
     for k, (left, right, bottom, top) in enumerate(rectangles):
         result[k] = (
-            value(horizontal.low, horizontal.high, left, -inf),
-            value(vertical.low, vertical.high, bottom, -inf),
-            value(horizontal.low, horizontal.high, right, inf),
-            value(vertical.low, vertical.high, top, inf),
+            value(*horizontal, left, -inf),
+            value(*vertical, bottom, -inf),
+            value(*horizontal, right, inf),
+            value(*vertical, top, inf),
         )
     return result
 

@@ -2,7 +2,8 @@
 
 Guarantee: a cluster is taken away only if no box that may hold a part of a curve meets it; what is left is a cover of
 the curves still. (A point of a curve in a cluster lies in a box of its enclosure, which meets the cluster and so is
-searched again; no box that the search leaves meets it.)
+searched again; no box that the search leaves meets it. Where one half of the window is searched, that holds of the
+point or its image, and no box meets the cluster or its image.)
 
 Where a box is contracted to a sliver at its edge, its projection is small at once, and it is left alone although the
 next bisection would discard it. Such slivers are a few hundred-thousandths of the window, and seen in each picture.
@@ -23,6 +24,7 @@ from ptmcad.certified.search import Boxes, search_curve
 from ptmcad.certified.tape import enclosing_floats
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover, Rectangle
+from ptmcad.cover.subdivision import rectangle_array
 
 MAX_SHARE = Fraction(1, 10_000)
 """Of the window: larger clusters are no specks."""
@@ -48,15 +50,18 @@ def without_specks(cover: Cover, enclosures: Sequence[Enclosure], lattice: Latti
     cluster_of = np.array(complement.cluster_of, dtype=np.int64)
     chosen = np.flatnonzero(small[cluster_of]) if len(cluster_of) else cluster_of
     boxes = [enclosure.boxes() for enclosure in enclosures]
-    if not len(chosen) or len(chosen) * sum(map(len, boxes)) > MAX_PAIRS:
+    places, owners = rectangle_array(cover)[chosen], np.tile(cluster_of[chosen], lattice.copies)
+    if lattice.change is not None:  # where no box is there may be one over the image
+        places = np.concatenate([places, lattice.images(places, cover.steps)])
+    if not len(chosen) or len(places) * sum(map(len, boxes)) > MAX_PAIRS:
         return cover
-    rectangles = np.array([_outward(lattice, cover, cover.rectangles[k]) for k in chosen])
+    rectangles = np.array([_outward(lattice, cover, place) for place in places.tolist()])
     held = np.zeros(len(small), dtype=np.bool_)
     for enclosure, own in zip(enclosures, boxes, strict=True):
         near = own[_meeting(rectangles, own).any(axis=0)]
         curve = enclosure.curve
         found = search_curve(curve.system.arguments(), near, FINER * area, BUDGET, curve.importance())
-        held[cluster_of[chosen[_meeting(rectangles, found.left()).any(axis=1)]]] = True
+        held[owners[_meeting(rectangles, found.left()).any(axis=1)]] = True
     kept = ~small[cluster_of] | held[cluster_of]
     left = tuple(r for r, keep in zip(cover.rectangles, kept.tolist(), strict=True) if keep)
     return replace(cover, rectangles=left)

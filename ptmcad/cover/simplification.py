@@ -5,8 +5,6 @@ Guarantee: `combined` covers the same points as before; `gathered` covers them a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from ptmcad.cover.rectangles import Cover
@@ -23,33 +21,6 @@ def framed(cover: Cover) -> Cover:
 def combined(cover: Cover) -> Cover:
     """A cover of the same points by at most as many rectangles, found at small cost."""
     return cover_of(_fewer(rectangle_array(cover)), cover.steps)
-
-
-def images(rectangles: Integers, steps: int, axes: Sequence[int], signs: Sequence[int]) -> Integers:
-    """The images of rectangles, row by row, by an involution of the window.
-
-    Parameters
-    ----------
-    axes, signs : which axis comes to each one's place, and 1, or -1 where it is reflected at the window's middle.
-    """
-    sides = [
-        rectangles[:, [2 * j, 2 * j + 1]] if sign > 0 else steps - rectangles[:, [2 * j + 1, 2 * j]]
-        for j, sign in zip(axes, signs, strict=True)
-    ]
-    return np.concatenate(sides, axis=1)
-
-
-def with_images(cover: Cover, tiles: int, axes: Sequence[int], signs: Sequence[int]) -> Cover:
-    """A cover with the `images` of what is not in a tile that is its own image; slanted pieces become their frames.
-
-    Parameters
-    ----------
-    tiles : number of them along each axis.
-    """
-    array, size = rectangle_array(framed(cover)), cover.steps // tiles
-    around = array[:, [0, 0, 2, 2]] // size * size + np.array([0, size, 0, size])
-    alone = (around == images(around, cover.steps, axes, signs)).all(axis=1) & (array <= around)[:, [1, 3]].all(axis=1)
-    return cover_of(_fewer(np.concatenate([array, images(array[~alone], cover.steps, axes, signs)])), cover.steps)
 
 
 def gathered(cover: Cover, most: int) -> Cover:

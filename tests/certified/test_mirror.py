@@ -20,11 +20,12 @@ import ptmcad
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.plain import curves as plain_curves
 from ptmcad.certified.plain.curves import curves
-from ptmcad.certified.plain.involution import Involution, involution_of
+from ptmcad.certified.plain.involution import mirrors
 from ptmcad.certified.plain.opening import QUARTER
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.search import search_curve
+from ptmcad.mechanism.involutions import Involution
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 
@@ -48,7 +49,7 @@ EXCHANGE = Involution((1, 0), (1, 1), (0, 0))
 
 
 def is_own_image(slice: Slice) -> bool:
-    return involution_of(problem_of(slice)) == EXCHANGE
+    return EXCHANGE in mirrors(slice, problem_of(slice))
 
 
 def energy(slice: Slice, x: Fraction, y: Fraction) -> PaperEnergy:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -19,19 +20,22 @@ pytest.importorskip("numba")
 import ptmcad
 from ptmcad.certified.arb_evaluation import run_arb
 from ptmcad.certified.formula import Formula
+from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain.bounds import ranges
 from ptmcad.certified.plain.chart import chart
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.frame import Frame, frames
 from ptmcad.certified.plain.geometry import geometry
-from ptmcad.certified.plain.involution import Involution, involution_of
+from ptmcad.certified.plain.involution import halving, mirrors
 from ptmcad.certified.plain.opening import Coordinates, coordinates, opening, stiffness
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.tape import record
-from ptmcad.question.config import slice_from_mapping
+from ptmcad.mechanism.involutions import Involution
+from ptmcad.question.config import load, slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 
+SHIPPED = Path(__file__).resolve().parents[2] / "configs"
 PENDULUM = {
     "parameters": {"k": {"kind": "stiffness"}, "F": {"kind": "force"}, "l": {"kind": "length"}},
     "unknowns": {"a": "angle", "b": "angle", "c": "angle"},
@@ -97,7 +101,7 @@ def slice_of(name: str, **loads: object) -> Slice:
 
 
 def found(slice: Slice) -> Involution | None:
-    return involution_of(problem_of(slice))
+    return next(iter(mirrors(slice, problem_of(slice))), None)
 
 
 def test_which_are_found() -> None:
@@ -128,8 +132,7 @@ def place_of(at: Coordinates, e: Sequence[mpf], c: mpf, w: Sequence[mpf]) -> lis
 def cases(name: str) -> list[tuple[Frame, int]]:
     slice = slice_of(name)
     problem = problem_of(slice)
-    change = involution_of(problem)
-    assert change is not None
+    change, *_ = mirrors(slice, problem)
     return [(f, lead) for f in frames(problem, change, ranges(problem, slice.axes)) for lead in range(len(f.reaches))]
 
 
@@ -205,7 +208,51 @@ def test_the_stiffness_on_the_fixed_points_is_the_hessians() -> None:
 def test_three_odd_unknowns_have_a_chart_each_about_every_fixed_point() -> None:
     slice = slice_of("pendulum")
     names = [c.name.partition(" ")[0] for c in curves(slice, Count.STABLE)]
-    assert names == ["pitchfork", "fold", "fold", "fold"] * 8 + ["point"] * 2
+    assert names == ["pitchfork", "fold", "fold", "fold"] * 8 + ["fold"] * 2 + ["point"] * 2
+
+
+def test_a_half_of_a_window_says_the_same_as_the_whole_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Forces on three cables whose mirror image is across, and two axes that an exchange of unknowns exchanges."""
+    truss = {
+        "name": "pair", "unknowns": {"u": "real", "v": "real"}, "parameters": ["a", "b"],
+        "potential": "u^4 + v^4 - u^2 - v^2 + u*v/2 + a*u + b*v",
+    }  # fmt: skip
+    window = {"axes": {"a": [-1, 1], "b": [-1, 1]}}
+    cases = [(load(SHIPPED / "mechanisms" / "three-cables.yaml"), "1/50"),
+             (slice_from_mapping({"name": "pair", "system": truss, "count": "stable", **window}), "1/50")]  # fmt: skip
+    rng = random.Random(11)
+    for slice, tolerance in cases:
+        given: dict[str, Any] = {"engine": "certified", "tolerance": tolerance, "jobs": 1}
+        change = halving(slice)
+        assert change is not None
+        half = ptmcad.classify(slice, **given)
+        with monkeypatch.context() as patched:
+            patched.setattr("ptmcad.certified.engine.halving", lambda slice: None)
+            whole = ptmcad.classify(slice, **given)
+        assert half.undetermined <= Fraction(tolerance)
+        counter, known = plain_counter(slice), 0
+        for _ in range(60):
+            x, y = (a.low + (a.high - a.low) * Fraction(rng.randrange(1, 10**4), 10**4) for a in slice.axes)
+            for point in ((x, y), change.at((x, y))):
+                at = dict(zip(slice.axis_names, point, strict=True))
+                one, other = half.locate(**at), whole.locate(**at)
+                if one.stable is not None:
+                    known += 1
+                    assert counter.at(*point, slice.count).stable == one.stable
+                    assert other.stable in (None, one.stable) and other.admissible in (None, one.admissible)
+        assert known > 90
+        assert ptmcad.verify(half).ok
+
+
+def test_pitchforks_along_a_line_of_all_equilibria() -> None:
+    """By the quotient, where one involution keeps the line, with the counts that were known between them."""
+    slice = load(SHIPPED / "free-load.yaml")
+    found = certified_intervals(slice, "rho", {"F": "-10"}, 10)
+    assert [change.proved for change in found.changes if change.names == ("pitchfork",)] == [True] * 5
+    assert [interval.index for interval in found.intervals] == [
+        (2, 5, 1), (3, 6, 1), (2, 5, 1), (2, 4, 1), (2, 3, 1), (2, 4, 2), (2, 6, 4),
+        (2, 6, 4), (2, 4, 2), (2, 3, 1), (1, 2, 1), (2, 3, 1), (2, 4, 1), (2, 3, 1),
+    ]  # fmt: skip
 
 
 @pytest.mark.slow

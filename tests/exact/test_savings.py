@@ -347,9 +347,9 @@ def test_curves_of_the_certified_engine() -> None:
     assert {v[2] for name, v in found(slice, *CERTIFIED).items() if name.startswith("fold")} == {0}
     assert all(v[2] > 0 for v in found(slice).values())
     unloaded = record("free02-unloaded")
-    # a pitchfork at each flat configuration, and a search beside it from either side
+    # a pitchfork at each flat configuration, a search beside it from either side, and one far from all of them
     symmetric = [c.name.partition(" ")[0] for c in curves(unloaded, unloaded.count)]
-    assert symmetric == ["pitchfork", "fold", "fold"] * 4 + ["point"] * 3
+    assert symmetric == ["pitchfork", "fold", "fold"] * 4 + ["fold"] * 2 + ["point"] * 3
     assert len(found(unloaded, "mirror-images")) == 2
 
 
