@@ -145,18 +145,21 @@ def _run_all(
 ) -> None:
     """Run all jobs, so that those of a method have so many seconds together."""
     left = {asked[0].what: limit for asked in ranked}
+    last = dict.fromkeys(left, 0.0)  # a finer setting takes no less than the one before it
 
     def attempt(job: Job) -> None:
         if job is floor:
             job.attempt(WARM_UP_SECONDS)
             return
-        taken = job.usages[-1].seconds if job.usages else 0.0
-        if taken > MAX_REPEATED_SECONDS or left[job.what] <= taken:
+        if job.usages and job.usages[0].seconds > MAX_REPEATED_SECONDS:
+            return
+        if left[job.what] <= last[job.what]:
             if not job.usages:
-                job.reason = f"left out: the {limit:g} s for each method were used up"
+                job.reason = f"left out: it does not fit into the {limit:g} s for each method"
             return
         report(f"{job.what}, {job.setting}")
         usage = job.attempt(left[job.what])
+        last[job.what] = usage.seconds
         left[job.what] -= usage.seconds
         if usage.outcome is Outcome.TIMED_OUT:
             job.reason = f"stopped: the {limit:g} s for each method were used up"
