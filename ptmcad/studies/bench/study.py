@@ -193,20 +193,12 @@ def _computing(job: Job) -> Row | None:
     return times([seconds]) if seconds else None
 
 
-def measurement(method: str, setting: str, **more: Any) -> Row:
-    """What is known of one method at one setting.
+_KEYS = ("method", "setting", "seconds", "computing", "peak", "reason", "note", "figures", "area_width")
 
-    Parameters
-    ----------
-    more : ``seconds`` and ``computing``, of whole processes and of the computation in them, as of `times`; ``peak``,
-        the largest resident set in MiB; ``reason``, why there are no times; ``note``, what the figures rest on;
-        ``figures`` by count; ``area_width`` of the widest bounds of the area of all points with one count, as a share
-        of the window.
-    """
-    nothing = {
-        "seconds": None, "computing": None, "peak": None, "reason": "", "note": "", "figures": None, "area_width": None
-    }  # fmt: skip
-    return {"method": method, "setting": setting, **nothing, **more}
+
+def measurement(method: str, setting: str, **more: Any) -> Row:
+    """What is known of one method at one setting; ``docs/bench.schema.json`` says what each key means."""
+    return dict.fromkeys(_KEYS) | {"method": method, "setting": setting, "reason": "", "note": "", **more}
 
 
 def frame(study: Row) -> pd.DataFrame:
