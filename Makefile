@@ -111,7 +111,7 @@ bench: $(VENV)/.installed-bench
 		--method exact --method certified --method companion --page --out out/bench
 	cp out/bench/*.bench.json out/bench/fig4.bench.svg out/bench/fig5-caption.bench.svg docs/benchmarks
 
-ablation: $(VENV)/.installed
+ablation: $(VENV)/.installed-bench
 	$(BIN)/python -m ptmcad.studies.bench ablation --out docs/benchmarks
 
 systems: $(VENV)/.installed-bench

@@ -78,7 +78,8 @@ def command(
             raise ConfigError("measures nothing, so it takes no CONFIG", key="--compare")
         return _compare(*compare)
     slices = _slices(configs)
-    require(Extra.bench, key="bench")
+    for extra in (Extra.bench, Extra.data):
+        require(extra, key="bench")
     from ptmcad.studies.bench.methods import RIVALS
     from ptmcad.studies.bench.report import PAGE, SUFFIXES, save, save_page, terminal
     from ptmcad.studies.bench.study import measure
@@ -114,7 +115,7 @@ def _slices(configs: tuple[Path, ...]) -> list[tuple[Slice, Path]]:
 
 
 def _compare(old: Path, new: Path) -> int:
-    require(Extra.bench, key="bench")
+    require(Extra.data, key="bench")
     from ptmcad.studies.bench.study import BAD, compare, comparison_table, read_study
 
     changes = compare(read_study(old), read_study(new))

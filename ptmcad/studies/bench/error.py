@@ -42,12 +42,9 @@ COUNTS = ("stable", "total", "index")
 CODE = 100
 Bounds = tuple[float, float]
 Figures = dict[str, Any]
-"""How far a drawn map is from the exact one, for one count: what is below, None where there is no such figure."""
 FIGURES = ("wrong", "undetermined", "wrong_centres", "regions", "missed", "faintest", "distance")
-"""Bounds of the share of the window that shows a wrong count or none; the share that shows none; pixels whose centre
-shows a wrong count; regions of the exact map; those in which no pixel that is centred there, or no part, shows the
-region's count; bounds of the smallest share of a region's own area that shows its count; bounds of the Hausdorff
-distance between the drawn boundary and the true one."""
+"""How far a drawn map is from the exact one, for one count, None where there is no such figure; bounds are pairs.
+``docs/bench.schema.json`` says what each is."""
 DIGITS = 6
 DENSITY = 8
 """Points on the side of a pixel."""

@@ -31,12 +31,10 @@ from ptmcad.answer.regionmap import Kind, RegionMap
 from ptmcad.exact.models.elimination import elimination_system
 from ptmcad.exact.slicevariety import slice_variety
 from ptmcad.exact.stages import domain_limits, problem_of
-from ptmcad.question.config import load
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.studies.bench.error import figures
 from ptmcad.studies.bench.harness import Case, Job, Make, Row
 from ptmcad.studies.bench.process import Usage
-from ptmcad.studies.bench.records import exchanged
 from ptmcad.studies.sextic import sextic
 from ptmcad.text.expressions import Expression
 from ptmcad.text.flint_numbers import to_fraction
@@ -209,9 +207,10 @@ def start_qepcad(case: Case, setting: str, make: Make) -> Job | str:
         return "qepcad is not installed"
     swapped = case.exact is not None and case.exact.base == 1
     if setting == CELLS:
-        ordered = load(exchanged(case.record, case.folder)) if swapped else case.slice
-        problems = [slice_variety(ordered).text("qepcad")]
-        return make(command, qepcad_session(problems), check=lambda usage: incomplete(QUIT, usage))
+        order = f"({', '.join(case.slice.axis_names[::-1])})"
+        problem = slice_variety(case.slice).text("qepcad")
+        problem = re.sub(r"^\(.*\)$", order, problem, count=1, flags=re.MULTILINE) if swapped else problem
+        return make(command, qepcad_session([problem]), check=lambda usage: incomplete(QUIT, usage))
     asked = question(case.slice)
     if isinstance(asked, str):
         return asked

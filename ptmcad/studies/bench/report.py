@@ -30,13 +30,6 @@ CURVE_FORMAT = "ptmcad-error-time/1"
 _NAMES = {"stable": "stable equilibria", "total": "equilibria", "index": "index"}
 _HEADER = ("method", "setting", "seconds (least-largest)", "wrong or undetermined", "regions missed",
            "faintest region", "boundary off by", "area bounds apart")  # fmt: skip
-_DRAWN = {
-    "seconds_median": "x",
-    "seconds_min": "least",
-    "seconds_max": "most",
-    "wrong_low": "low",
-    "wrong_high": "high",
-}
 _LABELLED = {"certified": "tolerance ", "companion": "N = ", "multistart": "N = ", "qepcad": "where "}
 """Methods whose points have their setting beside them in the picture, without these words."""
 
@@ -109,18 +102,17 @@ def terminal(study: Row) -> str:
 
 def points(study: Row) -> pd.DataFrame:
     """What can be drawn of a study, as of `draw`: every measurement with a time and an error, and widths of areas."""
-    table = finest(study).dropna(subset="seconds_median").rename(columns=_DRAWN)
-    table["curve"] = [RIVALS[method].title for method in table["method"]]
-    table["rank"] = table["style"] = [[*RIVALS].index(method) for method in table["method"]]
-    table["label"] = [m["setting"].removeprefix(_LABELLED.get(m["method"], m["setting"])) for m in records(table)]
-    widths = table[(table["method"] == "exact") & (table["area_width"] > 0)]
-    widths = widths.assign(
-        low=widths["area_width"],
-        high=widths["area_width"],
-        curve=widths["curve"].astype(str) + ": width of the area bounds",  # another kind of error
-        style=len(RIVALS),
-    )
-    return pd.concat([table, widths]).dropna(subset="low").sort_values("rank", kind="stable")
+    found = []
+    for m in records(finest(study).dropna(subset="seconds_median")):
+        title, rank = RIVALS[m["method"]].title, [*RIVALS].index(m["method"])
+        at = (rank, m["seconds_median"], m["seconds_min"], m["seconds_max"])
+        label = m["setting"].removeprefix(_LABELLED.get(m["method"], m["setting"]))
+        found.append((title, rank, *at, m["wrong_low"], m["wrong_high"], label))
+        if m["method"] == "exact" and m["area_width"] > 0:  # another kind of error
+            title += ": width of the area bounds"
+            found.append((title, len(RIVALS), *at, m["area_width"], m["area_width"], ""))
+    names = ["curve", "style", "rank", "x", "least", "most", "low", "high", "label"]
+    return pd.DataFrame(found, columns=names).dropna(subset="low").sort_values("rank", kind="stable")
 
 
 def curve_file(study: Row) -> str:

@@ -145,18 +145,21 @@ def _run_all(
 ) -> None:
     """Run all jobs, so that those of a method have so many seconds together."""
     left = {asked[0].what: limit for asked in ranked}
+    last = dict.fromkeys(left, 0.0)  # a finer setting takes no less than the one before it
 
     def attempt(job: Job) -> None:
         if job is floor:
             job.attempt(WARM_UP_SECONDS)
             return
-        taken = job.usages[-1].seconds if job.usages else 0.0
-        if taken > MAX_REPEATED_SECONDS or left[job.what] <= taken:
+        if job.usages and job.usages[0].seconds > MAX_REPEATED_SECONDS:
+            return
+        if left[job.what] <= last[job.what]:
             if not job.usages:
-                job.reason = f"left out: the {limit:g} s for each method were used up"
+                job.reason = f"left out: it does not fit into the {limit:g} s for each method"
             return
         report(f"{job.what}, {job.setting}")
         usage = job.attempt(left[job.what])
+        last[job.what] = usage.seconds
         left[job.what] -= usage.seconds
         if usage.outcome is Outcome.TIMED_OUT:
             job.reason = f"stopped: the {limit:g} s for each method were used up"
@@ -190,20 +193,12 @@ def _computing(job: Job) -> Row | None:
     return times([seconds]) if seconds else None
 
 
-def measurement(method: str, setting: str, **more: Any) -> Row:
-    """What is known of one method at one setting.
+_KEYS = ("method", "setting", "seconds", "computing", "peak", "reason", "note", "figures", "area_width")
 
-    Parameters
-    ----------
-    more : ``seconds`` and ``computing``, of whole processes and of the computation in them, as of `times`; ``peak``,
-        the largest resident set in MiB; ``reason``, why there are no times; ``note``, what the figures rest on;
-        ``figures`` by count; ``area_width`` of the widest bounds of the area of all points with one count, as a share
-        of the window.
-    """
-    nothing = {
-        "seconds": None, "computing": None, "peak": None, "reason": "", "note": "", "figures": None, "area_width": None
-    }  # fmt: skip
-    return {"method": method, "setting": setting, **nothing, **more}
+
+def measurement(method: str, setting: str, **more: Any) -> Row:
+    """What is known of one method at one setting; ``docs/bench.schema.json`` says what each key means."""
+    return dict.fromkeys(_KEYS) | {"method": method, "setting": setting, "reason": "", "note": "", **more}
 
 
 def frame(study: Row) -> pd.DataFrame:
