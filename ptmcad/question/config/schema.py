@@ -16,6 +16,7 @@ from ptmcad.mechanism.systems import system_codec
 from ptmcad.question.config.designs import DESIGN
 from ptmcad.question.config.record import record_codec
 from ptmcad.question.config.starters import mechanism_names
+from ptmcad.question.config.sweeps import DEFINITIONS as OF_SWEEPS
 from ptmcad.question.config.sweeps import SWEEP
 from ptmcad.text.entry import Place, Scalar, plain_data
 from ptmcad.text.syntax import MAX_TEXT, NAME
@@ -82,6 +83,7 @@ def record_schema() -> dict[str, Any]:
                 **system_codec(nothing).schema,
             },
             **DEFINITIONS,
+            **OF_SWEEPS,
             **_LEAVES,
         },
     }
