@@ -71,9 +71,18 @@ def record_schema() -> dict[str, Any]:
         "properties": {name: {**said, **own.get(name, {})} for name, said in whole.items()},
         "not": {"required": ["mechanism", "system"]},
         "dependentRequired": {"members": ["free"]},
-        "if": {"properties": {"mechanism": {"const": paper.name}}, "not": {"required": ["system"]}},
-        "then": {"properties": {"parameters": {"propertyNames": {"enum": [*parameters]}}}},
+        "if": {"$ref": "#/$defs/ptm"},
+        "then": {"$ref": "#/$defs/ptm-parameters"},
         "$defs": {
+            "ptm": {
+                "description": "A record about the mechanism ptm.",
+                "properties": {"mechanism": {"const": paper.name}},
+                "not": {"required": ["system"]},
+            },
+            "ptm-parameters": {
+                "description": "Such a record knows no other parameters.",
+                "properties": {"parameters": {"propertyNames": {"enum": [*parameters]}}},
+            },
             "mechanism": {
                 "description": "A planar mechanism: points as expressions, bars, springs and loads.",
                 **mechanism_codec(nothing).schema,
