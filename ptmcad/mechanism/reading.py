@@ -102,16 +102,12 @@ class Unread(dict[str, tuple[Tree, Tree]]):
 
 def point_name(name: object, key: str, points: Mapping[str, object]) -> str:
     """The name of a point that there is, or of one that there may be."""
-    if isinstance(name, str) and isinstance(points, Unread):
+    if isinstance(name, str) and (name in points or isinstance(points, Unread)):
         return name
-    if not points and not isinstance(points, Unread):
-        raise ConfigError(f"{as_written(name)} is no point's name: there are no points", key=key)
-    if not isinstance(name, str):
-        raise ConfigError(f"{as_written(name)} is no point's name; the points are {', '.join(points)}", key=key)
-    if name not in points:
-        hint = did_you_mean(str(name), points) or f"; the points are {', '.join(points)}"
-        raise ConfigError(f"there is no point {quoted(name)}{hint}", key=key)
-    return name
+    known = f"; the points are {', '.join(points)}" if points else ": there are no points"
+    if isinstance(name, str) and points:
+        raise ConfigError(f"there is no point {quoted(name)}{did_you_mean(name, points) or known}", key=key)
+    raise ConfigError(f"{as_written(name)} is no point's name{known}", key=key)
 
 
 def ends(entry: Node, points: Mapping[str, object]) -> tuple[str, str]:
@@ -150,9 +146,10 @@ def by_names(entry: Mapping[str, Any], most: int) -> dict[str, Any]:
     return {"type": "object", "maxProperties": most, "propertyNames": NAME_SCHEMA, "additionalProperties": entry}
 
 
-DEFINITIONS = {
+DEFINITIONS: dict[str, Mapping[str, Any]] = {
+    "parameter": _PARAMETER.schema,
     "parameters": {
-        **by_names(_PARAMETER.schema, MAX_ENTRIES),
+        **by_names({"$ref": "#/$defs/parameter"}, MAX_ENTRIES),
         "description": "Names to what they measure, defaults and usual ranges. Something has to use each: the "
         "description, or an expression under the record's parameters.",
     },
@@ -220,8 +217,8 @@ class Context:
                     found[other] = Parameter(other, kind, name, found[name].window, name)
 
         node.gathered(read, entries.values())
-        last = (Kind.FREE_LENGTH,)
-        self.parameters = {n: p for late in (False, True) for n, p in found.items() if (p.kind in last) is late}
+        ordered = sorted(found.items(), key=lambda item: item[1].kind is Kind.FREE_LENGTH)
+        self.parameters = dict(ordered)
         return self.parameters
 
     def add(self, name: str) -> None:
@@ -251,7 +248,7 @@ class Context:
         name : that it has by default.
         parameters : what these are, where it is not what they mostly are.
         """
-        known, unknown = ({"$ref": f"#/$defs/{key}"} for key in DEFINITIONS)
+        known, unknown = ({"$ref": f"#/$defs/{key}"} for key in ("parameters", "unknowns"))
         return {
             "name": part(reading(name_of, **NAME_SCHEMA), "A name of its own.", name, shown=name),
             "title": part(

@@ -235,14 +235,16 @@ def _torsion(found: tuple[dict[str, Any], ...]) -> tuple[TorsionSpring, ...]:
     return tuple(springs.values())
 
 
+def _weight(weight: Tree) -> tuple[Tree, Tree]:
+    return ZERO, Negative(weight)
+
+
 def _load(context: Context) -> Codec[tuple[Tree, Tree]]:
     """Two components, or a weight."""
-    weight: Codec[tuple[Tree, Tree]] = record(
-        lambda weight: (ZERO, Negative(weight)), "{weight: W}", weight=part(context.value())
-    )
+    weight = record(_weight, "{weight: W}", weight=part(context.value(), default=ZERO)).narrowed(required=["weight"])
 
     def read(entry: Node) -> tuple[Tree, Tree]:
-        if entry.is_mapping:
+        if entry.is_mapping and entry.mapping():
             return weight.read(entry)
         return context.pair(entry, what="components", like="[0, -W], or {weight: W}")
 

@@ -195,12 +195,12 @@ def _width(maxima: tuple[Maximum, ...]) -> Bounds:
     return bounds(max(m.width.low for m in maxima), max(m.width.high for m in maxima))
 
 
-def _told(*values: Any) -> Widest:
+def _width_from(*values: Any) -> Widest:
     """A width; an index that was written before attainment was told says of limits that they are attained."""
     found = Widest(*values)
     return found if len(values) > 5 or not found.proof else replace(found, proof=found.attainment)
 
 
 AREAS = listed(row_of(CountedArea))
-WIDEST = row_of(Widest, _told)
+WIDEST = row_of(Widest, _width_from)
 """How these are written in an index."""

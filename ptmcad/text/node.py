@@ -174,12 +174,10 @@ class Node(NamedTuple):
         found = self.mapping(like=like, expected=expected)
         if found.keys() >= {*needed} and found.keys() <= {*known}:
             return found
-        unknown = [name for name in found if name not in known]
-        missing = [name for name in needed if name not in found]
-        for name in unknown:
+        for name in (name for name in found if name not in known):
             hint = did_you_mean(name, known) or f"; the keys are {', '.join(known)}"
             self.note(self._about(name, f"unknown key{hint}", f"has the unknown key {name[:40]!r}"))
-        for name in missing if len(missing) > len(unknown) else ():  # else those may be meant for these
+        for name in (name for name in needed if name not in found):
             self.note(self._about(name, "is missing", f"lacks the key {name!r}"))
         return found
 

@@ -121,7 +121,7 @@ def test_what_is_wrong_is_said() -> None:
         ptmcad.System("x^3")  # type: ignore[arg-type]
     with pytest.raises(ConfigError, match="is not an exact number"):
         ptmcad.Mechanism({**PENDULUM, "points": {**PENDULUM["points"], "O": [object(), 0]}})
-    with pytest.raises(ConfigError, match=r"equations: <class 'int'> of type type is not an exact number"):
+    with pytest.raises(ConfigError, match=r"system\.equations\.1: <class 'int'> of type type is not an exact number"):
         ptmcad.System(unknowns={"x": "real"}, equations=[int])
     with pytest.raises(ConfigError, match="unknown parameter 'K'"):
         ptmcad.counts_at(ptmcad.Mechanism(PENDULUM), K=1)

@@ -68,7 +68,8 @@ def test_a_design_may_say_what_the_manual_says() -> None:
     design: dict[str, Any] = {"maximise": "range", "along": "L1", "over": {"L2": [1, 2]}, "where": {"stable": 2}}
     for aim in ("range", "area", "barrier", "k1.length + 3"):
         VALIDATOR.validate({"axes": axes, "design": design | {"maximise": aim}})
-    for wrong in ({"maximise": 3}, {"over": {}}, {"where": {"stable": [2]}}, {"poses": "stable:1"}):
+    wrongs: list[dict[str, Any]] = [{"maximise": 3}, {"over": {}}, {"where": {"stable": [2]}}, {"poses": "stable:1"}]
+    for wrong in wrongs:
         assert not VALIDATOR.is_valid({"axes": axes, "design": design | wrong})
 
 

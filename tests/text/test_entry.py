@@ -40,13 +40,14 @@ def test_all_faults_are_noted_and_the_rest_is_read(kind: str) -> None:
     assert read == {"size": "2", "weight": "none", "parts": ({"name": "a"}, {"name": ""})}
     said = [(fault.key, fault.message.split(";")[0]) for fault in faults.found]
     assert said == [
-        ("colour", "unknown key"), ("parts.2.nam", "unknown key"), ("parts.3", "expected a mapping, such as {name: a}"),
+        ("colour", "unknown key"), ("weight", "is missing"), ("parts.2.nam", "unknown key"),
+        ("parts.2.name", "is missing"), ("parts.3", "expected a mapping, such as {name: a}"),
     ]  # fmt: skip
-    assert faults.found[1].message == "unknown key; did you mean 'name'?"
-    assert [fault.line for fault in faults.found] == [6, 4, 5] if kind == "nodes" else [None] * 3
+    assert faults.found[2].message == "unknown key; did you mean 'name'?"
+    assert [fault.line for fault in faults.found] == [6, 1, 4, 4, 5] if kind == "nodes" else [None] * 5
     with pytest.raises(ConfigError) as refused:
         faults.check()
-    assert len(refused.value.faults) == 3
+    assert len(refused.value.faults) == 5
 
 
 def test_what_has_nothing_instead_is_left_out_with_one_fault_for_each_key() -> None:

@@ -59,7 +59,7 @@ def _unread(record: Record, tree: Tree, faults: Faults) -> frozenset[str]:
     for key in ("axes", "free", "sweep"):
         node = tree.entries.get(key)
         if isinstance(node, Tree):
-            found |= {name for name in node.entries if key != "axes" or f"{key}.{name}" in faulty}
+            found |= {name for name in node.entries if key != "axes" or _is_faulty(f"{key}.{name}", faulty)}
         hidden = hidden or (key in faulty and not isinstance(node, Tree))
     if hidden:  # any name may be one of those, and any parameter without a value
         found |= record.model.parameters.keys() - record.values.keys()
@@ -67,6 +67,11 @@ def _unread(record: Record, tree: Tree, faults: Faults) -> frozenset[str]:
             with Faults():  # a text that cannot be read is told with the others
                 found.update(names_in_scalar(scalar))
     return frozenset(found - record.axes.keys())
+
+
+def _is_faulty(key: str, faulty: Iterable[str]) -> bool:
+    """Whether a fault is that of a key, or of an entry of its value."""
+    return any(f"{other}.".startswith(f"{key}.") for other in faulty)
 
 
 def note_values(record: Record, faults: Faults) -> None:
@@ -116,7 +121,7 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
 
 def _note_unnamed_axes(record: Record, faults: Faults) -> None:
     """Note axes of which no text has the name, beside faults because of which it is not known what depends on what."""
-    told, named = {fault.key for fault in faults.found}, set[str]()
+    told, named = {fault.key or "" for fault in faults.found}, set[str]()
     for scalar in record.values.values():
         try:
             named.update(names_of(parse(scalar.text)))
@@ -126,7 +131,7 @@ def _note_unnamed_axes(record: Record, faults: Faults) -> None:
         return  # an unknown name may be a slip of the axis's
     for name in tuple(record.axes)[:2] if not isinstance(record.model, System) else ():
         place = record.axes[name].place
-        if name not in named and name not in record.model.parameters and place.key not in told:
+        if name not in named and name not in record.model.parameters and not _is_faulty(f"axes.{name}", told):
             with faults:
                 raise place.error(f"the axis {name} is not used: no parameter depends on it")
 

@@ -16,6 +16,7 @@ from ptmcad.mechanism.systems import system_codec
 from ptmcad.question.config.designs import DESIGN
 from ptmcad.question.config.record import record_codec
 from ptmcad.question.config.starters import mechanism_names
+from ptmcad.question.config.sweeps import DEFINITIONS as OF_SWEEPS
 from ptmcad.question.config.sweeps import SWEEP
 from ptmcad.text.entry import Place, Scalar, plain_data
 from ptmcad.text.syntax import MAX_TEXT, NAME
@@ -70,9 +71,18 @@ def record_schema() -> dict[str, Any]:
         "properties": {name: {**said, **own.get(name, {})} for name, said in whole.items()},
         "not": {"required": ["mechanism", "system"]},
         "dependentRequired": {"members": ["free"]},
-        "if": {"properties": {"mechanism": {"const": paper.name}}, "not": {"required": ["system"]}},
-        "then": {"properties": {"parameters": {"propertyNames": {"enum": [*parameters]}}}},
+        "if": {"$ref": "#/$defs/ptm"},
+        "then": {"$ref": "#/$defs/ptm-parameters"},
         "$defs": {
+            "ptm": {
+                "description": "A record about the mechanism ptm.",
+                "properties": {"mechanism": {"const": paper.name}},
+                "not": {"required": ["system"]},
+            },
+            "ptm-parameters": {
+                "description": "Such a record knows no other parameters.",
+                "properties": {"parameters": {"propertyNames": {"enum": [*parameters]}}},
+            },
             "mechanism": {
                 "description": "A planar mechanism: points as expressions, bars, springs and loads.",
                 **mechanism_codec(nothing).schema,
@@ -82,6 +92,7 @@ def record_schema() -> dict[str, Any]:
                 **system_codec(nothing).schema,
             },
             **DEFINITIONS,
+            **OF_SWEEPS,
             **_LEAVES,
         },
     }

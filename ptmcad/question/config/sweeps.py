@@ -197,7 +197,9 @@ _ENDS = {"from": "The first value.", "to": "The last value."}
 _READ: Codec[dict[str, Any]] = record(
     dict, "{from: -40, to: 0, step: 5}",
     **{name: part(reading(_number, **NUMBER), help) for name, help in _ENDS.items()},
-    step=part(reading(_step, **NUMBER), "The distance of two values, positive; it divides that of ends.", None, ...),
+    step=part(
+        reading(_step, **NUMBER), "The distance of two values, positive; it divides that of the ends.", None, ...
+    ),
     steps=part(
         reading(_steps, type="integer", minimum=2, maximum=MAX_MEMBERS), "The number of values.", None, ...
     ),
@@ -231,9 +233,11 @@ def _range(entry: Node) -> Spaced:
     return found
 
 
-_PRODUCT = {
-    "type": "object", "minProperties": 1, "propertyNames": AXIS_NAME,
-    "additionalProperties": {"anyOf": [{"type": "array", "items": NUMBER, "minItems": 1}, _RANGE.schema]},
-}  # fmt: skip
-SWEEP = {"anyOf": [_PRODUCT, {"type": "array", "items": _PRODUCT, "minItems": 1}]}
+SWEEP = {"anyOf": [{"$ref": "#/$defs/product"}, {"type": "array", "items": {"$ref": "#/$defs/product"}, "minItems": 1}]}
 """The schema of a record's ``sweep``."""
+_VALUES = {"anyOf": [{"type": "array", "items": NUMBER, "minItems": 1}, {"$ref": "#/$defs/progression"}]}
+DEFINITIONS = {
+    "product": {"type": "object", "minProperties": 1, "propertyNames": AXIS_NAME, "additionalProperties": _VALUES},
+    "progression": _RANGE.schema,
+}
+"""Schemas of its parts."""

@@ -29,13 +29,26 @@ import pandas as pd
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.classification import classify
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.question.slice import Slice
+from ptmcad.question.slice import Count, Slice
 from ptmcad.studies.bench.error import Figures, truths
 from ptmcad.studies.bench.harness import Case, Job, Row, made_with, take_turns, times
 from ptmcad.studies.bench.methods import RIVALS, finest_count, jobs
 from ptmcad.studies.bench.process import Outcome
 from ptmcad.studies.tables import columns
-from ptmcad.text.codec import NATURAL, POSITIVE, SECONDS, TRUTH, WHOLE, Codec, line, listed, named, optional, record
+from ptmcad.text.codec import (
+    NATURAL,
+    POSITIVE,
+    SECONDS,
+    TRUTH,
+    WHOLE,
+    Codec,
+    document_schema,
+    line,
+    listed,
+    named,
+    optional,
+    record,
+)  # fmt: skip
 from ptmcad.text.node import Node, opened
 from ptmcad.text.textfile import read_as
 
@@ -260,6 +273,11 @@ def study_of(text: str) -> Row:
     return _STUDY.read(opened(text, FORMAT, MAX_BYTES, "ptmcad bench"))
 
 
+def study_schema() -> dict[str, Any]:
+    """The schema of a study's JSON, without prose."""
+    return document_schema(FORMAT, _STUDY.schema)
+
+
 def _positive(node: Node) -> float:
     seconds = node.number()
     if not seconds > 0:
@@ -275,8 +293,10 @@ _FIGURES: Codec[Figures] = record(
     missed=optional(NATURAL), faintest=optional(_PAIR), distance=optional(_PAIR),
 )  # fmt: skip
 _MEASUREMENT: Codec[Row] = record(
-    dict, method=line(60), setting=line(60), seconds=optional(_TIMES), computing=optional(_TIMES),
-    peak=optional(SECONDS), reason=line(1000), note=line(1000), figures=optional(named(_FIGURES)),
+    dict, method=line(60).narrowed(enum=[*RIVALS]), setting=line(60), seconds=optional(_TIMES),
+    computing=optional(_TIMES),
+    peak=optional(SECONDS), reason=line(1000), note=line(1000),
+    figures=optional(named(_FIGURES).narrowed(propertyNames={"enum": [count.value for count in Count]})),
     area_width=optional(SECONDS),
 )  # fmt: skip
 _STUDY: Codec[Row] = record(
