@@ -91,14 +91,6 @@ def disjoint(one: Zero, two: Zero, circles: Sequence[bool]) -> bool:
     return False
 
 
-def same(one: Zero, two: Zero, circles: Sequence[bool]) -> bool:
-    """Whether a solution lies where another one is alone."""
-    return all(
-        bool(abs(difference_of(x, y, circle)) + r < alone)
-        for x, r, y, alone, circle in zip(one.center, one.radii, two.center, two.alone, circles, strict=True)
-    )
-
-
 def is_same(one: Zero, two: Zero, circles: Sequence[bool]) -> bool:
     """Whether a solution lies where another one is alone.
 
@@ -107,7 +99,7 @@ def is_same(one: Zero, two: Zero, circles: Sequence[bool]) -> bool:
     Unproved
         When it may or may not be the other one.
     """
-    if same(one, two, circles):
+    if inside((one.center, one.radii), two, circles):
         return True
     if disjoint(one, two, circles):
         return False

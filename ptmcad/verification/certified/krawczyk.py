@@ -6,9 +6,10 @@ m - C f(m) + (I - C f'(X)) (X - m). It has all zeros that X has; if it lies insi
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from itertools import product
 from math import inf, isfinite
+from operator import lt
 
 from flint import arb, arb_mat
 
@@ -100,13 +101,8 @@ def proved(field: Field, center: Floats, shapes: Iterable[Floats]) -> Zero | Non
         sizes = tuple(r * 2.0**power for r in shape)
         if any(circle and r > _MAX_TURN for circle, r in zip(field.form.is_circle, sizes, strict=True)):
             continue
-        jet = field(list(map(arb, center, sizes)))
-        inverse = None if jet.short else inverse_of(jet.jacobian)
-        if inverse is None:
-            continue
-        rest = [[x.abs_upper() for x in row] for row in _rest(jet.jacobian, inverse)]
-        off = [s.abs_upper() for s in _steps(values, inverse)]
-        if not all(reach < r for reach, r in zip(_image(sizes, rest, off), sizes, strict=True)):
+        reaches = _reaches(field, center, values, sizes)
+        if reaches is None or not all(map(lt, reaches, sizes)):
             continue
         radii = _narrowed(field, center, values, sizes)
         near = field(list(map(arb, center, radii)))
@@ -133,22 +129,23 @@ def _narrowed(field: Field, center: Floats, values: arb_mat, radii: Floats) -> F
     values : of the equations at the center.
     """
     for _ in range(_NARROWING):
-        jet = field(list(map(arb, center, radii)))
-        inverse = None if jet.short else inverse_of(jet.jacobian)
-        if inverse is None:
+        reaches = _reaches(field, center, values, radii)
+        if reaches is None:
             break
-        rest = [[x.abs_upper() for x in row] for row in _rest(jet.jacobian, inverse)]
-        off = [s.abs_upper() for s in _steps(values, inverse)]
-        reaches = [float(reach.upper()) * 1.0001 + 2.0**-1000 for reach in _image(radii, rest, off)]
-        before, radii = radii, tuple(map(min, radii, reaches))
+        before = radii
+        radii = tuple(min(r, float(x.upper()) * 1.0001 + 2.0**-1000) for r, x in zip(radii, reaches, strict=True))
         if all(r > _WORTHWHILE * b for r, b in zip(radii, before, strict=True)):
             break
     return radii
 
 
-def _image(radii: Sequence[float], rest: Matrix, off: Sequence[arb]) -> list[arb]:
-    """Half widths of Krawczyk's image of a box."""
+def _reaches(field: Field, center: Floats, values: arb_mat, radii: Floats) -> list[arb] | None:
+    """Half widths of Krawczyk's image of a box; None where the Jacobian is not known, or near a singular one."""
+    jet = field(list(map(arb, center, radii)))
+    inverse = None if jet.short else inverse_of(jet.jacobian)
+    if inverse is None:
+        return None
     return [
-        step + sum((entry * r for entry, r in zip(row, radii, strict=True)), arb(0))
-        for step, row in zip(off, rest, strict=True)
+        step.abs_upper() + sum((entry.abs_upper() * r for entry, r in zip(row, radii, strict=True)), arb(0))
+        for step, row in zip(_steps(values, inverse), _rest(jet.jacobian, inverse), strict=True)
     ]

@@ -162,10 +162,9 @@ def sweep(cover: Cover) -> Sweep:
         if sets.areas[part] >= 1
     }
 
-    def meet(below: Iterator[Part], above: Iterator[Part], low: Fraction | int, high: Fraction | int) -> None:
-        others = list(above)
+    def meet(below: Sequence[Part], above: Sequence[Part], low: Fraction | int, high: Fraction | int) -> None:
         for a, b, open_one, one in below:
-            for c, d, open_two, two in others:
+            for c, d, open_two, two in above:
                 start, stop = max(a, c, low), min(b, d, high)
                 if open_one and open_two:
                     if start < stop:
@@ -176,12 +175,13 @@ def sweep(cover: Cover) -> Sweep:
                     else:
                         pairs.add((one, two) if open_one else (two, one))
 
-    def parts(item: Item, axis: int, side: int, ends: tuple[int, int]) -> Iterator[Part]:
+    def parts(item: Item, axis: int, side: int, ends: tuple[int, int]) -> Sequence[Part]:
         if item.frame < 0:
-            yield *ends, item.free, item.node
-            return
-        for a, b, is_open, number in frames[item.frame].side(axis, side):
-            yield a, b, is_open, (first_part if is_open else first_tube)[item.frame] + number
+            return ((*ends, item.free, item.node),)
+        return [
+            (a, b, is_open, (first_part if is_open else first_tube)[item.frame] + number)
+            for a, b, is_open, number in frames[item.frame].side(axis, side)
+        ]
 
     def grow(items: Sequence[Item], height: int) -> None:
         """What begins or ends at a line: of areas what is below the line is taken off, or added."""
