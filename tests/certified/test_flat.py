@@ -19,10 +19,11 @@ import ptmcad
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.plain import curves as plain_curves
 from ptmcad.certified.plain.curves import curves
-from ptmcad.certified.plain.involution import Involution, involution_of
+from ptmcad.certified.plain.involution import mirrors
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plan import beforehand
 from ptmcad.certified.search import search_curve
+from ptmcad.mechanism.involutions import Involution
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 
@@ -51,7 +52,7 @@ def energy(slice: Slice, x: Fraction, y: Fraction) -> PaperEnergy:
 
 
 def has_flat_mirror(slice: Slice) -> bool:
-    return involution_of(problem_of(slice)) == REFLECTION
+    return REFLECTION in mirrors(slice, problem_of(slice))
 
 
 def test_which_slices_have_the_mirror() -> None:
@@ -111,10 +112,13 @@ def is_kept(found: tuple[Curve, ...], point: Floats) -> bool:
     window = np.array([[x - 0.02, y - 0.02, x + 0.011, y + 0.03]])
     for number, curve in enumerate(found):
         boxes = search_curve(curve.system.arguments(), curve.start(window), 1e-6, 50_000, curve.importance()).left()
-        half, (flat, larger) = boxes.shape[1] // 2, (FLAT[number // 3], number % 3 == 2)
-        if half == 2:
+        half = boxes.shape[1] // 2
+        if number >= 3 * len(FLAT):  # far from the mirror, in both angles
+            places = [np.array([x, y, *((point[2:] + 3) % (2 * np.pi) - 3)])]
+        elif half == 2:
             places = [point[:2]] if np.abs(np.sin(point[2:])).max() < 1e-6 else []
         else:
+            flat, larger = FLAT[number // 3], number % 3 == 2
             shift = np.array([0.0 if c > 0 else np.pi for c in flat])
             # the tangents of half the angles from there, of the larger one first
             pair = np.tan((point[2:][::-1] if larger else point[2:]) / 2 - shift / 2)
@@ -129,8 +133,8 @@ def is_kept(found: tuple[Curve, ...], point: Floats) -> bool:
 @pytest.mark.slow_cases("flat")
 def test_the_search_keeps_known_folds(kind: str) -> None:
     slice = slice_of()
-    found = curves(slice, Count.STABLE)[:12]
-    assert [len(c.system.unknowns) for c in found] == [2, 4, 4] * 4
+    found = curves(slice, Count.STABLE)[:13]
+    assert [len(c.system.unknowns) for c in found] == [2, 4, 4] * 4 + [4]
     points = (
         folds(slice, 4, flat=True) if kind == "flat" else [newton(slice, *start, flat=False) for start in NEAR_FLAT]
     )
@@ -141,7 +145,7 @@ def test_on_a_slice_with_a_load_folds_would_be_lost(monkeypatch: pytest.MonkeyPa
     """What the hypothesis is for."""
     slice = slice_of(F3="-5")
     points = folds(slice, 3, flat=False)
-    monkeypatch.setattr(plain_curves, "involution_of", lambda *_: REFLECTION)
+    monkeypatch.setattr(plain_curves, "mirrors", lambda *_: [REFLECTION])
     assert not all(is_kept(curves(slice, Count.STABLE)[:12], point) for point in points)
 
 

@@ -214,7 +214,7 @@ def test_three_odd_unknowns_have_a_chart_each_about_every_fixed_point() -> None:
 def test_a_half_of_a_window_says_the_same_as_the_whole_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """Forces on three cables whose mirror image is across, and two axes that an exchange of unknowns exchanges."""
     truss = {
-        "name": "pair", "unknowns": {"u": "real", "v": "real"}, "parameters": ["a", "b"],
+        "name": "pair", "unknowns": {"u": "real", "v": "real"}, "parameters": {"a": {}, "b": {}},
         "potential": "u^4 + v^4 - u^2 - v^2 + u*v/2 + a*u + b*v",
     }  # fmt: skip
     window = {"axes": {"a": [-1, 1], "b": [-1, 1]}}
