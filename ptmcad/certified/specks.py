@@ -22,6 +22,7 @@ from ptmcad.certified.refinement import Enclosure
 from ptmcad.certified.search import Boxes, search_curve
 from ptmcad.certified.tape import enclosing_floats
 from ptmcad.cover import components
+from ptmcad.cover.complement import Components
 from ptmcad.cover.rectangles import Cover, Rectangle
 
 MAX_SHARE = Fraction(1, 10_000)
@@ -34,22 +35,24 @@ MAX_PAIRS = 3 * 10**7
 """Rectangles of specks times boxes: beyond, to look for them would take seconds."""
 
 
-def without_specks(cover: Cover, enclosures: Sequence[Enclosure], lattice: Lattice, area: float) -> Cover:
-    """The cover without its specks.
+def without_specks(
+    complement: Components, enclosures: Sequence[Enclosure], lattice: Lattice, area: float
+) -> Components:
+    """The components of a cover's complement, and its clusters, without its specks.
 
     Parameters
     ----------
-    cover : of all that the enclosures hold.
+    complement : of a cover of all that the enclosures hold.
     area : of a box's projection, below which the search has left it alone.
     """
-    complement = components(cover)
+    cover = complement.cover
     most = MAX_SHARE * cover.steps**2
     small = np.array([share <= most for share in complement.cluster_areas], dtype=np.bool_)
     cluster_of = np.array(complement.cluster_of, dtype=np.int64)
     chosen = np.flatnonzero(small[cluster_of]) if len(cluster_of) else cluster_of
     boxes = [enclosure.boxes() for enclosure in enclosures]
     if not len(chosen) or len(chosen) * sum(map(len, boxes)) > MAX_PAIRS:
-        return cover
+        return complement
     rectangles = np.array([_outward(lattice, cover, cover.rectangles[k]) for k in chosen])
     held = np.zeros(len(small), dtype=np.bool_)
     for enclosure, own in zip(enclosures, boxes, strict=True):
@@ -58,8 +61,10 @@ def without_specks(cover: Cover, enclosures: Sequence[Enclosure], lattice: Latti
         found = search_curve(curve.system.arguments(), near, FINER * area, BUDGET, curve.importance())
         held[cluster_of[chosen[_meeting(rectangles, found.left()).any(axis=1)]]] = True
     kept = ~small[cluster_of] | held[cluster_of]
+    if kept.all():
+        return complement
     left = tuple(r for r, keep in zip(cover.rectangles, kept.tolist(), strict=True) if keep)
-    return replace(cover, rectangles=left)
+    return components(replace(cover, rectangles=left))
 
 
 def _outward(lattice: Lattice, cover: Cover, rectangle: Rectangle) -> tuple[float, float, float, float]:
