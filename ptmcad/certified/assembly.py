@@ -16,10 +16,8 @@ from ptmcad.answer.regionmap import Cell, PlanStep, Region, RegionMap, Status
 from ptmcad.certified.plain.points import BranchCounter
 from ptmcad.certified.points import PointCount
 from ptmcad.certified.statement import system_text
-from ptmcad.cover import components
 from ptmcad.cover.borders import area_bounds
 from ptmcad.cover.complement import Components
-from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.samples import samples
 from ptmcad.question.slice import Count, Point, Slice
 
@@ -40,16 +38,20 @@ class Assembler:
     versions: Mapping[str, str]
 
     def map(
-        self, cover: Cover, status: Status, seconds: Mapping[str, float], late: Callable[[], bool] = lambda: False
+        self,
+        complement: Components,
+        status: Status,
+        seconds: Mapping[str, float],
+        late: Callable[[], bool] = lambda: False,
     ) -> RegionMap:
-        """The map of the window outside the cover.
+        """The map of the window outside a cover.
 
         Parameters
         ----------
         late : asked before each count but the first; components that are not counted when it says True, the smallest
             ones, stay undetermined.
         """
-        complement = components(cover)
+        cover = complement.cover
         pocket = min(POCKET_SHARE * cover.steps**2, Fraction(sum(complement.cluster_areas), 10))
         counted = self._counts(complement, pocket, late)
         kept = [n for n in counted if not _is_pocket(n, pocket, complement, counted, self.slice.count)]

@@ -32,7 +32,7 @@ from ptmcad.certified.slanted import slanting
 from ptmcad.certified.specks import without_specks
 from ptmcad.certified.statement import plan_of
 from ptmcad.certified.tape import enclosing_floats
-from ptmcad.cover import union_area
+from ptmcad.cover import components, union_area
 from ptmcad.cover.rectangles import MAX_STEPS, Cover
 from ptmcad.cover.simplification import combined, gathered
 from ptmcad.errors import ConfigError, LimitReached
@@ -173,8 +173,7 @@ class _Run:
             if thin is not None:
                 cover = thin
             if (thin is not None or undetermined <= tolerance) and self._affordable(cover):
-                cover = without_specks(cover, self.enclosures, self.lattice, self.area * 4.0**-level)
-                result = self.map(cover, Status.CERTIFIED)
+                result = self.map(cover, Status.CERTIFIED, self.area * 4.0**-level)
                 undetermined = result.undetermined
                 if undetermined <= tolerance:
                     return result
@@ -213,9 +212,7 @@ class _Run:
         lattice = Lattice(self.lattice.window, MAX_STEPS)
         cover = slanting(self.enclosures, lattice).cover(self.tolerance, self.jobs, lambda: self._must_end(boxes))
         self.seconds["curves"] += self.clock() - start
-        if not self.pace.late(boxes):
-            cover = without_specks(cover, self.enclosures, lattice, area)
-        result = self.map(cover, Status.CERTIFIED)
+        result = self.map(cover, Status.CERTIFIED, None if self.pace.late(boxes) else area)
         if result.undetermined <= self.tolerance:
             return result
         if self.best is None or result.undetermined < self.best.undetermined:
@@ -260,11 +257,19 @@ class _Run:
         found = self.map(cover, Status.PARTIAL)
         return found if self.best is None or found.undetermined < self.best.undetermined else self.best
 
-    def map(self, cover: Cover, status: Status) -> RegionMap:
-        """The map of a cover; what is not counted when the time is over is undetermined."""
+    def map(self, cover: Cover, status: Status, area: float | None = None) -> RegionMap:
+        """The map of a cover; what is not counted when the time is over is undetermined.
+
+        Parameters
+        ----------
+        area : of a box's projection, below which the search has left it alone; without it specks stay.
+        """
         start, boxes = self.clock(), self.boxes()
         times = self.seconds | {"total": start - self.pace.started}
-        result = self.assembler.map(cover, status, times, self._must_hand_over)
+        complement = components(cover)
+        if area is not None:
+            complement = without_specks(complement, self.enclosures, self.lattice, area)
+        result = self.assembler.map(complement, status, times, self._must_hand_over)
         self.seconds["regions"] += self.clock() - start
         self.pace.map.record(boxes, self.clock() - start)
         return result

@@ -23,13 +23,8 @@ SHORT_SHARE = Fraction(1, 8)
 """A spring shorter than this part of its typical length is searched in its chart."""
 TURNING_WEIGHT = 0.25
 """Of a spring's direction, which follows from the unknowns, in the choice which variable to bisect."""
-_FULL_TURN = (-np.pi, np.pi)
-
-
-def axis_weights(slice: Slice, equilibrium: tuple[Formula, Formula]) -> tuple[float, float]:
-    """The widths of the axes count this much in comparison with an angle's."""
-    x, y, *_ = variable_weights(slice, equilibrium, (_FULL_TURN, _FULL_TURN))
-    return x, y
+RATIO_POWER = 0.75
+"""Of the axes' weights: halving the boxes takes fewest of them between there and the ratio itself, in most records."""
 
 
 def variable_weights(
@@ -37,8 +32,8 @@ def variable_weights(
 ) -> tuple[float, ...]:
     """The widths of the axes and of the unknowns count this much; the unknown that acts most has the weight 1.
 
-    It is the ratio of the typical derivatives of the equations of equilibrium by the axes and by the unknowns, at
-    points of the window that are chosen at random but always the same. All unknowns but reals among angles have 1.
+    It is a power of the ratio of the typical derivatives of the equations of equilibrium by the axes and by the
+    unknowns, at points of the window that are chosen at random but always the same. All unknowns have 1.
 
     Parameters
     ----------
@@ -54,7 +49,7 @@ def variable_weights(
         return (1.0,) * variables
     typical = np.median(usable, axis=0)
     most = max(typical[2:])
-    x, y = (float(t / most) if most > 0 and t > 0 else 1.0 for t in typical[:2])
+    x, y = (float(t / most) ** RATIO_POWER if most > 0 and t > 0 else 1.0 for t in typical[:2])
     return (x, y, *(1.0 for _ in ranges))
 
 

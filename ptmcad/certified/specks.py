@@ -23,6 +23,7 @@ from ptmcad.certified.refinement import Enclosure
 from ptmcad.certified.search import Boxes, search_curve
 from ptmcad.certified.tape import enclosing_floats
 from ptmcad.cover import components
+from ptmcad.cover.complement import Components
 from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.cover.subdivision import rectangle_array
 
@@ -36,15 +37,17 @@ MAX_PAIRS = 3 * 10**7
 """Rectangles of specks times boxes: beyond, to look for them would take seconds."""
 
 
-def without_specks(cover: Cover, enclosures: Sequence[Enclosure], lattice: Lattice, area: float) -> Cover:
-    """The cover without its specks.
+def without_specks(
+    complement: Components, enclosures: Sequence[Enclosure], lattice: Lattice, area: float
+) -> Components:
+    """The components of a cover's complement, and its clusters, without its specks.
 
     Parameters
     ----------
-    cover : of all that the enclosures hold.
+    complement : of a cover of all that the enclosures hold.
     area : of a box's projection, below which the search has left it alone.
     """
-    complement = components(cover)
+    cover = complement.cover
     most = MAX_SHARE * cover.steps**2
     small = np.array([share <= most for share in complement.cluster_areas], dtype=np.bool_)
     cluster_of = np.array(complement.cluster_of, dtype=np.int64)
@@ -54,7 +57,7 @@ def without_specks(cover: Cover, enclosures: Sequence[Enclosure], lattice: Latti
     if lattice.change is not None:  # where no box is there may be one over the image
         places = np.concatenate([places, lattice.images(places, cover.steps)])
     if not len(chosen) or len(places) * sum(map(len, boxes)) > MAX_PAIRS:
-        return cover
+        return complement
     rectangles = np.array([_outward(lattice, cover, place) for place in places.tolist()])
     held = np.zeros(len(small), dtype=np.bool_)
     for enclosure, own in zip(enclosures, boxes, strict=True):
@@ -63,8 +66,10 @@ def without_specks(cover: Cover, enclosures: Sequence[Enclosure], lattice: Latti
         found = search_curve(curve.system.arguments(), near, FINER * area, BUDGET, curve.importance())
         held[owners[_meeting(rectangles, found.left()).any(axis=1)]] = True
     kept = ~small[cluster_of] | held[cluster_of]
+    if kept.all():
+        return complement
     left = tuple(r for r, keep in zip(cover.rectangles, kept.tolist(), strict=True) if keep)
-    return replace(cover, rectangles=left)
+    return components(replace(cover, rectangles=left))
 
 
 def _outward(lattice: Lattice, cover: Cover, rectangle: Rectangle) -> tuple[float, float, float, float]:

@@ -35,36 +35,36 @@ def touching(leaves: Integers) -> Touching:
     ----------
     leaves : shape (n, 4): left, right, bottom, top of rectangles that tile the window.
     """
-    left, right, bottom, top = leaves.T
-    a, b, along = _across(left, right, bottom, top, corners=True)
+    across, up = (np.unique(leaves[:, k : k + 2], return_inverse=True)[1].reshape(-1, 2) for k in (0, 2))
+    a, b, along = _across(across, up, corners=True)
     # a corner that two leaves share is the end of an upright line between them: the pass above has it
-    c, d, _ = _across(bottom, top, left, right, corners=False)
+    c, d, _ = _across(up, across, corners=False)
     return Touching(
         np.concatenate([a, c]), np.concatenate([b, d]), np.concatenate([along, np.ones(len(c), dtype=np.bool_)])
     )
 
 
-def _across(
-    left: Integers, right: Integers, bottom: Integers, top: Integers, *, corners: bool
-) -> tuple[Integers, Integers, NDArray[np.bool_]]:
-    """Pairs of leaves at the two sides of an upright line, with an edge or, if asked, a corner in common."""
-    lines = np.unique(right)
-    heights, ranks = np.unique(np.concatenate([bottom, top]), return_inverse=True)
-    low, high = ranks[: len(bottom)], ranks[len(bottom) :]
-    span = len(heights) + 1
-    sides = np.searchsorted(lines, left)
+def _across(across: Integers, up: Integers, *, corners: bool) -> tuple[Integers, Integers, NDArray[np.bool_]]:
+    """Pairs of leaves at the two sides of an upright line, with an edge or, if asked, a corner in common.
+
+    Parameters
+    ----------
+    across, up : ranks of left and right, and of bottom and top, in shape (n, 2); those of the window's left are 0.
+    """
+    (left, right), (low, high) = across.T, up.T
+    span = int(high.max()) + 2
     inner = np.flatnonzero(left > 0)
     # the leaves at the right of one line do not overlap, so that bottoms and tops have the same order
-    order = inner[np.argsort(sides[inner] * span + low[inner])]
-    bottoms, tops = sides[order] * span + low[order], sides[order] * span + high[order]
-    line = np.searchsorted(lines, right) * span
+    order = inner[np.argsort(left[inner] * span + low[inner])]
+    bottoms, tops = left[order] * span + low[order], left[order] * span + high[order]
+    line = right * span
     begin = np.searchsorted(tops, line + low, side="left" if corners else "right")
     end = np.searchsorted(bottoms, line + high, side="right" if corners else "left")
     number = np.maximum(end - begin, 0)
     first = np.repeat(np.arange(len(left)), number)
     within = np.arange(len(first)) - np.repeat(np.cumsum(number) - number, number)
     second = order[np.repeat(begin, number) + within]
-    return first, second, np.minimum(top[first], top[second]) > np.maximum(bottom[first], bottom[second])
+    return first, second, np.minimum(high[first], high[second]) > np.maximum(low[first], low[second])
 
 
 def connected(number: int, first: Integers, second: Integers) -> Integers:

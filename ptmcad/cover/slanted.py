@@ -195,7 +195,8 @@ def _assembled(
         areas = tubes.part_areas(patch)
         total[nodes.part[f] : nodes.part[f] + len(areas)] = areas
         rest.append((right - left) * (top - bottom) - sum(areas))
-    roots, inverse = np.unique(label, return_inverse=True)
+    is_root = label == np.arange(len(label))  # a label is the smallest node of what is connected
+    roots, inverse = np.flatnonzero(is_root), (np.cumsum(is_root) - 1)[label]
     leaves, group = nodes.leaves[outside], inverse[:count][outside]
     sums = sums_of_areas(leaves, group, len(roots))
     present = np.zeros(len(roots), dtype=np.bool_)
@@ -227,7 +228,8 @@ def _assembled(
     swapped = ~free[border[0]]
     inner, outer = (own[np.where(swapped, border[1 - k], border[k])] for k in (0, 1))
     at: list[list[int]] = [[] for _ in shown[True]]
-    for n, cluster in np.unique(np.stack([inner, outer], axis=1)[inner >= 0], axis=0).tolist():
+    for pair in np.unique((inner * len(roots) + outer)[inner >= 0]).tolist():
+        n, cluster = divmod(pair, len(roots))
         at[n].append(cluster)
     owner = np.full(len(tree.state), -1, dtype=np.int64)
     owner[parts[outside]] = own[:count][outside]

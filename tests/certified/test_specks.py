@@ -19,6 +19,7 @@ from ptmcad.certified.refinement import Enclosure, begin, refine
 from ptmcad.certified.search import Boxes
 from ptmcad.certified.specks import without_specks
 from ptmcad.certified.system import system
+from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
 
 LATTICE = Lattice(((Fraction(-2), Fraction(2)), (Fraction(-2), Fraction(2))), 2**20)
@@ -88,7 +89,7 @@ def test_what_no_curve_enters_is_taken_away_and_nothing_else(thin: bool) -> None
         strips = thinning(enclosures, LATTICE, 1).cover(0.01)
         cover = Cover(cover.steps, tuple(sorted({*strips.rectangles, *LATTICE.cover(EMPTY).rectangles})))
     assert covered(cover, points()).all() and covered(cover, middles(EMPTY)).all()
-    found = without_specks(cover, enclosures, LATTICE, AREA)
+    found = without_specks(components(cover), enclosures, LATTICE, AREA).cover
     assert covered(found, points()).all()
     assert not covered(found, middles(EMPTY)).any()
     assert set(found.rectangles) < set(cover.rectangles)
@@ -101,9 +102,9 @@ def test_where_the_budget_ends_all_is_left(monkeypatch: pytest.MonkeyPatch) -> N
     for name, value in (("BUDGET", 0), ("MAX_PAIRS", 0), ("MAX_SHARE", Fraction(0))):
         with monkeypatch.context() as patched:
             patched.setattr(specks, name, value)
-            assert without_specks(cover, enclosures, LATTICE, AREA) == cover
+            assert without_specks(components(cover), enclosures, LATTICE, AREA).cover == cover
 
 
 def test_a_cover_without_rectangles_stays() -> None:
     empty = Cover(LATTICE.steps, ())
-    assert without_specks(empty, curves(), LATTICE, AREA) == empty
+    assert without_specks(components(empty), curves(), LATTICE, AREA).cover == empty

@@ -97,6 +97,8 @@ class _Search:
             for k, name in enumerate(problem.unknowns)
         ]
         reals = [k for k, name in enumerate(problem.unknowns) if name in problem.reals]
+        if not reals:
+            return tuple(found)
         alone = self._alone()
         waiting = list(reals)
         while waiting:

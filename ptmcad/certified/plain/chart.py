@@ -51,7 +51,7 @@ class Chart:
         its unit vector u_s, each coordinate.
     balances : the same, smooth where one spring has no length, unlike the equations: that u_s has the length 1.
     springs : one for each cone.
-    rigid : the matrix M.
+    smooth : the derivatives of the equations without springs.
     anywhere, there : the sines' products of each spring, everywhere and where the equations vanish; the latter never to
         be differentiated.
     scales : the factors g_i.
@@ -67,7 +67,7 @@ class Chart:
     dependent: tuple[Formula, ...]
     balances: tuple[Formula, ...]
     springs: tuple[Spring, ...]
-    rigid: Matrix
+    smooth: Matrix
     anywhere: tuple[Matrix, ...]
     there: tuple[Matrix, ...]
     scales: tuple[Formula, ...]
@@ -93,25 +93,30 @@ class Chart:
     def _bends(self, products: Sequence[Matrix]) -> list[Bent]:
         return [Bent(s.pull * s.inverse, p, s) for s, p in zip(self.springs, products, strict=True)]
 
+    def rigid(self) -> Matrix:
+        """The matrix M."""
+        return _rigid(self.smooth, self.springs)
+
     def matrix_at_equilibrium(self) -> Matrix:
         """The Hessian where the equations vanish."""
-        return _less(self.rigid, self._bends(self.there), self.scales)
+        return _less(self.rigid(), self._bends(self.there), self.scales)
 
     def determinant(self, *, at_equilibrium: bool = False) -> Formula:
         """Of the Hessian; in its chart, times the length of the spring."""
         bends = self._bends(self.there if at_equilibrium else self.anywhere)
+        rigid = self.rigid()
         if self.short is None:
-            return bent(self.rigid, bends, self.scales)
+            return bent(rigid, bends, self.scales)
         chosen = self.springs[self.short]
         others = bends[: self.short] + bends[self.short + 1 :]
-        whole = bent(self.rigid, others, self.scales)
+        whole = bent(rigid, others, self.scales)
         unit = bends[self.short]._replace(factor=self.equations[0].graph.constant(1))
-        return chosen.extent * whole - chosen.pull * bent(self.rigid, others, self.scales, by=unit)
+        return chosen.extent * whole - chosen.pull * bent(rigid, others, self.scales, by=unit)
 
     def levelled(self) -> Formula:
         """The determinant times the lengths of all springs, where the equations vanish: finite everywhere."""
         bends = [Bent(at.pull, there, at) for at, there in zip(self.springs, self.there, strict=True)]
-        return bent(self.rigid, bends, self.scales, extents=[at.extent for at in self.springs])
+        return bent(self.rigid(), bends, self.scales, extents=[at.extent for at in self.springs])
 
     def determinants_by_turning(self) -> Iterator[Formula]:
         """Of two unknowns: the determinant by one of them and both turned, where the equations vanish."""
@@ -124,11 +129,16 @@ class Chart:
                 yield there[0][0] * (factor * stiffness) - self.scales[0] * slip.squared()
 
     def diagonal_times_length(self, s: int) -> tuple[Formula, ...]:
-        """|d_s| times the Hessian's diagonal where the equations vanish, as far as spring s is in it."""
+        """|d_s| times the Hessian's diagonal where the equations vanish, as far as spring s is in it.
+
+        What that spring is in it by is without its direction: |d_s| u_s is d_s.
+        """
         bends, chosen = self._bends(self.there), self.springs[s]
-        rest = _less(self.rigid, bends[:s] + bends[s + 1 :], self.scales)
+        others = _rigid(self.smooth, [*self.springs[:s], *self.springs[s + 1 :]])
+        rest = _less(others, bends[:s] + bends[s + 1 :], self.scales)
         return tuple(
-            chosen.extent * rest[i][i] - self.scales[i] * (chosen.pull * self.there[s][i][i]) for i in chosen.active
+            self.lengths[s] * rest[i][i] - chosen.pull * (chosen.levers[i] + self.scales[i] * self.there[s][i][i])
+            for i in chosen.active
         )
 
 
@@ -147,28 +157,24 @@ def chart(exact: Geometry, short: int | None = None, unknowns: Sequence[Unknown]
     scales = tuple(expression_formula(graph, g) for g in exact.factors)
     phi = None if short is None else graph.variable(FIRST + len(size))
     springs = tuple(s.spring(graph, unknowns, phi if k == short else None) for k, s in enumerate(exact.shapes))
-    rigid = [[f.formula(graph, unknowns) for f in row] for row in exact.slopes]
+    slopes = [[f.formula(graph, unknowns) for f in row] for row in exact.slopes]
     for push in exact.pushes:
         strength = push.strength(graph)
         for i, w in enumerate(push.weights):
             smooth[i] = smooth[i] - strength * w.formula(graph, unknowns)
-            rigid[i] = [r - strength * w.derivative(j).formula(graph, unknowns) for j, r in enumerate(rigid[i])]
-    for at in springs:
-        for i in size:
-            for j in size:
-                rigid[i][j] = rigid[i][j] - at.pull * at.bends[i][j]
+            slopes[i] = [f - strength * w.derivative(j).formula(graph, unknowns) for j, f in enumerate(slopes[i])]
     # a rest is put together without its spring: taken off again, its part would leave an interval's width behind
     rests = [_without(smooth, [t for t in springs if t is not at]) for at in springs]
     anywhere = tuple(at.products() for at in springs)
     bends = [Bent(at.pull * at.inverse, p, at) for at, p in zip(springs, anywhere, strict=True)]
     return Chart(
         tuple(_without(smooth, springs)),
-        _less(rigid, bends, scales),
+        _less(_rigid(slopes, springs), bends, scales),
         tuple(length(*at.vector) for at in springs),
         tuple(f for at, rest in zip(springs, rests, strict=True) for f in _directed(at, rest)),
         tuple(f for at, rest in zip(springs, rests, strict=True) for f in _balances(at, rest)),
         springs,
-        tuple(map(tuple, rigid)),
+        tuple(map(tuple, slopes)),
         anywhere,
         tuple(at.products_at_equilibrium(rest) for at, rest in zip(springs, rests, strict=True)),
         scales,
@@ -182,6 +188,16 @@ def chart(exact: Geometry, short: int | None = None, unknowns: Sequence[Unknown]
 def _turned(turn: Turn, springs: Sequence[Spring], unknowns: Sequence[Unknown]) -> Turned:
     factor = expression_formula(unknowns[0].graph, turn.factor)
     return Turned(turn.weights, turn.moment(springs, unknowns), turn.stiffness(springs, unknowns, factor), factor)
+
+
+def _rigid(smooth: Sequence[Sequence[Formula]], springs: Sequence[Spring]) -> Matrix:
+    """The matrix M of some springs."""
+    entries = [list(row) for row in smooth]
+    for at in springs:
+        for row, bends in zip(entries, at.bends, strict=True):
+            for j, bend in enumerate(bends):
+                row[j] = row[j] - at.pull * bend
+    return tuple(map(tuple, entries))
 
 
 def _less(rigid: Sequence[Sequence[Formula]], bends: Sequence[Bent], scales: Sequence[Formula]) -> Matrix:

@@ -34,6 +34,11 @@ def quotient(polynomial: tuple[Term, ...], divisor: tuple[Term, ...]) -> tuple[T
     return _terms(_polynomial(polynomial) / _polynomial(divisor))
 
 
+def whole_quotient(polynomial: tuple[Term, ...], divisor: tuple[Term, ...]) -> tuple[Term, ...]:
+    """By any polynomial but zero, without the remainder."""
+    return _terms(_polynomial(polynomial) // _polynomial(divisor))
+
+
 def lowest_terms(value: Expression) -> Expression:
     """The same function, whose numerator and denominator have no common divisor."""
     divisor = common_divisor([value.numerator, value.denominator])

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ptmcad.certified.plain.divisors import common_divisor, quotient
+from ptmcad.certified.plain.divisors import common_divisor, whole_quotient
 from ptmcad.certified.plain.problem import Problem
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.question.positivity import PROVED, Need, decide
@@ -36,24 +36,37 @@ def common_factors(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Expressio
 
 def common_factor(polynomials: Iterable[TrigonometricPolynomial], axes: tuple[Axis, Axis]) -> Expression:
     """A positive polynomial in the axes that divides all coefficients' numerators; 1 in case of doubt."""
-    coefficients = [c for f in polynomials for pair in f.terms.values() for c in pair if c.numerator]
-    factor = Expression(common_divisor(c.numerator for c in coefficients))
-    if not factor.numerator or factor.is_constant:
-        return constant(1)
+    factor = largest_factor(polynomials)
+    if factor.is_constant:
+        return factor
     for candidate in (factor, -factor):
         if decide(candidate, axes, Need.POSITIVE) == PROVED:
             return candidate
     return constant(1)
 
 
+def largest_factor(polynomials: Iterable[TrigonometricPolynomial]) -> Expression:
+    """The greatest common divisor of all coefficients' numerators, of any sign; 1 where it is a constant."""
+    coefficients = [c for f in polynomials for pair in f.terms.values() for c in pair if c.numerator]
+    factor = Expression(common_divisor(c.numerator for c in coefficients))
+    return constant(1) if not factor.numerator or factor.is_constant else factor
+
+
+def divided(f: TrigonometricPolynomial, factor: Expression) -> tuple[TrigonometricPolynomial, TrigonometricPolynomial]:
+    """Polynomials g and h of which f is factor g + h; h is zero where the factor divides all numerators."""
+    if factor == constant(1):
+        return f, TrigonometricPolynomial({})
+    pairs = {key: (_whole(a, factor), _whole(b, factor)) for key, (a, b) in f.terms.items()}
+    found = TrigonometricPolynomial({key: (a, b) for key, (a, b) in pairs.items() if a.numerator or b.numerator})
+    return found, f - found.scaled(factor)
+
+
 def over(f: TrigonometricPolynomial, factor: Expression) -> TrigonometricPolynomial:
     """The polynomial over a factor of its coefficients' numerators."""
-    if factor == constant(1):
-        return f
-    return TrigonometricPolynomial({key: (_over(a, factor), _over(b, factor)) for key, (a, b) in f.terms.items()})
+    found, rest = divided(f, factor)
+    assert not rest.terms
+    return found
 
 
-def _over(coefficient: Expression, factor: Expression) -> Expression:
-    if not coefficient.numerator:
-        return coefficient
-    return Expression(quotient(coefficient.numerator, factor.numerator), coefficient.denominator)
+def _whole(coefficient: Expression, factor: Expression) -> Expression:
+    return Expression(whole_quotient(coefficient.numerator, factor.numerator), coefficient.denominator)

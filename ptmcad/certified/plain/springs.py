@@ -42,6 +42,7 @@ class Spring(NamedTuple):
     cosines, sines : u.w_i and u x w_i.
     turns : u x a_j, over the same factors.
     bends : u.dw_i/dq_j.
+    levers : d.dw_i/dq_i.
     squares, crosses : w_i.w_j and w_i x w_j.
     """
 
@@ -55,6 +56,7 @@ class Spring(NamedTuple):
     sines: tuple[Formula, ...]
     turns: tuple[Formula, ...]
     bends: Matrix
+    levers: tuple[Formula, ...]
     squares: Matrix
     crosses: Matrix
 
@@ -95,6 +97,7 @@ class Shape:
     difference : d.
     weights, bends : what the spring is in the equations by, and the derivatives of that by each unknown.
     slopes : of d by each unknown.
+    levers : scalar products of d and the weights' derivatives, each by its own unknown.
     squares, crosses : scalar products of the weights, and their cross products.
     """
 
@@ -103,6 +106,7 @@ class Shape:
     weights: tuple[Pair, ...]
     slopes: tuple[Pair, ...]
     bends: tuple[tuple[Pair, ...], ...]
+    levers: tuple[TrigonometricPolynomial, ...]
     squares: tuple[tuple[TrigonometricPolynomial, ...], ...]
     crosses: tuple[tuple[TrigonometricPolynomial, ...], ...]
 
@@ -132,6 +136,7 @@ class Shape:
             tuple(ux * b - uy * a for a, b in vectors),
             tuple(ux * b - uy * a for a, b in slopes),
             tuple(tuple(ux * written(a) + uy * written(b) for a, b in row) for row in self.bends),
+            tuple(map(written, self.levers)),
             tuple(tuple(map(written, row)) for row in self.squares),
             tuple(tuple(map(written, row)) for row in self.crosses),
         )
@@ -147,6 +152,7 @@ def shape(cone: Cone, factors: Sequence[Expression]) -> Shape:
         weights,
         tuple((over(x.derivative(i), g), over(y.derivative(i), g)) for i, g in enumerate(factors)),
         tuple(tuple((a.derivative(j), b.derivative(j)) for j in range(len(factors))) for a, b in weights),
+        tuple(x * a.derivative(i) + y * b.derivative(i) for i, (a, b) in enumerate(weights)),
         tuple(tuple(a * c + b * d for c, d in weights) for a, b in weights),
         tuple(tuple(a * d - b * c for c, d in weights) for a, b in weights),
     )

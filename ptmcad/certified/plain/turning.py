@@ -5,7 +5,9 @@ derivative of the energy, up to a positive factor. (Lemma S4 of docs/soundness.m
 
 With d' = c J d + e along w, J being the turn by a right angle and c = -1, 0 or 1, a spring's length l has l' = u.e and
 l'' = c u x e + (u x e)^2/l + u.e'. Of a spring that turns as a whole e is zero, and of one from a body that turns to a
-fixed point it is as long as the way from there to the axis, however long the spring is.
+fixed point it is as long as the way from there to the axis, however long the spring is. That way is often the same for
+all springs: times this arm stands what all of them do together, which intervals enclose more narrowly than the sum of
+its products.
 """
 
 from __future__ import annotations
@@ -16,9 +18,10 @@ from fractions import Fraction
 from itertools import product
 
 from ptmcad.certified.formula import Formula
+from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Unknown
 from ptmcad.certified.plain.problem import Cone, Problem
-from ptmcad.certified.plain.scaling import common_factor, over
+from ptmcad.certified.plain.scaling import common_factor, divided, largest_factor, over
 from ptmcad.certified.plain.springs import Pair, Spring
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.question.slice import Axis
@@ -35,34 +38,39 @@ class Turn:
     Attributes
     ----------
     weights : w.
-    slope : of the smooth part of the energy along w, over the factor.
-    bend : the slope's own, over the factor.
-    levers : for each cone c, e and e', the latter two over the factor.
+    slope : of the smooth part of the energy along w, over the factor: what is a multiple of the arm, over it, and the
+        rest.
+    bend : the slope's own.
+    levers : for each cone c, e and e', the latter two over the factor and the arm.
     factor : positive in the open window.
+    arm : what divides all e.
     """
 
     weights: tuple[int, ...]
-    slope: TrigonometricPolynomial
-    bend: TrigonometricPolynomial
+    slope: Pair
+    bend: Pair
     levers: tuple[tuple[int, Pair, Pair], ...]
     factor: Expression
+    arm: Expression
 
     def moment(self, springs: Sequence[Spring], unknowns: Sequence[Unknown]) -> Formula:
         """What vanishes at equilibria."""
-        total = self.slope.formula(unknowns[0].graph, unknowns)
+        total, rest = _written(self.slope, unknowns)
         for at, (_, e, _) in zip(springs, self.levers, strict=True):
             (x, y), (ux, uy) = _written(e, unknowns), at.unit
             total = total - at.pull * (ux * x + uy * y)
-        return total
+        return expression_formula(rest.graph, self.arm) * total + rest
 
     def stiffness(self, springs: Sequence[Spring], unknowns: Sequence[Unknown], factor: Formula) -> Formula:
         """The second derivative along w."""
-        total = self.bend.formula(unknowns[0].graph, unknowns)
+        total, rest = _written(self.bend, unknowns)
+        arm = expression_formula(rest.graph, self.arm)
         for at, (c, e, de) in zip(springs, self.levers, strict=True):
             (x, y), (dx, dy), (ux, uy) = _written(e, unknowns), _written(de, unknowns), at.unit
             across = ux * y - uy * x
-            total = total - at.pull * (c * across + factor * (at.inverse * across.squared()) + (ux * dx + uy * dy))
-        return total
+            bent = factor * (arm * (at.inverse * across.squared()))
+            total = total - at.pull * (c * across + bent + (ux * dx + uy * dy))
+        return arm * total + rest
 
 
 def _written(pair: Pair, unknowns: Sequence[Unknown]) -> tuple[Formula, Formula]:
@@ -119,12 +127,14 @@ def _turn(problem: Problem, weights: tuple[int, ...], axes: tuple[Axis, Axis]) -
     slope = _along(problem.equations, weights)
     levers = [_lever(cone, weights) for cone in problem.cones]
     factor = common_factor([slope, *(f for _, e in levers for f in e)], axes)
-    divided = over(slope, factor)
-    ends = [(c, (over(e[0], factor), over(e[1], factor))) for c, e in levers]
+    arm = largest_factor(over(f, factor) for _, e in levers for f in e)
+    ends = [(c, (over(e[0], factor * arm), over(e[1], factor * arm))) for c, e in levers]
+    parts = divided(over(slope, factor), arm)
     return Turn(
         weights,
-        divided,
-        _derivative(divided, weights),
+        parts,
+        (_derivative(parts[0], weights), _derivative(parts[1], weights)),
         tuple((c, e, (_derivative(e[0], weights), _derivative(e[1], weights))) for c, e in ends),
         factor,
+        arm,
     )
