@@ -113,7 +113,8 @@ def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
 def _quotient(search: _Search, changes: Sequence[Involution], whole: Chart) -> Iterator[Curve]:
     """The folds where involutions keep the problem, and limits without a spring's length.
 
-    Minima are searched all about one involution's fixed points; else what is far from all of them as without any.
+    Minima are searched all about one involution's fixed points if one unknown is odd; else what is far from all fixed
+    points is searched as without an involution.
     """
     near = not search.stable or len(changes) > 1 or changes[0].odd > 1
     for change in changes:

@@ -1,7 +1,7 @@
-"""Folds of minima of a problem that an involution leaves as it is, in coordinates that are regular at its fixed points.
+"""Folds of a problem that an involution leaves as it is, in coordinates that are regular at its fixed points.
 
-Guarantee: each point of the window at which minima meet other equilibria lies on the projection of one of the curves
-(Lemmas Q1 to Q3 of docs/soundness.md).
+Guarantee: each point of the window at which equilibria, or minima, about the fixed points meet others lies on the
+projection of one of the curves (Lemmas Q1 to Q3 of docs/soundness.md).
 
 In coordinates e that the involution keeps and o that it takes to -o, about a component o = 0 of its fixed points, the
 energy U is even in o. On the component the Hessian has two blocks: equilibria meet within it where that of e is
