@@ -6,13 +6,9 @@ different only when narrow boxes around them are disjoint. (Lemma 10 of docs/sou
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
-from flint import arb, ctx
 from numpy.typing import NDArray
 
-from ptmcad.certified.arb_isolation import Isolated
 from ptmcad.certified.compiled import compiled
 from ptmcad.certified.search import Boxes
 
@@ -77,36 +73,3 @@ def _relation(unique: Boxes, narrow: Boxes, first: int, periods: NDArray[np.floa
         inside = inside and unique[j, k] <= low and high <= unique[j, variables + k]
         separate = separate or high < narrow[j, k] or low > narrow[j, variables + k]
     return 1 if inside else (0 if separate else -1)
-
-
-def distinct_balls(found: Sequence[Isolated], angles: Sequence[int], precision: int) -> list[Isolated] | None:
-    """The same of zeros in balls: each once; None when it cannot be decided whether two are the same.
-
-    Parameters
-    ----------
-    angles : numbers of the unknowns, all of which are angles.
-    """
-    kept: list[Isolated] = []
-    with ctx.workprec(precision):
-        for zero in found:
-            matches = [_is_same(zero, other, angles) for other in kept]
-            if None in matches:
-                return None
-            if not any(matches):
-                kept.append(zero)
-    return kept
-
-
-def _is_same(a: Isolated, b: Isolated, angles: Sequence[int]) -> bool | None:
-    """Whether two zeros are one on the torus."""
-    turn, moved = 2 * arb.pi(), []
-    for k in angles:
-        turns = round(float((b.narrow[k].mid() - a.narrow[k].mid()) / turn))
-        moved.append(a.narrow[k] + turns * turn)
-    pairs = list(zip(angles, moved, strict=True))
-    if all(b.unique[k].contains(m) for k, m in pairs):
-        return True
-    if any(not b.narrow[k].overlaps(m) for k, m in pairs):
-        return False
-    back = [(k, b.narrow[k] - (m - a.narrow[k])) for k, m in pairs]
-    return True if all(a.unique[k].contains(m) for k, m in back) else None

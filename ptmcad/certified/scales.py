@@ -53,21 +53,13 @@ def variable_weights(
     return (x, y, *(1.0 for _ in ranges))
 
 
-def typical_lengths(
-    slice: Slice, lengths: Sequence[Formula], ranges: Sequence[tuple[float, float]]
-) -> tuple[Fraction, ...]:
-    """The median of each formula over such points; 1 where it is not positive."""
-    if not lengths:
-        return ()
-    medians = np.median(_samples(slice, list(lengths), ranges), axis=0)
-    return tuple(Fraction(float(m)) if np.isfinite(m) and m > 0 else Fraction(1) for m in medians)
-
-
 def short_lengths(
     slice: Slice, lengths: Sequence[Formula], ranges: Sequence[tuple[float, float]]
 ) -> tuple[Fraction, ...]:
-    """Below these, powers of two, springs are searched in their charts."""
-    return tuple(_rounded(SHORT_SHARE * x) for x in typical_lengths(slice, lengths, ranges))
+    """Below these, powers of two near a part of the median over such points, springs are searched in their charts."""
+    medians = np.median(_samples(slice, list(lengths), ranges), axis=0) if lengths else ()
+    typical = (Fraction(float(m)) if np.isfinite(m) and m > 0 else Fraction(1) for m in medians)
+    return tuple(_rounded(SHORT_SHARE * x) for x in typical)
 
 
 def _rounded(value: Fraction) -> Fraction:

@@ -24,17 +24,6 @@ def common_divisor(polynomials: Iterable[tuple[Term, ...]]) -> tuple[Term, ...]:
 
 
 def quotient(polynomial: tuple[Term, ...], divisor: tuple[Term, ...]) -> tuple[Term, ...]:
-    """By a divisor.
-
-    Raises
-    ------
-    DomainError
-        Of FLINT, when it is none.
-    """
-    return _terms(_polynomial(polynomial) / _polynomial(divisor))
-
-
-def whole_quotient(polynomial: tuple[Term, ...], divisor: tuple[Term, ...]) -> tuple[Term, ...]:
     """By any polynomial but zero, without the remainder."""
     return _terms(_polynomial(polynomial) // _polynomial(divisor))
 

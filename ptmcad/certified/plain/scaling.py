@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ptmcad.certified.plain.divisors import common_divisor, whole_quotient
+from ptmcad.certified.plain.divisors import common_divisor, quotient
 from ptmcad.certified.plain.problem import Problem
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.question.positivity import PROVED, Need, decide
@@ -69,4 +69,4 @@ def over(f: TrigonometricPolynomial, factor: Expression) -> TrigonometricPolynom
 
 
 def _whole(coefficient: Expression, factor: Expression) -> Expression:
-    return Expression(whole_quotient(coefficient.numerator, factor.numerator), coefficient.denominator)
+    return Expression(quotient(coefficient.numerator, factor.numerator), coefficient.denominator)

@@ -97,7 +97,6 @@ class Shape:
     difference : d.
     weights, bends : what the spring is in the equations by, and the derivatives of that by each unknown.
     slopes : of d by each unknown.
-    levers : scalar products of d and the weights' derivatives, each by its own unknown.
     squares, crosses : scalar products of the weights, and their cross products.
     """
 
@@ -106,7 +105,6 @@ class Shape:
     weights: tuple[Pair, ...]
     slopes: tuple[Pair, ...]
     bends: tuple[tuple[Pair, ...], ...]
-    levers: tuple[TrigonometricPolynomial, ...]
     squares: tuple[tuple[TrigonometricPolynomial, ...], ...]
     crosses: tuple[tuple[TrigonometricPolynomial, ...], ...]
 
@@ -121,7 +119,8 @@ class Shape:
         def written(f: TrigonometricPolynomial) -> Formula:
             return f.formula(graph, unknowns)
 
-        dx, dy = (written(f) for f in self.difference)
+        x, y = self.difference
+        dx, dy = written(x), written(y)
         ux, uy = (direction(dx, dy), direction(dy, dx)) if phi is None else (phi.cos(), phi.sin())
         vectors = tuple((written(a), written(b)) for a, b in self.weights)
         slopes = ((written(a), written(b)) for a, b in self.slopes)
@@ -136,7 +135,7 @@ class Shape:
             tuple(ux * b - uy * a for a, b in vectors),
             tuple(ux * b - uy * a for a, b in slopes),
             tuple(tuple(ux * written(a) + uy * written(b) for a, b in row) for row in self.bends),
-            tuple(map(written, self.levers)),
+            tuple(written(x * row[i][0] + y * row[i][1]) for i, row in enumerate(self.bends)),
             tuple(tuple(map(written, row)) for row in self.squares),
             tuple(tuple(map(written, row)) for row in self.crosses),
         )
@@ -152,7 +151,6 @@ def shape(cone: Cone, factors: Sequence[Expression]) -> Shape:
         weights,
         tuple((over(x.derivative(i), g), over(y.derivative(i), g)) for i, g in enumerate(factors)),
         tuple(tuple((a.derivative(j), b.derivative(j)) for j in range(len(factors))) for a, b in weights),
-        tuple(x * a.derivative(i) + y * b.derivative(i) for i, (a, b) in enumerate(weights)),
         tuple(tuple(a * c + b * d for c, d in weights) for a, b in weights),
         tuple(tuple(a * d - b * c for c, d in weights) for a, b in weights),
     )
