@@ -327,7 +327,7 @@ def test_poles_by_characteristic_polynomials_are_those_by_power_traces(name: str
 
 
 @pytest.mark.parametrize("name", ["fig2", "fig3", "fig4", "fig5-text"])
-@pytest.mark.slow_cases("fig5-text")
+@pytest.mark.slow_cases("fig5-text", "fig3", "fig4")
 def test_hermite_determinant_has_every_critical_component(name: str) -> None:
     """REFERENCE: the numerator of the Hermite determinant has the curves as factors, with these multiplicities."""
     parameters, _ = slice_system(name)

@@ -89,6 +89,7 @@ def test_every_vertex_lies_on_the_variety_at_its_members_height(name: str) -> No
 
 
 @pytest.mark.parametrize("name", ["bowl", "cone", "swallowtail"])
+@pytest.mark.slow_cases("swallowtail")
 def test_no_sheet_reaches_past_a_change(name: str) -> None:
     found, mesh = maps(name), surface(name)
     assert found.changes is not None

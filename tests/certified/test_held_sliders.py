@@ -201,6 +201,7 @@ def test_without_regularity_all_over_the_window_a_bound_is_false(monkeypatch: py
 
 
 @pytest.mark.parametrize("way", ["without the springs", "without the loads"])
+@pytest.mark.slow_cases("without the springs")
 def test_without_what_pulls_a_bound_is_false(way: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The reach of springs with free lengths, and forces, count."""
     fixed = {name: Fraction(value) for name, value in PAIR["parameters"].items()} | {"l": Fraction(1)}

@@ -72,6 +72,7 @@ def sliders(number: int) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("number", [2, 3])
+@pytest.mark.slow_cases("3")
 def test_a_hessian_that_is_the_identity_has_index_and_stability(number: int) -> None:
     found = ptmcad.solve(model=ptmcad.Mechanism(sliders(number)), F="1/7", l="1/2")
     assert found.status is Status.CERTIFIED

@@ -106,6 +106,19 @@ def check_around(result: RegionMap, x: Fraction, y: Fraction, steps: tuple[Fract
 
 @pytest.mark.parametrize("swap", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["x,y", "y,x"])
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n in THIN_TWINS else n for n in CURVES])
+@pytest.mark.fast_cases(
+    "node with one branch vertical-x,y",
+    "cusp that opens upward-x,y",
+    "rhamphoid cusp-x,y",
+    "isolated point-x,y",
+    "vertical lines at irrational abscissae-x,y",
+    "vertical line through a cusp-x,y",
+    "two curves touching with a third order contact-x,y",
+    "curves along all edges-x,y",
+    "triple point-x,y",
+    "a circle through all window corners-x,y",
+    "a window of width 1e-30 around an isolated point-x,y",
+)
 def test_degenerate(name: str, swap: bool) -> None:
     g, (a, b, c, d), stable, pairs, origin = CURVES[name]
     axes = {"x": [a, b], "y": [c, d]}

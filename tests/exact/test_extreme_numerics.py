@@ -363,6 +363,7 @@ GERMS = {
 
 @pytest.mark.parametrize("digits", [15, 40])
 @pytest.mark.parametrize("name", GERMS)
+@pytest.mark.slow_cases("two parabolas-40")
 def test_areas_between_branches_that_part_slowly_are_those_in_other_units(name: str, digits: int) -> None:
     """A window of size 10^-digits, and the unit square with the equation in these units: the thinnest region's share
     of the window is 10^-200 in one."""

@@ -163,6 +163,7 @@ def algebra_of(slice: Slice) -> QuotientAlgebra:
 
 
 @pytest.mark.parametrize("name", ["fig2", "fig3", "fig4", "horizontal"])
+@pytest.mark.slow_cases("horizontal")
 def test_poles_are_those_of_power_traces(name: str) -> None:
     algebra = algebra_of(record(name))
     every = irreducible_factors(multiplication_denominator(algebra))

@@ -160,7 +160,7 @@ factors = st.sampled_from([Fraction(f) for f in ("2", "1/3", "7/5", "1000", "1/1
 @pytest.mark.parametrize("symmetry", SYMMETRIES, ids=lambda s: s.__name__)
 @given(record=records(), factor=factors)
 @settings(max_examples=2, phases=[Phase.generate])
-@pytest.mark.slow_cases("axes_swapped")
+@pytest.mark.slow_cases("axes_swapped", "lengths_scaled", "stiffness_and_force_scaled")
 def test_symmetry(symmetry: Callable[[Record, Fraction], Image], record: Record, factor: Fraction) -> None:
     check_same(record, symmetry, factor)
 

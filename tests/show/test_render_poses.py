@@ -158,6 +158,7 @@ def labels_are_clear(found: Poses) -> None:
 
 
 @CASES
+@pytest.mark.fast_cases("paper, fig. 4", "flat, springs of no length", "fold", "lengths of 1e400")
 def test_a_springs_teeth_stand_across_it_at_any_length_and_slope(name: str) -> None:
     found = poses(name)
     frame = frame_of(found.equilibria)

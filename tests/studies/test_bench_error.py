@@ -234,7 +234,7 @@ def test_companion_and_scipy_agree_where_both_are_right() -> None:
         *(pytest.param(name, 30, marks=pytest.mark.slow) for name in ("unequal-springs", "stiffness")),
     ],
 )
-@pytest.mark.slow_cases("horizontal-30")
+@pytest.mark.slow_cases("horizontal-30", "forces-30")
 def test_companion_is_right_at_centres(name: str, n: int) -> None:
     """A rival worth beating: where no wall is near, floats do."""
     found = shipped(name, "index")

@@ -131,6 +131,7 @@ def test_bends_are_dense_and_small(n: int, seed: int) -> None:
 
 
 @pytest.mark.parametrize(("n", "seed"), [(1, 1), (2, 2), (5, 1)])
+@pytest.mark.slow_cases("5-1")
 def test_the_curves_of_bent_slices_have_the_degree_asked_for(n: int, seed: int) -> None:
     result = ptmcad.classify(slice_from_mapping(scaling.unloaded(n, seed)))
     assert [c.polynomial.total_degree for c in result.components if not c.left_out] == [n] * 3

@@ -104,7 +104,7 @@ def without(stored: RegionMap, number: int) -> RegionMap:
 
 
 @pytest.mark.parametrize("name", RECORDS)
-@pytest.mark.slow_cases("zeeman", "loop")
+@pytest.mark.slow_cases("zeeman", "loop", "truss")
 def test_all_of_a_true_map_is_proved(name: str) -> None:
     assert check_free_area(MAX_EFFORT, CertifiedClaims(a_map(name))).startswith("100 % of the free area")
 
@@ -207,7 +207,7 @@ def test_a_piece_of_a_billionth_of_the_window_is_found() -> None:
 
 
 @pytest.mark.parametrize("count", PAPER)
-@pytest.mark.slow_cases("admissible")
+@pytest.mark.slow_cases("admissible", "total")
 def test_all_of_a_map_of_the_paper_s_mechanism_is_proved(count: str) -> None:
     stored = a_map(count, 0.05)
     assert len({region.stable for region in stored.regions}) == 2

@@ -98,7 +98,7 @@ def form(mechanism: dict[str, Any]) -> Form:
 
 
 @pytest.mark.parametrize("name", list(CASES))
-@pytest.mark.slow_cases("pair", "loop")
+@pytest.mark.slow_cases("pair", "loop", "crank", "crank, stable")
 def test_true_maps_are_proved(name: str) -> None:
     report = ptmcad.verify(made(name), seed=1, boxes=2)
     assert report.ok
