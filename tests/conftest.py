@@ -170,6 +170,16 @@ def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(branches, "SAMPLES", 8)
 
 
+@pytest.fixture(autouse=True)
+def quick_pictures(request: pytest.FixtureRequest) -> None:
+    """Most of a quick picture's time went to the nearness of its curves, so they are coarse where a test does not say
+    that it is of that: in the rooms of pictures and of commands. Slow tests draw as the program does."""
+    rooms = {"behaviour", "cli", "explore", "show", "sweeping"}
+    marked = request.node.get_closest_marker
+    if request.path.parent.name in rooms and not marked("slow") and not marked("fine"):
+        request.getfixturevalue("coarse")
+
+
 @pytest.fixture(scope="session", name="one")
 def one_browser() -> Iterator[Browser]:
     """One Chromium for all tests of pages that a process runs."""
