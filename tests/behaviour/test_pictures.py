@@ -225,7 +225,7 @@ def test_half_a_turn_is_one_angle_and_its_symbol_stands_in_all_of_a_picture(tmp_
     """Half a turn is 180 degrees at every pixel, never -180; names with an underscore have their letter, too."""
     record, out = tmp_path / "arm.yaml", ["--out", str(tmp_path)]
     record.write_text(ARM, encoding="utf-8")
-    asked = ["map", str(record), "--pixels", "10", "--format", "svg,csv", *out]
+    asked = ["map", str(record), "--pixels", "10", "--checks", "2", "--format", "svg,csv", *out]
     assert run([*asked, "--value", "angle:alpha_1"]) == 0
     rows = (tmp_path / "arm-angle-alpha-1-stable-1.csv").read_text(encoding="utf-8").splitlines()[1:]
     hanging = [float(row.split(",")[2]) for row in rows if float(row.split(",")[0]) > 2]

@@ -348,6 +348,7 @@ def without_curves(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
     monkeypatch.setattr(engine, "curves", some)
 
 
+@pytest.mark.slow
 def test_without_flat_loops_counts_are_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     """A fold at which the tangent is not zero is not all: at b = L1 + L2 + L3 = 37/10 the whole loop comes to be."""
     original = plain_curves.system

@@ -206,6 +206,7 @@ def _boxes(slice: Slice, area: float) -> int:
 
 @pytest.mark.parametrize(("count", "factor"), [("stable", 1.2), ("index", 1.6)])
 @pytest.mark.slow_cases("index-1.6")
+@pytest.mark.slow
 def test_plain_formulas_take_hardly_more_boxes_than_the_refined_ones(count: str, factor: float) -> None:
     plain, refined = (
         _boxes(_slice(PLAIN_PTM, mechanism=mechanism, count=count), 4.0**-3)

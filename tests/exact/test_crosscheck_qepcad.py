@@ -193,6 +193,7 @@ def test_index_at_every_sample_by_singular_and_qepcad(name: str) -> None:
 
 
 @needs_singular
+@pytest.mark.slow
 def test_a_false_index_is_noticed() -> None:
     cells = shipped("fig4").cells
     formulas = counting_formulas("fig4", points("fig4"))

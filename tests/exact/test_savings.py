@@ -12,6 +12,7 @@ import pytest
 from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 from support.few import few
 from support.poles import power_trace_denominators
 from support.random_slices import drawn
@@ -127,7 +128,7 @@ def both_ways(slice: Slice) -> None:
 
 
 @given(slices())
-@settings(max_examples=4)
+@settings(max_examples=examples(8))
 def test_the_plain_pipeline_says_the_same_on_random_slices(slice: Slice) -> None:
     both_ways(slice)
 

@@ -162,6 +162,7 @@ def test_blank_picture_of_fig3_is_wrong_where_two_are_stable() -> None:
     assert len(known["index"].counts) == 4 == 1 + max(known["index"].region_of)
 
 
+@pytest.mark.slow
 def test_walls_are_within_their_distances() -> None:
     """At many places the isolated roots are no further from the polyline than is claimed."""
     found, known = exact("fig3")

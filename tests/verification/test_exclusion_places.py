@@ -135,7 +135,7 @@ def test_places_have_all_solutions(name: str, count: str) -> None:
     "sliding-stable",
     "loop-stable",
     "pair-stable",
-    "apart-index",
+    "apart-stable",
 )
 def test_places_over_a_box_have_those_over_its_points(name: str, count: str) -> None:
     claims, rng, told = CertifiedClaims(a_map(name, count)), random.Random(name), 0

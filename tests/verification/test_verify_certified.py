@@ -71,7 +71,7 @@ def test_a_map_of_stable_counts_is_accepted(stable: RegionMap) -> None:
 
 
 def test_a_map_of_all_counts_is_accepted(total: RegionMap) -> None:
-    report = ptmcad.verify(total, boxes=2)  # how they are drawn does not depend on the count
+    report = ptmcad.verify(total, boxes=2, effort=0)  # neither of them depends on the count
     assert report.ok, report.violation
 
 
