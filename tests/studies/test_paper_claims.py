@@ -236,7 +236,7 @@ SLOW = ("5.2-real", "5.2-degree-328")
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in CLAIMS]
 )
-@pytest.mark.slow_cases("4.3-widest", "5.2-spurious", "5.2-difficult", "a-six")
+@pytest.mark.slow_cases("4.3-widest", "5.2-spurious", "5.2-difficult", "a-six", "5.2-degree-28")
 def test_verdict(name: str) -> None:
     """The verdict, what each kind of verdict must come with, and the facts: known from the paper or docs/errata.md."""
     found = outcome(name)
@@ -527,7 +527,9 @@ def test_a_right_equation_would_be_confirmed(name: str) -> None:
 @pytest.mark.parametrize(
     "name", [n for n in CORRECTED if "shown" in CLAIMS[n] and "like" not in CLAIMS[n] and "needs" not in CLAIMS[n]]
 )
-@pytest.mark.slow_cases("1-always-six", "3-degree-6", "3.3-eq13", "5.1-nature", "a-one-dof")
+@pytest.mark.slow_cases(
+    "1-always-six", "3-degree-6", "3.3-eq13", "5.1-nature", "a-one-dof", "5.2-degree-328", "5.2-real"
+)
 def test_what_was_not_shown_corrects_nothing(name: str) -> None:
     """Nor is a claim refuted by a witness of which nothing was shown."""
     first, *others = CLAIMS[name]["shown"]
