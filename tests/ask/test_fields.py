@@ -444,6 +444,7 @@ def test_values_that_no_double_is_near_are_undecided_and_counted(value: str, bey
     assert np.all(field.values[~np.isnan(field.values)] == (1.0 if at_one else known))
 
 
+@pytest.mark.slow
 def test_the_command_says_at_how_many_pixels_a_value_is_beyond_doubles(
     tmp_path: Any, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -137,7 +137,7 @@ def test_no_equilibrium_is_beyond_the_bounds(values: dict[str, Fraction]) -> Non
 
 
 @pytest.mark.slow
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(pairs())
 def test_counts_are_those_of_a_search(values: dict[str, Fraction]) -> None:
     counted = plain_counter(slice_at(PAIR, values)).at(Fraction(0), Fraction(0), Count.INDEX)

@@ -135,7 +135,7 @@ def test_the_plain_pipeline_says_the_same_on_random_slices(slice: Slice) -> None
 
 @pytest.mark.slow
 @given(slices())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_the_plain_pipeline_says_the_same_on_many_random_slices(slice: Slice) -> None:
     both_ways(slice)
 

@@ -294,7 +294,7 @@ def test_many_random_dips_and_squares(seed: int, degree: int) -> None:
 
 
 @given(coefficients, st.sampled_from(list(Need)[:2]))
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 def test_a_proof_is_never_contradicted_by_values(polynomial: dict[tuple[int, int], int], need: Need) -> None:
     p = sum((c * X**i * Y**j for (i, j), c in polynomial.items()), constant(0))
     proved = check(p, need) == "proved"

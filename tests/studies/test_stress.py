@@ -262,7 +262,7 @@ def test_cases_expect_what_rose_and_astroid_say() -> None:
 # --------------------------------------------------------------------------------------------------- second methods
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(st.integers(0, 10**6))
 def test_the_reference_agrees_with_signatures_of_hermite_forms(seed: int) -> None:
     """Counts by the sextic's roots and by Tarski queries on the quotient algebra."""
@@ -331,7 +331,7 @@ def test_random_cases_are_the_same_in_every_run_and_of_all_kinds() -> None:
 
 
 @given(st.integers(0, 1000), st.integers(-40, 40).map(lambda e: Fraction(10) ** e))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=examples(20), deadline=None)
 def test_symmetries_undo_each_other(seed: int, factor: Fraction) -> None:
     p = {n: Fraction(v) for n, v in random_case(seed, 0).sibling.parameters.items()}
     assert changed(changed(p, "mirrored"), "mirrored") == changed(changed(p, "swapped"), "swapped") == p

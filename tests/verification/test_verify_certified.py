@@ -525,7 +525,7 @@ def test_sweep_and_subdivision_agree_where_strips_change_in_parts() -> None:
 
 
 @given(covers(), st.integers(1, 15), st.integers(1, 15), st.integers(0, 5))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 def test_a_free_square_meets_no_rectangle(cover: Cover, u: int, v: int, half: int) -> None:
     if not (u < cover.steps and v < cover.steps):
         return
