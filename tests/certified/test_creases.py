@@ -120,6 +120,7 @@ def pair_by_hand(force: float, free: float) -> Index:
 
 @settings(max_examples=examples(40), deadline=None)
 @given(st.sampled_from([("1", "0"), ("3/5", "4/5"), ("-5/13", "12/13")]), lengths, lengths)
+@pytest.mark.slow
 def test_two_cranks_have_the_equilibria_of_their_angles_difference(
     way: tuple[str, str], force: Fraction, free: Fraction
 ) -> None:

@@ -143,6 +143,7 @@ def replaced(l0: str) -> dict[str, Any]:
     return FOUR_BAR | {"parameters": {"l0": l0}}
 
 
+@pytest.mark.slow
 def test_poses_are_the_critical_points_along_the_loop() -> None:
     slice = slice_of("anchored")
     for x, y in random_points(slice, 3)[:6]:

@@ -213,6 +213,7 @@ def test_an_isolated_point_where_the_whole_hessian_vanishes(axes: tuple[str, str
 
 
 @pytest.mark.parametrize("axes", [("rho", "F"), exchanged("F", "rho")], ids=",".join)
+@pytest.mark.slow
 def test_two_curves_touching_rose_and_astroid(axes: tuple[str, str]) -> None:
     """fig. 3: they touch at 2 rho = -F/k = 1/sqrt(2); the regions in both and in neither share that point only."""
     windows = {"rho": ["3/10", "2/5"], "F": [-80, -60]}

@@ -221,6 +221,7 @@ def test_counts_without_a_potential_agree_with_the_engines() -> None:
 
 @pytest.mark.parametrize("mechanism", [CRANK, BEHIND])
 @pytest.mark.slow_cases("mechanism0")
+@pytest.mark.slow
 def test_counts_agree_with_the_engines(mechanism: dict[str, Any]) -> None:
     from ptmcad.certified.plain.points import plain_counter
     from ptmcad.certified.plain.poses import point_slice
