@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import importlib
 import os
 import shutil
 import signal
@@ -10,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Generator, Iterator
+from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -66,6 +68,29 @@ def pytest_configure(config: pytest.Config) -> None:
     whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS
     if whole and not hasattr(config, "workerinput") and config.getoption("numprocesses", None):
         compile_beside(config)
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    worker = getattr(session.config, "workerinput", None)
+    if worker is not None and session.config.args_source is pytest.Config.ArgsSource.TESTPATHS:
+        import_in_turn(int(worker["workerid"].removeprefix("gw")), worker["workercount"])
+
+
+def import_in_turn(number: int, count: int) -> None:
+    """Import the test modules before they are collected, each process of a whole run from another one on.
+
+    All collect in one order, and in a fresh clone each would compile every module for itself, which takes longer than
+    the rest of the collection: like this each finds in the others' share what these have written.
+    """
+    files = sorted((ROOT / "tests").glob("*/**/test_*.py"))
+    first = len(files) * number // count
+    for file in files[first:] + files[:first]:
+        if (file.parent / "__init__.py").exists():
+            continue  # part of a package, with another name
+        if str(file.parent) not in sys.path:
+            sys.path.insert(0, str(file.parent))
+        with suppress(Exception, pytest.skip.Exception):  # the collection comes upon it again, and reports it
+            importlib.import_module(file.stem)
 
 
 _COMPILE = """
@@ -143,6 +168,16 @@ def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     fine = boundaries.chains
     monkeypatch.setattr(boundaries, "chains", lambda found, wanted: fine(found, max(wanted, Fraction(1, 50))))
     monkeypatch.setattr(branches, "SAMPLES", 8)
+
+
+@pytest.fixture(autouse=True)
+def quick_pictures(request: pytest.FixtureRequest) -> None:
+    """Most of a quick picture's time went to the nearness of its curves, so they are coarse where a test does not say
+    that it is of that: in the rooms of pictures and of commands. Slow tests draw as the program does."""
+    rooms = {"behaviour", "cli", "explore", "show", "sweeping", "tests"}
+    marked = request.node.get_closest_marker
+    if request.path.parent.name in rooms and not marked("slow") and not marked("fine"):
+        request.getfixturevalue("coarse")
 
 
 @pytest.fixture(scope="session", name="one")

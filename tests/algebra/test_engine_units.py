@@ -188,14 +188,14 @@ def in_x(p: fmpz_mpoly) -> fmpz_poly:
 
 
 @given(degree_3_by_3)
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_discriminant_is_flints(p: fmpz_mpoly) -> None:
     assume(p.degrees()[1] >= 2)
     assert discriminant(coefficients_in(p, 1)) == in_x(p.discriminant("y"))
 
 
 @given(degree_3_by_3, degree_3_by_3)
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_resultant_is_flints(p: fmpz_mpoly, r: fmpz_mpoly) -> None:
     assume(p.degrees()[1] >= 1 and r.degrees()[1] >= 1)
     ours, theirs = resultant(coefficients_in(p, 1), coefficients_in(r, 1)), in_x(p.resultant(r, "y"))
@@ -327,7 +327,7 @@ def test_poles_by_characteristic_polynomials_are_those_by_power_traces(name: str
 
 
 @pytest.mark.parametrize("name", ["fig2", "fig3", "fig4", "fig5-text"])
-@pytest.mark.slow_cases("fig5-text")
+@pytest.mark.slow_cases("fig5-text", "fig3", "fig4")
 def test_hermite_determinant_has_every_critical_component(name: str) -> None:
     """REFERENCE: the numerator of the Hermite determinant has the curves as factors, with these multiplicities."""
     parameters, _ = slice_system(name)
@@ -346,7 +346,7 @@ def test_six_complex_solutions(shipped) -> None:  # type: ignore[no-untyped-def]
 
 
 @given(st.lists(st.integers(-4, 4), min_size=4, max_size=4), st.lists(st.integers(-2, 2), min_size=16, max_size=16))
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_signature_by_construction(diagonal: list[int], entries: list[int]) -> None:
     """Sylvester's law of inertia: P^T D P has the signs of D for invertible P."""
     change = fmpq_mat(4, 4, entries)
@@ -384,7 +384,7 @@ def test_nowhere_zero(p: fmpz_mpoly, x: tuple[fmpq, fmpq], y: tuple[fmpq, fmpq],
 
 
 @given(degree_3_by_3)
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_nowhere_zero_is_never_wrong(p: fmpz_mpoly) -> None:
     assume(p.total_degree() > 0)
     if nowhere_zero(p, BOTH, BOTH):
@@ -394,7 +394,7 @@ def test_nowhere_zero_is_never_wrong(p: fmpz_mpoly) -> None:
 
 
 @given(degree_3_by_3, st.integers(-8, 8), st.integers(-8, 8))
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_a_zero_in_the_window_is_never_denied(p: fmpz_mpoly, a: int, b: int) -> None:
     x, y = fmpq(a, 9), fmpq(b, 9)
     value = evaluate(p, x, y)

@@ -8,6 +8,7 @@ import pytest
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly, nmod
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 
 from ptmcad.algebra import number_field
 from ptmcad.algebra.number_field import Element, Modulus, RealField, polynomial_at
@@ -75,7 +76,7 @@ def expressions(draw: st.DrawFn, field: RealField) -> tuple[Element, fmpq_poly]:
 def test_zero_rational_and_enclosure_agree_with_residues_over_q(prime: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(number_field, "PRIME", prime)
 
-    @settings(deadline=None, max_examples=50)
+    @settings(deadline=None, max_examples=examples(50))
     @given(st.data())
     def check(data: st.DataObject) -> None:
         field = data.draw(fields())

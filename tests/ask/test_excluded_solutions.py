@@ -67,6 +67,7 @@ STABLE_NOWHERE = [
 
 @pytest.mark.parametrize("system", STABLE_NOWHERE, ids=["the equation", "a multiple of it", "and another one"])
 @pytest.mark.parametrize("ask", [ptmcad.classify, check])
+@pytest.mark.slow_cases("check-a multiple of it", "check-and another one")
 def test_a_condition_that_is_zero_at_every_solution_is_refused(
     ask: Callable[[Slice], object], system: dict[str, Any]
 ) -> None:

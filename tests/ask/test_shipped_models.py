@@ -123,7 +123,7 @@ HEAVY = {"four-bar", "two-dof-tensegrity", "stability-pair", "kuramoto", "kuramo
 
 
 @pytest.mark.parametrize("path", few(MAPPED, *(p for p in MAPPED if p.stem not in HEAVY)), ids=lambda path: path.stem)
-@pytest.mark.slow_cases("two-bar-chain")
+@pytest.mark.slow_cases("two-bar-chain", "platform", "slider-crank")
 def test_areas_and_regions(path: Path) -> None:
     known, result = reference(path), mapped(path)
     stable = result.slice.count is Count.STABLE

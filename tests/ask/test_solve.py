@@ -13,6 +13,7 @@ from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
+from support.examples import examples
 from support.maps import CONFIGS
 from support.newton import DIGITS, Found, equilibria, improved
 from support.oracle import count
@@ -24,7 +25,7 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import point_from_mapping
 
-few = settings(max_examples=15)
+few = settings(max_examples=examples(15))
 
 # ------------------------------------------------------------------------- against Newton's method, to all shown digits
 

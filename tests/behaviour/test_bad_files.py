@@ -200,6 +200,7 @@ def test_a_later_version_needs_a_newer_program(folder: Path, capsys: pytest.Capt
 
 @pytest.mark.skipif(sys.platform != "linux", reason="bounds memory")
 @pytest.mark.parametrize("head", ["[", '{"format": "ptmcad-region-map/2", "status": ['], ids=["other", "map"])
+@pytest.mark.slow_cases("other")
 def test_a_large_file_that_is_no_result_is_refused_in_little_memory(tmp_path: Path, head: str) -> None:
     path = tmp_path / "large.json"
     path.write_text(f"{head}{'{},' * 8_000_000}0]{'}' * (head[0] == '{')}")

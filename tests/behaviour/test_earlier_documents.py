@@ -27,6 +27,7 @@ MAPS = ["cubic", "family/cubics-c1_3", "truss"]
         "widths",
     ],
 )
+@pytest.mark.slow_cases("two-waves-design")
 def test_an_earlier_document_is_verified(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["verify", str(EARLIER / f"{name}.json")]) == 0
     assert "false" not in capsys.readouterr().out.lower()

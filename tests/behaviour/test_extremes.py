@@ -250,6 +250,29 @@ def value(number: dict[str, Any]) -> float:
 
 
 @pytest.mark.parametrize("name", SLICES)
+@pytest.mark.fast_cases(
+    "positive cubic",
+    "cusp of a potential",
+    "flat cusps at root 2 and root 3",
+    "quadratic that becomes linear",
+    "linear at the cube root of 2",
+    "parabola in two unknowns",
+    "between a parabola and a line",
+    "two ranges that meet at root 2",
+    "widest at both edges",
+    "all solutions on a line",
+    "no energy of an angle on a line",
+    "no solution at the edge",
+    "one more solution on a line",
+    "double complex solutions on a line",
+    "a double solution that is excluded",
+    "double at both edges",
+    "three exceptions",
+    "a condition that is zero on a line",
+    "stability that is lost on a line",
+    "an interval to an irrational end",
+    "a flat minimum",
+)
 def test_range_says_whether_the_widest_range_is_attained(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

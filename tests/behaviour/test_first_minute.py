@@ -200,6 +200,10 @@ def test_an_extra_has_all_that_messages_name() -> None:
         ),
     ],
 )
+@pytest.mark.slow_cases(
+    "range --along rho --over L2 --range L2=0:2 --at F3=-10,k=100 --rows 2"
+    "-slice-rho-L2: rho in [0, 4], L2 in [0, 2]; F3 = -10; count stable"
+)
 def test_the_answer_begins_with_the_question(
     command: str, question: str, folder: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

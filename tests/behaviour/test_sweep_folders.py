@@ -130,6 +130,7 @@ def test_an_index_that_is_a_pipe_is_refused_at_once(whole: Path, record: Path) -
 
 @pytest.mark.parametrize("kind", ["", "csv", "html", "gif"])
 @pytest.mark.parametrize("size", ["same", "another"])
+@pytest.mark.slow_cases("same-csv")
 def test_a_changed_result_is_noticed_by_every_format_and_not_written_over(
     whole: Path, record: Path, kind: str, size: str, capsys: pytest.CaptureFixture[str]
 ) -> None:

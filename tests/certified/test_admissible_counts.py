@@ -145,7 +145,7 @@ def test_the_known_answer_of_a_spring_on_a_slider() -> None:
     assert {cell.stable for cell in m.cells} == {1, 2}
 
 
-@pytest.mark.parametrize("number", [10, pytest.param(20, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("number", [5, pytest.param(20, marks=pytest.mark.slow)])
 def test_by_the_papers_mechanism(number: int) -> None:
     """Against formulas made by hand for it, and against a search."""
     plain, seen = plain_counter(slice_of(PLAIN_PTM)), set()
@@ -162,6 +162,7 @@ def test_by_the_papers_mechanism(number: int) -> None:
     assert seen >= {0, 1, 2}
 
 
+@pytest.mark.slow
 def test_maps_by_plain_formulas_and_those_made_by_hand() -> None:
     window = {"rho": ["7/5", "3/2"], "L2": ["21/20", "23/20"]}
     one, two = (
@@ -254,6 +255,7 @@ def without(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
 
 @pytest.mark.parametrize(("name", "tolerance"), [("chain", "1/20"), ("four-bar", "1/20")])
 @pytest.mark.slow_cases("chain-1/20")
+@pytest.mark.slow
 def test_without_boundaries_at_free_lengths_counts_are_wrong(
     name: str, tolerance: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

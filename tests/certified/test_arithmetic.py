@@ -216,7 +216,7 @@ def check_sines(low: Floats, high: Floats) -> None:
 
 
 def test_sine_and_cosine_against_arb() -> None:
-    check_sines(*random_angles(20_000, 1))
+    check_sines(*random_angles(5_000, 1))
 
 
 @pytest.mark.slow

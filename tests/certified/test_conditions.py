@@ -106,7 +106,7 @@ def test_counts_at_random_points_are_those_of_the_exact_engine(name: str) -> Non
     for j, count in enumerate(("total", "stable"))
     for k, name in enumerate(("schloegl", "selkov", "toggle", "double well"))
 ])  # fmt: skip
-@pytest.mark.slow_cases("selkov-total", "toggle-stable")
+@pytest.mark.slow_cases("selkov-total", "toggle-stable", "double well-total")
 def test_maps_agree_with_the_exact_engine(name: str, count: str) -> None:
     slice = slice_of(name, count=count)
     exact, certified = ptmcad.classify(slice), ptmcad.classify(slice, engine="certified", tolerance="1/40", jobs=1)

@@ -120,6 +120,7 @@ def pair_by_hand(force: float, free: float) -> Index:
 
 @settings(max_examples=examples(40), deadline=None)
 @given(st.sampled_from([("1", "0"), ("3/5", "4/5"), ("-5/13", "12/13")]), lengths, lengths)
+@pytest.mark.slow
 def test_two_cranks_have_the_equilibria_of_their_angles_difference(
     way: tuple[str, str], force: Fraction, free: Fraction
 ) -> None:
@@ -289,6 +290,7 @@ LOOP: dict[str, Any] = {
 
 
 @pytest.mark.parametrize("at", [("1/10", "1/2"), ("-2/5", "1/3"), ("1/7", "3/2"), ("2/5", "1/5")])
+@pytest.mark.slow_cases("at1", "at2")
 def test_a_loop_has_the_equilibria_of_the_half_angle(at: tuple[str, str]) -> None:
     force, free = map(Fraction, at)
     slice = ptmcad.slice_from_mapping(record(LOOP, "total", F=["-1/2", "1/2"], l=[0, 2]))
@@ -373,6 +375,7 @@ def map_of(count: str) -> RegionMap:
 
 
 @pytest.mark.parametrize("count", ["total", "index", "stable"])
+@pytest.mark.slow_cases("total", "stable")
 def test_a_map_has_the_area_below_a_line(count: str) -> None:
     """There are two minima where l < 2 (1 + F): 5 of the window's 8, and one in the rest."""
     found = map_of(count)

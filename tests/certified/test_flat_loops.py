@@ -137,7 +137,7 @@ def test_a_parallelogram_that_another_loop_keeps_from_folding_is_decided() -> No
     assert counts.decided
     assert counts.total == 8
     with pytest.raises(LimitReached, match="A0 P Q B0 is a parallelogram"):
-        ptmcad.classify(slice, tolerance="1/1000", timeout=1)
+        ptmcad.classify(slice, tolerance="1/1000", timeout=0.3)
 
 
 BRANCHES = {

@@ -164,6 +164,7 @@ def test_a_search_that_hardly_begins_keeps_the_map_it_goes_on_from() -> None:
 
 @pytest.mark.parametrize("bar", ["L1", "L2"])
 @pytest.mark.slow_cases("L1")
+@pytest.mark.slow
 def test_a_slice_that_is_a_crease_has_total_counts(bar: str) -> None:
     """A spring has no length on a circle of configurations at each point: it points along a line that turns."""
     slice = slice_from_options(

@@ -143,6 +143,7 @@ def replaced(l0: str) -> dict[str, Any]:
     return FOUR_BAR | {"parameters": {"l0": l0}}
 
 
+@pytest.mark.slow
 def test_poses_are_the_critical_points_along_the_loop() -> None:
     slice = slice_of("anchored")
     for x, y in random_points(slice, 3)[:6]:
@@ -348,6 +349,7 @@ def without_curves(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
     monkeypatch.setattr(engine, "curves", some)
 
 
+@pytest.mark.slow
 def test_without_flat_loops_counts_are_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     """A fold at which the tangent is not zero is not all: at b = L1 + L2 + L3 = 37/10 the whole loop comes to be."""
     original = plain_curves.system

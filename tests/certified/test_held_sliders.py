@@ -137,7 +137,7 @@ def test_no_equilibrium_is_beyond_the_bounds(values: dict[str, Fraction]) -> Non
 
 
 @pytest.mark.slow
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(pairs())
 def test_counts_are_those_of_a_search(values: dict[str, Fraction]) -> None:
     counted = plain_counter(slice_at(PAIR, values)).at(Fraction(0), Fraction(0), Count.INDEX)
@@ -201,6 +201,7 @@ def test_without_regularity_all_over_the_window_a_bound_is_false(monkeypatch: py
 
 
 @pytest.mark.parametrize("way", ["without the springs", "without the loads"])
+@pytest.mark.slow_cases("without the springs")
 def test_without_what_pulls_a_bound_is_false(way: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The reach of springs with free lengths, and forces, count."""
     fixed = {name: Fraction(value) for name, value in PAIR["parameters"].items()} | {"l": Fraction(1)}

@@ -44,6 +44,7 @@ def equal_springs(free: Q, force: Q, **more: Q) -> BranchCounter:
         pytest.param("0.7", "1.5", "0.2", "-0.1", 6, 2, id="REFERENCE, reproduction of 5.2: 6 with 2 stable"),
     ],
 )
+@pytest.mark.slow_cases("REFERENCE, more than 6: 12", "REFERENCE: 26 with 8 stable")
 def test_known_counts(rho: str, l2: str, free: str, force: str, total: int, stable: int) -> None:
     counts = equal_springs(Q(free), Q(force))
     found = counts.at(Q(rho), Q(l2), Count.TOTAL)

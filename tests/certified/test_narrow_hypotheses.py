@@ -111,7 +111,7 @@ OFF = (Q(0), Q(1, 10**6), Q(-1, 10**6), Q(1, 10**13), Q(-1, 10**13), Q(1, 10**20
 
 
 @pytest.mark.parametrize("off", few(OFF, Q(0), Q(1, 10**6), Q(-1, 10**13)))
-@pytest.mark.slow_cases("off0")
+@pytest.mark.slow_cases("off0", "off4")
 def test_rho_next_to_a_bar_s_length(off: Q) -> None:
     """Spring 1 has no length on a whole circle where rho = L2, and its formulas are others there, not next to it."""
     s = slice_of({"rho": [0, 2], "L2": [0, 2]})
@@ -158,6 +158,7 @@ def test_euler_s_sum_is_not_used_where_a_spring_has_no_length_on_a_circle(bar: s
 
 
 @pytest.mark.parametrize("power", [-150, -99, 99, 139, 141, 160])
+@pytest.mark.slow_cases("-99", "99")
 def test_lengths_that_doubles_can_hardly_square(power: int) -> None:
     """Scaled lengths and loads change no count; what floating point cannot tell is undecided, not wrong."""
     unit = Q(10) ** power

@@ -93,9 +93,7 @@ def named(how: str) -> list[str]:
 
 @pytest.mark.parametrize("count", ["stable", "total", "index"])
 @pytest.mark.parametrize("how", list(APART))
-@pytest.mark.fast_cases(
-    "ends in the other order-total", "same ends-stable", "to a point between-index", "to a point beyond-stable"
-)
+@pytest.mark.fast_cases("to a point between-index")
 def test_they_have_the_map_of_the_one_spring(how: str, count: str) -> None:
     options = Options(tolerance=Fraction(1, 50), jobs=1)
     one, many = (certified_map(ptmcad.slice_from_mapping(bead(s, count)), options) for s in (TOGETHER, APART[how]))
@@ -226,6 +224,7 @@ def test_what_is_parallel_or_turns_at_some_points_only_stays_apart(
 
 
 @pytest.mark.parametrize("ends", ["PM", "MP"])
+@pytest.mark.slow_cases("MP")
 def test_the_checker_confirms_a_ratio_that_is_an_axis(ends: str) -> None:
     """Apart, they leave the map undetermined around the loads that balance them where both are short."""
     result = certified_map(scaled(ends, OVER_A, {}), Options(tolerance=Fraction(1, 50), jobs=1))

@@ -114,6 +114,7 @@ def test_von_mises_truss_has_three_equilibria_inside_of_the_astroid_of_area_1_00
 
 
 @pytest.mark.parametrize("fixed", ["stable", "total"])
+@pytest.mark.slow_cases("stable")
 def test_other_counts_of_the_truss_agree(fixed: str) -> None:
     result = ptmcad.classify(_slice(VON_MISES), count=fixed, tolerance="1/50")
     at = result.locate(a="1/2", f="1/10")
@@ -178,6 +179,7 @@ POINTS = [("7/10", "3/2"), ("11/10", "6/5"), ("1/2", "1/3"), ("9/10", "19/20"), 
 
 
 @pytest.mark.parametrize("l0", ["0", "1/5", "1/2"])
+@pytest.mark.slow_cases("1/2")
 def test_plain_and_refined_formulas_count_the_same_equilibria_of_the_papers_mechanism(l0: str) -> None:
     plain = _slice(PLAIN_PTM, parameters={**PLAIN_PTM["parameters"], "l0": l0})
     refined = _slice(PLAIN_PTM, mechanism="ptm", parameters={**PLAIN_PTM["parameters"], "l0": l0})
@@ -204,6 +206,7 @@ def _boxes(slice: Slice, area: float) -> int:
 
 @pytest.mark.parametrize(("count", "factor"), [("stable", 1.2), ("index", 1.6)])
 @pytest.mark.slow_cases("index-1.6")
+@pytest.mark.slow
 def test_plain_formulas_take_hardly_more_boxes_than_the_refined_ones(count: str, factor: float) -> None:
     plain, refined = (
         _boxes(_slice(PLAIN_PTM, mechanism=mechanism, count=count), 4.0**-3)

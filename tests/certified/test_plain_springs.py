@@ -70,6 +70,7 @@ def matrix(at: Chart, point: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 @pytest.mark.parametrize("mechanism", [PLAIN_PTM, THREE_BARS])
+@pytest.mark.slow_cases("mechanism1")
 def test_determinant_with_each_spring_to_the_first_power_is_that_of_the_matrix(mechanism: dict[str, Any]) -> None:
     _, at = charts(mechanism)
     assert values([at.determinant()], POINT)[0] == pytest.approx(np.linalg.det(matrix(at, POINT)), rel=1e-9)
@@ -115,6 +116,7 @@ def equilibria(at: Chart, number: int) -> list[NDArray[np.float64]]:
 
 
 @pytest.mark.parametrize("mechanism", [PLAIN_PTM, THREE_BARS])
+@pytest.mark.slow_cases("mechanism1")
 def test_what_holds_at_equilibria_holds_there_and_nowhere_else(mechanism: dict[str, Any]) -> None:
     _, at = charts(mechanism)
     number = len(at.springs)

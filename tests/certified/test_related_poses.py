@@ -47,6 +47,7 @@ def folded(poses: Poses) -> list[Pose]:
 
 
 @pytest.mark.parametrize("moment", [0, "1/7"])
+@pytest.mark.slow_cases("0")
 def test_a_chain_folded_onto_its_pivot_ends_there(moment: object) -> None:
     """Q is the pivot whatever the angle is; and the forces on Q, (5 - 1/2) (3, 4)/5 + 2 (sqrt 5 - 1/2) (-1, 2)/sqrt 5,
     turn the first bar with the moment against the one given, and the second one the other way.
@@ -92,6 +93,7 @@ def test_the_elbows_of_a_stretched_chain_are_at_rest() -> None:
         {"torsion": [{"angle": "th1 - pi/2", "k": "1e-70"}]},
     ],
 )
+@pytest.mark.fast_cases("change0", "change4")
 def test_a_chain_that_is_nearly_folded_is_not_taken_for_one_that_is(change: dict[str, Any]) -> None:
     """The end is told from the pivot, however near it is."""
     parts = {name: value for name, value in change.items() if name in CHAIN}

@@ -9,6 +9,7 @@ import pytest
 from flint import arb, arb_mat, ctx, fmpq, fmpq_mat
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 
 pytest.importorskip("numba")
 
@@ -23,7 +24,7 @@ NEAR = st.sampled_from([Q(0), Q(1, 10**40), Q(1, 3), Q(-2), Q(10**9)])
 
 
 @given(st.lists(st.tuples(SMALL, NEAR), min_size=2, max_size=4), st.lists(SMALL, min_size=6, max_size=6))
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_eigenvalues_that_are_known_by_construction(chosen: list[tuple[int, Q]], turns: list[int]) -> None:
     """Q D Q' with Cayley's rational rotation Q = (I - S) (I + S)^-1; D has entries that are equal, or nearly."""
     size = len(chosen)
@@ -72,6 +73,7 @@ def sliders(number: int) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("number", [2, 3])
+@pytest.mark.slow_cases("3")
 def test_a_hessian_that_is_the_identity_has_index_and_stability(number: int) -> None:
     found = ptmcad.solve(model=ptmcad.Mechanism(sliders(number)), F="1/7", l="1/2")
     assert found.status is Status.CERTIFIED

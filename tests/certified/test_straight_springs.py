@@ -169,6 +169,7 @@ def map_of(guide: str, count: str) -> RegionMap:
 
 @pytest.mark.parametrize("count", ["total", "index", "stable"])
 @pytest.mark.parametrize("guide", list(GUIDES))
+@pytest.mark.fast_cases("1, 0-index", "3/5, 4/5-total", "3/5, 4/5-stable", "1, 1-total")
 def test_a_map_has_the_area_between_two_lines(guide: str, count: str) -> None:
     """There are two equilibria where |F| |e| < l, up to what a spring of 1e-6 does."""
     areas = map_of(guide, count).regions
@@ -270,6 +271,7 @@ def loop_by_samples(force: float, up: float, free: float = 0.5) -> tuple[int, in
 
 
 @pytest.mark.parametrize("at", [("1/10", "1/5"), ("-2/5", "1/10"), ("0", "9/20"), ("2/5", "-1/3")])
+@pytest.mark.slow_cases("at1", "at2")
 def test_a_loop_has_the_equilibria_of_every_side(at: tuple[str, str]) -> None:
     force, up = map(Fraction, at)
     counter = plain_counter(ptmcad.slice_from_mapping(LOOP))
@@ -298,6 +300,7 @@ PAIR: dict[str, Any] = {
 
 
 @pytest.mark.parametrize(("force", "free"), [("1/10", "1/2"), ("-5/4", "1/2"), ("1/10", "1/7"), ("3/2", "1/10")])
+@pytest.mark.slow_cases("1/10-1/2", "-5/4-1/2")
 def test_two_sliders_have_the_equilibria_of_every_side(force: str, free: str) -> None:
     """x = F + G + p and y - x = G/2 + q m on the sides p, q, exactly."""
     f, m, g = Fraction(force), Fraction(free), Fraction(1, 3)

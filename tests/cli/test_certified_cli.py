@@ -278,6 +278,7 @@ forked = pytest.mark.skipif(not hasattr(os, "fork"), reason="without fork the co
 
 @forked
 @pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda s: s.name)
+@pytest.mark.slow_cases("SIGINT", "SIGHUP")
 def test_a_signal_saves_the_best_map_and_says_how_to_go_on(tmp_path: Path, stop: signal.Signals) -> None:
     status, said = _stand_in(tmp_path, "search = arrived", stop=stop)
     place = tmp_path / "out" / SAVED

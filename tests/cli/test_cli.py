@@ -281,6 +281,7 @@ def test_write_files_replaces_all_or_none(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
 @pytest.mark.parametrize("redirection", [">/dev/full", ">&-", "| head -c0"])
+@pytest.mark.slow_cases("| head -c0")
 def test_a_table_that_can_not_be_printed_is_no_traceback(redirection: str) -> None:
     command = f"exec '{sys.executable}' -m ptmcad --help {redirection}"
     done = subprocess.run(["sh", "-c", command], cwd=ROOT, capture_output=True, text=True, check=False)
@@ -333,6 +334,13 @@ DOCUMENTED = ("--value barrier", "--over L2", "--value stiffness", "--value leng
     # the explorer never ends
     for e in help_examples() if not e.startswith(("classify", "explore", "paper")) and "--scheduler" not in e
 ])  # fmt: skip
+@pytest.mark.slow_cases(
+    "solve --at rho=7/10,L2=3/2,F3=-10,F4=-10 --format table,json,svg --out poses",
+    "plot slice-L2-rho.json --format png,svg --dpi 300",
+    "plot slice-L2-rho.json --style ieee --legend below --format pdf",
+    "plot slice-L2-rho.json --at L2=1,rho=1 --at L2=3,rho=1/2 --format pdf",
+    "sweep loads.yaml --format csv,html",
+)
 def test_help_examples_about_a_result_run(
     shipped: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, example: str
 ) -> None:

@@ -74,6 +74,7 @@ def test_the_script_of_a_shell(shell: str) -> None:
 
 
 @pytest.mark.parametrize("value", ["", "bash", "tcsh_complete", "bash_now"])
+@pytest.mark.fast_cases("tcsh_complete", "bash_now")
 def test_no_request_of_a_shell(value: str) -> None:
     environment = os.environ | {"_PTMCAD_COMPLETE": value}
     done = subprocess.run(

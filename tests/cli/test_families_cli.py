@@ -80,10 +80,14 @@ def test_another_map_under_a_members_name_is_refused(folder: Path, capsys: pytes
         assert "is not the member at F = -40 that swapped.json names: F3 is -10, not -40" in capsys.readouterr().err
 
 
-def test_numbers_alone_are_written_too(folder: Path, tmp_path: Path) -> None:
-    record = str(folder / "loads.yaml")
-    assert run(["classify", record, "--out", str(tmp_path), "--format", "csv", "--no-areas", *COARSE]) == 0
-    assert len(list(tmp_path.iterdir())) == 6
+def test_numbers_alone_are_written_too(tmp_path: Path) -> None:
+    (tmp_path / "cubics.yaml").write_text(
+        "system: {unknowns: {x: real}, equations: [x^3 + a*x + b + c]}\n"
+        "axes: {a: [-2, 2], b: [-2, 2]}\nfree: {c: [0, 3]}\nmembers: [0, 1]\n"
+    )
+    asked = ["--out", str(tmp_path / "out"), "--format", "csv", "--no-areas", *COARSE]
+    assert run(["classify", str(tmp_path / "cubics.yaml"), *asked]) == 0
+    assert len(list((tmp_path / "out").iterdir())) == 6
 
 
 def test_two_free_parameters_are_refused(capsys: pytest.CaptureFixture[str]) -> None:

@@ -95,6 +95,15 @@ CASES = {
 
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("command", ["check", "classify"])
+@pytest.mark.slow_cases(
+    "check-1000 springs",
+    "classify-4000 springs",
+    "classify-1000 springs",
+    "classify-400 springs to nowhere",
+    "classify-a bar too large to be proved",
+    "classify-100 bodies on bodies",
+    "classify-1500 names",
+)
 def test_hostile_descriptions(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, case: str, command: str
 ) -> None:

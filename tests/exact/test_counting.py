@@ -105,7 +105,7 @@ def test_oracle_agrees_at_300_random_points() -> None:
 
 
 @pytest.mark.parametrize("name", few(SHIPPED, "fig2", "fig4", "forces", "rods"))
-@pytest.mark.slow_cases("fig4", "rods")
+@pytest.mark.slow_cases("fig4", "rods", "forces")
 def test_methods_agree_at_every_sample_of(name: str) -> None:
     slice = load(CONFIGS / f"{name}.yaml")
     for cell in shipped(name).cells:

@@ -43,7 +43,7 @@ def cad(name: str) -> Decomposition:
 
 
 @pytest.mark.parametrize("name", slow_unless(SHIPPED, ("fig2", "fig3", "rods")))
-@pytest.mark.slow_cases("rods")
+@pytest.mark.slow_cases("rods", "fig3")
 def test_open_cad_is_that_of_qepcad(name: str) -> None:
     """Critical values, walls of every stack with their components, and the number of open cells.
 
@@ -55,6 +55,7 @@ def test_open_cad_is_that_of_qepcad(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", slow_unless(LIFTED, ("fig2", "fig3")))
+@pytest.mark.slow_cases("fig3")
 def test_no_branches_meet_over_further_sections(name: str) -> None:
     """The same with stacks over the critical values, where QEPCAD can."""
     assert compare(shipped(name), window_cad(shipped(name), full=True)).lifted
@@ -135,6 +136,7 @@ def nodal_cubic() -> RegionMap:
 
 
 @pytest.mark.parametrize("full", [False, True])
+@pytest.mark.slow_cases("True")
 def test_nodal_cubic(full: bool) -> None:
     """Known by construction; compared are only the numbers of cells, so that any eight will do."""
     found = compare(nodal_cubic(), window_cad(nodal_cubic(), full=full))
@@ -181,7 +183,7 @@ def points(name: str) -> list[tuple[Fraction, Fraction]]:
 
 @needs_singular
 @pytest.mark.parametrize("name", few(SHIPPED, "fig2", "fig4", "forces", "rods"))
-@pytest.mark.slow_cases("fig4", "rods")
+@pytest.mark.slow_cases("fig4", "rods", "forces")
 def test_index_at_every_sample_by_singular_and_qepcad(name: str) -> None:
     """Exactly so many minima, saddles and maxima as stored; no cell is left out."""
     assert axes(name) == shipped(name).slice.axis_names
@@ -191,6 +193,7 @@ def test_index_at_every_sample_by_singular_and_qepcad(name: str) -> None:
 
 
 @needs_singular
+@pytest.mark.slow
 def test_a_false_index_is_noticed() -> None:
     cells = shipped("fig4").cells
     formulas = counting_formulas("fig4", points("fig4"))
@@ -225,7 +228,7 @@ def sextic_counts(name: str, counts: list[tuple[int, int]]) -> list[bool]:
 
 
 @pytest.mark.parametrize("name", few(WITH_SEXTIC, "fig3", "fig4", "forces", "rods"))
-@pytest.mark.slow_cases("fig3", "fig4")
+@pytest.mark.slow_cases("fig3", "fig4", "rods")
 def test_counts_at_every_sample_by_the_sextic(name: str) -> None:
     assert all(sextic_counts(name, [(cell.total or 0, cell.stable or 0) for cell in shipped(name).cells]))
 

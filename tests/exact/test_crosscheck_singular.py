@@ -51,6 +51,7 @@ def test_critical_components_are_the_curves_of_the_elimination_ideal(name: str, 
 
 
 @pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.fast_cases("fig2", "fig4", "forces", "rods")
 def test_infinity_components_are_the_curves_over_which_a_solution_is_lost(name: str, shipped) -> None:  # type: ignore[no-untyped-def]
     """The projection is proper off the stored components, and each INFINITY component is needed."""
     components = shipped(name).components
@@ -60,6 +61,7 @@ def test_infinity_components_are_the_curves_over_which_a_solution_is_lost(name: 
 
 
 @pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.fast_cases("fig2", "fig3", "forces", "rods")
 def test_number_of_solutions_drops_exactly_over_improper_curves(name: str, shipped) -> None:  # type: ignore[no-untyped-def]
     """The same by another way: dimensions of the fibres over algebraic points of the curves, with multiplicity."""
     for component in shipped(name).components:

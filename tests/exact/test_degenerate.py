@@ -73,7 +73,11 @@ X = {"x": "real"}
          "only 4 of 8 solutions are different"),
     ],
 )  # fmt: skip
-@pytest.mark.slow_cases("system0-only 2 of 4 solutions are different", "system3-only 4 of 8 solutions are different")
+@pytest.mark.slow_cases(
+    "system0-only 2 of 4 solutions are different",
+    "system3-only 4 of 8 solutions are different",
+    "system1-only 3 of 5 solutions are different",
+)
 def test_a_slice_inside_the_variety_is_shown_at_a_point_where_nothing_else_degenerates(
     system: dict[str, Any], words: str
 ) -> None:
@@ -104,6 +108,7 @@ def test_a_point_where_more_degenerates_is_passed_over() -> None:
          "b = 6/35 there are infinitely many solutions"),
     ],
 )  # fmt: skip
+@pytest.mark.slow_cases("system1-NothingToCountError-b = 6/35 there is none")
 def test_nothing_to_count_and_infinitely_many_are_shown_at_a_point(
     system: dict[str, Any], error: type[Exception], words: str
 ) -> None:
@@ -222,6 +227,7 @@ def test_tiny_loads(load: str) -> None:
 
 @pytest.mark.parametrize("high", ["0.50000000001", "0.5000000000000000000001", "0.49999999999", "1/2"])
 @pytest.mark.parametrize("axes", [("L2", "rho"), ("rho", "L2")], ids=",".join)
+@pytest.mark.slow_cases("L2,rho-0.5000000000000000000001", "rho,L2-0.50000000001")
 def test_critical_values_at_the_windows_edge(high: str, axes: tuple[str, str]) -> None:
     """Unloaded lines meet at rho = 1/2, L2 = 0 and near it: just inside, on and just outside the edge."""
     windows = {"L2": [0, 4], "rho": [0, high]}

@@ -106,6 +106,19 @@ def check_around(result: RegionMap, x: Fraction, y: Fraction, steps: tuple[Fract
 
 @pytest.mark.parametrize("swap", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["x,y", "y,x"])
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n in THIN_TWINS else n for n in CURVES])
+@pytest.mark.fast_cases(
+    "node with one branch vertical-x,y",
+    "cusp that opens upward-x,y",
+    "rhamphoid cusp-x,y",
+    "isolated point-x,y",
+    "vertical lines at irrational abscissae-x,y",
+    "vertical line through a cusp-x,y",
+    "two curves touching with a third order contact-x,y",
+    "curves along all edges-x,y",
+    "triple point-x,y",
+    "a circle through all window corners-x,y",
+    "a window of width 1e-30 around an isolated point-x,y",
+)
 def test_degenerate(name: str, swap: bool) -> None:
     g, (a, b, c, d), stable, pairs, origin = CURVES[name]
     axes = {"x": [a, b], "y": [c, d]}
@@ -200,6 +213,7 @@ def test_an_isolated_point_where_the_whole_hessian_vanishes(axes: tuple[str, str
 
 
 @pytest.mark.parametrize("axes", [("rho", "F"), exchanged("F", "rho")], ids=",".join)
+@pytest.mark.slow
 def test_two_curves_touching_rose_and_astroid(axes: tuple[str, str]) -> None:
     """fig. 3: they touch at 2 rho = -F/k = 1/sqrt(2); the regions in both and in neither share that point only."""
     windows = {"rho": ["3/10", "2/5"], "F": [-80, -60]}

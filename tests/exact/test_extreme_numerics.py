@@ -11,6 +11,7 @@ import pytest
 from flint import arb, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 
 import ptmcad
 from ptmcad.algebra import isolation
@@ -38,7 +39,7 @@ def polynomial(roots: list[Fraction]) -> fmpz_poly:
     return product
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(
     st.fractions(-3, 3, max_denominator=50),
     st.lists(st.tuples(st.sampled_from([0, 1, 7, 30, 80]), st.integers(-9, 9)), min_size=1, max_size=6),
@@ -58,7 +59,7 @@ def test_clusters_are_isolated(center: Fraction, near: list[tuple[int, int]], ot
         assert a.high <= b.low
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.integers(1, 90), st.integers(1, 90), st.booleans(), st.integers(-99, 99))
 def test_pairs_that_are_real_or_not_are_told_apart(e: int, f: int, real: bool, n: int) -> None:
     """((x - n/100)^2 -+ 10^-e) (x^2 -+ 10^-f / 3): two roots each, or none."""
@@ -105,7 +106,7 @@ def far_cluster(center: int, pairs: list[tuple[int, int]], real: list[int]) -> f
     return p * p(fmpz_poly([0, -1]))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(
     st.integers(2, 30),
     st.integers(1, 10**6),
@@ -135,7 +136,7 @@ def test_a_cluster_far_out_takes_few_tests_at_any_distance(tests_made: list[int]
         assert len(tests_made) <= 40
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.integers(1, 60), st.integers(10**299, 10**300), st.integers(10**299, 10**300), st.integers(0, 2))
 def test_long_polynomials_are_refined_to_the_same_root(digits: int, n: int, m: int, pairs: int) -> None:
     """The root m/n with complex pairs beside it, for which balls are too wide: exact values have to stand in."""
@@ -147,7 +148,7 @@ def test_long_polynomials_are_refined_to_the_same_root(digits: int, n: int, m: i
     assert short.low == fmpq(m, n) if short.is_rational else short.low < fmpq(m, n) < short.high
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(
     st.lists(st.lists(st.integers(-99, 99), min_size=1, max_size=4), min_size=3, max_size=5),
     st.integers(1, 40), st.integers(0, 40),
@@ -248,7 +249,7 @@ def test_the_simplest_rational_between_is_the_simplest(a: Fraction, b: Fraction)
         assert not Fraction(p, q) < high
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(st.integers(5, 60), st.fractions(-1, 1, max_denominator=8), st.fractions(0, 1, max_denominator=8))
 def test_arcs_enclose_the_integral_of_branches_that_nearly_meet(e: int, bend: Fraction, slope: Fraction) -> None:
     """(v - s - b u - a u^2)^2 = 10^-e: both branches, whose integrals are known, by a tube that holds both or one."""
@@ -363,6 +364,7 @@ GERMS = {
 
 @pytest.mark.parametrize("digits", [15, 40])
 @pytest.mark.parametrize("name", GERMS)
+@pytest.mark.slow_cases("two parabolas-40")
 def test_areas_between_branches_that_part_slowly_are_those_in_other_units(name: str, digits: int) -> None:
     """A window of size 10^-digits, and the unit square with the equation in these units: the thinnest region's share
     of the window is 10^-200 in one."""

@@ -77,7 +77,7 @@ def _random_values(name: str, number: int) -> list[Fraction]:
         pytest.param("chain", [Fraction(1)], marks=pytest.mark.slow),
     ],
 )
-@pytest.mark.fast_cases("equal loads-values0", "system with a condition-values2")
+@pytest.mark.fast_cases("system with a condition-values2")
 def test_members_are_their_slices_alone(name: str, values: list[Fraction]) -> None:
     _check(name, values)
 

@@ -48,6 +48,7 @@ def _record(name: str) -> Slice:
 @pytest.mark.parametrize(
     "name", [*SYSTEMS, "rods", "mechanisms/slider-crank", "systems/kuramoto", "systems/orthogonal-3r"]
 )
+@pytest.mark.slow_cases("systems/kuramoto", "systems/orthogonal-3r", "mechanisms/slider-crank")
 def test_a_half_has_the_areas_of_the_whole_window(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     slice = _record(name)
     assert problem_of(slice).reflections

@@ -12,6 +12,7 @@ import pytest
 from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 from support.few import few
 from support.poles import power_trace_denominators
 from support.random_slices import drawn
@@ -127,14 +128,14 @@ def both_ways(slice: Slice) -> None:
 
 
 @given(slices())
-@settings(max_examples=4)
+@settings(max_examples=examples(8))
 def test_the_plain_pipeline_says_the_same_on_random_slices(slice: Slice) -> None:
     both_ways(slice)
 
 
 @pytest.mark.slow
 @given(slices())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_the_plain_pipeline_says_the_same_on_many_random_slices(slice: Slice) -> None:
     both_ways(slice)
 
@@ -163,6 +164,7 @@ def algebra_of(slice: Slice) -> QuotientAlgebra:
 
 
 @pytest.mark.parametrize("name", ["fig2", "fig3", "fig4", "horizontal"])
+@pytest.mark.slow_cases("horizontal")
 def test_poles_are_those_of_power_traces(name: str) -> None:
     algebra = algebra_of(record(name))
     every = irreducible_factors(multiplication_denominator(algebra))

@@ -102,6 +102,7 @@ def test_the_degrees_of_the_tables_are_those_of_the_computed_ones(name: str, sol
 
 
 @pytest.mark.parametrize("name", ["fig5-text", "systems/duffing"])
+@pytest.mark.slow_cases("fig5-text")
 def test_the_cells_of_a_survey_are_those_of_the_map(name: str) -> None:
     slice = load(CONFIGS / f"{name}.yaml")
     cells = ptmcad.classify(slice, areas=False).cells

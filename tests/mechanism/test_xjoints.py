@@ -75,6 +75,7 @@ PLATE: dict[str, Any] = {
 
 
 @pytest.mark.parametrize("mechanism", [ONE, PLATE], ids=["one", "two with a slider"])
+@pytest.mark.slow_cases("two with a slider")
 def test_two_derivations_agree(mechanism: dict[str, Any]) -> None:
     """The engine's, by quotients of cosines and sines, and the checker's, by complex units."""
     model = ptmcad.Mechanism(mechanism)

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 from support.faulty_disk import FaultyDisk, Killed
 
 from ptmcad.errors import OutputError
@@ -255,7 +256,7 @@ def test_no_file_in_the_folder_is_obeyed(tmp_path: Path) -> None:
         assert {name for name in os.listdir(tmp_path) if name.startswith(".")} == set(left)
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(
     st.lists(
         st.tuples(

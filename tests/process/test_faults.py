@@ -728,6 +728,7 @@ def test_a_time_limit_before_there_is_anything(tmp_path: Path) -> None:
         "[bytes(k) for k in range(10**6)]",
     ],
 )
+@pytest.mark.fast_cases("flint.fmpz_poly([1, 1]) ** 100_000", "[0] * (1 << 30)")
 def test_a_memory_limit(tmp_path: Path, allocate: str) -> None:
     """C code that aborts and Python's MemoryError end alike: one message, the partial result, status 3."""
     work = f"def engine(progress, partial):\n    {allocate}\n"
@@ -905,6 +906,7 @@ def test_a_file_that_may_not_grow(tmp_path: Path) -> None:
         ("classify nothing.yaml 2>&1", "true", {2}),
     ],
 )
+@pytest.mark.slow_cases("--help-true-statuses0", "verify wrong.json-true-statuses5")
 def test_a_reader_that_leaves(
     shipped: Callable[..., Any], tmp_path: Path, arguments: str, reader: str, statuses: set[int]
 ) -> None:

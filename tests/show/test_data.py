@@ -18,6 +18,8 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.show import data
 
+pytestmark = pytest.mark.fine
+
 
 def test_regions_and_cells_as_frames() -> None:
     from pandas import isna

@@ -57,6 +57,7 @@ def polynomials(of: SliceVariety) -> list[PlanePolynomial]:
 @pytest.mark.parametrize(
     "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in SHIPPED]
 )
+@pytest.mark.slow_cases("fig3", "fig4")
 def test_components_are_those_of_the_region_map(name: str) -> None:
     expected = [(c.polynomial, c.kind, c.left_out) for c in shipped(name).components]
     assert [(c.polynomial, c.kind, c.left_out) for c in variety(name).components] == expected
@@ -198,6 +199,7 @@ def qepcad_cells(name: str) -> Decomposition:
 @pytest.mark.parametrize(
     "name", [name if name in ("fig2", "fig3") else pytest.param(name, marks=pytest.mark.slow) for name in SHIPPED]
 )
+@pytest.mark.slow_cases("fig3")
 def test_qepcad_decomposes_the_window(name: str) -> None:
     """Its true cells lie off the variety and in the window, and there is one in each cell of the region map.
 
@@ -327,6 +329,7 @@ def test_what_msolve_can_not_eliminate_is_an_error() -> None:
 
 @needs_singular
 @pytest.mark.parametrize("name", ["fig2", "fig3", "fig4"])
+@pytest.mark.slow_cases("fig3", "fig4")
 def test_singular_eliminates_the_same_system(name: str) -> None:
     """The text for msolve, put to another program."""
     of = variety(name)
@@ -366,7 +369,7 @@ def test_the_system_is_that_of_the_paper() -> None:
 
 
 @pytest.mark.parametrize("format", FORMATS)
-@pytest.mark.fast_cases("msolve", "latex")
+@pytest.mark.fast_cases("msolve")
 def test_command_prints_or_writes_the_same(
     format: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

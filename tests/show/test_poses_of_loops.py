@@ -42,6 +42,7 @@ def poses(name: str) -> Poses:
 
 
 @pytest.mark.parametrize("name", AT)
+@pytest.mark.slow_cases("two-dof-tensegrity-loaded")
 def test_bars_keep_their_lengths_and_energies_are_told(name: str) -> None:
     found = poses(name)
     mechanism = mechanism_in(found.model)
@@ -72,7 +73,7 @@ def test_a_mirror_image_has_the_same_energy() -> None:
 
 
 @pytest.mark.parametrize("name", ["slider-crank", "x-joint", "platform-loop"])
-@pytest.mark.slow_cases("x-joint")
+@pytest.mark.slow_cases("x-joint", "platform-loop")
 def test_poses_are_stored_shown_and_drawn(name: str) -> None:
     from ptmcad.show.render.poses import draw_poses
 

@@ -143,6 +143,7 @@ def test_vertices_lie_on_the_curve(view: View | None) -> None:
 
 
 @pytest.mark.parametrize(("name", "count"), MAPS)
+@pytest.mark.slow_cases("forces-total")
 def test_the_raster_agrees_with_locate(name: str, count: str) -> None:
     result = classified(name, count)
     image = outline(result).raster(23, 19)
@@ -263,7 +264,7 @@ def test_labels_of_crowded_tips_are_apart() -> None:
 @pytest.mark.parametrize(
     ("name", "count", "dpi"), [(*m, 100) for m in MAPS] + [pytest.param("fig4", "index", 300, marks=pytest.mark.slow)]
 )
-@pytest.mark.fast_cases("fig2-stable-100", "forces-total-100")
+@pytest.mark.fast_cases("fig2-stable-100")
 def test_every_colour_is_in_the_picture(name: str, count: str, dpi: int, tmp_path: Path) -> None:
     result = classified(name, count)
     draw(result, tmp_path / "map.png", dpi=dpi)
@@ -304,7 +305,7 @@ def test_no_seams_between_the_cells_of_a_region(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("dpi", [72, 150, 300])
-@pytest.mark.slow_cases("300")
+@pytest.mark.slow_cases("300", "150")
 def test_png_has_the_size_that_dpi_tells(dpi: int, tmp_path: Path) -> None:
     draw(classified("fig2", "stable"), tmp_path / "map.png", dpi=dpi)
     data = (tmp_path / "map.png").read_bytes()
@@ -318,7 +319,7 @@ def test_png_has_the_size_that_dpi_tells(dpi: int, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
-@pytest.mark.slow_cases("pdf")
+@pytest.mark.slow_cases("pdf", "png")
 def test_the_same_bytes_twice(suffix: str, tmp_path: Path) -> None:
     for k in range(2):
         draw(classified("fig3", "index"), tmp_path / f"{k}.{suffix}")

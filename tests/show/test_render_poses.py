@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from support.examples import examples
 from support.maps import shipped
 
 import ptmcad
@@ -128,7 +129,7 @@ def test_labels_are_clear_of_all_strokes_and_of_each_other(name: str) -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 @example(["7/10", "12", "-1/50", "35", "-29/10", "0"])  # three nodes within a few points
 @given(st.tuples(*[st.fractions(0, 30, max_denominator=100)] * 2, *[st.fractions(-60, 60, max_denominator=9)] * 4))
 def test_labels_of_any_mechanism_are_clear(values: Sequence[Fraction | str]) -> None:
@@ -158,6 +159,7 @@ def labels_are_clear(found: Poses) -> None:
 
 
 @CASES
+@pytest.mark.fast_cases("paper, fig. 4", "flat, springs of no length", "fold", "lengths of 1e400")
 def test_a_springs_teeth_stand_across_it_at_any_length_and_slope(name: str) -> None:
     found = poses(name)
     frame = frame_of(found.equilibria)
@@ -196,7 +198,7 @@ def test_arrows_are_as_long_as_forces() -> None:
     assert "F4x" not in lengths
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(st.lists(st.tuples(st.floats(5, 195), st.floats(5, 145)), min_size=1, max_size=5))
 def test_labels_of_any_points_are_apart(points: list[tuple[float, float]]) -> None:
     labels = [Label("A₁", at, (7, 6), (1.0, 0.0)) for at in points]

@@ -70,7 +70,15 @@ def texts(made: Figure) -> list[Text]:
 
 @pytest.mark.parametrize(("legend", "preset", "name"), PAGES)
 @pytest.mark.slow_cases(
-    "None-ieee-fig2", "None-ieee-slivers", "None-beamer-slivers", "below-ieee-slivers", "below-elsevier-index"
+    "None-ieee-fig2",
+    "None-ieee-slivers",
+    "None-beamer-slivers",
+    "below-ieee-slivers",
+    "below-elsevier-index",
+    "None-elsevier-fig4",
+    "None-poster-large numbers",
+    "below-ieee-fig4",
+    "below-springer-slivers",
 )
 def test_everything_is_on_the_page_apart_and_legible(legend: str | None, preset: str, name: str) -> None:
     style = styled(preset, legend=legend)

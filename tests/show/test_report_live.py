@@ -146,7 +146,7 @@ def test_no_point_is_said_to_be_in_a_cell_that_it_is_not_in(view: Callable[..., 
     assert result.cover is not None
     chance, slack = random.Random(5), SLACK / SIDE
     points: list[tuple[float, float]] = []
-    for left, right, bottom, top in chance.choices(result.cover.rectangles, k=1000):  # across a side of each
+    for left, right, bottom, top in chance.choices(result.cover.rectangles, k=400):  # across a side of each
         x = chance.choice((left, right)) / result.cover.steps + chance.uniform(-2, 2) * slack
         y = chance.uniform(bottom, top) / result.cover.steps
         points += [point for point in ((x, y), (y, x)) if all(0.01 < v < 0.99 for v in point)]
@@ -158,7 +158,7 @@ def test_no_point_is_said_to_be_in_a_cell_that_it_is_not_in(view: Callable[..., 
                   for dy in (-2 * slack, 0, 2 * slack)}  # fmt: skip
         near += len(around) > 1
         assert ring == (-1 if true is None else true) or (ring == -1 and len(around) > 1), (x, y)
-    assert near > 40
+    assert near > 15
 
 
 def test_what_is_pointed_at_is_what_is_there(view: Callable[..., Browser]) -> None:

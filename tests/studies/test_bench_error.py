@@ -162,6 +162,7 @@ def test_blank_picture_of_fig3_is_wrong_where_two_are_stable() -> None:
     assert len(known["index"].counts) == 4 == 1 + max(known["index"].region_of)
 
 
+@pytest.mark.slow
 def test_walls_are_within_their_distances() -> None:
     """At many places the isolated roots are no further from the polyline than is claimed."""
     found, known = exact("fig3")
@@ -234,7 +235,7 @@ def test_companion_and_scipy_agree_where_both_are_right() -> None:
         *(pytest.param(name, 30, marks=pytest.mark.slow) for name in ("unequal-springs", "stiffness")),
     ],
 )
-@pytest.mark.slow_cases("horizontal-30")
+@pytest.mark.slow_cases("horizontal-30", "forces-30")
 def test_companion_is_right_at_centres(name: str, n: int) -> None:
     """A rival worth beating: where no wall is near, floats do."""
     found = shipped(name, "index")

@@ -13,6 +13,7 @@ import pandas as pd
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 from support.structure import check_structure
 
 import ptmcad
@@ -103,7 +104,7 @@ def test_the_engine_finds_the_regions_of_many_folds(name: str, n: int) -> None:
     assert len(folded(name, n).regions) == FAMILIES[name].regions(n)
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.sampled_from(FOLDED[:6]), st.fractions(0, 1, max_denominator=997), st.fractions(0, 1, max_denominator=991))
 def test_folds_have_the_known_count_everywhere(which: tuple[str, int], s: Fraction, t: Fraction) -> None:
     """2 stable poses where |L2 - L1| < 2 rho < L2 + L1 (REFERENCE: unloaded), at any point off these lines."""
@@ -120,7 +121,7 @@ def test_folds_have_the_known_count_everywhere(which: tuple[str, int], s: Fracti
 # ------------------------------------------------------------------------------------------------ degrees and heights
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(st.integers(0, 16), st.integers(0, 10**6))
 def test_bends_are_dense_and_small(n: int, seed: int) -> None:
     bent = slice_from_mapping(scaling.unloaded(n, seed)).parameters["L2"]
@@ -131,6 +132,7 @@ def test_bends_are_dense_and_small(n: int, seed: int) -> None:
 
 
 @pytest.mark.parametrize(("n", "seed"), [(1, 1), (2, 2), (5, 1)])
+@pytest.mark.slow_cases("5-1")
 def test_the_curves_of_bent_slices_have_the_degree_asked_for(n: int, seed: int) -> None:
     result = ptmcad.classify(slice_from_mapping(scaling.unloaded(n, seed)))
     assert [c.polynomial.total_degree for c in result.components if not c.left_out] == [n] * 3
@@ -166,7 +168,7 @@ def fitted(points: Mapping[float, float]) -> dict[str, float]:
     return found
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.floats(-3, 6), st.floats(1e-6, 1e3), st.sets(st.integers(1, 500), min_size=4, max_size=9))
 def test_an_exact_power_law_gives_its_exponent(p: float, c: float, sizes: set[int]) -> None:
     found = fitted({x: c * x**p for x in sizes})
@@ -175,7 +177,7 @@ def test_an_exact_power_law_gives_its_exponent(p: float, c: float, sizes: set[in
     assert found["off by"] < 1 + 1e-6
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(st.floats(0.7, 5), st.integers(0, 10**6))
 def test_noise_does_not_become_another_law(p: float, seed: int) -> None:
     """Noise of 5 %, as on a shared machine: the exponent is right to 0.1, and the line is near."""

@@ -96,7 +96,14 @@ def at_random(claims: CertifiedClaims, rng: random.Random) -> tuple[Fraction, Fr
 
 @pytest.mark.parametrize(("name", "count"), CASES)
 @pytest.mark.slow_cases(
-    "paper-stable", "paper-index", "pair-index", "loop-total", "truss-stable", "loop-stable", "pair-stable"
+    "paper-stable",
+    "paper-index",
+    "pair-index",
+    "loop-total",
+    "truss-stable",
+    "loop-stable",
+    "pair-stable",
+    "apart-stable",
 )
 def test_places_have_all_solutions(name: str, count: str) -> None:
     """That balls alone find; and with places they find the same ones."""
@@ -128,6 +135,7 @@ def test_places_have_all_solutions(name: str, count: str) -> None:
     "sliding-stable",
     "loop-stable",
     "pair-stable",
+    "apart-stable",
 )
 def test_places_over_a_box_have_those_over_its_points(name: str, count: str) -> None:
     claims, rng, told = CertifiedClaims(a_map(name, count)), random.Random(name), 0
@@ -155,7 +163,7 @@ def inside(at: tuple[float, ...], box: Box) -> bool:
 
 
 @pytest.mark.parametrize(("name", "count"), CASES)
-@pytest.mark.slow_cases("paper-index", "paper-stable", "loop-total")
+@pytest.mark.slow_cases("paper-index", "paper-stable", "loop-total", "pair-index")
 def test_formulas_are_those_of_the_balls(name: str, count: str) -> None:
     """Equations and Jacobian at random configurations, by compiled forms and by balls, which share the waves alone."""
     claims, rng = CertifiedClaims(a_map(name, count)), random.Random(count)

@@ -10,6 +10,7 @@ from flint import fmpq, fmpz_poly
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from support.curves_with_known_points import KnownCurves, known_curves
+from support.examples import examples
 
 from ptmcad.algebra.polynomials import from_plane
 from ptmcad.algebra.real_roots import RealRoot
@@ -91,7 +92,7 @@ def test_points_that_are_very_near_to_each_other_are_two(digits: int) -> None:
 # ------------------------------------------------------------------------------------ real roots of long polynomials
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @example(
     [Fraction(7, 5)], [Fraction(0), Fraction(7, 5)], 2
 )  # an end that is a root and no number of finitely many bits

@@ -107,7 +107,7 @@ def test_a_narrow_box_is_decided(name: str, count: str) -> None:
 
 
 @pytest.mark.parametrize(("name", "width"), [("ptm", 12), ("chain", 17), ("ptm", 90), ("chain", 90), ("loop", 90)])
-@pytest.mark.slow_cases("loop-90")
+@pytest.mark.slow_cases("loop-90", "chain-17", "ptm-90")
 def test_boxes_of_any_narrowness(name: str, width: int) -> None:
     radius = Fraction(1, 10**width)
     checked(forged(name, "stable", radius, -radius / 2))

@@ -53,6 +53,16 @@ def agree(expression: Expression, need: Need) -> bool:
     "degree 8 in both-Need.NO_POLE",
     "irrational-Need.POSITIVE",
     "irrational-Need.NO_POLE",
+    "degree 8 in both-Need.NOT_NEGATIVE",
+    "edge-Need.NOT_NEGATIVE",
+    "edge-Need.POSITIVE",
+    "far corner-Need.NOT_NEGATIVE",
+    "far corner-Need.NO_POLE",
+    "far corner-Need.POSITIVE",
+    "line-Need.NO_POLE",
+    "line-Need.POSITIVE",
+    "upper edge-Need.NOT_NEGATIVE",
+    "upper edge-Need.NO_POLE",
 )
 def test_narrow_dips(kind: str, need: Need) -> None:
     for p in thin_dip(kind):
@@ -74,7 +84,7 @@ def test_known_signs(text: str, strict: bool, expected: Sign) -> None:
 
 
 @pytest.mark.parametrize("seed", range(12))
-@pytest.mark.slow_cases("2", "3", "11")
+@pytest.mark.slow_cases("2", "3", "11", "6", "9")
 def test_random_functions_have_the_sign_that_the_engine_decides(seed: int) -> None:
     rng = random.Random(seed)
     p = random_square(rng, 4)

@@ -98,7 +98,7 @@ def form(mechanism: dict[str, Any]) -> Form:
 
 
 @pytest.mark.parametrize("name", list(CASES))
-@pytest.mark.slow_cases("pair", "loop")
+@pytest.mark.slow_cases("pair", "loop", "crank", "crank, stable")
 def test_true_maps_are_proved(name: str) -> None:
     report = ptmcad.verify(made(name), seed=1, boxes=2)
     assert report.ok
@@ -221,6 +221,7 @@ def test_counts_without_a_potential_agree_with_the_engines() -> None:
 
 @pytest.mark.parametrize("mechanism", [CRANK, BEHIND])
 @pytest.mark.slow_cases("mechanism0")
+@pytest.mark.slow
 def test_counts_agree_with_the_engines(mechanism: dict[str, Any]) -> None:
     from ptmcad.certified.plain.points import plain_counter
     from ptmcad.certified.plain.poses import point_slice

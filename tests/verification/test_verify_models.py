@@ -206,7 +206,7 @@ def test_true_maps_are_accepted(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in SMALL else pytest.mark.slow) for n in RECORDS])
-@pytest.mark.slow_cases("moment", "stable where", "duffing", "potential with an inequality")
+@pytest.mark.slow_cases("moment", "stable where", "duffing", "potential with an inequality", "constant moment", "cusp")
 def test_false_alterations_are_rejected(name: str) -> None:
     """One place of each kind of the forger."""
     tally = judged(name, map_of(name), 1, 0)
@@ -217,6 +217,7 @@ def test_false_alterations_are_rejected(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["moments", "moments of three unknowns"])
+@pytest.mark.slow_cases("moments")
 def test_what_a_moment_alters_is_rejected(name: str) -> None:
     """Its part in the equations and their derivatives, a potential, what is stable and an index, which it has not."""
     true = map_of(name)

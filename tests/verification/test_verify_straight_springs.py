@@ -66,6 +66,7 @@ def made(name: str) -> RegionMap:
 
 
 @pytest.mark.parametrize("name", list(CASES))
+@pytest.mark.slow_cases("two springs on the guide", "a direction by parameters")
 def test_the_whole_free_area_is_proved(name: str) -> None:
     report = ptmcad.verify(made(name), seed=1, boxes=2)
     assert report.ok
@@ -73,6 +74,7 @@ def test_the_whole_free_area_is_proved(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["two springs on the guide", "a slanted guide"])
+@pytest.mark.slow_cases("two springs on the guide")
 def test_a_map_without_kinks_is_not_proved(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(plain_curves, "_boundaries", lambda *_: iter(()))
     false = made(name)

@@ -9,6 +9,7 @@ import pytest
 from flint import Ordering, arb, ctx, fmpq, fmpz_mpoly_ctx, fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 from support.few import few
 
 from ptmcad.text.plane import PlanePolynomial
@@ -250,7 +251,7 @@ def turned(a: int, b: int, c: int, d: int, p: int, q: int) -> tuple[Terms, Terms
     return fold_terms, node_terms, fmpq(p, 8), fmpq(q, 8)
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 @given(
     a=st.integers(-8, 8), b=st.integers(-3, 3),
     slopes=st.lists(st.integers(-3, 3), min_size=2, max_size=2, unique=True),
