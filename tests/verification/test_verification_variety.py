@@ -96,6 +96,9 @@ class KnownClaims:
     foreign: PlanePolynomial | None = None
     hidden: Callable[[int], bool] = lambda _: False
 
+    def place(self, x: Fraction, y: Fraction) -> str:
+        return f"{x}, {y}"
+
     def fibre_at(self, x: Fraction, y: Fraction) -> KnownFibre:
         components = self.result.components
         values = [c.polynomial(x, y) for c in components]
@@ -162,6 +165,9 @@ class SimpleReplacement:
 
     true: KnownClaims
     result: RegionMap
+
+    def place(self, x: Fraction, y: Fraction) -> str:
+        return self.true.place(x, y)
 
     def fibre_at(self, x: Fraction, y: Fraction) -> KnownFibre:
         return self.true.fibre_at(x, y)

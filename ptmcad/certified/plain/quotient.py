@@ -31,7 +31,7 @@ from ptmcad.certified.plain.springs import Matrix
 
 NEAR = Fraction(1, 1024)
 """The distance from their images below which configurations are searched about the fixed points."""
-MOST = 0.0314
+MAX_ODD = 0.0314
 """A little more than the odd coordinates there, or shares of the reach, and twice the tangents of half of these."""
 
 
@@ -102,7 +102,7 @@ def _moved(exact: Geometry, frame: Frame, lead: int, near: bool) -> Fold:
     """Folds off it, each for its image, too: where the odd coordinate of number ``lead`` is the largest."""
     place = coordinates(frame, lead)
     at = chart(exact, unknowns=place.unknowns())
-    most = MOST if place.is_turning or frame.reaches[lead] else MOST / 2
+    most = MAX_ODD if place.is_turning or frame.reaches[lead] else MAX_ODD / 2
     opened = opening(place, [spring.vector for spring in at.springs])
     matrix = _matrix(place, opened, frame.block(at.hessian, frame.evens, at.scales, over=False))
     balance = [sum((s * at.equations[k] for k, s in e[1:]), start=at.equations[e[0][0]]) for e in frame.evens]
