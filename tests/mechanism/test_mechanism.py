@@ -320,10 +320,10 @@ def test_large_descriptions_take_less_than_a_second(size: int) -> None:
         "springs": [{"between": ["O", f"P{n}"], "k": "k"} for n in number[:-1]],
         "bars": [["P0", f"P{n}"] for n in number[1:-1]],
     }
-    start = time.perf_counter()
+    start = time.process_time()
     if size > 400:
         with pytest.raises(ConfigError, match="10000 entries, more than the 400"):
             described(record)
     else:
         assert len(described(record).springs) == 399
-    assert time.perf_counter() - start < 1
+    assert time.process_time() - start < 1
