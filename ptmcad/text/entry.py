@@ -96,6 +96,8 @@ def from_python(
         entries = {}
         for given, entry in value.items():
             key = convert(given)
+            if isinstance(key, int) and not isinstance(key, bool):
+                key = str(key)  # as in YAML, where a key is the text that it is written as
             if not isinstance(key, str):
                 raise place.error(f"the key {key!r} is not text")
             entries[key] = from_python(entry, place.below(key), convert, depth + 1)
