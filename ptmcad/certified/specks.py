@@ -12,25 +12,25 @@ next bisection would discard it. Such slivers are a few hundred-thousandths of t
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.certified.covering import Lattice
+from ptmcad.certified.covering import Lattice, outward
 from ptmcad.certified.refinement import Enclosure
 from ptmcad.certified.search import Boxes, search_curve
-from ptmcad.certified.tape import enclosing_floats
-from ptmcad.cover import components
 from ptmcad.cover.complement import Components
-from ptmcad.cover.rectangles import Cover, Rectangle
-from ptmcad.cover.subdivision import rectangle_array
+from ptmcad.cover.slanted import without
+from ptmcad.cover.subdivision import Integers, rectangle_array
 
 MAX_SHARE = Fraction(1, 10_000)
 """Of the window: larger clusters are no specks."""
-FINER = 4.0**-6
-"""Boxes are bisected until their projections are so many times smaller."""
+ROUNDS, FINER = 3, 4.0**-2
+"""Boxes are bisected so often until their projections are so many times smaller."""
+MAX_GROWTH = 2
+"""A cluster of which there are more than so many times the boxes after a round is no speck: along a curve, there are
+four times as many."""
 BUDGET = 20_000
 """Boxes that are treated for each curve: about a tenth of a second."""
 MAX_PAIRS = 3 * 10**7
@@ -58,28 +58,26 @@ def without_specks(
         places = np.concatenate([places, lattice.images(places, cover.steps)])
     if not len(chosen) or len(places) * sum(map(len, boxes)) > MAX_PAIRS:
         return complement
-    rectangles = np.array([_outward(lattice, cover, place) for place in places.tolist()])
-    held = np.zeros(len(small), dtype=np.bool_)
-    for enclosure, own in zip(enclosures, boxes, strict=True):
-        near = own[_meeting(rectangles, own).any(axis=0)]
-        curve = enclosure.curve
-        found = search_curve(curve.system.arguments(), near, FINER * area, BUDGET, curve.importance())
-        held[owners[_meeting(rectangles, found.left()).any(axis=1)]] = True
-    kept = ~small[cluster_of] | held[cluster_of]
-    if kept.all():
-        return complement
-    left = tuple(r for r, keep in zip(cover.rectangles, kept.tolist(), strict=True) if keep)
-    return components(replace(cover, rectangles=left))
+    order = np.argsort(owners, kind="stable")
+    rectangles = outward(lattice.window, places[order], cover.steps)
+    clusters, starts = np.unique(owners[order], return_index=True)
+    held = np.zeros(len(clusters), dtype=np.bool_)
+    for enclosure, left in zip(enclosures, boxes, strict=True):
+        curve, finer, searched = enclosure.curve, area, ~held
+        met = _meeting_clusters(rectangles, starts, left)
+        for _ in range(ROUNDS):
+            near, finer = left[met[searched].any(axis=0)], finer * FINER
+            left = search_curve(curve.system.arguments(), near, finer, BUDGET, curve.importance()).left()
+            before, met = met.sum(axis=1), _meeting_clusters(rectangles, starts, left)
+            searched &= met.sum(axis=1) <= MAX_GROWTH * before
+        held = ~searched | met.any(axis=1)
+    return complement if held.all() else without(complement, clusters[~held])
 
 
-def _outward(lattice: Lattice, cover: Cover, rectangle: Rectangle) -> tuple[float, float, float, float]:
-    """Floats around a rectangle: left, bottom, right, top."""
-    ends = []
-    for k, (low, high) in enumerate(lattice.window):
-        step = (high - low) / cover.steps
-        ends.append((enclosing_floats(low + step * rectangle[2 * k])[0],
-                     enclosing_floats(low + step * rectangle[2 * k + 1])[1]))  # fmt: skip
-    return ends[0][0], ends[1][0], ends[0][1], ends[1][1]
+def _meeting_clusters(rectangles: Boxes, starts: Integers, boxes: Boxes) -> NDArray[np.bool_]:
+    """Which clusters, the rectangles of which begin at these rows, and which boxes' projections meet."""
+    result: NDArray[np.bool_] = np.logical_or.reduceat(_meeting(rectangles, boxes), starts)
+    return result
 
 
 def _meeting(rectangles: Boxes, boxes: Boxes) -> NDArray[np.bool_]:

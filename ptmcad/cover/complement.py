@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.cover import tubes
+from ptmcad.cover.graph import Touching
 from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
 from ptmcad.cover.subdivision import COVERED, Subdivision, rectangle_array, subdivide
 
@@ -48,6 +49,7 @@ class Components:
     subdivision : of the window.
     owner : for each part of the subdivision the number of its component or, for a covered one, of its cluster; -1 in
         a frame.
+    pairs : of leaves of the subdivision that touch.
     frames : of the slanted pieces; None when there are none.
     """
 
@@ -59,6 +61,7 @@ class Components:
     clusters_at: tuple[tuple[int, ...], ...]
     subdivision: Subdivision
     owner: Integers
+    pairs: Touching
     frames: Frames | None = None
 
     def locate(self, u: Fraction, v: Fraction) -> int | None:
@@ -124,7 +127,7 @@ def grown(tree: Subdivision, boxes: Integers, around: Integers) -> Integers:
 
 def as_rectangles(array: Integers) -> tuple[Rectangle, ...]:
     """Rows of an array of shape (k, 4) as tuples."""
-    return tuple((left, right, bottom, top) for left, right, bottom, top in array.tolist())
+    return tuple(zip(*array.T.tolist(), strict=True))
 
 
 def sums_of_areas(boxes: Integers, group: Integers, groups: int) -> list[int]:
