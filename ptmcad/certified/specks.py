@@ -12,6 +12,7 @@ next bisection would discard it. Such slivers are a few hundred-thousandths of t
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -21,8 +22,8 @@ from ptmcad.certified.covering import Lattice, outward
 from ptmcad.certified.refinement import Enclosure
 from ptmcad.certified.search import Boxes, search_curve
 from ptmcad.cover.complement import Components
-from ptmcad.cover.slanted import without
-from ptmcad.cover.subdivision import Integers, rectangle_array
+from ptmcad.cover.slanted import components
+from ptmcad.cover.subdivision import COVERED, FREE, rectangle_array
 
 MAX_SHARE = Fraction(1, 10_000)
 """Of the window: larger clusters are no specks."""
@@ -58,26 +59,29 @@ def without_specks(
         places = np.concatenate([places, lattice.images(places, cover.steps)])
     if not len(chosen) or len(places) * sum(map(len, boxes)) > MAX_PAIRS:
         return complement
-    order = np.argsort(owners, kind="stable")
-    rectangles = outward(lattice.window, places[order], cover.steps)
-    clusters, starts = np.unique(owners[order], return_index=True)
-    held = np.zeros(len(clusters), dtype=np.bool_)
-    for enclosure, left in zip(enclosures, boxes, strict=True):
-        curve, finer, searched = enclosure.curve, area, ~held
-        met = _meeting_clusters(rectangles, starts, left)
-        for _ in range(ROUNDS):
-            near, finer = left[met[searched].any(axis=0)], finer * FINER
+    rectangles, clusters = outward(lattice.window, places, cover.steps), np.flatnonzero(small)
+    specks = [rectangles[owners == n] for n in clusters]
+    held = np.zeros(len(specks), dtype=np.bool_)
+    for enclosure, own in zip(enclosures, boxes, strict=True):
+        curve, left, searched, met = enclosure.curve, own, ~held, _entered(specks, own)
+        for number in range(1, ROUNDS + 1):
+            near, finer = left[met[searched].any(axis=0)], area * FINER**number
             left = search_curve(curve.system.arguments(), near, finer, BUDGET, curve.importance()).left()
-            before, met = met.sum(axis=1), _meeting_clusters(rectangles, starts, left)
+            before, met = met.sum(axis=1), _entered(specks, left)
             searched &= met.sum(axis=1) <= MAX_GROWTH * before
         held = ~searched | met.any(axis=1)
-    return complement if held.all() else without(complement, clusters[~held])
+    if held.all():
+        return complement
+    tree, lost = complement.subdivision, clusters[~held]
+    kept = tuple(r for r, gone in zip(cover.rectangles, np.isin(cluster_of, lost), strict=True) if not gone)
+    # what they cover is free now, and no part has to be cut again
+    state = np.where((tree.state == COVERED) & np.isin(complement.owner, lost), FREE, tree.state)
+    return components(replace(cover, rectangles=kept), replace(tree, state=state))
 
 
-def _meeting_clusters(rectangles: Boxes, starts: Integers, boxes: Boxes) -> NDArray[np.bool_]:
-    """Which clusters, the rectangles of which begin at these rows, and which boxes' projections meet."""
-    result: NDArray[np.bool_] = np.logical_or.reduceat(_meeting(rectangles, boxes), starts)
-    return result
+def _entered(specks: Sequence[Boxes], boxes: Boxes) -> NDArray[np.bool_]:
+    """Which of several sets of rectangles, and which boxes' projections, have points in common."""
+    return np.array([_meeting(rectangles, boxes).any(axis=0) for rectangles in specks])
 
 
 def _meeting(rectangles: Boxes, boxes: Boxes) -> NDArray[np.bool_]:

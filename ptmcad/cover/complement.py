@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.cover import tubes
-from ptmcad.cover.graph import Touching
 from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
 from ptmcad.cover.subdivision import COVERED, Subdivision, rectangle_array, subdivide
 
@@ -49,7 +48,6 @@ class Components:
     subdivision : of the window.
     owner : for each part of the subdivision the number of its component or, for a covered one, of its cluster; -1 in
         a frame.
-    pairs : of leaves of the subdivision that touch.
     frames : of the slanted pieces; None when there are none.
     """
 
@@ -61,7 +59,6 @@ class Components:
     clusters_at: tuple[tuple[int, ...], ...]
     subdivision: Subdivision
     owner: Integers
-    pairs: Touching
     frames: Frames | None = None
 
     def locate(self, u: Fraction, v: Fraction) -> int | None:

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from ptmcad.cover import tubes
 from ptmcad.cover.complement import Components, Frames, as_rectangles, bounding_boxes, grown, sums_of_areas
-from ptmcad.cover.graph import Touching, connected, touching
+from ptmcad.cover.graph import connected, touching
 from ptmcad.cover.rectangles import Cover, Patch, Rectangle
 from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array, subdivide
 
@@ -54,8 +54,12 @@ class _Nodes:
     free: NDArray[np.bool_]
 
 
-def components(cover: Cover) -> Components:
+def components(cover: Cover, tree: Subdivision | None = None) -> Components:
     """The connected components of the open window without the closed rectangles and the tubes.
+
+    Parameters
+    ----------
+    tree : a subdivision by the cover; without it, it is made.
 
     Raises
     ------
@@ -69,33 +73,17 @@ def components(cover: Cover) -> Components:
             raise ValueError(f"a patch of the cover is none: {wrong}")
     whole = Cover(cover.steps, (*cover.rectangles, *(patch.frame for patch in cover.patches)))
     array = rectangle_array(whole)
-    tree = subdivide(array, cover.steps)
+    tree = tree or subdivide(array, cover.steps)
     parts = np.flatnonzero(tree.state != CUT)
-    frame_of = _frames_of(tree, array[len(cover.rectangles) :], array)
-    return _connected(cover, tree, frame_of, touching(tree.bounds[parts]))
-
-
-def without(complement: Components, clusters: Integers) -> Components:
-    """The components of the same cover without the rectangles of some clusters."""
-    cover, tree = complement.cover, complement.subdivision
-    lost = np.isin(complement.cluster_of, clusters).tolist()
-    left = tuple(r for r, is_lost in zip(cover.rectangles, lost, strict=True) if not is_lost)
-    open = (tree.state == COVERED) & np.isin(complement.owner, clusters)
-    tree = replace(tree, state=np.where(open, FREE, tree.state))
-    frames = complement.frames
-    frame_of = np.full(len(tree.state), -1, dtype=np.int64) if frames is None else frames.frame_of
-    return _connected(replace(cover, rectangles=left), tree, frame_of, complement.pairs)
-
-
-def _connected(cover: Cover, tree: Subdivision, frame_of: Integers, pairs: Touching) -> Components:
-    """What is connected of the leaves, of which these pairs touch."""
-    parts = np.flatnonzero(tree.state != CUT)
-    nodes = _nodes(tree, parts, frame_of[parts], cover.patches)
-    first, second = _edges(nodes, pairs, cover.patches)
+    frames = array[len(cover.rectangles) :]
+    frame_of = _frames_of(tree, frames, array)[parts]
+    nodes = _nodes(tree, parts, frame_of, cover.patches)
+    pairs = touching(tree.bounds[parts])
+    first, second = _edges(nodes, pairs.first, pairs.second, pairs.along, cover.patches)
     free = nodes.free
     joined = free[first] == free[second]
     label = connected(len(free), first[joined], second[joined])
-    return _assembled(cover, tree, nodes, label, (first[~joined], second[~joined]), pairs)
+    return _assembled(cover, tree, parts, nodes, label, (first[~joined], second[~joined]))
 
 
 def _frames_of(tree: Subdivision, frames: Integers, rectangles: Integers) -> Integers:
@@ -131,12 +119,13 @@ def _nodes(tree: Subdivision, parts: Integers, frame_of: Integers, patches: tupl
     )
 
 
-def _edges(nodes: _Nodes, pairs: Touching, patches: tuple[Patch, ...]) -> tuple[Integers, Integers]:
+def _edges(
+    nodes: _Nodes, first: Integers, second: Integers, along: NDArray[np.bool_], patches: tuple[Patch, ...]
+) -> tuple[Integers, Integers]:
     """Pairs of nodes that touch: open ones along an edge, others in a point at least."""
-    first, second = pairs.first, pairs.second
     a_frame, b_frame = nodes.frame_of[first], nodes.frame_of[second]
     plain = (a_frame < 0) & (b_frame < 0)
-    open_corner = nodes.free[first] & nodes.free[second] & ~pairs.along
+    open_corner = nodes.free[first] & nodes.free[second] & ~along
     ones, twos = [first[plain & ~open_corner]], [second[plain & ~open_corner]]
     sides = {}
     found: list[tuple[int, int]] = []
@@ -199,16 +188,10 @@ def _meeting(
 
 
 def _assembled(
-    cover: Cover,
-    tree: Subdivision,
-    nodes: _Nodes,
-    label: Integers,
-    border: tuple[Integers, Integers],
-    pairs: Touching,
+    cover: Cover, tree: Subdivision, parts: Integers, nodes: _Nodes, label: Integers, border: tuple[Integers, Integers]
 ) -> Components:
     """Number what is connected: components by descending area, clusters as well."""
     free, patches = nodes.free, cover.patches
-    parts = np.flatnonzero(tree.state != CUT)
     count = len(parts)
     outside = nodes.frame_of < 0
     total = [0] * len(free)
@@ -272,7 +255,6 @@ def _assembled(
         tuple(map(tuple, at)),
         tree,
         owner,
-        pairs,
         Frames(frame_of, owners) if patches else None,
     )
 

@@ -17,7 +17,7 @@ from numba.core.event import install_listener
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.certified import assembly, engine, loading, refinement, slanted
+from ptmcad.certified import engine, loading, refinement, slanted
 from ptmcad.certified.compiled import FUNCTIONS
 from ptmcad.certified.headway import PARTS, Headway
 from ptmcad.certified.pace import ALLOWANCE, MAP_TIME_SHARE, MIN_RESERVE, SAFETY, Pace
@@ -129,8 +129,7 @@ def stopped(
             hand = clock.slowed(handed.append, length)
         else:
             hand = handed.append
-            module = assembly if phase == "components" else engine
-            patch.setattr(module, phase, clock.slowed(getattr(module, phase), length))
+            patch.setattr(engine, phase, clock.slowed(getattr(engine, phase), length))
         with pytest.raises(LimitReached) as limit:
             engine.certified_map(
                 window(), Options(tolerance=Fraction(1, 10**14), deadline=deadline, jobs=1, partial=hand)
