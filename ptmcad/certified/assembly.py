@@ -8,7 +8,7 @@ it may be an artefact of the boxes, with the same counts as a larger component b
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice
 
@@ -30,18 +30,12 @@ beside them are taken for artefacts. So a region that is there in truth appears 
 
 @dataclass(frozen=True, slots=True)
 class Assembler:
-    """Makes maps of one slice.
-
-    Attributes
-    ----------
-    known : the counts so far, by the point and whether much was done to decide them.
-    """
+    """Makes maps of one slice."""
 
     slice: Slice
     counter: BranchCounter
     plan: tuple[PlanStep, ...]
     versions: Mapping[str, str]
-    known: dict[tuple[Fraction, Fraction, bool], PointCount] = field(default_factory=dict)
 
     def map(
         self,
@@ -101,9 +95,7 @@ class Assembler:
             large = complement.areas[n] >= pocket
             for x, y in islice(samples(complement, n, window), 3 if large else 1):
                 sample = Point((horizontal.name, vertical.name), x, y)
-                # maps on the way have many samples that the next ones have, too
-                count = self.known.get((x, y, large)) or self.counter.at(x, y, self.slice.count, thorough=large)
-                self.known[x, y, large] = count
+                count = self.counter.at(sample[0], sample[1], self.slice.count, thorough=large)
                 if count.decided:
                     counted[n] = (sample, count)
                     break

@@ -15,8 +15,7 @@ from ptmcad.text.expressions import Expression, Term
 
 def expression_formula(graph: Graph, expression: Expression) -> Formula:
     """A rational function of the axes, by Horner's rule in the first axis over polynomials in the second."""
-    numerator = _polynomial(graph, expression.numerator)
-    return numerator if expression.is_polynomial else numerator / _polynomial(graph, expression.denominator)
+    return _polynomial(graph, expression.numerator) / _polynomial(graph, expression.denominator)
 
 
 def _polynomial(graph: Graph, terms: tuple[Term, ...]) -> Formula:

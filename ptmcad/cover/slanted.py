@@ -95,8 +95,6 @@ def _frames_of(tree: Subdivision, frames: Integers, rectangles: Integers) -> Int
         When the interiors of a frame and of another rectangle meet.
     """
     result = np.full(len(tree.state), -1, dtype=np.int64)
-    if not len(frames):
-        return result
     box, leaf = tree.meeting(frames, closed=False)
     result[leaf] = box
     _, leaf_of_others = tree.meeting(rectangles[: len(rectangles) - len(frames)], closed=False)
