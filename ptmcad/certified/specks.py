@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import compress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +34,7 @@ MAX_GROWTH = 2
 """A cluster of which there are more than so many times the boxes after a round is no speck: along a curve, there are
 four times as many."""
 BUDGET = 20_000
-"""Boxes that are treated for each curve: about a tenth of a second."""
+"""Boxes that are treated for each curve in a round: about a tenth of a second."""
 MAX_PAIRS = 3 * 10**7
 """Rectangles of specks times boxes: beyond, to look for them would take seconds."""
 
@@ -73,7 +74,7 @@ def without_specks(
     if held.all():
         return complement
     tree, lost = complement.subdivision, clusters[~held]
-    kept = tuple(r for r, gone in zip(cover.rectangles, np.isin(cluster_of, lost), strict=True) if not gone)
+    kept = tuple(compress(cover.rectangles, ~np.isin(cluster_of, lost)))
     # what they cover is free now, and no part has to be cut again
     state = np.where((tree.state == COVERED) & np.isin(complement.owner, lost), FREE, tree.state)
     return components(replace(cover, rectangles=kept), replace(tree, state=state))
