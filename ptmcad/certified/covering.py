@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from fractions import Fraction
 from math import inf
 
 import numpy as np
@@ -16,6 +17,7 @@ import numpy as np
 from ptmcad.certified.refinement import Enclosure
 from ptmcad.certified.search import Boxes
 from ptmcad.certified.strips import NONE, Strips, areas_of_pieces, numbers_of_pieces, pieces, strips
+from ptmcad.certified.tape import enclosing_floats
 from ptmcad.cover import from_boxes, union_area
 from ptmcad.cover.rectangles import Cover, Window
 from ptmcad.cover.rounding import cover_of
@@ -72,6 +74,16 @@ class Lattice:
     def copies(self) -> int:
         """How often the window has what is searched, about."""
         return 1 if self.change is None else 2
+
+
+def outward(window: Window, rectangles: Integers, steps: int) -> Boxes:
+    """Floats around rectangles on a lattice of so many steps: left, bottom, right, top."""
+    result = np.empty((len(rectangles), 4))
+    for k, (low, high) in enumerate(window):
+        lines, places = np.unique(rectangles[:, 2 * k : 2 * k + 2], return_inverse=True)
+        around = [enclosing_floats(low + (high - low) * Fraction(line, steps)) for line in lines.tolist()]
+        result[:, [k, 2 + k]] = np.array(around).reshape(-1, 2)[places.reshape(-1, 2), [0, 1]]
+    return result
 
 
 def box_rectangles(enclosures: Sequence[Enclosure]) -> Boxes:

@@ -11,7 +11,6 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from math import inf
 
 import flint
 import numba
@@ -19,7 +18,7 @@ import numpy as np
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified.assembly import Assembler
-from ptmcad.certified.covering import START_TILES, Lattice, Thinning, box_rectangles, thinning
+from ptmcad.certified.covering import START_TILES, Lattice, Thinning, box_rectangles, outward, thinning
 from ptmcad.certified.headway import PARTS, Headway
 from ptmcad.certified.loading import load, may_be_slanted
 from ptmcad.certified.pace import SAFETY, Pace
@@ -31,10 +30,10 @@ from ptmcad.certified.search import Boxes
 from ptmcad.certified.slanted import slanting
 from ptmcad.certified.specks import without_specks
 from ptmcad.certified.statement import plan_of
-from ptmcad.certified.tape import enclosing_floats
 from ptmcad.cover import components, union_area
 from ptmcad.cover.rectangles import MAX_STEPS, Cover
 from ptmcad.cover.simplification import combined, gathered
+from ptmcad.cover.subdivision import rectangle_array
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import DEFAULTS, Options
 from ptmcad.process.handover import LAST_SECONDS, leave_if_asked
@@ -54,8 +53,9 @@ MAX_AXIS_END = Fraction(10**100)
 MAX_BOXES = 6_000_000
 MAX_RECTANGLES = 3_000_000
 """In a cover made of strips: its JSON has some 40 bytes for each, and Python some 200."""
-STRIP_TRIAL_RATIO = 100
-"""Strips are tried as soon as the boxes leave at most so many times the tolerance undetermined."""
+STRIP_TRIAL_RATIO = 0.1
+"""Strips are tried as soon as the square of the boxes' share is at most so many times the tolerance: that of strips is
+about the square at best."""
 STRIP_TARGET_SHARE = 0.5
 """... and used as soon as the finest ones would leave less than this part of it."""
 FIRST_MAP_SHARE = Fraction(97, 100)
@@ -229,7 +229,7 @@ class _Run:
     def thin_cover(self, undetermined: Fraction) -> Cover | None:
         """A cover of strips that are thin enough for the tolerance, if they can be, in the time that there is."""
         allowed = self.tolerance
-        if undetermined > STRIP_TRIAL_RATIO * allowed or self.pace.left() < SAFETY * self.pace.thin.of(self.boxes()):
+        if undetermined**2 > STRIP_TRIAL_RATIO * allowed or self.pace.left() < SAFETY * self.pace.thin.of(self.boxes()):
             return None
         start = self.clock()
         strips = self._strips()
@@ -384,27 +384,13 @@ def _rectangles(lattice: Lattice, resume: Cover | None) -> Boxes:
     """The rectangles (low x, low y, high x, high y) with which the search begins, rounded outwards."""
     if resume is None:
         steps = START_TILES
-        tiles = [(i, i + 1, j, j + 1) for i in range(steps) for j in range(steps)]
-        others = lattice.images(np.array(tiles), steps).tolist()
-        rectangles = tuple(tile for tile, other in zip(tiles, others, strict=True) if list(tile) <= other)
+        tiles = np.array([(i, i + 1, j, j + 1) for i in range(steps) for j in range(steps)])
+        others = lattice.images(tiles, steps).tolist()
+        rectangles = tiles[[tile <= other for tile, other in zip(tiles.tolist(), others, strict=True)]]
     else:
         most = min(Fraction(MAX_TILES), START_TILES**2 / max(_share(resume), Fraction(1, MAX_TILES)))
-        steps, rectangles = resume.steps, gathered(resume, int(most)).rectangles
-    horizontal, vertical = lattice.window
-
-    def value(axis_low: Fraction, axis_high: Fraction, step: int, towards: float) -> float:
-        low, high = enclosing_floats(axis_low + (axis_high - axis_low) * Fraction(step, steps))
-        return low if towards < 0 else high
-
-    result = np.empty((len(rectangles), 4))
-    for k, (left, right, bottom, top) in enumerate(rectangles):
-        result[k] = (
-            value(*horizontal, left, -inf),
-            value(*vertical, bottom, -inf),
-            value(*horizontal, right, inf),
-            value(*vertical, top, inf),
-        )
-    return result
+        steps, rectangles = resume.steps, rectangle_array(gathered(resume, int(most)))
+    return outward(lattice.window, rectangles, steps)
 
 
 def _share(cover: Cover) -> Fraction:

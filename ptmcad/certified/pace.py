@@ -15,7 +15,7 @@ from time import perf_counter, process_time
 
 MAP_TIME_SHARE = 0.06
 """Of the time, spent on maps on the way."""
-ALLOWANCE = 1.5
+ALLOWANCE = 0.4
 """Seconds for the first of them, whose worth is largest."""
 SAFETY = 2.0
 MIN_RESERVE = 1.0

@@ -14,25 +14,27 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import compress
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.certified.covering import Lattice
+from ptmcad.certified.covering import Lattice, outward
 from ptmcad.certified.refinement import Enclosure
 from ptmcad.certified.search import Boxes, search_curve
-from ptmcad.certified.tape import enclosing_floats
-from ptmcad.cover import components
 from ptmcad.cover.complement import Components
-from ptmcad.cover.rectangles import Cover, Rectangle
-from ptmcad.cover.subdivision import rectangle_array
+from ptmcad.cover.slanted import components
+from ptmcad.cover.subdivision import COVERED, FREE, rectangle_array
 
 MAX_SHARE = Fraction(1, 10_000)
 """Of the window: larger clusters are no specks."""
-FINER = 4.0**-6
-"""Boxes are bisected until their projections are so many times smaller."""
+ROUNDS, FINER = 3, 4.0**-2
+"""Boxes are bisected so often until their projections are so many times smaller."""
+MAX_GROWTH = 2
+"""A cluster of which there are more than so many times the boxes after a round is no speck: along a curve, there are
+four times as many."""
 BUDGET = 20_000
-"""Boxes that are treated for each curve: about a tenth of a second."""
+"""Boxes that are treated for each curve in a round: about a tenth of a second."""
 MAX_PAIRS = 3 * 10**7
 """Rectangles of specks times boxes: beyond, to look for them would take seconds."""
 
@@ -58,28 +60,29 @@ def without_specks(
         places = np.concatenate([places, lattice.images(places, cover.steps)])
     if not len(chosen) or len(places) * sum(map(len, boxes)) > MAX_PAIRS:
         return complement
-    rectangles = np.array([_outward(lattice, cover, place) for place in places.tolist()])
-    held = np.zeros(len(small), dtype=np.bool_)
+    rectangles, clusters = outward(lattice.window, places, cover.steps), np.flatnonzero(small)
+    specks = [rectangles[owners == n] for n in clusters]
+    held = np.zeros(len(specks), dtype=np.bool_)
     for enclosure, own in zip(enclosures, boxes, strict=True):
-        near = own[_meeting(rectangles, own).any(axis=0)]
-        curve = enclosure.curve
-        found = search_curve(curve.system.arguments(), near, FINER * area, BUDGET, curve.importance())
-        held[owners[_meeting(rectangles, found.left()).any(axis=1)]] = True
-    kept = ~small[cluster_of] | held[cluster_of]
-    if kept.all():
+        curve, left, searched, met = enclosure.curve, own, ~held, _entered(specks, own)
+        for number in range(1, ROUNDS + 1):
+            near, finer = left[met[searched].any(axis=0)], area * FINER**number
+            left = search_curve(curve.system.arguments(), near, finer, BUDGET, curve.importance()).left()
+            before, met = met.sum(axis=1), _entered(specks, left)
+            searched &= met.sum(axis=1) <= MAX_GROWTH * before
+        held = ~searched | met.any(axis=1)
+    if held.all():
         return complement
-    left = tuple(r for r, keep in zip(cover.rectangles, kept.tolist(), strict=True) if keep)
-    return components(replace(cover, rectangles=left))
+    tree, lost = complement.subdivision, clusters[~held]
+    kept = tuple(compress(cover.rectangles, ~np.isin(cluster_of, lost)))
+    # what they cover is free now, and no part has to be cut again
+    state = np.where((tree.state == COVERED) & np.isin(complement.owner, lost), FREE, tree.state)
+    return components(replace(cover, rectangles=kept), replace(tree, state=state))
 
 
-def _outward(lattice: Lattice, cover: Cover, rectangle: Rectangle) -> tuple[float, float, float, float]:
-    """Floats around a rectangle: left, bottom, right, top."""
-    ends = []
-    for k, (low, high) in enumerate(lattice.window):
-        step = (high - low) / cover.steps
-        ends.append((enclosing_floats(low + step * rectangle[2 * k])[0],
-                     enclosing_floats(low + step * rectangle[2 * k + 1])[1]))  # fmt: skip
-    return ends[0][0], ends[1][0], ends[0][1], ends[1][1]
+def _entered(specks: Sequence[Boxes], boxes: Boxes) -> NDArray[np.bool_]:
+    """Which of several sets of rectangles, and which boxes' projections, have points in common."""
+    return np.array([_meeting(rectangles, boxes).any(axis=0) for rectangles in specks])
 
 
 def _meeting(rectangles: Boxes, boxes: Boxes) -> NDArray[np.bool_]:

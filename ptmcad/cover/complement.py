@@ -124,7 +124,7 @@ def grown(tree: Subdivision, boxes: Integers, around: Integers) -> Integers:
 
 def as_rectangles(array: Integers) -> tuple[Rectangle, ...]:
     """Rows of an array of shape (k, 4) as tuples."""
-    return tuple((left, right, bottom, top) for left, right, bottom, top in array.tolist())
+    return tuple(zip(*array.T.tolist(), strict=True))
 
 
 def sums_of_areas(boxes: Integers, group: Integers, groups: int) -> list[int]:

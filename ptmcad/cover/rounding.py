@@ -63,7 +63,7 @@ def cover_of(array: Integers, steps: int) -> Cover:
     rows = array[np.lexsort(array.T[::-1])]
     if len(rows):
         rows = rows[np.concatenate([[True], (rows[1:] != rows[:-1]).any(axis=1)])]
-    return Cover(steps, tuple((left, right, bottom, top) for left, right, bottom, top in rows.tolist()))
+    return Cover(steps, tuple(zip(*rows.T.tolist(), strict=True)))
 
 
 def rounded_down(values: Floats, low: Fraction, high: Fraction, steps: int) -> Integers:

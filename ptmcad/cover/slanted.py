@@ -54,8 +54,12 @@ class _Nodes:
     free: NDArray[np.bool_]
 
 
-def components(cover: Cover) -> Components:
+def components(cover: Cover, tree: Subdivision | None = None) -> Components:
     """The connected components of the open window without the closed rectangles and the tubes.
+
+    Parameters
+    ----------
+    tree : a subdivision by the cover; without it, it is made.
 
     Raises
     ------
@@ -69,7 +73,7 @@ def components(cover: Cover) -> Components:
             raise ValueError(f"a patch of the cover is none: {wrong}")
     whole = Cover(cover.steps, (*cover.rectangles, *(patch.frame for patch in cover.patches)))
     array = rectangle_array(whole)
-    tree = subdivide(array, cover.steps)
+    tree = tree or subdivide(array, cover.steps)
     parts = np.flatnonzero(tree.state != CUT)
     frames = array[len(cover.rectangles) :]
     frame_of = _frames_of(tree, frames, array)[parts]

@@ -107,6 +107,8 @@ class Expression:
 
     def __add__(self, other: Expression | Fraction | int) -> Expression:
         other = _as_expression(other)
+        if not other.numerator:
+            return self
         if self.denominator == other.denominator:
             return _reduced(_sum(dict_of(self.numerator), other.numerator), dict_of(self.denominator))
         left = _product(self.numerator, other.denominator)
@@ -121,6 +123,8 @@ class Expression:
 
     def __mul__(self, other: Expression | Fraction | int) -> Expression:
         other = _as_expression(other)
+        if not (self.numerator and other.numerator):
+            return constant(0)
         return _reduced(_product(self.numerator, other.numerator), _product(self.denominator, other.denominator))
 
     def __truediv__(self, other: Expression | Fraction | int) -> Expression:

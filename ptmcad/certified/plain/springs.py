@@ -97,6 +97,7 @@ class Shape:
     difference : d.
     weights, bends : what the spring is in the equations by, and the derivatives of that by each unknown.
     slopes : of d by each unknown.
+    levers : scalar products of d and the derivatives of the weights, each by its own unknown.
     squares, crosses : scalar products of the weights, and their cross products.
     """
 
@@ -105,6 +106,7 @@ class Shape:
     weights: tuple[Pair, ...]
     slopes: tuple[Pair, ...]
     bends: tuple[tuple[Pair, ...], ...]
+    levers: tuple[TrigonometricPolynomial, ...]
     squares: tuple[tuple[TrigonometricPolynomial, ...], ...]
     crosses: tuple[tuple[TrigonometricPolynomial, ...], ...]
 
@@ -135,7 +137,7 @@ class Shape:
             tuple(ux * b - uy * a for a, b in vectors),
             tuple(ux * b - uy * a for a, b in slopes),
             tuple(tuple(ux * written(a) + uy * written(b) for a, b in row) for row in self.bends),
-            tuple(written(x * row[i][0] + y * row[i][1]) for i, row in enumerate(self.bends)),
+            tuple(map(written, self.levers)),
             tuple(tuple(map(written, row)) for row in self.squares),
             tuple(tuple(map(written, row)) for row in self.crosses),
         )
@@ -151,6 +153,7 @@ def shape(cone: Cone, factors: Sequence[Expression]) -> Shape:
         weights,
         tuple((over(x.derivative(i), g), over(y.derivative(i), g)) for i, g in enumerate(factors)),
         tuple(tuple((a.derivative(j), b.derivative(j)) for j in range(len(factors))) for a, b in weights),
+        tuple(x * a.derivative(i) + y * b.derivative(i) for i, (a, b) in enumerate(weights)),
         tuple(tuple(a * c + b * d for c, d in weights) for a, b in weights),
         tuple(tuple(a * d - b * c for c, d in weights) for a, b in weights),
     )

@@ -48,12 +48,13 @@ class TrigonometricPolynomial:
 
     def __mul__(self, other: TrigonometricPolynomial) -> TrigonometricPolynomial:
         found = []
-        for (m, e), (a, b) in self.terms.items():
+        for (m, e), pair in self.terms.items():
+            a, b = (coefficient * _HALF for coefficient in pair)
             for (n, f), (c, d) in other.terms.items():
                 power = tuple(p + q for p, q in zip(e, f, strict=True))
                 above = tuple(p + q for p, q in zip(m, n, strict=True))
                 below = tuple(p - q for p, q in zip(m, n, strict=True))
-                ac, bd, ad, bc = a * c * _HALF, b * d * _HALF, a * d * _HALF, b * c * _HALF
+                ac, bd, ad, bc = a * c, b * d, a * d, b * c
                 found += [((above, power), (ac - bd, ad + bc)), ((below, power), (ac + bd, bc - ad))]
         return _collected(found)
 
