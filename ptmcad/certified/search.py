@@ -31,6 +31,9 @@ SOLVED_WEIGHT = 0.1
 MAX_SLIVER_RATIO = 8
 """With an axis that is solved for a box is left alone only if it is at most this many times as long in any variable as
 its projection would be as a square: a box whose edge alone has the value of the axis has no area, and says nothing."""
+FLAT = 1e-6
+"""So are other boxes whose area is less than this part of what is asked: all of a box may lie at one value of an axis,
+at which a spring may have no length, before its other variables have been looked at."""
 MAX_PROOF_WIDTH = 1e-2
 """Boxes at most this wide are tried for a proof of existence."""
 NEVER = -1.0
@@ -117,9 +120,10 @@ def branch_and_prune(system: Arguments, equations: Arguments, start: Boxes, limi
     unique, narrow = np.empty((4, 2 * variables)), np.empty((4, 2 * variables))
     top = start.shape[0]
     proved = finished = used = ZERO
-    longest = inf
-    if len(system.solved) > 0 and limits.area > 0:
+    longest, flat = inf, 0.0
+    if limits.area > 0:
         longest = MAX_SLIVER_RATIO * sqrt(limits.area * weights[0] * weights[1])
+        flat = limits.area if len(system.solved) > 0 else FLAT * limits.area
     box = np.empty(2 * variables)
     low, high = box[:variables], box[variables:]
     while top > 0 and used < limits.budget and finished <= limits.allowed:
@@ -149,7 +153,7 @@ def branch_and_prune(system: Arguments, equations: Arguments, start: Boxes, limi
                 proved += 1
                 continue
         area = (high[0] - low[0]) * (high[1] - low[1])
-        if widest < 0 or width <= limits.width or (area <= limits.area and width <= longest):
+        if widest < 0 or width <= limits.width or (area <= limits.area and (area > flat or width <= longest)):
             small = _with(small, finished, box)
             finished += 1
             continue

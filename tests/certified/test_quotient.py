@@ -264,3 +264,11 @@ def test_a_map_with_three_odd_unknowns() -> None:
     assert found.cells
     for cell in found.cells:
         assert counter.at(*cell.sample, Count.STABLE).stable == cell.stable
+
+
+def test_a_line_without_a_springs_length_parts_no_regions() -> None:
+    """Over rho = 1 two springs can lose their lengths; the count of stable equilibria stays what it is."""
+    found = ptmcad.classify("free-load", tolerance="1/200")
+    left, right = (found.locate(rho=rho, F="-20") for rho in ("99/100", "101/100"))
+    assert left.region is not None
+    assert left.region == right.region
