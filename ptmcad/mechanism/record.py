@@ -29,8 +29,13 @@ from ptmcad.text.tree import Name, Negative, Number, Tree
 
 DEFAULT_NAME = "mechanism"
 NAMED_RESTS = {
-    "0": (1, 0), "pi/2": (0, 1), "pi": (-1, 0), "-pi": (-1, 0), "-pi/2": (0, -1), "3*pi/2": (0, -1),
-}  # fmt: skip
+    "0": (1, 0),
+    "pi/2": (0, 1),
+    "pi": (-1, 0),
+    "-pi": (-1, 0),
+    "-pi/2": (0, -1),
+    "3*pi/2": (0, -1),
+}
 """Cosine and sine of the angles that have both rational and are written with pi."""
 _ONE: Tree = Number(Fraction(1))
 _UNWRITTEN: Callable[[Any], Any] = list
@@ -75,93 +80,120 @@ def mechanism_codec(context: Context) -> Codec[dict[str, Any]]:
     """A mechanism's keys, read in this order."""
     value, between = context.value(), context.between()
     spring: Codec[dict[str, Any]] = record(
-        dict, "{between: [A, B], k: 1}", between=part(between, instead=("", "")),
-        k=part(value, "Stiffness.", instead=_ONE), free=part(value, "Free length.", ZERO, shown=0),
-    )  # fmt: skip
+        dict,
+        "{between: [A, B], k: 1}",
+        between=part(between, instead=("", "")),
+        k=part(value, "Stiffness.", instead=_ONE),
+        free=part(value, "Free length.", ZERO, shown=0),
+    )
     torsion: Codec[dict[str, Any]] = record(
-        dict, "{angle: th, k: 1}",
+        dict,
+        "{angle: th, k: 1}",
         angle=part(
             reading(context.angle, **VALUE),
-            "A sum of whole multiples of unknown angles, and of quarter turns such as pi/2.", instead=(ZERO, 0),
+            "A sum of whole multiples of unknown angles, and of quarter turns such as pi/2.",
+            instead=(ZERO, 0),
         ),
         k=part(value, "Stiffness, a moment.", instead=_ONE),
         rest=part(
             reading(_rest, anyOf=[{"enum": [0, *NAMED_RESTS]}, _DIRECTION.schema]),
-            "The angle at which it is relaxed, or its cosine and sine.", (Fraction(1), Fraction(0)), shown=0,
+            "The angle at which it is relaxed, or its cosine and sine.",
+            (Fraction(1), Fraction(0)),
+            shown=0,
         ),
         at=part(
             reading(lambda entry: context.known_point(entry, entry.plain), **NAME_SCHEMA),
             "The point at which it is drawn, where bodies, bars and supports do not tell the joint; it changes no "
-            "result.", "",
+            "result.",
+            "",
         ),
-    )  # fmt: skip
+    )
     closing = record(
-        lambda between, length: Closing(between[0], between[1], length), "{between: [B, D], length: L}",
-        between=part(between), length=part(value),
-    )  # fmt: skip
+        lambda between, length: Closing(between[0], between[1], length),
+        "{between: [B, D], length: L}",
+        between=part(between),
+        length=part(value),
+    )
     moving = context.value(moving=True)
     return record(
         dict,
         **context.start(DEFAULT_NAME),
         points=part(
             reading(lambda node: _points(node, context), **POINTS),
-            "Names to coordinates, polynomials in parameters, lengths, and cos and sin of sums of angles.", instead={},
+            "Names to coordinates, polynomials in parameters, lengths, and cos and sin of sums of angles.",
+            instead={},
         ),
-        **{"x-joint": part(
-            xjoints(context),
-            "X-joints: two crossed bars of one length from a base to a top that is as long as the base. The base is "
-            "two points on one level, from left to right, which no unknown moves, or the top of a joint above. The "
-            "first bar, from the base's left end to the top's right one, turns by an unknown angle against the base; "
-            "the other bar's angle follows, and its name may be used like an unknown's.", (),
-        )._replace(field="xjoints")},
+        **{
+            "x-joint": part(
+                xjoints(context),
+                "X-joints: two crossed bars of one length from a base to a top that is as long as the base. The base "
+                "is two points on one level, from left to right, which no unknown moves, or the top of a joint above. "
+                "The first bar, from the base's left end to the top's right one, turns by an unknown angle against the "
+                "base; the other bar's angle follows, and its name may be used like an unknown's.",
+                (),
+            )._replace(field="xjoints")
+        },
         bodies=part(
             bodies(context), "Rigid bodies: place, angle, and points in coordinates that turn with the body.", {}
         ),
         bars=part(
             listed(between, most=MAX_ENTRIES, like="[[O, P]]"),
-            "Pairs of points, drawn; that their distances are constant is proved.", (),
+            "Pairs of points, drawn; that their distances are constant is proved.",
+            (),
         ),
         supports=part(
             named(choice(Support), context.known_point, MAX_ENTRIES, "{O: pin}"),
-            "What holds a point, for drawings.", {},
+            "What holds a point, for drawings.",
+            {},
         ),
         springs=part(
             converted(listed(spring, None, MAX_ENTRIES, "[{between: [A, P], k: 1}]"), _UNWRITTEN, _springs),
-            "Springs between points, along their lines.", (),
+            "Springs between points, along their lines.",
+            (),
         ),
         torsion=part(
             converted(listed(torsion, None, MAX_ENTRIES, "[{angle: th, k: 1}]"), _UNWRITTEN, _torsion),
             "Springs between directions: energy k (1 - cos(angle - rest)), moment k sin(angle - rest). For small "
             "angles that is the linear spring of energy k (angle - rest)^2/2, which is no polynomial in cosines and "
-            "sines and no function on a circle.", (),
+            "sines and no function on a circle.",
+            (),
         ),
         loads=part(
             converted(
-                named(_load(context), context.known_point, MAX_ENTRIES, "{P: [0, -W]}"), _UNWRITTEN,
+                named(_load(context), context.known_point, MAX_ENTRIES, "{P: [0, -W]}"),
+                _UNWRITTEN,
                 lambda loads: tuple(Load(point, x, y) for point, (x, y) in loads.items()),
-            ), "Dead forces at points: two components, or a weight, in parameters.", ()),
+            ),
+            "Dead forces at points: two components, or a weight, in parameters.",
+            (),
+        ),
         moments=part(
             converted(
-                named(moving, context.known_unknown, MAX_ENTRIES, "{th: M}"), _UNWRITTEN,
+                named(moving, context.known_unknown, MAX_ENTRIES, "{th: M}"),
+                _UNWRITTEN,
                 lambda moments: tuple(Moment(*moment) for moment in moments.items()),
             ),
             "Generalised forces on unknowns. Of one that depends on its own unknown the part that varies is the slope "
             "of an energy; the work of the constant part is in no energy that is shown. With one that depends on "
-            "another unknown nothing says what is stable.", (),
+            "another unknown nothing says what is stable.",
+            (),
         ),
         symmetries=part(
             listed(
                 reading(context.symmetry, type="object", additionalProperties=VALUE),
-                most=MAX_ENTRIES, like="[{th: -th}]",
+                most=MAX_ENTRIES,
+                like="[{th: -th}]",
             ),
-            "Substitutions under which the energy changes by what no unknown is in.", (),
+            "Substitutions under which the energy changes by what no unknown is in.",
+            (),
         ),
         closing=part(
             listed(closing, most=MAX_ENTRIES, like="[{between: [B, D], length: L}]"),
             "Bars that close loops: two points whose distance stays the length. Where they leave more than one degree "
-            "of freedom, the tension of each, divided by its length, is a further unknown.", (),
+            "of freedom, the tension of each, divided by its length, is a further unknown.",
+            (),
         ),
-    )  # fmt: skip
+    )
 
 
 _SHAPE = frozenset({"parameters", "unknowns", "points", "bodies", "x-joint"})
@@ -252,9 +284,10 @@ def _load(context: Context) -> Codec[tuple[Tree, Tree]]:
 
 
 _DIRECTION = record(
-    lambda cos, sin: (cos, sin), "{cos: 3/5, sin: 4/5}",
+    lambda cos, sin: (cos, sin),
+    "{cos: 3/5, sin: 4/5}",
     **{name: part(reading(lambda entry: value_at(parse(constant(entry)), {}), **NUMBER)) for name in ("cos", "sin")},
-)  # fmt: skip
+)
 
 
 def _rest(entry: Node) -> tuple[Fraction, Fraction]:

@@ -32,8 +32,11 @@ def _postscript(content: bytes, stamp: bytes) -> bytes:
 
 
 _STAMPED: Mapping[bytes, Callable[[bytes, bytes], bytes]] = {
-    b"\x89PNG": _png, b"<?xm": _svg, b"%PDF": _postscript, b"%!PS": _postscript,
-}  # fmt: skip
+    b"\x89PNG": _png,
+    b"<?xm": _svg,
+    b"%PDF": _postscript,
+    b"%!PS": _postscript,
+}
 """How pictures whose content begins so are stamped."""
 
 

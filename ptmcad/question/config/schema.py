@@ -24,7 +24,10 @@ from ptmcad.text.tree import FUNCTIONS
 
 _LEAVES = {
     "name": {
-        "type": "string", "pattern": f"^{NAME.pattern}$", "maxLength": MAX_NAME, "not": {"enum": [*FUNCTIONS, "pi"]},
+        "type": "string",
+        "pattern": f"^{NAME.pattern}$",
+        "maxLength": MAX_NAME,
+        "not": {"enum": [*FUNCTIONS, "pi"]},
     },
     "number": {
         "description": "An exact number: 2, 0.1, 1e-30, 3/4.",
@@ -36,7 +39,7 @@ _LEAVES = {
             {"type": "string", "pattern": "^[-+*/^() \tA-Za-z0-9_.]+$", "maxLength": MAX_TEXT},
         ],
     },
-}  # fmt: skip
+}
 
 
 def record_schema() -> dict[str, Any]:

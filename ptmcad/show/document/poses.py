@@ -93,17 +93,25 @@ def poses_codec(digits: int) -> Codec[Poses]:
     exact: Codec[Fraction] = Codec(exact_text, Node.fraction, RATIONAL.schema)
     number: Codec[Enclosure] = record(
         lambda center, radius: Enclosure(center - radius, center + radius),
-        text=derived(lambda x: x.text(digits), _DECIMAL), center=exact, radius=exact._replace(read=Node.size),
-    )  # fmt: skip
+        text=derived(lambda x: x.text(digits), _DECIMAL),
+        center=exact,
+        radius=exact._replace(read=Node.size),
+    )
     known: Known = {Fraction: exact, Enclosure: number}
     bare, free = (_pose(known, free) for free in (False, True))
     pose: Codec[Pose] = either("admissible", lambda pose: pose.may_be_admissible, free, bare)
     return record_of(
-        Poses, {**known, Pose: pose._replace(schema=merged(bare.schema, free.schema))}, _made, model=MODEL,
+        Poses,
+        {**known, Pose: pose._replace(schema=merged(bare.schema, free.schema))},
+        _made,
+        model=MODEL,
         status=choice(Status).narrowed(enum=["exact", "certified", "on the variety", "undecided"]),
         digits=NATURAL.narrowed(minimum=1, maximum=MAX_DIGITS),
-        remark=line(MAX_REMARK), parameters=named(exact, _name), units=UNITS, **unless_default(Poses, "undecided"),
-    )  # fmt: skip
+        remark=line(MAX_REMARK),
+        parameters=named(exact, _name),
+        units=UNITS,
+        **unless_default(Poses, "undecided"),
+    )
 
 
 def _pose(known: Known, free: bool) -> Codec[Pose]:
@@ -116,9 +124,14 @@ def _pose(known: Known, free: bool) -> Codec[Pose]:
     }
     known = {**known, **springs}
     return record_of(
-        Pose, known, index=COUNT, multiplicity=POSITIVE, admissible=optional(TRUTH) if free else None,
-        nodes=named(listed(known[Enclosure], 2), _name), **unless_default(Pose, "reals", "torsion", known=known),
-    )  # fmt: skip
+        Pose,
+        known,
+        index=COUNT,
+        multiplicity=POSITIVE,
+        admissible=optional(TRUTH) if free else None,
+        nodes=named(listed(known[Enclosure], 2), _name),
+        **unless_default(Pose, "reals", "torsion", known=known),
+    )
 
 
 def _name(node: Node, key: str) -> str:

@@ -28,8 +28,16 @@ SEEN_SHARE = 0.99
 CURVE_FORMAT = "ptmcad-error-time/1"
 """What ``ptmcad report`` reads."""
 _NAMES = {"stable": "stable equilibria", "total": "equilibria", "index": "index"}
-_HEADER = ("method", "setting", "seconds (least-largest)", "wrong or undetermined", "regions missed",
-           "faintest region", "boundary off by", "area bounds apart")  # fmt: skip
+_HEADER = (
+    "method",
+    "setting",
+    "seconds (least-largest)",
+    "wrong or undetermined",
+    "regions missed",
+    "faintest region",
+    "boundary off by",
+    "area bounds apart",
+)
 _LABELLED = {"certified": "tolerance ", "companion": "N = ", "multistart": "N = ", "qepcad": "where "}
 """Methods whose points have their setting beside them in the picture, without these words."""
 

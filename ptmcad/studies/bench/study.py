@@ -48,7 +48,7 @@ from ptmcad.text.codec import (
     named,
     optional,
     record,
-)  # fmt: skip
+)
 from ptmcad.text.node import Node, opened
 from ptmcad.text.textfile import read_as
 
@@ -63,13 +63,36 @@ _COMPARED = ("wrong", "undetermined", "wrong_centres", "missed", "distance")
 """Figures, numbers or bounds, larger being worse."""
 _FINEST = ("index", "total", "stable", "admissible")
 _COLUMNS = [
-    "slice", "method", "setting", "seconds_median", "seconds_min", "seconds_max", "runs", "computing_median",
-    "peak_mib", "count", "wrong_low", "wrong_high", "undetermined", "wrong_centres", "regions", "missed",
-    "faintest_low", "faintest_high", "distance_low", "distance_high", "area_width", "reason", "note",
-]  # fmt: skip
+    "slice",
+    "method",
+    "setting",
+    "seconds_median",
+    "seconds_min",
+    "seconds_max",
+    "runs",
+    "computing_median",
+    "peak_mib",
+    "count",
+    "wrong_low",
+    "wrong_high",
+    "undetermined",
+    "wrong_centres",
+    "regions",
+    "missed",
+    "faintest_low",
+    "faintest_high",
+    "distance_low",
+    "distance_high",
+    "area_width",
+    "reason",
+    "note",
+]
 _SHORT = {
-    "seconds_minimum": "seconds_min", "seconds_maximum": "seconds_max", "seconds_runs": "runs", "peak": "peak_mib"
-}  # fmt: skip
+    "seconds_minimum": "seconds_min",
+    "seconds_maximum": "seconds_max",
+    "seconds_runs": "runs",
+    "peak": "peak_mib",
+}
 _WHOLE = ["runs", "wrong_centres", "regions", "missed"]
 FLOOR = (
     sys.executable,
@@ -289,21 +312,41 @@ _TAKEN: Codec[float] = Codec(SECONDS.write, _positive, {"type": "number", "exclu
 _PAIR = listed(SECONDS, 2)
 _TIMES: Codec[Row] = record(dict, runs=POSITIVE, median=_TAKEN, minimum=_TAKEN, maximum=_TAKEN)
 _FIGURES: Codec[Figures] = record(
-    dict, wrong=_PAIR, undetermined=SECONDS, wrong_centres=optional(NATURAL), regions=optional(POSITIVE),
-    missed=optional(NATURAL), faintest=optional(_PAIR), distance=optional(_PAIR),
-)  # fmt: skip
+    dict,
+    wrong=_PAIR,
+    undetermined=SECONDS,
+    wrong_centres=optional(NATURAL),
+    regions=optional(POSITIVE),
+    missed=optional(NATURAL),
+    faintest=optional(_PAIR),
+    distance=optional(_PAIR),
+)
 _MEASUREMENT: Codec[Row] = record(
-    dict, method=line(60).narrowed(enum=[*RIVALS]), setting=line(60), seconds=optional(_TIMES),
+    dict,
+    method=line(60).narrowed(enum=[*RIVALS]),
+    setting=line(60),
+    seconds=optional(_TIMES),
     computing=optional(_TIMES),
-    peak=optional(SECONDS), reason=line(1000), note=line(1000),
+    peak=optional(SECONDS),
+    reason=line(1000),
+    note=line(1000),
     figures=optional(named(_FIGURES).narrowed(propertyNames={"enum": [count.value for count in Count]})),
     area_width=optional(SECONDS),
-)  # fmt: skip
+)
 _STUDY: Codec[Row] = record(
-    lambda **keys: {"format": FORMAT, **keys}, slice=line(200), heading=line(1000), machine=named(line(300)),
-    versions=named(line(300)), seed=WHOLE, rounds=POSITIVE, time_limit=_TAKEN, quick=TRUTH, verified=optional(TRUTH),
-    floor=_TIMES, measurements=listed(_MEASUREMENT),
-)  # fmt: skip
+    lambda **keys: {"format": FORMAT, **keys},
+    slice=line(200),
+    heading=line(1000),
+    machine=named(line(300)),
+    versions=named(line(300)),
+    seed=WHOLE,
+    rounds=POSITIVE,
+    time_limit=_TAKEN,
+    quick=TRUTH,
+    verified=optional(TRUTH),
+    floor=_TIMES,
+    measurements=listed(_MEASUREMENT),
+)
 
 
 # ------------------------------------------------------------------------------------------------------- two compared

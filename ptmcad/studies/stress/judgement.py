@@ -67,9 +67,17 @@ def judge(case: Case, found: Any) -> Row:
         checks, row = judgement(case, found)
     remarks = [remark for holds, remark in checks if not holds]
     nothing = {
-        "expected": case.expected, "found": "", "right": not remarks, "remarks": remarks, "double": "",
-        "double_right": False, "error": None, "double_error": None, "condition": None, "bits": 0,
-    }  # fmt: skip
+        "expected": case.expected,
+        "found": "",
+        "right": not remarks,
+        "remarks": remarks,
+        "double": "",
+        "double_right": False,
+        "error": None,
+        "double_error": None,
+        "condition": None,
+        "bits": 0,
+    }
     return {**nothing, **row}
 
 
@@ -211,9 +219,8 @@ def _line(case: Case, found: CountIntervals) -> tuple[Checks, Row]:
     double = [count for count, _ in changes]
     # a change is half a step before the first place behind it
     errors = [
-        abs(x - (high - low) / STEPS / 2 - (a + b) / 2)
-        for (_, x), (a, b) in zip(changes[1:], ends, strict=False)
-    ]  # fmt: skip
+        abs(x - (high - low) / STEPS / 2 - (a + b) / 2) for (_, x), (a, b) in zip(changes[1:], ends, strict=False)
+    ]
     return checks, {
         "found": _text(stable),
         "double": _text(double),
