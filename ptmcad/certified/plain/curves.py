@@ -14,14 +14,14 @@ from fractions import Fraction
 import numpy as np
 
 from ptmcad.certified.curve import Curve
-from ptmcad.certified.formula import Formula
+from ptmcad.certified.formula import Formula, Graph
 from ptmcad.certified.plain.angle import Angle
 from ptmcad.certified.plain.bounds import TURN, Range, ranges
 from ptmcad.certified.plain.chart import Chart, chart, determinant, principal_minors
 from ptmcad.certified.plain.frame import Frame, frames
 from ptmcad.certified.plain.geometry import Geometry, geometry
 from ptmcad.certified.plain.involution import mirrors
-from ptmcad.certified.plain.problem import FIRST, Condition, Problem, problem_of
+from ptmcad.certified.plain.problem import FIRST, Condition, Cone, Problem, problem_of
 from ptmcad.certified.plain.quotient import NEAR, Fold, folds
 from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.scales import TURNING_WEIGHT, short_lengths, variable_weights
@@ -329,6 +329,10 @@ def _cones(search: _Search) -> Iterator[Curve]:
     """Equilibria that come to a configuration in which a spring with a free length has none."""
     for s, cone in enumerate(search.problem.cones):
         at = chart(search.exact, s)
+        moving = at.springs[s].active
+        if len(moving) == 1 and not search.stable:
+            yield _crease(search, cone, *moving)
+            continue
         graph = at.equations[0].graph
         unknowns = [graph.variable(k) for k in search.problem.variables]
         # a coordinate that is zero everywhere says nothing
@@ -345,6 +349,22 @@ def _cones(search: _Search) -> Iterator[Curve]:
             (*search.ranges, TURN),
             np.array([*search.weights, TURNING_WEIGHT]),
         )
+
+
+def _crease(search: _Search, cone: Cone, moving: int) -> Curve:
+    """All configurations in which a spring that one unknown alone moves has no length, whether it is balanced or not.
+
+    That is a curve by itself: other springs without length there do not matter.
+    """
+    unknown = Graph().variable(FIRST)
+    vanishing = [d.formula(unknown.graph, [unknown] * len(search.ranges)) for d in cone.difference]
+    return Curve(
+        f"crease where spring {cone.name} has no length{search.where}",
+        f"spring {cone.name} has no length, whatever the other unknowns are",
+        system([f for f in vanishing if f.value != 0], (0, 1, FIRST)),
+        (search.ranges[moving],),
+        np.array(search.weights[: FIRST + 1]),
+    )
 
 
 def _name(search: _Search) -> str:
