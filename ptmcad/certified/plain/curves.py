@@ -166,10 +166,8 @@ def _solved(search: _Search, vanishing: Sequence[Formula]) -> tuple[Quotient, ..
 
 
 def _charted(search: _Search, at: Chart) -> list[int]:
-    """The cones that have a chart: none with one unknown, and for minima those that depend on several."""
-    least = 1 if search.swallowed else 2
-    many = len(search.problem.unknowns) > 1
-    return [s for s, spring in enumerate(at.springs) if many and len(spring.active) >= least]
+    """The cones that have a chart: those of springs that several unknowns move."""
+    return [s for s, spring in enumerate(at.springs) if len(spring.active) > 1]
 
 
 def _fold(search: _Search, at: Chart) -> Curve:
