@@ -129,7 +129,11 @@ def _quotient(search: _Search, changes: Sequence[Involution], whole: Chart) -> I
 
 
 def _fold_about(search: _Search, fold: Fold) -> Curve:
-    """A fold in coordinates about an involution's fixed points."""
+    """A fold in coordinates about an involution's fixed points.
+
+    Of all equilibria those where a spring is so short that its direction may be any are left to that one's chart.
+    """
+    shortest = () if search.stable else _charted(search, fold.at)
     cheap, costly = (
         [*own, *more] if search.dependent else []
         for own, more in zip(fold.vanishing, _dependent(search, fold.at), strict=True)
@@ -143,6 +147,7 @@ def _fold_about(search: _Search, fold: Fold) -> Curve:
             ([f for f in cheap if f.value is None], costly),
             [
                 *fold.nonnegative,
+                *(fold.at.lengths[s] - NEAR * search.short[s] for s in shortest),
                 *_far(search, fold.at),
                 *(_semidefinite(fold.at) if search.stable else ()),
                 *_values(search.conditions, fold.at),
@@ -193,13 +198,19 @@ def _fold(search: _Search, at: Chart) -> Curve:
 
 
 def _far(search: _Search, at: Chart) -> list[Formula]:
-    """What is not negative where configurations are not searched about an involution's fixed points."""
+    """What is not negative where configurations are not searched about an involution's fixed points.
+
+    With f >= 0 that, in the chart of a spring: l f + c >= 0, which holds where its length l is short enough, too.
+    """
     angles = [name not in search.problem.reals for name in search.problem.unknowns]
     unknowns = [
         Angle(u.graph, {u: 1}) if isinstance(u, Formula) and is_angle else u
         for u, is_angle in zip(at.unknowns, angles, strict=True)
     ]
-    return [mirror.distance(unknowns) - NEAR for mirror in search.mirrors]
+    far = [mirror.distance(unknowns) - NEAR for mirror in search.mirrors]
+    if at.short is None or search.stable:
+        return far
+    return [at.lengths[at.short] * f + NEAR * NEAR * search.short[at.short] for f in far]
 
 
 def _semidefinite(at: Chart) -> list[Formula]:
