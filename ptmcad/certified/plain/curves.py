@@ -20,7 +20,7 @@ from ptmcad.certified.plain.bounds import TURN, Range, ranges
 from ptmcad.certified.plain.chart import Chart, chart, determinant, principal_minors
 from ptmcad.certified.plain.frame import Frame, frames
 from ptmcad.certified.plain.geometry import Geometry, geometry
-from ptmcad.certified.plain.involution import mirrors
+from ptmcad.certified.plain.involution import mirrors, square_of
 from ptmcad.certified.plain.problem import FIRST, Condition, Cone, Problem, problem_of
 from ptmcad.certified.plain.quotient import NEAR, Fold, folds
 from ptmcad.certified.plain.straight import branches
@@ -105,9 +105,7 @@ def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
     if not search.swallowed:
         # the folds' systems have the points at which a minimum is swallowed
         return (_fold(search, at), *_short_folds(search, at))
-    freedom = len(search.problem.unknowns) - search.problem.closing
-    swallowed = _points_without_length(search, at) if freedom == 1 else _cones(search)
-    return (_fold(search, at), *_short_folds(search, at), *swallowed)
+    return (_fold(search, at), *_short_folds(search, at), *_cones(search, at))
 
 
 def _quotient(search: _Search, changes: Sequence[Involution], whole: Chart) -> Iterator[Curve]:
@@ -125,7 +123,7 @@ def _quotient(search: _Search, changes: Sequence[Involution], whole: Chart) -> I
         search = replace(search, mirrors=(*search.mirrors, around[0]))
     if near:
         yield from (_fold(search, whole), *_short_folds(search, whole))
-    yield from _points_without_length(search, whole) if len(search.problem.unknowns) == 1 else _cones(search)
+    yield from _cones(search, whole)
 
 
 def _fold_about(search: _Search, fold: Fold) -> Curve:
@@ -334,14 +332,17 @@ def _points_without_length(search: _Search, at: Chart) -> Iterator[Curve]:
         )
 
 
-def _cones(search: _Search) -> Iterator[Curve]:
+def _cones(search: _Search, whole: Chart) -> Iterator[Curve]:
     """Equilibria that come to a configuration in which a spring with a free length has none."""
+    if len(search.problem.unknowns) - search.problem.closing == 1:
+        yield from _points_without_length(search, whole)
+        return
     for s, cone in enumerate(search.problem.cones):
-        at = chart(search.exact, s)
-        moving = at.springs[s].active
+        moving = whole.springs[s].active
         if len(moving) == 1 and not search.stable:
             yield _crease(search, cone, *moving)
             continue
+        at = chart(search.exact, s)
         graph = at.equations[0].graph
         unknowns = [graph.variable(k) for k in search.problem.variables]
         # a coordinate that is zero everywhere says nothing
@@ -363,16 +364,21 @@ def _cones(search: _Search) -> Iterator[Curve]:
 def _crease(search: _Search, cone: Cone, moving: int) -> Curve:
     """All configurations in which a spring that one unknown alone moves has no length, whether it is balanced or not.
 
-    That is a curve by itself: other springs without length there do not matter.
+    That is a curve by itself: other springs without length there do not matter. Where the unknown turns a vector that
+    is always as long, this is as long as the rest on it, and the unknown drops out.
     """
+    x, y = cone.difference
+    gap = square_of((x.still, y.still)) - square_of((x - x.still, y - y.still))
+    drops = bool(gap.terms) and gap == gap.still
     unknown = Graph().variable(FIRST)
-    vanishing = [d.formula(unknown.graph, [unknown] * len(search.ranges)) for d in cone.difference]
+    vanishing = [f.formula(unknown.graph, [unknown] * len(search.ranges)) for f in ((gap,) if drops else (x, y))]
+    ranges = () if drops else (search.ranges[moving],)
     return Curve(
         f"crease where spring {cone.name} has no length{search.where}",
         f"spring {cone.name} has no length, whatever the other unknowns are",
-        system([f for f in vanishing if f.value != 0], (0, 1, FIRST)),
-        (search.ranges[moving],),
-        np.array(search.weights[: FIRST + 1]),
+        system([f for f in vanishing if f.value != 0], range(FIRST + len(ranges))),
+        ranges,
+        np.array(search.weights[: FIRST + len(ranges)]),
     )
 
 

@@ -58,6 +58,11 @@ class TrigonometricPolynomial:
                 found += [((above, power), (ac - bd, ad + bc)), ((below, power), (ac + bd, bc - ad))]
         return _collected(found)
 
+    @property
+    def still(self) -> TrigonometricPolynomial:
+        """The part that has no unknown in it."""
+        return TrigonometricPolynomial({k: pair for k, pair in self.terms.items() if not any(map(any, k))})
+
     def scaled(self, factor: Expression | Fraction) -> TrigonometricPolynomial:
         """Times a number or a function of the axes."""
         return _collected([(key, (a * factor, b * factor)) for key, (a, b) in self.terms.items()])
