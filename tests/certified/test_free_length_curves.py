@@ -168,11 +168,11 @@ def test_enclosures_are_thin() -> None:
 def test_creases_are_the_lines_where_a_spring_can_have_no_length() -> None:
     total = {c.name: c for c in curves(slice_of("1/5", **LOADED), Count.TOTAL)}
     for name, p in (
-        ("point where spring A1A4 has no length", (0.7, 0.7)),
-        ("point where spring A2A3 has no length", (1.0, 0.7)),
+        ("crease where spring A1A4 has no length", (0.7, 0.7)),
+        ("crease where spring A2A3 has no length", (1.0, 0.7)),
     ):
         assert covers(rectangles((total[name],), np.array(p), 0.01, 1e-7), np.array(p), 0.0)
-    assert not len(rectangles((total["point where spring A2A3 has no length"],), np.array([0.9, 0.7]), 0.01, 1e-7))
+    assert not len(rectangles((total["crease where spring A2A3 has no length"],), np.array([0.9, 0.7]), 0.01, 1e-7))
 
 
 def test_curves_of_each_count() -> None:

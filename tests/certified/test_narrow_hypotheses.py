@@ -131,7 +131,7 @@ def test_rho_nearly_equal_to_a_bar_everywhere() -> None:
     near, apart = (
         slice_of({"m": ["1/2", "3/5"], "L2": ["4/5", "9/10"]}, rho=f"m + m/10^{digits}", L1="m") for digits in (9, 4)
     )
-    assert "point where spring A2A3 has no length" in [c.name for c in curves(near, Count.TOTAL)]
+    assert "crease where spring A2A3 has no length" in [c.name for c in curves(near, Count.TOTAL)]
     counts, beside = plain_counter(near), plain_counter(apart)
     for x, y in ((Q(11, 20), Q(17, 20)), (Q(1, 2), Q(9, 10))):
         found = counts.at(x, y, Count.TOTAL)
