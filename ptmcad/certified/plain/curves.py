@@ -169,8 +169,8 @@ def _solved(search: _Search, vanishing: Sequence[Formula]) -> tuple[Quotient, ..
 
 
 def _charted(search: _Search, at: Chart) -> list[int]:
-    """The cones that have a chart: those of springs that several unknowns move."""
-    return [s for s, spring in enumerate(at.springs) if len(spring.active) > 1]
+    """The cones that have a chart: those of springs that several unknowns move, and all in closed loops."""
+    return [s for s, spring in enumerate(at.springs) if len(spring.active) > 1 or search.problem.closing]
 
 
 def _fold(search: _Search, at: Chart) -> Curve:
