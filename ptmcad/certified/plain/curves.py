@@ -339,7 +339,7 @@ def _cones(search: _Search, whole: Chart) -> Iterator[Curve]:
         return
     for s, cone in enumerate(search.problem.cones):
         moving = whole.springs[s].active
-        if len(moving) == 1 and not search.stable:
+        if len(moving) == 1 and search.problem.is_gradient and not search.stable:
             yield _crease(search, cone, *moving)
             continue
         at = chart(search.exact, s)
