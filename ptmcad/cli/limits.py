@@ -68,7 +68,9 @@ def default_bound() -> Bound:
     """Nine tenths of the memory of the machine, or of the container if that is less."""
     machine = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     group = Path(_GROUPS, *(line[4:] for line in kernel_lines("/proc/self/cgroup") if line.startswith("0::/")))
-    texts = [text for place in (group, *group.parents) for text in kernel_lines(place / "memory.max")]
+    older = Path(_GROUPS, "memory", "memory.limit_in_bytes")  # of the first kind of control groups
+    paths = [*(place / "memory.max" for place in (group, *group.parents)), older]
+    texts = [text for path in paths for text in kernel_lines(path)]
     least, whose = min([(machine, "machine"), *((int(text), "container") for text in texts if text.isdigit())])
     size = least * 9 // 10
     return Bound(size, f"{size / (1 << 30):.3g}G, nine tenths of this {whose}'s (--max-memory sets another),")

@@ -27,13 +27,11 @@ LOW_LIMIT = 1 << 30
 
 SIGNS = (
     "llocate ", "llocation still failed", "bad_alloc", "overflow in mpz", "MemoryError",
-    "failed to map segment", "static TLS block", "t start new thread", "LLVM ERROR: out of memory",
-    "pthread_create failed",
+    "failed to map segment", "static TLS block", "t start new thread", "pthread_create failed",
+    "LLVM ERROR: out of memory",
 )  # fmt: skip
 """What FLINT, GMP, OpenBLAS, C++, LLVM, Python and the loader of libraries print when they could not allocate, GMP also
 at its size limit."""
-
-_CALLERS = (resource.RLIMIT_DATA, "-d"), (resource.RLIMIT_AS, "-v")
 
 
 class Bound(NamedTuple):
@@ -59,8 +57,8 @@ def kernel_lines(path: str | Path) -> list[str]:
 def bounded(bound: Bound) -> Iterator[None]:
     """Keep this process below the bound, or below the one that its caller has set already if that is lower."""
     soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
-    sizes = [bound.size, *(limit for limit in (soft, hard) if limit != resource.RLIM_INFINITY)]
-    resource.setrlimit(resource.RLIMIT_DATA, (min(sizes), hard))
+    size = bound.size if soft == resource.RLIM_INFINITY else min(bound.size, soft)
+    resource.setrlimit(resource.RLIMIT_DATA, (size, hard))
     _in_force.append((bound, (soft, hard)))
     try:
         yield
@@ -140,9 +138,9 @@ def exhausted(text: str, most: int = 0, own: Sequence[str] = (), how: str = "") 
 
 def caller_limits() -> list[tuple[int, str]]:
     """The limits on memory that this process was started with, such as a shell's ``ulimit -v``: bytes, and words."""
-    sizes = [(resource.getrlimit(which)[0], option) for which, option in _CALLERS]
-    return [
-        (size, f"{size >> 20}M that the caller has set (ulimit {option})")
-        for size, option in sizes
-        if size != resource.RLIM_INFINITY
-    ]
+    found = []
+    for which, option in ((resource.RLIMIT_DATA, "-d"), (resource.RLIMIT_AS, "-v")):
+        size = resource.getrlimit(which)[0]
+        if size != resource.RLIM_INFINITY:
+            found.append((size, f"{size >> 20}M that the caller has set (ulimit {option})"))
+    return found

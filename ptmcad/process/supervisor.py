@@ -39,9 +39,6 @@ from ptmcad.process.streams import quiet_stream, report
 DESCRIPTORS = 24
 """That there must be: for pipes, for imports, for the files of a result."""
 
-AGAIN_SECONDS = 0.001
-"""Seconds until a signal comes again that came where nothing may be raised."""
-
 GRACE_SECONDS = 0.3
 """Seconds from the request to leave to the kill."""
 
@@ -55,7 +52,6 @@ _HOW_ENDED: dict[int, str] = {
     signal.SIGHUP: "the terminal was closed (SIGHUP)",
 }
 _CLEAR_LINE = "\r\x1b[K"
-_LAST_MAP = f"{_CLEAR_LINE}making the map of what is known by now; a second Ctrl-C saves an earlier one"
 
 
 def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
@@ -82,8 +78,6 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
         os._exit(2)
     os.set_blocking(wake[1], False)
     if child:
-        for descriptor in (messages[1], printed[1], lifeline[0]):
-            os.close(descriptor)
         os._exit(Watch(child, messages[0], printed[0], heeded).run(wake, before))
     for number in heeded:
         signal.signal(number, _terminate)
@@ -97,8 +91,7 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     signal.pthread_sigmask(signal.SIG_SETMASK, before)
     done = False
     try:
-        status = work()
-        done = True
+        status, done = work(), True
     except SystemExit as leaving:  # by `_terminate`
         status = int(leaving.code or 0)
     except MemoryError:
@@ -121,12 +114,12 @@ def _terminate(number: int, frame: FrameType | None) -> None:
     """Leave through every ``finally``, once, and without a word: the interrupted code may be in any state.
 
     Numba's compiled code calls Python to unpickle its types, does not look whether that has failed, and crashes if it
-    has. So a signal that comes meanwhile comes again a little later.
+    has. So a signal that comes meanwhile comes again a millisecond later.
     """
     caller = frame
     while caller is not None:
         if caller.f_code.co_name == "_numba_unpickle":
-            Timer(AGAIN_SECONDS, os.kill, [os.getpid(), number]).start()
+            Timer(0.001, os.kill, [os.getpid(), number]).start()
             return
         caller = caller.f_back
     for other in signal.valid_signals():
@@ -173,7 +166,7 @@ class Watch:
 
     def run(self, wake: tuple[int, int], before: set[int | signal.Signals]) -> int:
         """Watch until the child has ended, tidy up, and return the exit status."""
-        ends = {self.messages, self.printed, wake[0]}
+        ends = [self.messages, self.printed, wake[0]]
         for descriptor in ends:
             os.set_blocking(descriptor, False)
         signal.set_wakeup_fd(wake[1], warn_on_full_buffer=False)
@@ -182,24 +175,19 @@ class Watch:
         signal.signal(signal.SIGCHLD, lambda _number, _frame: None)  # it has to be caught to wake the parent
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
         try:
-            ended = self._wait(set(ends))
-            for descriptor in ends:
-                self._read(descriptor)
-            return self._end(ended)
+            return self._end(self._wait(ends))
         except MemoryError:  # of this process, which needs little: it is the caller's limit
             os.kill(self.child, signal.SIGKILL)  # it may be there, or wait to be asked for its end: not for another yet
             report("stopped: memory ran out, also for the process that watches; no result could be saved\n")
             return 3
 
-    def _wait(self, ends: set[int]) -> int:
+    def _wait(self, ends: list[int]) -> int:
         """The child's exit code, or minus the signal that ended it."""
         kill_at = math.inf
         while True:
-            due = min(self._deadline() if self.asked == math.inf else kill_at, time.monotonic() + 60)
-            for end in select.select(list(ends), [], [], max(0.0, due - time.monotonic()))[0]:
-                if not self._read(end):
-                    ends.discard(end)
             child, status, self.used = os.wait4(self.child, os.WNOHANG)
+            for end in ends:  # after the child's end all that it has said is there
+                self._read(end)
             if child:
                 return os.waitstatus_to_exitcode(status)
             now = time.monotonic()
@@ -215,29 +203,26 @@ class Watch:
                 self.asked, kill_at = now, now + (LAST_SECONDS if last_map else GRACE_SECONDS)
                 del self.caught[1:]
                 if last_map and os.isatty(2):
-                    report(_LAST_MAP)
+                    report(f"{_CLEAR_LINE}making the map of what is known by now; a second Ctrl-C saves an earlier one")
+            due = min(self._deadline() if self.asked == math.inf else kill_at, now + 60)
+            select.select(ends, [], [], max(0.0, due - now))
 
     def _deadline(self) -> float:
         return float(self.reports.get(Topic.DEADLINE, ["inf"])[0]) + OVERRUN_SECONDS  # infinite while the clock stands
 
-    def _read(self, end: int) -> bool:
-        """Take what there is; False at the end of the pipe."""
-        while True:
-            try:
-                data = os.read(end, 1 << 16)
-            except BlockingIOError:
-                return True
-            if not data:
-                return False
-            if end == self.messages:
-                self.received += data
-                for topic, texts in received(self.received):
-                    self.reports[topic] = texts
-                    self.saved += texts if topic is Topic.SAVED else ()
-            elif end == self.printed:
-                self.text += data
-            elif self.asked == math.inf:  # afterwards it is the child's echo of what asked it
-                self.caught += [number for number in data if number in self.heeded]
+    def _read(self, end: int) -> None:
+        """Take what there is; a pipe has no end, since this process could write to it, too."""
+        with suppress(BlockingIOError):
+            while data := os.read(end, 1 << 16):
+                if end == self.messages:
+                    self.received += data
+                    for topic, texts in received(self.received):
+                        self.reports[topic] = texts
+                        self.saved += texts if topic is Topic.SAVED else ()
+                elif end == self.printed:
+                    self.text += data
+                elif self.asked == math.inf:  # afterwards it is the child's echo of what asked it
+                    self.caught += [number for number in data if number in self.heeded]
 
     def _end(self, ended: int) -> int:
         """Leave nothing behind, say what there is to say, and return the exit status."""
@@ -249,15 +234,14 @@ class Watch:
                 with suppress(OSError):  # what cannot be removed is hidden, and removed by a later run
                     remove(path)
         if self.caught:
-            number, status = self.caught[0], 128 + self.caught[0]
-            how = _HOW_ENDED.get(number, f"stopped by {_name(number)}")
-            usual = self.reports.get(Topic.RESUMABLE) == [""]
-            return status if usual else self._report(how, status)
+            number = self.caught[0]
+            if self.reports.get(Topic.RESUMABLE) == [""]:  # it is the usual end
+                return 128 + number
+            return self._report(_HOW_ENDED.get(number, f"stopped by {_name(number)}"), 128 + number)
         # a library may call exit() when memory runs out: then the child has not said that it was done
         deserted = 0 <= ended <= 128 and not done
         text = self.text.decode(errors="replace")
-        why = self._why_stopped(ended, deserted, text)
-        if why:
+        if why := self._why_stopped(ended, deserted, text):
             return self._report(f"stopped: {why}", 3)
         report(text)
         if ended >= 0 and not deserted:
@@ -325,7 +309,5 @@ def what_is_there(saved: Sequence[str]) -> str:
 
 def _name(number: int) -> str:
     """A signal's name; most real-time signals have none."""
-    try:
-        return signal.Signals(number).name
-    except ValueError:
-        return f"signal {number}"
+    names = {each.value: each.name for each in signal.Signals}
+    return names.get(number, f"signal {number}")
