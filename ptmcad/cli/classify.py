@@ -133,7 +133,7 @@ def _report_why_none(slice: Slice, options: Options, output: Output, reason: str
 
     if "json" in output.formats and is_certified(slice, options.engine):
         kept = "; the map to go on from is as it was" if options.resume is not None else ""
-        send(Topic.RESUMABLE, f"there was no partial map to save yet: {reason}{kept}")
+        send(Topic.RESUMABLE, "there was no partial map to save yet", f"{reason}{kept}")
 
 
 def _hand_over(result: Any, name: str, output: Output) -> str:

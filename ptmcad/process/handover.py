@@ -31,7 +31,7 @@ class Topic(Enum):
     )
     # of its file, and the names of the other files that are to be written
     RESUMABLE = b"S"  # the results handed over can be gone on from: they are worth saving when a signal ends the work;
-    # with what there is to say as long as there is none; empty where a signal is the usual end
+    # with what there is to say while there is none, and why, if one is made at a signal; "" where that is the usual end
     DONE = b"E"  # the program has come to its end and exits with its status
 
 

@@ -191,19 +191,18 @@ class Watch:
             if child:
                 return os.waitstatus_to_exitcode(status)
             now = time.monotonic()
-            if self.asked < math.inf:
-                if now < self.asked + GRACE_SECONDS:
-                    del self.caught[1:]  # Ctrl-C that comes twice, by a terminal or by somebody's finger
-                if now >= kill_at or len(self.caught) > 1:
-                    os.kill(self.child, signal.SIGKILL)
-                    kill_at = math.inf
-            elif self.caught or now >= self._deadline():
+            if now < self.asked + GRACE_SECONDS:
+                del self.caught[1:]  # Ctrl-C that comes twice, by a terminal or by somebody's finger
+            if self.asked == math.inf and (self.caught or now >= self._deadline()):
                 os.kill(self.child, signal.SIGTERM if signal.SIGTERM in self.heeded else signal.SIGKILL)
-                last_map = self.caught and self.reports.get(Topic.RESUMABLE, [""]) != [""]
+                state = self.reports.get(Topic.RESULT, ["partial"])[0]
+                last_map = self.caught and state == "partial" and len(self.reports.get(Topic.RESUMABLE, ())) > 1
                 self.asked, kill_at = now, now + (LAST_SECONDS if last_map else GRACE_SECONDS)
-                del self.caught[1:]
                 if last_map and os.isatty(2):
                     report(f"{_CLEAR_LINE}making the map of what is known by now; a second Ctrl-C saves an earlier one")
+            elif now >= kill_at or len(self.caught) > 1:
+                os.kill(self.child, signal.SIGKILL)
+                kill_at = math.inf
             due = min(self._deadline() if self.asked == math.inf else kill_at, now + 60)
             select.select(ends, [], [], max(0.0, due - now))
 
@@ -275,7 +274,7 @@ class Watch:
         The result that was handed over last is saved, unless the child had come to that itself: after a limit always,
         otherwise where it is complete or can be gone on from.
         """
-        resumable = "".join(self.reports.get(Topic.RESUMABLE, ()))
+        resumable = ": ".join(self.reports.get(Topic.RESUMABLE, ()))
         state, text, remark, target, *beside = self.reports.get(Topic.RESULT, ("", "", "", ""))
         if not state or not (status == 3 or resumable or state == "complete"):
             report(f"{how}; {resumable or what_is_there(self.saved)}\n")
