@@ -743,10 +743,9 @@ def test_limits_of_the_other_commands(shipped: Callable[..., Any], tmp_path: Pat
         assert subprocess.run([*arguments, *limit], cwd=ROOT, capture_output=True, check=False).returncode == 0
     done = subprocess.run([*arguments, "--timeout", "1e-9"], cwd=ROOT, capture_output=True, text=True, check=False)
     if done.returncode != 0:  # a process that is done within the grace is not stopped any more
-        assert (done.returncode, done.stderr) == (
-            3,
-            "stopped: the time limit of 1e-09 s was reached; nothing was saved\n",
-        )
+        # the parent's sentence, or that of a command which looks at the clock itself
+        said = "stopped: the time limit of 1e-09 s was reached"
+        assert (done.returncode, done.stderr.partition(";")[0].strip()) == (3, said)
 
 
 @pytest.mark.parametrize(
