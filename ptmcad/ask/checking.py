@@ -20,6 +20,7 @@ from ptmcad.ask.classification import check_taken, flat_loops
 from ptmcad.ask.engines import is_certified
 from ptmcad.ask.forecast import QUICK, Forecast, curve_text, forecast, seconds_to_discriminant, way_text
 from ptmcad.ask.forecast import cost_text as in_figures
+from ptmcad.ask.timed import returns_within
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, LimitReached, shown
 from ptmcad.exact.models import ParametricSystem
 from ptmcad.exact.point_system import degree_bound, none_is_stable, solutions_at
@@ -29,7 +30,6 @@ from ptmcad.exact.survey import Survey, survey
 from ptmcad.exact.witness import SHARES, points
 from ptmcad.mechanism import ClosedMechanism, Mechanism, ptm
 from ptmcad.mechanism.sizes import terms_of
-from ptmcad.process.timed import returns_within
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
 from ptmcad.text.flint_numbers import from_fraction

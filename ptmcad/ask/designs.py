@@ -20,8 +20,8 @@ from ptmcad.ask.designing.values import Evaluate, Value, evaluator
 from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError
 from ptmcad.exact.design.search import Lengths
+from ptmcad.extras import Extra, require
 from ptmcad.options import Options, Progress
-from ptmcad.process.extras import Extra, require
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.designs import design_from
 from ptmcad.text.flint_numbers import from_fraction, to_fraction

@@ -20,7 +20,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 
 from ptmcad.errors import ConfigError
-from ptmcad.process.extras import Extra
+from ptmcad.extras import Extra
 
 if sys.platform != "win32":
     import fcntl

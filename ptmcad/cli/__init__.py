@@ -21,7 +21,7 @@ from typing import Any
 import click
 
 from ptmcad.errors import ConfigError, LimitReached, PtmcadError, PtmcadWarning, quoted, shown
-from ptmcad.process.handover import Topic, send, watched
+from ptmcad.process.handover import watched
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.version import __version__
 
@@ -160,9 +160,9 @@ def _warnings_as_lines() -> Iterator[None]:
 
 def _exhausted() -> int:
     """Report that memory has run out, and return the exit status."""
-    send(Topic.EXHAUSTED)
-    if not watched():  # otherwise the other process says so, and saves what there is
-        click.echo("stopped: memory ran out", err=True)
+    if watched():  # the other process says so, and saves what there is
+        raise MemoryError
+    click.echo("stopped: memory ran out", err=True)
     return 3
 
 

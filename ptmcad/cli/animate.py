@@ -22,9 +22,9 @@ from ptmcad.cli.question import question_of
 from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.cli.stored import stored_in
 from ptmcad.errors import ConfigError
+from ptmcad.extras import require_ffmpeg
 from ptmcad.mechanism import Mechanism
 from ptmcad.options import Options
-from ptmcad.process.extras import require_ffmpeg
 from ptmcad.process.output import check_writable, write_files
 from ptmcad.question.config import file_name
 from ptmcad.question.examples import FIRST, SECOND

@@ -11,7 +11,7 @@ from ptmcad.cli.pictures import report_written
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError
-from ptmcad.process.extras import Extra, require
+from ptmcad.extras import Extra, require
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import load
 from ptmcad.question.shipped import record_file

@@ -94,13 +94,9 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
         Any other of its kinds, with nothing written.
     """
     check_writable(output.out, names_of(slice.name, output.formats))
-    target = output.out / f"{slice.name}.json"
-    beside = names_of(slice.name, output.beside)
-    if "json" in output.formats:
-        send(Topic.TARGET, str(target), *beside)
 
     def handed_over(result: Any) -> None:
-        _hand_over(output, result)
+        _hand_over(result, slice.name, output)
 
     with ProgressBar() as progress:
         options = replace(options, progress=progress, partial=handed_over if watched() else None)
@@ -120,8 +116,10 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
         except LimitReached as stopped:
             if stopped.partial is None or "json" not in output.formats:
                 raise
-            text = _hand_over(output, stopped.partial)  # first: if this process is ended now, the other one has it
-            place, why = save_stopped(target, text, beside=beside)
+            # first: if this process is ended now, the other one has it
+            text = _hand_over(stopped.partial, slice.name, output)
+            beside = names_of(slice.name, output.beside)
+            place, why = save_stopped(output.out / f"{slice.name}.json", text, beside=beside)
             where = f"partial map{_open_share(stopped.partial)} saved to {place}{why}"
             further = "" if getattr(stopped.partial, "cover", None) is None else how_to_go_on(place)
             raise LimitReached(f"{stopped}; {where}{further}") from stopped
@@ -135,15 +133,16 @@ def _report_why_none(slice: Slice, options: Options, output: Output, reason: str
 
     if "json" in output.formats and is_certified(slice, options.engine):
         kept = "; the map to go on from is as it was" if options.resume is not None else ""
-        send(Topic.RESUMABLE, f"{reason}{kept}")
+        send(Topic.RESUMABLE, "there was no partial map to save yet", f"{reason}{kept}")
 
 
-def _hand_over(output: Output, result: Any) -> str:
+def _hand_over(result: Any, name: str, output: Output) -> str:
     """Give the result so far to the process that watches, which saves it if this one has to be stopped; its text."""
     text = output.text(result)
     if "json" in output.formats:
         state = "partial" if result.status.value == "partial" else "complete"
-        send(Topic.RESULT, state, text, _open_share(result))
+        place, beside = str(output.out / f"{name}.json"), names_of(name, output.beside)
+        send(Topic.RESULT, state, text, _open_share(result), place, *beside)
     return text
 
 
@@ -155,7 +154,7 @@ def _open_share(result: Any) -> str:
 def _save(result: Any, name: str, output: Output) -> None:
     """Write the pictures and tables and, last, the JSON."""
     # first: drawing may take longer than there is time
-    text = _hand_over(output, result) if "json" in output.formats else ""
+    text = _hand_over(result, name, output) if "json" in output.formats else ""
     writers = output.drawing.writers(result, name, output.beside)
     if "json" in output.formats:
         writers[f"{name}.json"] = text_writer(text)

@@ -13,7 +13,7 @@ import click
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.paths import out_option
 from ptmcad.cli.slices import Asked, slice_options
-from ptmcad.process.extras import Extra, require
+from ptmcad.extras import Extra, require
 from ptmcad.process.handover import Topic, send
 
 

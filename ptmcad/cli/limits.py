@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from fractions import Fraction
+from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 import click
@@ -20,10 +21,14 @@ import click
 from ptmcad.cli.gathering import gathered
 from ptmcad.errors import ConfigError
 from ptmcad.process.handover import Topic, send, watched
-from ptmcad.process.memory import MIN_BOUND, Bound, bounded, default_bound
+from ptmcad.process.memory import Bound, bounded, kernel_lines
 
 F = TypeVar("F", bound=Callable[..., Any])
 
+MIN_BOUND = 64 << 20
+"""The exact engine's libraries alone need about half of this."""
+
+_GROUPS = "/sys/fs/cgroup"
 _SIZE = re.compile(r"([0-9]{1,12}(?:\.[0-9]{1,12})?)\s*([KMGT])(?:I?B)?", re.IGNORECASE)
 _UNITS = {"K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 
@@ -57,6 +62,18 @@ def bound_of(text: str) -> Bound:
     if size >= 1 << 60:
         raise ConfigError(f"{shown} is more than any machine has", key="--max-memory")
     return Bound(size, text.strip())
+
+
+def default_bound() -> Bound:
+    """Nine tenths of the memory of the machine, or of the container if that is less."""
+    machine = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    group = Path(_GROUPS, *(line[4:] for line in kernel_lines("/proc/self/cgroup") if line.startswith("0::/")))
+    older = Path(_GROUPS, "memory", "memory.limit_in_bytes")  # of the first kind of control groups
+    paths = [*(place / "memory.max" for place in (group, *group.parents)), older]
+    texts = [text for path in paths for text in kernel_lines(path)]
+    least, whose = min([(machine, "machine"), *((int(text), "container") for text in texts if text.isdigit())])
+    size = least * 9 // 10
+    return Bound(size, f"{size / (1 << 30):.3g}G, nine tenths of this {whose}'s (--max-memory sets another),")
 
 
 def _bound(_context: click.Context, _parameter: click.Parameter, value: str | None) -> Bound | None:

@@ -6,7 +6,7 @@ picture and where the result is, and the exit status is 2.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import click
@@ -23,7 +23,7 @@ def report_written(folder: Path, names: Iterable[str]) -> None:
         click.echo(f"written   {', '.join(paths)}")
 
 
-def picture(name: str, draw: Callable[[Path], None]) -> Writer:
+def picture(name: str, draw: Writer) -> Writer:
     """A writer of the picture of this name, which is drawn by a function of the path.
 
     Its failures are of one kind, `PictureError`, but for lack of memory.

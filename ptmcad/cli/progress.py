@@ -15,8 +15,6 @@ from types import TracebackType
 
 import click
 
-from ptmcad.process.handover import Topic, send
-
 PATIENCE = 1.0
 _INTERVAL = 0.1
 _TICK = 0.5
@@ -71,8 +69,6 @@ class ProgressBar:
         with self._lock:
             if self._ended.is_set():
                 return
-            if not self.shown:
-                send(Topic.PROGRESS)  # this process may not live to clear the line
             self._stream.write(f"\r\x1b[K{line}")
             self._stream.flush()
             self.shown, self.last = True, now

@@ -22,7 +22,7 @@ from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_in
 from ptmcad.cli.values import names
 from ptmcad.errors import ConfigError, shown_path
-from ptmcad.process.extras import Extra, require, require_ffmpeg
+from ptmcad.extras import Extra, require, require_ffmpeg
 from ptmcad.process.handover import Topic, send
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config.sweeps import Sweeping, load_sweep

@@ -1,6 +1,6 @@
 """The process that computes for the explorer: jobs come in as lines of JSON, answers go out as such.
 
-Guarantee: it ends when the server does, whatever it is doing (`ptmcad.process.lifeline`). Standard output holds answers
+Guarantee: it ends when the server does, whatever it is doing (`end_with`). Standard output holds answers
 alone, whatever libraries print.
 
 The first line is the panel, which the server that started this process has pickled; then every line is a job
@@ -22,7 +22,7 @@ from typing import IO, Any
 
 from ptmcad.errors import PtmcadError
 from ptmcad.explore.tasks import Tasks
-from ptmcad.process.lifeline import end_with
+from ptmcad.process.handover import end_with
 
 
 class Superseded(Exception):

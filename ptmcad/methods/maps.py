@@ -174,7 +174,7 @@ def _map_explore(self: RegionMap) -> Explorer:
         When anywidget is not installed, or the map contradicts itself so that it cannot be drawn.
     """
     from ptmcad.ask.fields.field import exact_at
-    from ptmcad.process.extras import Extra, require
+    from ptmcad.extras import Extra, require
 
     require(Extra.notebook)
     from ptmcad.show.widget import Explorer

@@ -1,11 +1,13 @@
-"""What a computing process reports to the process that watches it: messages through a pipe, one way.
+"""What ties a computing process to the one that watches it: messages through a pipe, one way, and its end.
 
 Guarantee: a message is received whole or not at all, also from a process that is killed while it sends. In a process
-that nobody watches every function here does nothing.
+that nobody watches `send` does nothing. On a system whose pipes send signals (Linux) the kernel ends a process by
+`end_with`, whatever code it is in, as soon as the other one has ended; elsewhere nothing is promised.
 
 It is imported before everything else of the program, so it imports nothing that takes time.
 """
 
+import fcntl
 import os
 import signal
 from collections.abc import Iterator
@@ -20,16 +22,16 @@ _HEAD = 9  # a topic's letter and the length of the body in 8 bytes
 class Topic(Enum):
     """What a message is about, and the texts it consists of."""
 
-    TEMPORARY = b"T"  # paths of hidden folders or files that are about to be made, of no use once the process is gone
+    TEMPORARY = b"T"  # path of the folder that is being made or used, of no use once the process is gone
     SAVED = b"R"  # the last file of a set, which is in place now
     DEADLINE = b"D"  # reading of time.monotonic() at which the time is over, the limit in words
     MEMORY = b"M"  # the memory limit in bytes, and in words
-    TARGET = b"F"  # path of the result file, names of the other files that are to be written
-    RESULT = b"P"  # "partial" or "complete", the result's text as it is by now, and a remark on how far it is, or ""
+    RESULT = (
+        b"P"  # "partial" or "complete", the result's text as it is by now, a remark on how far it is, or "", the path
+    )
+    # of its file, and the names of the other files that are to be written
     RESUMABLE = b"S"  # the results handed over can be gone on from: they are worth saving when a signal ends the work;
-    # with the reason why there is none as long as none has been handed over; empty where a signal is the usual end
-    PROGRESS = b"B"  # the progress bar stands in the terminal's line
-    EXHAUSTED = b"X"  # memory has run out
+    # with what there is to say while there is none, and why, if one is made at a signal; "" where that is the usual end
     DONE = b"E"  # the program has come to its end and exits with its status
 
 
@@ -52,6 +54,21 @@ def leave_if_asked() -> None:
     """Raise again what ends the process."""
     if Own.status is not None:
         raise SystemExit(Own.status)
+
+
+def end_with(lifeline: int, parent: int) -> None:
+    """Let the kernel end this process when the last end at which the parent holds a pipe is closed.
+
+    Parameters
+    ----------
+    lifeline : the end at which the pipe is read; nobody writes to it.
+    parent : the parent's number: it may have ended before.
+    """
+    signal.signal(signal.SIGIO, signal.SIG_DFL)  # the caller may have had it ignored
+    fcntl.fcntl(lifeline, fcntl.F_SETOWN, os.getpid())
+    fcntl.fcntl(lifeline, fcntl.F_SETFL, os.O_ASYNC)  # sends SIGIO, whose default is to end the process
+    if os.getppid() != parent:
+        os._exit(1)
 
 
 def send(topic: Topic, *texts: str) -> None:

@@ -22,39 +22,33 @@ import fcntl
 import json
 import math
 import os
-import re
-import stat
 import time
+import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from fractions import Fraction
-from itertools import chain, count
+from functools import partial
+from glob import escape
+from hashlib import sha256
+from itertools import count
 from pathlib import Path
-from typing import Any
 
 from ptmcad.errors import ConfigError, OutputError
 from ptmcad.process.handover import Topic, remove, send, undisturbed
-from ptmcad.process.stamp import stamp
 from ptmcad.text.textfile import json_data, read_text
 
-Writer = Callable[[Path], None]
+Writer = Callable[[Path], object]
 
 MAX_BYTES = 60_000_000
 """Of an older result that is looked at."""
 LOCK_PATIENCE = 1.0
 """Seconds that the parts of a program that must come to an end wait for the lock."""
 UNCHANGED = "earlier files are as they were"
-_HIDDEN = re.compile(r"\.(.*)\.[0-9a-f]{8}\.tmp", re.DOTALL)
-_PAUSE = 0.01
 
 
 def text_writer(text: str) -> Writer:
     """A writer of the text, as UTF-8 with plain line feeds."""
-
-    def write(path: Path) -> None:
-        path.write_text(text, encoding="utf-8", newline="\n")
-
-    return write
+    return partial(Path.write_text, data=text, encoding="utf-8", newline="\n")
 
 
 def reason(error: OSError | ValueError) -> str:
@@ -97,7 +91,7 @@ def _lock(descriptor: int, until: float) -> bool:
         except BlockingIOError:
             if time.monotonic() >= until:
                 raise
-            time.sleep(_PAUSE)
+            time.sleep(0.01)
         except OSError:  # a file system without locks
             return False
 
@@ -121,15 +115,11 @@ def _hidden_folder(target: Path) -> Iterator[Path]:
 
 def _remove_stale(folder: Path, names: Iterable[str]) -> None:
     """Remove hidden folders for these names whose process has ended: one that lives holds a lock on its own."""
-    stems = {Path(name).stem for name in names}
-    with suppress(OSError):  # a folder one may write to but not list
-        for entry in list(os.scandir(folder)):
-            match = _HIDDEN.fullmatch(entry.name)
-            if match is None or match[1] not in stems or not entry.is_dir(follow_symlinks=False):
-                continue
-            with suppress(OSError), locked(Path(entry.path), patience=0) as alone:
-                if alone:
-                    remove(entry)
+    for stem in {escape(Path(name).stem) for name in names}:
+        for left in folder.glob(f".{stem}.{'[0-9a-f]' * 8}.tmp"):
+            with suppress(OSError), locked(left, patience=0) as alone:
+                if alone and not left.is_symlink():
+                    remove(left)
 
 
 def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
@@ -142,21 +132,19 @@ def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
     OutputError
         With the folder or file and the reason.
     """
+    wanted = "made"
     try:
         folder.mkdir(parents=True, exist_ok=True)
-    except (OSError, ValueError) as error:
-        raise OutputError(f"the folder {folder} cannot be made: {reason(error)}; choose another with --out") from error
-    _check_kinds(folder / name for name in names)
-    names = ("probe", *names)
-    try:
+        wanted = "written to"
+        _check_kinds(folder / name for name in names)
+        names = ("probe", *names)
         _remove_stale(folder, names)
         with _hidden_folder(folder / names[-1]) as hidden:
             for name in names:
                 (hidden / name).write_bytes(b"writable")
-    except OSError as error:
-        raise OutputError(
-            f"the folder {folder} cannot be written to: {reason(error)}; choose another with --out"
-        ) from error
+    except (OSError, ValueError) as error:
+        why = f"the folder {folder} cannot be {wanted}: {reason(error)}; choose another with --out"
+        raise OutputError(why) from error
 
 
 def _check_kinds(targets: Iterable[Path]) -> None:
@@ -170,12 +158,8 @@ def _check_kinds(targets: Iterable[Path]) -> None:
         With the path and what is there.
     """
     for target in targets:
-        try:
-            mode = target.stat().st_mode
-        except (OSError, ValueError):  # nothing there; or a name that writing will refuse, with the reason
-            continue
-        if not stat.S_ISREG(mode):
-            kind = "a folder" if stat.S_ISDIR(mode) else "no regular file"
+        if os.path.exists(target) and not os.path.isfile(target):
+            kind = "a folder" if os.path.isdir(target) else "no regular file"
             raise OutputError(f"{target} is {kind}, so no file can be written there; choose another --out")
 
 
@@ -196,9 +180,8 @@ def write_files(folder: Path, writers: Mapping[str, Writer], *, new: bool = Fals
     """
     with _written(folder, writers) as files, locked(folder):
         _check_kinds(files)
-        for target in files if new else ():
-            if os.path.lexists(target):
-                raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST))
+        if new and any(map(os.path.lexists, files)):
+            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST))
         _put_into_place(files)
         return tuple(files)
 
@@ -214,14 +197,43 @@ def _written(folder: Path, writers: Mapping[str, Writer]) -> Iterator[dict[Path,
                 current = folder / name
                 files[current] = hidden / name
                 write(files[current])
-            *pictures, voucher = files.values()
-            stamp(pictures, voucher)
+            stamp([*files.values()][:-1], files[current])
             for path in files.values():
                 with path.open("rb+") as file:
                     os.fsync(file)
             yield files
     except OSError as error:
         raise OutputError(f"{current} cannot be written: {reason(error)}; {UNCHANGED}") from error
+
+
+def stamp(pictures: Iterable[Path], voucher: Path) -> None:
+    """Give every picture among the files the SHA-256 of a JSON document, which tells whether both are of one set.
+
+    Guarantee: what is drawn stays as it was; readers of each format pass over the stamp, which ``grep -a sha256``
+    shows. It is a text chunk of a PNG, and a comment in an SVG, a PDF and an EPS.
+
+    Raises
+    ------
+    OSError
+        When a file cannot be read or written.
+    """
+    if voucher.suffix != ".json":
+        return
+    text = f"sha256 of {voucher.name}: {sha256(voucher.read_bytes()).hexdigest()}".encode("ascii", "replace")
+    for path in pictures:
+        content = path.read_bytes()
+        if content.startswith(b"\x89PNG"):
+            chunk = b"tEXtSource\0" + text
+            chunk = (len(chunk) - len(b"tEXt")).to_bytes(4) + chunk + zlib.crc32(chunk).to_bytes(4)
+            content = content[:-12] + chunk + content[-12:]  # before the last chunk, which is empty
+        elif content.startswith(b"<?xm"):
+            content += b"<!-- " + text.replace(b"--", b"- -") + b" -->\n"
+        elif content.startswith((b"%PDF", b"%!PS")):
+            body, end, rest = content.rpartition(b"%%EOF")
+            content = body + b"% " + text + b"\n" + end + rest
+        else:
+            continue
+        path.write_bytes(content)
 
 
 def _put_into_place(files: Mapping[Path, Path]) -> None:
@@ -269,8 +281,8 @@ def save_stopped(target: Path, text: str, *, whole: bool = False, beside: Iterab
 
     Guarantee: a whole older result stays, and so do its pictures. Only a file that is marked as partial is replaced,
     and only where none of the pictures is there that the run would have replaced. Otherwise the result goes to
-    ``NAME.partial.json``, or ``NAME.complete.json`` if all but its pictures is done, or the first of
-    ``NAME.partial-2.json``, ``NAME.partial-3.json`` ... that holds nothing or a partial result.
+    ``NAME.partial.json``, or ``NAME.complete.json`` if all but its pictures is done, where the newest is kept. What
+    is no such result, or has less undetermined, stays there, and ``NAME.partial-2.json`` is taken, and so on.
 
     Parameters
     ----------
@@ -283,39 +295,42 @@ def save_stopped(target: Path, text: str, *, whole: bool = False, beside: Iterab
         If the file cannot be written.
     """
     label = "complete" if whole else "partial"
-    further = chain([""], (f"-{number}" for number in count(2)))
-    names = (target.with_name(f"{target.stem}.{label}{end}{target.suffix}") for end in further)
-    with _written(target.parent, {target.name: text_writer(text)}) as files:
+    further = (f"{label}-{number}" if number > 1 else label for number in count(1))
+    names = (target.with_name(f"{target.stem}.{name}{target.suffix}") for name in further)
+    with _written(target.parent, {target.name: text_writer(text)}) as files, ExitStack() as lock:
+        busy = ""
         try:
-            with locked(target.parent, LOCK_PATIENCE):
-                why = _why_not(target, text, beside)
-                place = next(name for name in names if not _why_not(name, text)) if why else target
-                _put_into_place({place: files[target]})
-        except BlockingIOError:  # a process that does not move on has it: a name that nothing has needs no lock
-            why = _why_not(target, text, beside) or f", because another process is writing {target.name}"
-            place = _put_at_new_name(files[target], names)
+            lock.enter_context(locked(target.parent, LOCK_PATIENCE))
+        except BlockingIOError:  # a process that does not move on has it: what is no part of a set needs no lock
+            busy = f", because another process is writing {target.name}"
+        why = _why_not(target, text, beside=beside) or busy
+        place = next(name for name in names if not _why_not(name, text, whole)) if why else target
+        _put_into_place({place: files[target]})
     return place, why
 
 
-def _why_not(target: Path, text: str, beside: Iterable[str] = ()) -> str:
-    """Why a stopped result may not take this place, as the end of a sentence; empty where it may."""
-    if os.path.lexists(target):
-        stored = _stored(target)
-        if stored is None or stored.get("status") != "partial":  # what is no result is not ours to replace unasked
-            return f", because {target.name} holds an older result that is not partial"
-        if _leaves_less_open(stored, json.loads(text)):
-            return f", because less is undetermined in the older partial result {target.name}"
-    pictures = [name for name in beside if os.path.lexists(target.with_name(name))]
+def _why_not(place: Path, text: str, whole: bool = False, beside: Iterable[str] = ()) -> str:
+    """Why a stopped result may not take this place, as the end of a sentence; empty where it may.
+
+    Parameters
+    ----------
+    whole : whether it replaces results that are complete, too.
+    """
+    if os.path.lexists(place):
+        try:
+            stored = json_data(read_text(place, MAX_BYTES, "a result"))
+        except (ConfigError, ValueError):
+            stored = None
+        # what is no result is not ours to replace unasked
+        if not isinstance(stored, dict) or not (whole or stored.get("status") == "partial"):
+            return f", because {place.name} holds an older result that is not partial"
+        with suppress(KeyError, TypeError, ValueError, ZeroDivisionError):  # an exact result, or no map of this program
+            new = json.loads(text)
+            maps = stored["cover"] is not None and new["cover"] is not None
+            if maps and Fraction(stored["undetermined"]) < Fraction(new["undetermined"]):
+                return f", because less is undetermined in the older partial result {place.name}"
+    pictures = [name for name in beside if os.path.lexists(place.with_name(name))]
     return f", because {pictures[0]} shows an older result" if pictures else ""
-
-
-def _put_at_new_name(hidden: Path, names: Iterator[Path]) -> Path:
-    with undisturbed():
-        while os.path.lexists(name := next(names)):
-            pass
-        os.link(hidden, name)
-        send(Topic.SAVED, str(name))
-    return name
 
 
 def how_to_go_on(place: Path) -> str:
@@ -323,22 +338,3 @@ def how_to_go_on(place: Path) -> str:
     import shlex  # which a run that ends well does not need
 
     return f"; go on with --resume {shlex.quote(str(place))}"
-
-
-def _stored(path: Path) -> dict[str, Any] | None:
-    """The document in a file; None when there is no result in it."""
-    try:
-        found = json_data(read_text(path, MAX_BYTES, "a result"))
-    except (ConfigError, ValueError):
-        return None
-    return found if isinstance(found, dict) else None
-
-
-def _leaves_less_open(stored: dict[str, Any], new: Any) -> bool:
-    """Whether an older certified map has less undetermined than a new result: then it is worth more than that."""
-    if stored.get("cover") is None or not isinstance(new, dict) or new.get("cover") is None:
-        return False
-    try:
-        return Fraction(stored["undetermined"]) < Fraction(new["undetermined"])
-    except (KeyError, TypeError, ValueError, ZeroDivisionError):  # no map that this program has made
-        return False

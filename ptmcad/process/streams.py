@@ -8,19 +8,17 @@ that, so there they are dropped. A descriptor that its owner has made non-blocki
 import io
 import os
 import select
-from typing import TYPE_CHECKING, TextIO
-
-if TYPE_CHECKING:
-    from _typeshed import ReadableBuffer
+from typing import Any, TextIO
 
 
 class _Pipe(io.FileIO):
     """An open file descriptor for writing that knows whether its reader has left."""
 
-    reader_left = False
-    for_messages = False
+    def __init__(self, descriptor: int, for_messages: bool) -> None:
+        super().__init__(descriptor, "w", closefd=False)
+        self.for_messages, self.reader_left = for_messages, False
 
-    def write(self, data: "ReadableBuffer", /) -> int:
+    def write(self, data: Any, /) -> int:
         try:
             while (written := super().write(data)) is None:  # it is full, and does not block
                 select.select([], [self], [])
@@ -38,10 +36,8 @@ class _Pipe(io.FileIO):
 
 def quiet_stream(descriptor: int, like: TextIO, for_messages: bool = False) -> TextIO:
     """A text stream for the descriptor with the encoding and the line buffering of another."""
-    raw = _Pipe(descriptor, "w", closefd=False)
-    raw.for_messages = for_messages
-    buffer = io.BufferedWriter(raw)
-    return io.TextIOWrapper(buffer, like.encoding, like.errors, line_buffering=bool(like.line_buffering))
+    raw = io.BufferedWriter(_Pipe(descriptor, for_messages))
+    return io.TextIOWrapper(raw, like.encoding, like.errors, line_buffering=bool(like.line_buffering))
 
 
 def reader_left(stream: TextIO) -> bool:
@@ -52,12 +48,6 @@ def reader_left(stream: TextIO) -> bool:
 
 def report(text: str) -> None:
     """Write to standard error, of whatever process."""
-    try:
-        rest = memoryview(text.encode(errors="replace"))
-        while rest:
-            try:
-                rest = rest[os.write(2, rest) :]
-            except BlockingIOError:  # of a caller that has made it non-blocking
-                select.select([], [2], [])
-    except OSError:  # nobody reads standard error, or it is full: there is no third place to report it
-        return
+    stream = io.BufferedWriter(_Pipe(2, for_messages=True))
+    stream.write(text.encode(errors="replace"))
+    stream.flush()

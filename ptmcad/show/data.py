@@ -19,7 +19,7 @@ from ptmcad.answer.counts import MorseIndex
 from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
-from ptmcad.process.extras import Extra, require
+from ptmcad.extras import Extra, require
 from ptmcad.question.doubles import within_doubles
 from ptmcad.show.polynomial_text import Style, polynomial_text
 

@@ -18,7 +18,7 @@ from time import monotonic
 from typing import Any
 
 from ptmcad.errors import ConfigError, OutputError, shown
-from ptmcad.process.extras import Extra, require
+from ptmcad.extras import Extra, require
 from ptmcad.sweeping.member import Failed
 from ptmcad.sweeping.tasks import Answer, Task
 

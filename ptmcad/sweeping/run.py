@@ -22,8 +22,8 @@ from typing import Any
 from ptmcad.answer.sweep import Sweep
 from ptmcad.ask.classification import prepare
 from ptmcad.errors import ConfigError, LimitReached, OutputError, PtmcadError
+from ptmcad.extras import Extra, require
 from ptmcad.options import Progress
-from ptmcad.process.extras import Extra, require
 from ptmcad.question.config.sweeps import Sweeping, sweep_from
 from ptmcad.question.slice import Slice
 from ptmcad.sweeping.index import Index, opened, read_sweep

@@ -11,7 +11,7 @@ import os
 import signal
 from multiprocessing.connection import Connection
 
-from ptmcad.process.lifeline import end_with
+from ptmcad.process.handover import end_with
 
 
 def serve(connection: Connection) -> None:

@@ -30,7 +30,7 @@ from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import Options
 from ptmcad.process.handover import Own, Topic, received
-from ptmcad.process.watch import OVERRUN_SECONDS, Watch
+from ptmcad.process.supervisor import OVERRUN_SECONDS, Watch
 
 ROOT = Path(__file__).resolve().parents[2]
 SCHEMA = json.loads((ROOT / "docs" / "region-map.schema.json").read_text(encoding="utf-8"))

@@ -9,12 +9,12 @@ import pytest
 from support.maps import CONFIGS
 
 import ptmcad
+from ptmcad import extras
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.explore.panel import Families, Panel, panel_of
 from ptmcad.explore.tasks import Tasks
 from ptmcad.options import Options
-from ptmcad.process import extras
 from ptmcad.question.config import load, record_from_options, slice_from_mapping
 from ptmcad.question.config.options import Typed
 from ptmcad.text.entry import plain_data

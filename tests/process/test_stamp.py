@@ -30,7 +30,7 @@ def test_a_picture_carries_the_hash_of_its_json(folder: Path, suffix: str) -> No
 def test_readers_pass_over_the_stamp(folder: Path, tmp_path: Path) -> None:
     import xml.etree.ElementTree as ET
 
-    from ptmcad.process.stamp import stamp
+    from ptmcad.process.output import stamp
 
     ET.parse(folder / "fig2.svg")
     before = imread(folder / "fig2.png")

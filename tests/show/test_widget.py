@@ -16,9 +16,9 @@ from support import browser as chromium
 from support.browser import Browser
 from support.maps import CONFIGS, shipped
 
+from ptmcad import extras
 from ptmcad.ask.fields.field import exact_at
 from ptmcad.errors import ConfigError, PtmcadError
-from ptmcad.process import extras
 from ptmcad.show.report import page
 
 SCRIPT = Path(chromium.__file__).parents[2] / "ptmcad" / "show" / "widget.js"

@@ -21,11 +21,11 @@ import pytest
 import yaml
 
 import ptmcad
+from ptmcad import extras
 from ptmcad.answer.sweep import State, Sweep
 from ptmcad.cli import run
 from ptmcad.cli import sweep as command
 from ptmcad.errors import ConfigError, LimitReached, OutputError
-from ptmcad.process import extras
 from ptmcad.question.config.sweeps import sweep_from
 from ptmcad.sweeping import index
 from ptmcad.sweeping import run as engine

@@ -19,7 +19,7 @@ from PIL import Image
 
 from ptmcad.answer.motion import Motion
 from ptmcad.errors import ConfigError
-from ptmcad.process.extras import require_ffmpeg
+from ptmcad.extras import require_ffmpeg
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.stage import Pixels, Stage
 from ptmcad.show.style import Style

@@ -19,7 +19,7 @@ from typing import Any
 
 import yaml
 
-from ptmcad.process.extras import Extra
+from ptmcad.extras import Extra
 from ptmcad.studies.paper.statements import holds
 
 TEXTS = Path(__file__).with_name("claims.yaml")

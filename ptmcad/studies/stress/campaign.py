@@ -21,7 +21,7 @@ from time import perf_counter, process_time
 from typing import Any
 
 from ptmcad.answer.poses import DIGITS
-from ptmcad.process.extras import Extra, require
+from ptmcad.extras import Extra, require
 from ptmcad.studies.slices import ptm_slice
 from ptmcad.studies.stress.case import Case, Question
 from ptmcad.studies.stress.judgement import Row, judge

@@ -11,7 +11,7 @@ import pytest
 
 BUSY = """
 import sys
-from ptmcad.process.lifeline import end_with
+from ptmcad.process.handover import end_with
 end_with(int(sys.argv[1]), int(sys.argv[2]))
 print("begun", flush=True)
 sum(range(10**13))  # C code that returns to no interpreter for days

@@ -13,12 +13,12 @@ from pathlib import Path
 import pytest
 
 from ptmcad.cli import run
-from ptmcad.process.extras import Extra
+from ptmcad.extras import Extra
 from ptmcad.studies.stress import campaign
 from ptmcad.studies.stress.case import Case, chosen, point
 
 HAS_NUMBA = find_spec("numba") is not None
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 
 
 @pytest.fixture(autouse=True)

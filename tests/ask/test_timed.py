@@ -7,8 +7,8 @@ import time
 
 import pytest
 
+from ptmcad.ask.timed import returns_within
 from ptmcad.errors import ConfigError, expect
-from ptmcad.process.timed import returns_within
 
 ENOUGH = 60.0
 

@@ -12,10 +12,10 @@ from collections.abc import Callable
 
 _PROGRAM = """
 import pickle, signal, sys
-seconds, sys.path[:] = pickle.load(sys.stdin.buffer)
 signal.signal(signal.SIGINT, signal.SIG_IGN)
 signal.signal(signal.SIGALRM, signal.SIG_DFL)
-signal.setitimer(signal.ITIMER_REAL, seconds)
+signal.setitimer(signal.ITIMER_REAL, float(sys.argv[1]))
+sys.path[:] = sys.argv[2:]
 error = None
 work, arguments = pickle.load(sys.stdin.buffer)
 try:
@@ -40,11 +40,10 @@ def returns_within(seconds: float, work: Callable[..., object], *arguments: obje
     Exception
         What the function raises.
     """
-    given = pickle.dumps((seconds, sys.path)) + pickle.dumps((work, arguments))
-    command = [sys.executable, "-P", "-c", _PROGRAM]
+    command = [sys.executable, "-P", "-c", _PROGRAM, str(seconds), *sys.path]
     try:
-        done = subprocess.run(command, input=given, capture_output=True, timeout=seconds, check=False)
-    except (subprocess.TimeoutExpired, OSError):
+        done = subprocess.run(command, input=pickle.dumps((work, arguments)), capture_output=True, check=False)
+    except OSError:
         return False
     if done.returncode != 0 or not done.stdout:  # what a library prints before it aborts is no answer
         return False
