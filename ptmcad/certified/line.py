@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import pairwise
+from itertools import chain, pairwise
 
 import numpy as np
 from flint import ctx
@@ -113,12 +113,11 @@ def _gaps(
         total += found.used
         left, variables = found.left(), start.shape[1] // 2
         if (found.used >= BUDGET or len(left) > MAX_OPEN_BOXES) and high - low > smallest and total < MAX_BOXES:
-            inside = [gap for gap in undecided if gap.high > low and gap.low < high]
-            yield from (Gap(max(low, g.low), min(high, g.high), (curve.name,), False) for g in inside)
+            inside = [(max(low, g.low), min(high, g.high)) for g in undecided if g.high > low and g.low < high]
+            yield from (Gap(*ends, (curve.name,), False) for ends in inside)
             middle = (low + high) / 2
-            cuts = [(max(low, g.low), min(high, g.high)) for g in inside] or [(middle, middle)]
-            ends = [low, *(end for cut in cuts for end in cut), high]
-            waiting += [(a, b) for a, b in zip(ends[::2], ends[1::2], strict=True) if a < b]
+            edges = [low, *chain.from_iterable(inside or [(middle, middle)]), high]
+            waiting += [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]
             continue
         for box in left:
             yield Gap(Fraction(float(box[varying])), Fraction(float(box[variables + varying])), (curve.name,), False)

@@ -31,8 +31,8 @@ from ptmcad.mechanism.involutions import Involution
 from ptmcad.question.slice import Count, Slice
 
 SHORT_RATIO = 4
-"""Near an involution's fixed points a spring is short where its length is at most so many times what is short elsewhere,
-times the distance of a configuration from its image: so a spring is long on them."""
+"""Near an involution's fixed points a spring is short where its length is at most so many times what is short
+elsewhere, times the distance of a configuration from its image: nearly all springs are long on them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,7 +223,8 @@ def _excess(search: _Search, at: Chart, s: int, near: Frame | None = None) -> Fo
     """What is not negative where a spring is long, near an involution's fixed points or elsewhere."""
     if near is None:
         return at.lengths[s] - search.short[s]
-    return at.lengths[s].squared() - (SHORT_RATIO * search.short[s]) ** 2 * _distance(search, at, near)
+    share = SHORT_RATIO**2 * _distance(search, at, near) + NEAR**2
+    return at.lengths[s].squared() - search.short[s] ** 2 * share
 
 
 def _semidefinite(at: Chart) -> list[Formula]:
