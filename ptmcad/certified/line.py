@@ -6,10 +6,10 @@ decided lies in one of the gaps between them; a gap that is `proved` holds nothi
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import pairwise
+from itertools import chain, pairwise
 
 import numpy as np
 from flint import ctx
@@ -74,8 +74,13 @@ def line_counts(slice: Slice, varying: int, value: Fraction, bits: int) -> LineC
     bits : precision to which critical values are enclosed.
     """
     axis = slice.axes[varying]
-    found = [gap for curve in curves(slice, Count.INDEX) for gap in _gaps(slice, curve, varying, value, bits)]
-    gaps = _joined([g for g in found if g.high > axis.low and g.low < axis.high])
+    wanted = curves(slice, Count.INDEX)
+    found: list[list[Gap]] = [[] for _ in wanted]
+    # what is quick to search comes first: what it leaves undecided need not be looked at closely again
+    for k in sorted(range(len(wanted)), key=lambda k: len(wanted[k].system.tape)):
+        undecided = _joined([gap for gaps in found for gap in gaps if not gap.proved])
+        found[k] = list(_gaps(slice, wanted[k], varying, value, bits, undecided))
+    gaps = _joined([g for some in found for g in some if g.high > axis.low and g.low < axis.high])
     counter = plain_counter(slice)
     stretches = []
     for low, high in pairwise([axis.low, *(end for gap in gaps for end in (gap.low, gap.high)), axis.high]):
@@ -86,8 +91,11 @@ def line_counts(slice: Slice, varying: int, value: Fraction, bits: int) -> LineC
     return LineCounts(tuple(stretches), tuple(gaps))
 
 
-def _gaps(slice: Slice, curve: Curve, varying: int, value: Fraction, bits: int) -> Iterator[Gap]:
-    """Where the line meets a curve; parts of it that are too hard as a whole are halved while the budget lasts."""
+def _gaps(
+    slice: Slice, curve: Curve, varying: int, value: Fraction, bits: int, undecided: Sequence[Gap]
+) -> Iterator[Gap]:
+    """Where the line meets a curve; parts of it that are too hard as a whole are halved while the budget lasts, but for
+    what is ``undecided`` in them."""
     system = on_line(curve.system, varying)
     equations = replace(system, vanishing=(_NONE, _NONE, _NONE), nonnegative=_NONE)
     axis = slice.axes[varying]
@@ -105,8 +113,11 @@ def _gaps(slice: Slice, curve: Curve, varying: int, value: Fraction, bits: int) 
         total += found.used
         left, variables = found.left(), start.shape[1] // 2
         if (found.used >= BUDGET or len(left) > MAX_OPEN_BOXES) and high - low > smallest and total < MAX_BOXES:
+            inside = [(max(low, g.low), min(high, g.high)) for g in undecided if g.high > low and g.low < high]
+            yield from (Gap(*ends, (curve.name,), False) for ends in inside)
             middle = (low + high) / 2
-            waiting += [(low, middle), (middle, high)]
+            edges = [low, *chain.from_iterable(inside or [(middle, middle)]), high]
+            waiting += [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]
             continue
         for box in left:
             yield Gap(Fraction(float(box[varying])), Fraction(float(box[variables + varying])), (curve.name,), False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,7 @@ from ptmcad.text.balls import ball_of
 pytest.importorskip("numba")
 
 import ptmcad
+from ptmcad.certified import line
 from ptmcad.certified.arb_evaluation import run_arb
 from ptmcad.certified.formula import Formula
 from ptmcad.certified.intervals import certified_intervals
@@ -52,6 +54,17 @@ PENDULUM = {
     "loads": {"R": ["F", 0]},
 }  # fmt: skip
 """Three bars in a row along an axis: all angles are odd."""
+MASS = {
+    "parameters": {
+        "c": {"kind": "stiffness"}, "s0": {"kind": "free length", "default": "1/5"}, "W": {"kind": "force"}
+    },
+    "unknowns": {"x": "length", "y": "length"},
+    "points": {"A": [0, 0], "P": ["x", "y"]},
+    "supports": {"A": "pin"},
+    "springs": [{"between": ["A", "P"], "k": "c", "free": "s0"}],
+    "loads": {"P": {"weight": "W"}},
+}  # fmt: skip
+"""A weight on a spring."""
 CART = {
     "parameters": {"k": {"kind": "stiffness"}, "l": {"kind": "length"}},
     "unknowns": {"t": "angle", "u": "length", "v": "length"},
@@ -253,6 +266,40 @@ def test_pitchforks_along_a_line_of_all_equilibria() -> None:
         (2, 5, 1), (3, 6, 1), (2, 5, 1), (2, 4, 1), (2, 3, 1), (2, 4, 2), (2, 6, 4),
         (2, 6, 4), (2, 4, 2), (2, 3, 1), (1, 2, 1), (2, 3, 1), (2, 4, 1), (2, 3, 1),
     ]  # fmt: skip
+
+
+def test_a_spring_without_length_in_a_configuration_that_is_its_own_image() -> None:
+    """At rho = L1 - L2 the bars are in a line, and so is a curve of configurations whose spring has no length: that
+    spring's direction is a variable there, and pitchforks with a short one are proved beside it."""
+    slice = load(SHIPPED / "free02-unloaded.yaml")
+    slice = replace(slice, axes=(replace(slice.axes[0], low=Fraction("0.16"), high=Fraction("0.182")), slice.axes[1]))
+    found = certified_intervals(slice, "rho", {"L2": "5/6"}, 10)
+    assert [(change.names, change.proved) for change in found.changes] == [
+        (("point where spring A3A4 has no length",), True), (("pitchfork",), True)
+    ]  # fmt: skip
+    assert found.changes[0].at.low <= Fraction(1, 6) <= found.changes[0].at.high
+    assert [interval.index for interval in found.intervals] == [(2, 4, 2), (2, 5, 1), (2, 6, 2)]
+
+
+def test_what_is_undecided_along_a_line_is_not_looked_at_closely_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A mass on a spring turns freely without its weight: that is undecided once, and nothing else is lost."""
+    record = {"name": "mass", "mechanism": MASS, "axes": {"W": [0, 20], "c": [10, 80]}, "count": "stable"}
+    slice, calls, search = slice_from_mapping(record), list[int](), line.isolate
+
+    def counted(*arguments: Any) -> Any:
+        calls.append(0)
+        return search(*arguments)
+
+    monkeypatch.setattr(line, "isolate", counted)
+    found = certified_intervals(slice, "W", {"c": "40"}, 10)
+    few, gaps = len(calls), line._gaps
+    assert not found.changes[0].proved and found.changes[0].at.high < Fraction(1, 1000)
+    assert [interval.index for interval in found.intervals] == [(1, 1, 0), (1, 0, 0)]
+    monkeypatch.setattr(line, "_gaps", lambda *arguments: gaps(*arguments[:-1], ()))
+    calls.clear()
+    alone = certified_intervals(slice, "W", {"c": "40"}, 10)
+    assert few < len(calls)
+    assert (alone.intervals, alone.changes[1:]) == (found.intervals, found.changes[1:])
 
 
 @pytest.mark.slow

@@ -30,6 +30,10 @@ from ptmcad.certified.system import system
 from ptmcad.mechanism.involutions import Involution
 from ptmcad.question.slice import Count, Slice
 
+SHORT_RATIO = 4
+"""Near an involution's fixed points a spring is short where its length is at most so many times what is short
+elsewhere, times the distance of a configuration from its image: nearly all springs are long on them."""
+
 
 @dataclass(frozen=True, slots=True)
 class _Search:
@@ -112,26 +116,27 @@ def _quotient(search: _Search, changes: Sequence[Involution], whole: Chart) -> I
     """The folds where involutions keep the problem, and limits without a spring's length.
 
     Minima are searched all about one involution's fixed points if one unknown is odd; else what is far from all fixed
-    points is searched as without an involution.
+    points is searched as without an involution. So is, where all equilibria are, what is near them with a short spring:
+    such a spring's direction is as good as any there, and no equilibrium parts with its image.
     """
     near = not search.stable or len(changes) > 1 or changes[0].odd > 1
     for change in changes:
         around = list(frames(search.problem, change, search.ranges))
+        charted = None if search.stable else around[0]
         for frame in around:
             for fold in folds(search.exact, frame, stable=search.stable, near=near):
-                yield _fold_about(search, fold)
+                yield _fold_about(search, fold, charted)
+        if charted is not None:
+            yield from _short_folds(search, whole, charted)
         search = replace(search, mirrors=(*search.mirrors, around[0]))
     if near:
         yield from (_fold(search, whole), *_short_folds(search, whole))
     yield from _cones(search, whole)
 
 
-def _fold_about(search: _Search, fold: Fold) -> Curve:
-    """A fold in coordinates about an involution's fixed points.
-
-    Of all equilibria those where a spring is so short that its direction may be any are left to that one's chart.
-    """
-    shortest = () if search.stable else _charted(search, fold.at)
+def _fold_about(search: _Search, fold: Fold, charted: Frame | None) -> Curve:
+    """A fold in coordinates about an involution's fixed points, every spring long where these are ``charted``."""
+    long = () if charted is None else [_excess(search, fold.at, s, charted) for s in _charted(search, fold.at)]
     cheap, costly = (
         [*own, *more] if search.dependent else []
         for own, more in zip(fold.vanishing, _dependent(search, fold.at), strict=True)
@@ -145,7 +150,7 @@ def _fold_about(search: _Search, fold: Fold) -> Curve:
             ([f for f in cheap if f.value is None], costly),
             [
                 *fold.nonnegative,
-                *(fold.at.lengths[s] - NEAR * search.short[s] for s in shortest),
+                *long,
                 *_far(search, fold.at),
                 *(_semidefinite(fold.at) if search.stable else ()),
                 *_values(search.conditions, fold.at),
@@ -183,7 +188,7 @@ def _fold(search: _Search, at: Chart) -> Curve:
             (0, 1, *search.problem.variables),
             _dependent(search, at),
             [
-                *(at.lengths[s] - search.short[s] for s in _charted(search, at)),
+                *(_excess(search, at, s) for s in _charted(search, at)),
                 *_far(search, at),
                 *(_semidefinite(at) if search.stable else []),
                 *_values(search.conditions, at),
@@ -196,19 +201,26 @@ def _fold(search: _Search, at: Chart) -> Curve:
 
 
 def _far(search: _Search, at: Chart) -> list[Formula]:
-    """What is not negative where configurations are not searched about an involution's fixed points.
+    """What is not negative where configurations are not searched about an involution's fixed points."""
+    return [_distance(search, at, mirror) - NEAR for mirror in search.mirrors]
 
-    With f >= 0 that, in the chart of a spring: l f + c >= 0, which holds where its length l is short enough, too.
-    """
+
+def _distance(search: _Search, at: Chart, mirror: Frame) -> Formula:
+    """Of a configuration from its image, squared."""
     angles = [name not in search.problem.reals for name in search.problem.unknowns]
     unknowns = [
         Angle(u.graph, {u: 1}) if isinstance(u, Formula) and is_angle else u
         for u, is_angle in zip(at.unknowns, angles, strict=True)
     ]
-    far = [mirror.distance(unknowns) - NEAR for mirror in search.mirrors]
-    if at.short is None or search.stable:
-        return far
-    return [at.lengths[at.short] * f + NEAR * NEAR * search.short[at.short] for f in far]
+    return mirror.distance(unknowns)
+
+
+def _excess(search: _Search, at: Chart, s: int, near: Frame | None = None) -> Formula:
+    """What is not negative where a spring is long, near an involution's fixed points or elsewhere."""
+    if near is None:
+        return at.lengths[s] - search.short[s]
+    share = SHORT_RATIO**2 * _distance(search, at, near) + NEAR**2
+    return at.lengths[s].squared() - search.short[s] ** 2 * share
 
 
 def _semidefinite(at: Chart) -> list[Formula]:
@@ -284,8 +296,13 @@ def _at_free_lengths(search: _Search, at: Chart) -> Iterator[Curve]:
         )
 
 
-def _short_folds(search: _Search, at: Chart) -> Iterator[Curve]:
-    """The same where one spring is short, in its chart; the other ones may have any length."""
+def _short_folds(search: _Search, at: Chart, near: Frame | None = None) -> Iterator[Curve]:
+    """The same where one spring is short, in its chart; the other ones may have any length.
+
+    Parameters
+    ----------
+    near : of the involution near whose fixed points they are.
+    """
     for s in _charted(search, at):
         cone, at = search.problem.cones[s], chart(search.exact, s)
         semidefinite: list[Formula] = []
@@ -300,7 +317,8 @@ def _short_folds(search: _Search, at: Chart) -> Iterator[Curve]:
                 _dependent(search, at),
                 [
                     at.springs[s].extent,
-                    search.short[s] - at.lengths[s],
+                    -_excess(search, at, s, near),
+                    *([] if near is None else [NEAR - _distance(search, at, near)]),
                     *_far(search, at),
                     *semidefinite,
                     *_values(search.conditions, at),
