@@ -106,6 +106,15 @@ class Involution:
         x, y = (s * point[k] + c for k, s, c in zip(self.axes, self.axis_signs, self.shifts, strict=True))
         return x, y
 
+    def text(self, unknowns: Sequence[str], axes: Sequence[str]) -> str:
+        """What is moved, such as ``a -> -a + 3, x -> y + pi``."""
+        turns = ["pi" if half else 0 for half in self.halves]
+        moves = [*zip(axes, (axes[k] for k in self.axes), self.axis_signs, self.shifts, strict=True)]
+        moves += zip(unknowns, (unknowns[k] for k in self.images), self.signs, turns, strict=True)
+        texts = [f"{name} -> {'-' * (sign < 0)}{image} + {shift}" for name, image, sign, shift in moves]
+        texts = [text.removesuffix(" + 0").replace("+ -", "- ") for text in texts]
+        return ", ".join(text for text, (name, *_) in zip(texts, moves, strict=True) if text != f"{name} -> {name}")
+
 
 def involutions(model: Model, parameters: Mapping[str, Expression], window: Window | None = None) -> list[Involution]:
     """The involutions of a model over a window, but for the identity.

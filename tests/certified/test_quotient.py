@@ -230,6 +230,7 @@ def test_a_half_of_a_window_says_the_same_as_the_whole_of_it(monkeypatch: pytest
             patched.setattr("ptmcad.certified.engine.halving", lambda slice: None)
             whole = ptmcad.classify(slice, **given)
         assert half.undetermined <= Fraction(tolerance)
+        assert ["one half of the window" in str(found.plan[-1]) for found in (half, whole)] == [True, False]
         counter, known = plain_counter(slice), 0
         for _ in range(60):
             x, y = (a.low + (a.high - a.low) * Fraction(rng.randrange(1, 10**4), 10**4) for a in slice.axes)
