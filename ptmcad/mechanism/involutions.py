@@ -108,12 +108,14 @@ class Involution:
 
     def text(self, unknowns: Sequence[str], axes: Sequence[str]) -> str:
         """What is moved, such as ``a -> -a + 3, x -> y + pi``."""
-        turns = ["pi" if half else 0 for half in self.halves]
-        moves = [*zip(axes, (axes[k] for k in self.axes), self.axis_signs, self.shifts, strict=True)]
-        moves += zip(unknowns, (unknowns[k] for k in self.images), self.signs, turns, strict=True)
-        texts = [f"{name} -> {'-' * (sign < 0)}{image} + {shift}" for name, image, sign, shift in moves]
-        texts = [text.removesuffix(" + 0").replace("+ -", "- ") for text in texts]
-        return ", ".join(text for text, (name, *_) in zip(texts, moves, strict=True) if text != f"{name} -> {name}")
+        names, images = (*axes, *unknowns), (*self.axes, *(k + 2 for k in self.images))
+        signs = (*self.axis_signs, *self.signs)
+        shifts = (*map(str, self.shifts), *("pi" if half else "0" for half in self.halves))
+        moves = {
+            name: f"{'-' * (sign < 0)}{names[k]} + {shift}".removesuffix(" + 0").replace("+ -", "- ")
+            for name, k, sign, shift in zip(names, images, signs, shifts, strict=True)
+        }
+        return ", ".join(f"{name} -> {image}" for name, image in moves.items() if image != name)
 
 
 def involutions(model: Model, parameters: Mapping[str, Expression], window: Window | None = None) -> list[Involution]:
