@@ -273,7 +273,7 @@ def _values(parameters: Node, model: Model | None) -> dict[str, Scalar]:
 
 
 def _axes(entry: Node) -> dict[str, Window]:
-    axes = entry.mapping(MAX_VALUES, expected=f"expected two axes with their ranges, such as {AXES}")
+    axes = with_ranges(entry, "two axes with their ranges", AXES)
     if len(axes) != 2:
         entry.note(entry.fault(f"{len(axes)} axes are given: a slice has two, the horizontal one first"))
     return dict(entry.gathered(lambda axis: (axis.name, _window(axis)), axes.values()))
@@ -281,11 +281,27 @@ def _axes(entry: Node) -> dict[str, Window]:
 
 def _free(entry: Node) -> tuple[str, Window]:
     """The third parameter of a family with its range."""
-    expected = "expected one parameter with its range, such as {F: [-20, 0]}"
-    free = [*entry.mapping(expected=expected).values()]
+    what, like = "one parameter with its range", "{F: [-20, 0]}"
+    free = [*with_ranges(entry, what, like).values()]
     if len(free) != 1:
-        raise entry.fault(expected)
+        raise entry.fault(f"expected {what}, such as {like}")
     return free[0].name, _window(free[0])
+
+
+def with_ranges(entry: Node, what: str, like: str) -> dict[str, Node]:
+    """The entries of a mapping of names to ranges; where there are names alone, a fault says that.
+
+    Parameters
+    ----------
+    what, like : it is, and an example, for messages.
+    """
+    parts = entry.value.items if isinstance(entry.value, Sequence) else (entry.value,)
+    texts = [part.text if isinstance(part, Scalar) and not part.is_null else "" for part in parts]
+    names = [name.strip() for text in texts for name in text.split(",")]
+    if names and all(map(NAME.fullmatch, names)):
+        missing = f"the range{'s' * (len(names) > 1)} of {' and '.join(names)}"
+        raise entry.fault(f"expected {what}, such as {like}: {missing} {'are' if len(names) > 1 else 'is'} missing")
+    return entry.mapping(MAX_VALUES, expected=f"expected {what}, such as {like}")
 
 
 def _window(entry: Node) -> Window:
