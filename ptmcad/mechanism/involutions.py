@@ -21,8 +21,9 @@ from itertools import permutations
 from typing import NamedTuple
 
 from ptmcad.errors import ExpressionError
-from ptmcad.mechanism.closed import ClosedMechanism
-from ptmcad.mechanism.description import Mechanism, Model, System, UnknownKind
+from ptmcad.mechanism.closed import mechanism_in
+from ptmcad.mechanism.description import Model, System
+from ptmcad.mechanism.elements import UnknownKind
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.proofs import Image, Monomial, Polynomial, Ring, felt
 from ptmcad.text.expressions import Expression, constant
@@ -205,8 +206,9 @@ def _parts(model: Model, ring: _Slice) -> Iterator[_Part]:
     def values(trees: Iterable[Tree]) -> list[_Terms]:
         return [evaluate(tree, ring).terms for tree in trees]
 
-    if isinstance(model, Mechanism):
-        energy, springs, work = felt(model, Image(ring, {}))
+    mechanism = mechanism_in(model)
+    if mechanism is model:
+        energy, springs, work = felt(mechanism, Image(ring, {}))
         # how many are the same is said in their polynomial
         lengths = [
             marked({f"spring {n}": part for n, part in enumerate((*spring, (((), Fraction(number)),)))})
@@ -215,7 +217,7 @@ def _parts(model: Model, ring: _Slice) -> Iterator[_Part]:
         kept = [felt_by_unknowns(energy), [marked({f"d {u}": terms for u, terms in work.items()})], lengths]
     else:
         assert isinstance(model, System)
-        if isinstance(model, ClosedMechanism) and any(evaluate(s.free, ring).terms for s in model.mechanism.springs):
+        if mechanism is not None and any(evaluate(s.free, ring).terms for s in mechanism.springs):
             raise ExpressionError("free lengths are in none of a closed loop's equations")
         kept = [values(model.inequalities), values(model.stability)]
         if model.potential is not None:

@@ -13,7 +13,8 @@ from typing import Any
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism.angles import angle_name
 from ptmcad.mechanism.bodies import bodies
-from ptmcad.mechanism.description import Closing, Load, Mechanism, Moment, Spring, Support, TorsionSpring
+from ptmcad.mechanism.description import Mechanism
+from ptmcad.mechanism.elements import Closing, Load, Moment, Spring, Support, TorsionSpring
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.parts import check_numbers
 from ptmcad.mechanism.proofs import check_bars, check_springs, check_symmetries, check_unknowns

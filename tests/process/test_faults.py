@@ -261,7 +261,7 @@ INTERRUPTED = {
         ("map", "configs/fig4.yaml", "--value", "barrier", "--pose", "stable:2"),
     ),
     "range": (
-        "ptmcad.exact.ranges.width intervals",
+        "ptmcad.exact.ranges.rows intervals",
         ("range", "configs/fig4.yaml", "--along", "rho", "--over", "L2", "--format", "json"),
     ),
     "animate": (
