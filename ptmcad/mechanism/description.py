@@ -90,32 +90,35 @@ class Model:
     @cached_property
     def free_lengths(self) -> tuple[str, ...]:
         """The variables that are free lengths."""
-        return tuple(name for name in self.variables if self.kind(name) is Kind.FREE_LENGTH)
+        return self._of(Kind.FREE_LENGTH)
 
     @cached_property
     def without_free_lengths(self) -> tuple[str, ...]:
         """The other variables: those of the polynomial energy, or equations, of springs without free lengths."""
-        return tuple(name for name in self.variables if self.kind(name) is not Kind.FREE_LENGTH)
+        return self._of(*(kind for kind in Kind if kind is not Kind.FREE_LENGTH))
 
     @cached_property
     def positive(self) -> tuple[str, ...]:
         """The variables that have to be positive: bars' lengths and stiffnesses."""
-        return tuple(name for name in self.variables if self.kind(name).is_positive)
+        return self._of(*(kind for kind in Kind if kind.is_positive))
 
     @cached_property
     def nonnegative(self) -> tuple[str, ...]:
         """The variables that may be zero, but not negative: bases and free lengths."""
-        return tuple(name for name in self.variables if self.kind(name).may_vanish)
+        return self._of(*(kind for kind in Kind if kind.may_vanish))
 
     @cached_property
     def stiffnesses(self) -> tuple[str, ...]:
         """The variables that are stiffnesses."""
-        return tuple(name for name in self.variables if self.kind(name) is Kind.STIFFNESS)
+        return self._of(Kind.STIFFNESS)
 
     @cached_property
     def forces(self) -> tuple[str, ...]:
         """The variables that are forces."""
-        return tuple(name for name in self.variables if self.kind(name) is Kind.FORCE)
+        return self._of(Kind.FORCE)
+
+    def _of(self, *kinds: Kind) -> tuple[str, ...]:
+        return tuple(name for name in self.variables if self.kind(name) in kinds)
 
     @cached_property
     def shorthands(self) -> Mapping[str, tuple[str, ...]]:
