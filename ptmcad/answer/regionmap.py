@@ -62,8 +62,6 @@ class Continuum(Enum):
     POSSIBLE = "perhaps infinitely many"
 
 
-COMPILATION = "compilation"
-"""The timing, beside the total, of what was compiled before the computation: once on a machine."""
 NO_POINT = "no point in the window"
 HARMLESS = "real solutions stay bounded and regular there"
 """Why a component is left out of the decomposition."""

@@ -17,7 +17,8 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from ptmcad.answer.regionmap import COMPILATION, RegionMap, Status
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.answer.timings import with_compilation
 from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached, expect, quoted
 from ptmcad.mechanism import ClosedMechanism, ptm
@@ -196,11 +197,6 @@ def load_certified(progress: Progress | None = None, options: Options | None = N
         import_module("ptmcad.certified.compiled")  # first: where numba is missing, it says so
         from ptmcad.certified.loading import load
     return load(progress, options)
-
-
-def with_compilation(result: RegionMap, seconds: float) -> RegionMap:
-    """The map with the seconds that its run has spent compiling, if any, beside its own."""
-    return replace(result, timings={**result.timings, COMPILATION: seconds}) if seconds else result
 
 
 def _check_certified(slice: Slice, options: Options) -> None:

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import click
 
 from ptmcad.answer.plan import own_steps
+from ptmcad.answer.timings import with_compilation
 from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Drawing, drawing_options, names_of, share_of
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
@@ -104,7 +105,7 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
     with ProgressBar() as progress:
         options = replace(options, progress=progress, partial=handed_over if watched() else None)
         with clock_stopped(options.timeout, spent):  # the time that the import takes is not the computation's
-            from ptmcad.ask.classification import prepare, region_map, with_compilation
+            from ptmcad.ask.classification import prepare, region_map
 
             _report_why_none(slice, options, output, "the engine was still being loaded or compiled")
             compiling = prepare(slice, options)
