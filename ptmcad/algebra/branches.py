@@ -20,7 +20,7 @@ M(R) / R^(k + 1), R > 1.
 from collections.abc import Sequence
 from itertools import pairwise
 from math import log, perm
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from flint import arb, arb_poly, arb_series, ctx, fmpq, fmpz_poly
 
@@ -284,13 +284,17 @@ def local_coefficients(
 ) -> list[arb_poly]:
     """Coefficients b_i(h) of p(middle + radius h, origin + w) = sum_i b_i(h) w^i: all, or so many first ones."""
     line = arb_poly([arb(middle), arb(radius)])
-    rows = [arb_poly(c)(line) for c in in_v]
-    shift = arb(origin)
-    number = len(rows) if number is None else number
-    for start in range(min(len(rows) - 1, number)):
-        for i in range(len(rows) - 2, start - 1, -1):
-            rows[i] = rows[i] + rows[i + 1] * shift
-    return rows[:number]
+    return shifted([arb_poly(c)(line) for c in in_v], arb(origin), number)
+
+
+def shifted(rows: Sequence[Any], by: Any, number: int | None = None) -> list[Any]:
+    """The coefficients of p(by + w) by w, from those of p(w): all, or so many first ones."""
+    found = list(rows)
+    number = len(found) if number is None else number
+    for start in range(min(len(found) - 1, number)):
+        for i in range(len(found) - 2, start - 1, -1):
+            found[i] = found[i] + found[i + 1] * by
+    return found[:number]
 
 
 def _series(local: Sequence[arb_poly], order: int) -> arb_poly:

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 
-from ptmcad.algebra.branches import PrecisionTooLow, Tube, local_coefficients, tube_around
+from ptmcad.algebra.branches import PrecisionTooLow, Tube, local_coefficients, shifted, tube_around
 from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
 
 _STAGES = 4
@@ -151,7 +151,7 @@ def _blown_up(chart: _Chart, s: arb) -> _Chart | None:
         lowered = (chart.lowered + first[upper]) * q + upper * e
         exponent = chart.exponent * q + e
         along = _spread(chart.along, q) + arb_poly([value]).left_shift(exponent)
-        return _Chart(chart.power * q, along, exponent, _shifted(rows, value), lowered, branches, there - value)
+        return _Chart(chart.power * q, along, exponent, shifted(rows, value), lowered, branches, there - value)
     return None
 
 
@@ -231,12 +231,3 @@ def _spread(p: arb_poly, q: int) -> arb_poly:
     coefficients = [arb(0)] * (q * p.degree() + 1) if p.degree() >= 0 else []
     coefficients[::q] = p.coeffs()
     return arb_poly(coefficients)
-
-
-def _shifted(rows: Sequence[arb_poly], by: arb) -> list[arb_poly]:
-    """Coefficients of the powers of w - by."""
-    shifted = list(rows)
-    for start in range(len(shifted) - 1):
-        for j in range(len(shifted) - 2, start - 1, -1):
-            shifted[j] = shifted[j] + shifted[j + 1] * by
-    return shifted

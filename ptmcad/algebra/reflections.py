@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from flint import fmpq_poly, fmpz_poly
 
+from ptmcad.algebra.branches import shifted
 from ptmcad.algebra.restrictions import Restrictions
 
 Coefficients = Sequence[fmpz_poly]
@@ -68,8 +69,4 @@ def squared(p: Coefficients, axis: fmpq_poly) -> list[fmpz_poly]:
 
 def _shifted(p: Coefficients, by: fmpq_poly) -> list[fmpq_poly]:
     """The coefficients of p(u, by + w)."""
-    rows = [fmpq_poly(c) for c in p]
-    for start in range(len(rows) - 1):
-        for i in range(len(rows) - 2, start - 1, -1):
-            rows[i] = rows[i] + rows[i + 1] * by
-    return rows
+    return shifted([fmpq_poly(c) for c in p], by)

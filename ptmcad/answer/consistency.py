@@ -6,7 +6,8 @@ map is true is `ptmcad.verify`'s question.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from itertools import chain
 
 from ptmcad.answer.regionmap import Cell, Region, RegionMap
 from ptmcad.errors import ConfigError
@@ -24,66 +25,77 @@ def check_numbers(result: RegionMap) -> None:
     ConfigError
         With the first reference that leads nowhere.
     """
-    base = result.base
     try:
         check_names(result.slice.model, result.slice.parameters)
     except ValueError as error:
         raise _fault(str(error)) from error
+    # each is looked at only when nothing was wrong before
+    for problem in chain(_of_stacks(result), _of_cells(result), _of_regions(result)):
+        raise _fault(problem)
+
+
+def _of_stacks(result: RegionMap) -> Iterator[str]:
     for s, stack in enumerate(result.stacks):
-        _within(stack.cells, len(result.cells), f"stack {s}", "cell")
-        _within((w.component for w in stack.walls), len(result.components), f"stack {s}", "component")
+        yield from _outside(stack.cells, len(result.cells), f"stack {s}", "cell")
+        yield from _outside((w.component for w in stack.walls), len(result.components), f"stack {s}", "component")
         ends = [end for end in (stack.left, stack.right) if end is not None]
-        _within(ends, len(result.critical_values), f"stack {s}", "critical value")
+        yield from _outside(ends, len(result.critical_values), f"stack {s}", "critical value")
         if len(stack.cells) != len(stack.walls) + 1:
-            raise _fault(f"stack {s} has {len(stack.cells)} cells and {len(stack.walls)} walls")
+            yield f"stack {s} has {len(stack.cells)} cells and {len(stack.walls)} walls"
         for wall in stack.walls:
             component = result.components[wall.component]
-            if component.left_out or component.polynomial.degrees[1 - base] == 0:
-                raise _fault(f"stack {s} has a wall on component {wall.component}, which has no graph there")
+            if component.left_out or component.polynomial.degrees[1 - result.base] == 0:
+                yield f"stack {s} has a wall on component {wall.component}, which has no graph there"
         for level, number in enumerate(stack.cells):
             if (result.cells[number].stack, result.cells[number].level) != (s, level):
-                raise _fault(f"cell {number} is not at level {level} of stack {s}")
+                yield f"cell {number} is not at level {level} of stack {s}"
     if result.cover is not None:
         if result.stacks or result.components or any(cell.stack is not None for cell in result.cells):
-            raise _fault("it has a cover, as certified maps have, and stacks or curves, as exact ones")
+            yield "it has a cover, as certified maps have, and stacks or curves, as exact ones"
     elif sum(len(stack.cells) for stack in result.stacks) != len(result.cells):
-        raise _fault("not every cell is in one stack")
+        yield "not every cell is in one stack"
+
+
+def _of_cells(result: RegionMap) -> Iterator[str]:
     for n, cell in enumerate(result.cells):
-        _within((cell.region,), len(result.regions), f"cell {n}", "region")
-        _check_counts(cell, f"cell {n}")
+        yield from _outside((cell.region,), len(result.regions), f"cell {n}", "region")
+        yield from _of_counts(cell, f"cell {n}")
         # where only stable equilibria are counted, a certified map has no boxes of the others
         expected = (cell.total, cell.stable) if result.cover is not None and cell.total is None else (cell.total,)
         if cell.solutions and len(cell.solutions) not in expected:
-            raise _fault(f"cell {n} has {cell.total} equilibria and {len(cell.solutions)} boxes")
+            yield f"cell {n} has {cell.total} equilibria and {len(cell.solutions)} boxes"
         region = result.regions[cell.region]
         if n not in region.cells:
-            raise _fault(f"cell {n} is in region {cell.region}, which does not have it")
+            yield f"cell {n} is in region {cell.region}, which does not have it"
         for name in _counts_known_from(result.slice.count):
             if getattr(cell, name) != getattr(region, name):
-                raise _fault(f"cell {n} and its region {cell.region} differ in their counts")
+                yield f"cell {n} and its region {cell.region} differ in their counts"
         if not all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, cell.sample, strict=True)):
-            raise _fault(f"the sample of cell {n} is not in the window")
+            yield f"the sample of cell {n} is not in the window"
+
+
+def _of_regions(result: RegionMap) -> Iterator[str]:
     for n, region in enumerate(result.regions):
         most = max((n for n in (region.stable, region.total, region.admissible, *(region.index or ())) if n), default=0)
         if region.area[0] > region.area[1]:
-            raise _fault(f"region {n} has an area below its own lower bound")
+            yield f"region {n} has an area below its own lower bound"
         if most > MAX_EQUILIBRIA:
-            raise _fault(f"region {n} counts {most} equilibria, more than {MAX_EQUILIBRIA}")
-        _within(region.cells, len(result.cells), f"region {n}", "cell")
-        _check_counts(region, f"region {n}")
+            yield f"region {n} counts {most} equilibria, more than {MAX_EQUILIBRIA}"
+        yield from _outside(region.cells, len(result.cells), f"region {n}", "cell")
+        yield from _of_counts(region, f"region {n}")
         if not region.cells:
-            raise _fault(f"region {n} has no cells")
+            yield f"region {n} has no cells"
         if any(result.cells[number].region != n for number in region.cells):
-            raise _fault(f"region {n} has a cell that is in another one")
+            yield f"region {n} has a cell that is in another one"
     for n, value in enumerate(result.critical_values):
         if len(value.polynomial) < 2 or not value.polynomial[-1] or value.low > value.high:
-            raise _fault(f"critical value {n} is no root in an interval")
+            yield f"critical value {n} is no root in an interval"
 
 
-def _check_counts(part: Cell | Region, place: str) -> None:
+def _of_counts(part: Cell | Region, place: str) -> Iterator[str]:
     """The Morse index has to add up to the other counts, as far as these are known."""
     if part.index is not None and (part.total, part.stable) != (sum(part.index), next(iter(part.index), None)):
-        raise _fault(f"{place} has index {part.index}, {part.total} equilibria and {part.stable} stable ones")
+        yield f"{place} has index {part.index}, {part.total} equilibria and {part.stable} stable ones"
 
 
 def _counts_known_from(count: Count) -> tuple[str, ...]:
@@ -96,10 +108,8 @@ def _counts_known_from(count: Count) -> tuple[str, ...]:
     }[count]
 
 
-def _within(numbers: Iterable[int], length: int, place: str, what: str) -> None:
-    for number in numbers:
-        if not 0 <= number < length:
-            raise _fault(f"{place} names {what} {number}, which is not there")
+def _outside(numbers: Iterable[int], length: int, place: str, what: str) -> Iterator[str]:
+    return (f"{place} names {what} {n}, which is not there" for n in numbers if not 0 <= n < length)
 
 
 def _fault(problem: str) -> ConfigError:

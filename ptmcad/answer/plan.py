@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from ptmcad.answer.regionmap import PlanStep
+from ptmcad.mechanism.involutions import Involution
 from ptmcad.question.savings import BY_NAME, GENERAL_SAVING
 from ptmcad.question.slice import Slice
 
@@ -43,3 +44,11 @@ def zero_parameters(slice: Slice) -> list[str]:
 def zero_terms(names: Sequence[str]) -> list[PlanStep]:
     """The step that says so where parameters are zero: nothing is left of them once numbers are put in."""
     return [PlanStep("terms of " + ", ".join(names), False, "they are zero on this slice")] if names else []
+
+
+def half_step(what: str, change: Involution | None, slice: Slice) -> list[PlanStep]:
+    """The step that says so where one half of the window was enough, as an involution takes the window to itself."""
+    if change is None:
+        return []
+    moves = change.text(tuple(slice.model.unknowns), slice.axis_names)
+    return [PlanStep(f"{what} one half of the window", False, f"its solutions are those of the other half, by {moves}")]

@@ -6,7 +6,7 @@ Guarantee: every number in it is exact or an enclosure; `RegionMap.from_json(res
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import Enum
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -62,8 +62,6 @@ class Continuum(Enum):
     POSSIBLE = "perhaps infinitely many"
 
 
-COMPILATION = "compilation"
-"""The timing, beside the total, of what was compiled before the computation: once on a machine."""
 NO_POINT = "no point in the window"
 HARMLESS = "real solutions stay bounded and regular there"
 """Why a component is left out of the decomposition."""
@@ -396,8 +394,3 @@ class RegionMap:
         def plot(
             self, ax: Any = None, style: Any = "default", *, samples: bool = False, dpi: int = 150, **options: Any
         ) -> Any: ...
-
-
-def with_compilation(result: RegionMap, seconds: float) -> RegionMap:
-    """The map with the seconds that its run has spent compiling, if any, beside its own."""
-    return replace(result, timings={**result.timings, COMPILATION: seconds}) if seconds else result

@@ -17,7 +17,8 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from ptmcad.answer.regionmap import RegionMap, Status, with_compilation
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.answer.timings import with_compilation
 from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached, expect, quoted
 from ptmcad.mechanism import ClosedMechanism, ptm

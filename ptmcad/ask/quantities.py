@@ -13,7 +13,7 @@ from enum import Enum
 from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
-from ptmcad.mechanism.description import UnknownKind
+from ptmcad.mechanism.elements import UnknownKind
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.syntax import did_you_mean

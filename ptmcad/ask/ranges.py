@@ -14,7 +14,7 @@ from ptmcad.answer.paths import Fate, PosePath, PosePaths
 from ptmcad.answer.widths import Maximum, OperationWidths, Place
 from ptmcad.exact.ranges import path as exact_paths
 from ptmcad.exact.ranges.line import intervals
-from ptmcad.exact.ranges.width import operation_widths
+from ptmcad.exact.ranges.rows import operation_widths
 from ptmcad.options import Progress
 from ptmcad.question.line import has_free_lengths
 from ptmcad.question.slice import Slice

@@ -122,7 +122,8 @@ class _Run:
         self.lattice = Lattice(window, steps, None if whole else halving(slice))
         wanted = curves(slice, slice.count, options.without)
         self.enclosures: list[Enclosure] = begin(wanted, _rectangles(self.lattice, self.resumed))
-        self.assembler = Assembler(slice, plain_counter(slice), plan_of(slice, wanted, options.without), _versions())
+        plan = plan_of(slice, wanted, options.without, self.lattice.change)
+        self.assembler = Assembler(slice, plain_counter(slice), plan, _versions())
         self.best: RegionMap | None = None
         """The map with the least undetermined area of those that were handed over."""
         self._thinned: Thinning | None = None

@@ -9,11 +9,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
+from ptmcad.answer.plan import half_step
 from ptmcad.answer.regionmap import PlanStep, System
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.plan import beforehand
 from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
 from ptmcad.mechanism import System as ParametricSystem
+from ptmcad.mechanism.involutions import Involution
 from ptmcad.mechanism.work import split_moments
 from ptmcad.question.slice import Slice
 from ptmcad.text.tree import Chain, Negative, Number, Step, Tree, to_text
@@ -93,12 +95,15 @@ def _factor(tree: Tree) -> str:
     return f"({to_text(tree)})" if isinstance(tree, Chain | Negative) else to_text(tree)
 
 
-def plan_of(slice: Slice, curves: Sequence[Curve], without: frozenset[str] = frozenset()) -> tuple[PlanStep, ...]:
+def plan_of(
+    slice: Slice, curves: Sequence[Curve], without: frozenset[str] = frozenset(), change: Involution | None = None
+) -> tuple[PlanStep, ...]:
     """What the certified engine does for a slice and what it leaves out.
 
     Parameters
     ----------
     without : savings that were switched off.
+    change : the involution by which one half of the window is enough, if it is.
     """
     return (
         *beforehand(slice, without),
@@ -106,4 +111,5 @@ def plan_of(slice: Slice, curves: Sequence[Curve], without: frozenset[str] = fro
             PlanStep(curve.name, True, f"enclosed by branch and prune in {len(curve.system.unknowns)} unknowns")
             for curve in curves
         ),
+        *half_step("curves over", change, slice),
     )

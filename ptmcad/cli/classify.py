@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import click
 
 from ptmcad.answer.plan import own_steps
-from ptmcad.answer.regionmap import with_compilation
+from ptmcad.answer.timings import with_compilation
 from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Drawing, drawing_options, names_of, share_of
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle

@@ -267,20 +267,22 @@ def bounds_between(controls: Controls, start: Fraction, end: Fraction) -> tuple[
     return min(part), max(part)
 
 
+def halved(row: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """De Casteljau's subdivision at the middle, times 2^degree."""
+    degree = len(row) - 1
+    left, right, sums = [row[0] << degree], [row[-1] << degree], list(row)
+    for step in range(1, degree + 1):
+        sums = [a + b for a, b in pairwise(sums)]
+        left.append(sums[0] << (degree - step))
+        right.append(sums[-1] << (degree - step))
+    return tuple(left), tuple(reversed(right))
+
+
 def bounds_by_halving(controls: Controls, halvings: int) -> list[tuple[int, int]]:
     """Bounds of the polynomial over 2^halvings equal parts of its interval: their controls, rounded outward."""
-    n, parts = len(controls) - 1, [list(controls)]
+    n, parts = len(controls) - 1, [tuple(controls)]
     for _ in range(halvings):
-        finer = []
-        for row in parts:
-            # de Casteljau's rule for the middle, all numbers times 2^n
-            own, first, last = row, [row[0] << n], [row[-1] << n]
-            for k in range(1, n + 1):
-                own = [a + b for a, b in pairwise(own)]
-                first.append(own[0] << (n - k))
-                last.append(own[-1] << (n - k))
-            finer += [first, last[::-1]]
-        parts = finer
+        parts = [half for row in parts for half in halved(row)]
     scale = 2 ** (n * halvings)
     return [(min(row) // scale, -(-max(row) // scale)) for row in parts]
 

@@ -37,16 +37,16 @@ def areas_of(
     parts = RegionStacks(stacks, rows, variety.curves, problem.window[base], problem.window[1 - base])
     # the halves before and behind an abscissa need no cuts, and are the cheapest
     reflections = sorted(problem.reflections, key=lambda change: (change.axes, change.axis_signs[base]))
+    used = None
     for change in () if alone else reflections[:1]:
         images = _images(problem, variety, known, change)
         if images is not None:
-            parts = _half(parts._replace(images=images), change, base)
+            parts, used = _half(parts._replace(images=images), change, base), change
     bounds, bits = region_areas(parts, tolerance, check)
     if alone:
         bounds = tuple(_sum_of([bounds[n] for n in cells], problem.area) for cells in members(region_of))
-    return Areas(
-        tuple((fraction_of(decimal(low, up=False)), fraction_of(decimal(high, up=True))) for low, high in bounds), bits
-    )
+    rounded = ((fraction_of(decimal(low, up=False)), fraction_of(decimal(high, up=True))) for low, high in bounds)
+    return Areas(tuple(rounded), bits, used)
 
 
 def _sum_of(areas: Sequence[tuple[Fraction, Fraction]], most: Fraction) -> tuple[Fraction, Fraction]:

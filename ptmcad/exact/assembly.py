@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import flint
 
 from ptmcad.answer.counts import Counts
+from ptmcad.answer.plan import half_step
 from ptmcad.answer.regionmap import (
     Cell,
     CriticalValue,
@@ -79,7 +80,10 @@ def assemble(
         adjacencies=adjacencies,
         non_adjacencies=() if cells is None else _non_adjacencies(cells.stacks.stacks, cells.neighbours.crossings),
         regions=() if cells is None else _regions(cells, samples, areas, problem.area),
-        plan=plan_of(problem.slice, variety.components, variety.base, variety.costs, options.without, options.areas),
+        plan=(
+            *plan_of(problem.slice, variety.components, variety.base, variety.costs, options.without, options.areas),
+            *half_step("areas on", None if areas is None else areas.change, problem.slice),
+        ),
         undetermined=Fraction(1 if cells is None else 0),
         versions=versions(),
         precision=precision,

@@ -18,6 +18,7 @@ from ptmcad.algebra.fibre import Fibre, Work
 from ptmcad.algebra.number_field import Element
 from ptmcad.algebra.points import Points, RealPoint, points, real_values
 from ptmcad.algebra.real_roots import RealRoot
+from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.answer.words import noun
@@ -145,41 +146,25 @@ def _at_point(
     parameters: Mapping[str, Fraction],
 ) -> PointModel:
     """The model at a point, with its places and springs, torsion springs too, where it is a mechanism."""
-    springs: tuple[tuple[str, str, str, Fraction], ...] = ()
-    nodes: dict[str, tuple[RationalPolynomial, RationalPolynomial]] = {}
-    torsion: tuple[tuple[str, Fraction], ...] = ()
-    deflections: tuple[tuple[RationalPolynomial, RationalPolynomial], ...] = ()
-    energy: RationalPolynomial | None = None
-    second_bars: tuple[tuple[int, fmpq, fmpq], ...] = ()
-    if (mechanism := mechanism_in(given)) is not None:
-        geometry = geometry_of(mechanism)
-        springs = tuple((s.name, s.start, s.end, value_at(s.stiffness, parameters)) for s in mechanism.springs)
-        nodes = {
-            name: (specialised(geometry.ring, x, values), specialised(geometry.ring, y, values))
-            for name, (x, y) in geometry.nodes.items()
-        }
-        torsion = tuple((t.name, value_at(t.stiffness, parameters)) for t in mechanism.torsion)
-        deflections = tuple(
-            (specialised(geometry.ring, cosine, values), specialised(geometry.ring, sine, values))
-            for cosine, sine in deflections_of(mechanism)
-        )
-        if mechanism.has_potential and given is not mechanism:
-            energy = specialised(geometry.ring, potential_of(mechanism), values)
-        second_bars = _second_bars(mechanism, parameters)
     potential = None if system.potential is None else polynomial_at(system, system.potential, values)
     angles = len(system.ring.angles)
-    return PointModel(
-        angles,
-        springs,
-        nodes,
-        potential,
-        point.jacobian,
-        point.inequalities,
-        point.stability,
-        torsion,
-        deflections,
-        energy,
-        second_bars,
+    found = PointModel(angles, (), {}, potential, point.jacobian, point.inequalities, point.stability)
+    mechanism = mechanism_in(given)
+    if mechanism is None:
+        return found
+    geometry = geometry_of(mechanism)
+
+    def at(p: TrigonometricPolynomial) -> RationalPolynomial:
+        return specialised(geometry.ring, p, values)
+
+    return replace(
+        found,
+        springs=tuple((s.name, s.start, s.end, value_at(s.stiffness, parameters)) for s in mechanism.springs),
+        nodes={name: (at(x), at(y)) for name, (x, y) in geometry.nodes.items()},
+        torsion=tuple((t.name, value_at(t.stiffness, parameters)) for t in mechanism.torsion),
+        deflections=tuple((at(cosine), at(sine)) for cosine, sine in deflections_of(mechanism)),
+        energy=at(potential_of(mechanism)) if mechanism.has_potential and given is not mechanism else None,
+        second_bars=_second_bars(mechanism, parameters),
     )
 
 

@@ -132,10 +132,16 @@ class Neighbours(NamedTuple):
 
 
 class Areas(NamedTuple):
-    """Bounds of each region's area, written outwards in decimals, and the bits of precision that they needed."""
+    """Bounds of each region's area, written outwards in decimals, and the bits of precision that they needed.
+
+    Attributes
+    ----------
+    change : the involution of which one half of the window was enough; None where the whole window was looked at.
+    """
 
     bounds: tuple[tuple[Fraction, Fraction], ...]
     bits: int
+    change: Involution | None = None
 
 
 class Cells(NamedTuple):

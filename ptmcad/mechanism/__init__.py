@@ -9,7 +9,8 @@ from dataclasses import replace
 
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism.closed import ClosedMechanism, mechanism_in
-from ptmcad.mechanism.description import Kind, Mechanism, Model, Parameter, Support, System
+from ptmcad.mechanism.description import Mechanism, Model, System
+from ptmcad.mechanism.elements import Kind, Parameter, Support
 from ptmcad.mechanism.ptm import ptm
 from ptmcad.mechanism.record import described, read_mechanism
 from ptmcad.mechanism.systems import described_system, read_system

@@ -19,7 +19,8 @@ from fractions import Fraction
 from itertools import combinations
 
 from ptmcad.errors import ExpressionError
-from ptmcad.mechanism.description import Closing, Mechanism
+from ptmcad.mechanism.description import Mechanism
+from ptmcad.mechanism.elements import Closing
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.proofs import Points, Polynomial
 from ptmcad.text.expressions import Expression, constant

@@ -21,8 +21,9 @@ from itertools import permutations
 from typing import NamedTuple
 
 from ptmcad.errors import ExpressionError
-from ptmcad.mechanism.closed import ClosedMechanism
-from ptmcad.mechanism.description import Mechanism, Model, System, UnknownKind
+from ptmcad.mechanism.closed import mechanism_in
+from ptmcad.mechanism.description import Model, System
+from ptmcad.mechanism.elements import UnknownKind
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.proofs import Image, Monomial, Polynomial, Ring, felt
 from ptmcad.text.expressions import Expression, constant
@@ -105,6 +106,17 @@ class Involution:
         """The image of a point of the slice."""
         x, y = (s * point[k] + c for k, s, c in zip(self.axes, self.axis_signs, self.shifts, strict=True))
         return x, y
+
+    def text(self, unknowns: Sequence[str], axes: Sequence[str]) -> str:
+        """What is moved, such as ``a -> -a + 3, x -> y + pi``."""
+        names, images = (*axes, *unknowns), (*self.axes, *(k + 2 for k in self.images))
+        signs = (*self.axis_signs, *self.signs)
+        shifts = (*map(str, self.shifts), *("pi" if half else "0" for half in self.halves))
+        moves = {
+            name: f"{'-' * (sign < 0)}{names[k]} + {shift}".removesuffix(" + 0").replace("+ -", "- ")
+            for name, k, sign, shift in zip(names, images, signs, shifts, strict=True)
+        }
+        return ", ".join(f"{name} -> {image}" for name, image in moves.items() if image != name)
 
 
 def involutions(model: Model, parameters: Mapping[str, Expression], window: Window | None = None) -> list[Involution]:
@@ -194,8 +206,9 @@ def _parts(model: Model, ring: _Slice) -> Iterator[_Part]:
     def values(trees: Iterable[Tree]) -> list[_Terms]:
         return [evaluate(tree, ring).terms for tree in trees]
 
-    if isinstance(model, Mechanism):
-        energy, springs, work = felt(model, Image(ring, {}))
+    mechanism = mechanism_in(model)
+    if mechanism is model:
+        energy, springs, work = felt(mechanism, Image(ring, {}))
         # how many are the same is said in their polynomial
         lengths = [
             marked({f"spring {n}": part for n, part in enumerate((*spring, (((), Fraction(number)),)))})
@@ -204,7 +217,7 @@ def _parts(model: Model, ring: _Slice) -> Iterator[_Part]:
         kept = [felt_by_unknowns(energy), [marked({f"d {u}": terms for u, terms in work.items()})], lengths]
     else:
         assert isinstance(model, System)
-        if isinstance(model, ClosedMechanism) and any(evaluate(s.free, ring).terms for s in model.mechanism.springs):
+        if mechanism is not None and any(evaluate(s.free, ring).terms for s in mechanism.springs):
             raise ExpressionError("free lengths are in none of a closed loop's equations")
         kept = [values(model.inequalities), values(model.stability)]
         if model.potential is not None:

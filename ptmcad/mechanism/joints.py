@@ -18,7 +18,8 @@ from itertools import combinations
 from typing import NamedTuple
 
 from ptmcad.errors import ExpressionError
-from ptmcad.mechanism.description import Mechanism, Support, TorsionSpring
+from ptmcad.mechanism.description import Mechanism
+from ptmcad.mechanism.elements import Support, TorsionSpring
 from ptmcad.mechanism.evaluate import multiples
 from ptmcad.mechanism.proofs import Points, Ring
 

@@ -28,7 +28,8 @@ from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism.closed import ClosedMechanism
 from ptmcad.mechanism.crossed import without_xjoints
 from ptmcad.mechanism.derivative import cofactors, derivative, determinant, negative, product, total
-from ptmcad.mechanism.description import Closing, Mechanism, Model, UnknownKind
+from ptmcad.mechanism.description import Mechanism, Model
+from ptmcad.mechanism.elements import Closing, UnknownKind
 from ptmcad.mechanism.multipliers import stationary, tensions
 from ptmcad.mechanism.proofs import Points
 from ptmcad.mechanism.sizes import check_sizes

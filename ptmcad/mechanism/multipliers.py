@@ -29,7 +29,8 @@ from itertools import combinations
 
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism.derivative import ZERO, derivative, determinant, negative, total
-from ptmcad.mechanism.description import Mechanism, UnknownKind
+from ptmcad.mechanism.description import Mechanism
+from ptmcad.mechanism.elements import UnknownKind
 from ptmcad.text.tree import Chain, Name, Number, Step, Tree
 
 MAX_ENTRIES = 8

@@ -7,9 +7,10 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, Faults, shown
-from ptmcad.mechanism.closed import ClosedMechanism
+from ptmcad.mechanism.closed import mechanism_in
 from ptmcad.mechanism.derivative import negative, total
-from ptmcad.mechanism.description import Kind, Mechanism, Model
+from ptmcad.mechanism.description import Model
+from ptmcad.mechanism.elements import Kind
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.text.numerals import text_of as value_text
 from ptmcad.text.tree import Name, Number, Power, Tree, names_of
@@ -43,18 +44,17 @@ class Part(NamedTuple):
 def parts(model: Model) -> Iterator[Part]:
     """The stiffnesses and free lengths of a mechanism's springs, and the lengths of bars that close loops, that are no
     parameters of such a kind themselves."""
-    if isinstance(model, ClosedMechanism):
-        model = model.mechanism
-    if not isinstance(model, Mechanism):
+    mechanism = mechanism_in(model)
+    if mechanism is None:
         return
-    for n, spring in enumerate(model.springs, 1):
+    for n, spring in enumerate(mechanism.springs, 1):
         yield from _unless_known(model, Part(f"springs.{n}.k", Kind.STIFFNESS, spring.stiffness))
         yield from _unless_known(model, Part(f"springs.{n}.free", Kind.FREE_LENGTH, spring.free))
-    for n, torsion in enumerate(model.torsion, 1):
+    for n, torsion in enumerate(mechanism.torsion, 1):
         yield from _unless_known(model, Part(f"torsion.{n}.k", Kind.STIFFNESS, torsion.stiffness))
-    for n, closing in enumerate(model.closing, 1):
+    for n, closing in enumerate(mechanism.closing, 1):
         yield from _unless_known(model, Part(f"closing.{n}.length", Kind.LENGTH, closing.length))
-    for joint in model.xjoints:
+    for joint in mechanism.xjoints:
         yield from _unless_known(model, Part(f"x-joint.{joint.name}.base", Kind.LENGTH, joint.length))
         key, off = f"x-joint.{joint.name}.bars", total(joint.bars, negative(joint.length))
         yield from _unless_known(model, Part(key, Kind.LENGTH, joint.bars))

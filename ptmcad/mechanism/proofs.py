@@ -14,7 +14,8 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
-from ptmcad.mechanism.description import Mechanism, UnknownKind
+from ptmcad.mechanism.description import Mechanism
+from ptmcad.mechanism.elements import UnknownKind
 from ptmcad.mechanism.evaluate import evaluate, multiples
 from ptmcad.text.tree import Call, Name, Negative, Number, Tree, names_of
 

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
 from ptmcad.mechanism.angles import PI, split_angle, without_quarter_turns
-from ptmcad.mechanism.description import Kind, Parameter, UnknownKind
+from ptmcad.mechanism.elements import Kind, Parameter, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate, value_at
 from ptmcad.mechanism.sizes import Size, Sizes
 from ptmcad.text.codec import Codec, Key, choice, part, reading, record

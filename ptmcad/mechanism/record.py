@@ -13,7 +13,8 @@ from typing import Any
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism.angles import angle_name
 from ptmcad.mechanism.bodies import bodies
-from ptmcad.mechanism.description import Closing, Load, Mechanism, Moment, Spring, Support, TorsionSpring
+from ptmcad.mechanism.description import Mechanism
+from ptmcad.mechanism.elements import Closing, Load, Moment, Spring, Support, TorsionSpring
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.parts import check_numbers
 from ptmcad.mechanism.proofs import check_bars, check_springs, check_symmetries, check_unknowns
@@ -21,7 +22,7 @@ from ptmcad.mechanism.reading import NAME_SCHEMA, NUMBER, POINTS, VALUE, ZERO, C
 from ptmcad.mechanism.sizes import check_sizes
 from ptmcad.mechanism.work import split_moments
 from ptmcad.mechanism.xjoints import second_angles, xjoints
-from ptmcad.text.codec import Codec, choice, converted, listed, named, part, reading, record
+from ptmcad.text.codec import Codec, Key, choice, converted, listed, named, part, reading, record
 from ptmcad.text.entry import Place, as_written, from_python
 from ptmcad.text.node import MAX_ENTRIES, Node
 from ptmcad.text.syntax import parse
@@ -78,106 +79,17 @@ def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = Fal
 
 def mechanism_codec(context: Context) -> Codec[dict[str, Any]]:
     """A mechanism's keys, read in this order."""
-    value, between = context.value(), context.between()
-    spring: Codec[dict[str, Any]] = record(
-        dict,
-        "{between: [A, B], k: 1}",
-        between=part(between, instead=("", "")),
-        k=part(value, "Stiffness.", instead=_ONE),
-        free=part(value, "Free length.", ZERO, shown=0),
-    )
-    torsion: Codec[dict[str, Any]] = record(
-        dict,
-        "{angle: th, k: 1}",
-        angle=part(
-            reading(context.angle, **VALUE),
-            "A sum of whole multiples of unknown angles, and of quarter turns such as pi/2.",
-            instead=(ZERO, 0),
-        ),
-        k=part(value, "Stiffness, a moment.", instead=_ONE),
-        rest=part(
-            reading(_rest, anyOf=[{"enum": [0, *NAMED_RESTS]}, _DIRECTION.schema]),
-            "The angle at which it is relaxed, or its cosine and sine.",
-            (Fraction(1), Fraction(0)),
-            shown=0,
-        ),
-        at=part(
-            reading(lambda entry: context.known_point(entry, entry.plain), **NAME_SCHEMA),
-            "The point at which it is drawn, where bodies, bars and supports do not tell the joint; it changes no "
-            "result.",
-            "",
-        ),
-    )
     closing = record(
         lambda between, length: Closing(between[0], between[1], length),
         "{between: [B, D], length: L}",
-        between=part(between),
-        length=part(value),
+        between=part(context.between()),
+        length=part(context.value()),
     )
-    moving = context.value(moving=True)
     return record(
         dict,
         **context.start(DEFAULT_NAME),
-        points=part(
-            reading(lambda node: _points(node, context), **POINTS),
-            "Names to coordinates, polynomials in parameters, lengths, and cos and sin of sums of angles.",
-            instead={},
-        ),
-        **{
-            "x-joint": part(
-                xjoints(context),
-                "X-joints: two crossed bars of one length from a base to a top that is as long as the base. The base "
-                "is two points on one level, from left to right, which no unknown moves, or the top of a joint above. "
-                "The first bar, from the base's left end to the top's right one, turns by an unknown angle against the "
-                "base; the other bar's angle follows, and its name may be used like an unknown's.",
-                (),
-            )._replace(field="xjoints")
-        },
-        bodies=part(
-            bodies(context), "Rigid bodies: place, angle, and points in coordinates that turn with the body.", {}
-        ),
-        bars=part(
-            listed(between, most=MAX_ENTRIES, like="[[O, P]]"),
-            "Pairs of points, drawn; that their distances are constant is proved.",
-            (),
-        ),
-        supports=part(
-            named(choice(Support), context.known_point, MAX_ENTRIES, "{O: pin}"),
-            "What holds a point, for drawings.",
-            {},
-        ),
-        springs=part(
-            converted(listed(spring, None, MAX_ENTRIES, "[{between: [A, P], k: 1}]"), _UNWRITTEN, _springs),
-            "Springs between points, along their lines.",
-            (),
-        ),
-        torsion=part(
-            converted(listed(torsion, None, MAX_ENTRIES, "[{angle: th, k: 1}]"), _UNWRITTEN, _torsion),
-            "Springs between directions: energy k (1 - cos(angle - rest)), moment k sin(angle - rest). For small "
-            "angles that is the linear spring of energy k (angle - rest)^2/2, which is no polynomial in cosines and "
-            "sines and no function on a circle.",
-            (),
-        ),
-        loads=part(
-            converted(
-                named(_load(context), context.known_point, MAX_ENTRIES, "{P: [0, -W]}"),
-                _UNWRITTEN,
-                lambda loads: tuple(Load(point, x, y) for point, (x, y) in loads.items()),
-            ),
-            "Dead forces at points: two components, or a weight, in parameters.",
-            (),
-        ),
-        moments=part(
-            converted(
-                named(moving, context.known_unknown, MAX_ENTRIES, "{th: M}"),
-                _UNWRITTEN,
-                lambda moments: tuple(Moment(*moment) for moment in moments.items()),
-            ),
-            "Generalised forces on unknowns. Of one that depends on its own unknown the part that varies is the slope "
-            "of an energy; the work of the constant part is in no energy that is shown. With one that depends on "
-            "another unknown nothing says what is stable.",
-            (),
-        ),
+        **_bodies(context),
+        **_forces(context),
         symmetries=part(
             listed(
                 reading(context.symmetry, type="object", additionalProperties=VALUE),
@@ -192,6 +104,112 @@ def mechanism_codec(context: Context) -> Codec[dict[str, Any]]:
             "Bars that close loops: two points whose distance stays the length. Where they leave more than one degree "
             "of freedom, the tension of each, divided by its length, is a further unknown.",
             (),
+        ),
+    )
+
+
+def _bodies(context: Context) -> dict[str, Key]:
+    """The keys of what moves, and of what holds it."""
+    return {
+        "points": part(
+            reading(lambda node: _points(node, context), **POINTS),
+            "Names to coordinates, polynomials in parameters, lengths, and cos and sin of sums of angles.",
+            instead={},
+        ),
+        "x-joint": part(
+            xjoints(context),
+            "X-joints: two crossed bars of one length from a base to a top that is as long as the base. The base "
+            "is two points on one level, from left to right, which no unknown moves, or the top of a joint above. "
+            "The first bar, from the base's left end to the top's right one, turns by an unknown angle against the "
+            "base; the other bar's angle follows, and its name may be used like an unknown's.",
+            (),
+        )._replace(field="xjoints"),
+        "bodies": part(
+            bodies(context), "Rigid bodies: place, angle, and points in coordinates that turn with the body.", {}
+        ),
+        "bars": part(
+            listed(context.between(), most=MAX_ENTRIES, like="[[O, P]]"),
+            "Pairs of points, drawn; that their distances are constant is proved.",
+            (),
+        ),
+        "supports": part(
+            named(choice(Support), context.known_point, MAX_ENTRIES, "{O: pin}"),
+            "What holds a point, for drawings.",
+            {},
+        ),
+    }
+
+
+def _forces(context: Context) -> dict[str, Key]:
+    """The keys of what forces there are."""
+    return {
+        "springs": part(
+            converted(listed(_spring(context), None, MAX_ENTRIES, "[{between: [A, P], k: 1}]"), _UNWRITTEN, _springs),
+            "Springs between points, along their lines.",
+            (),
+        ),
+        "torsion": part(
+            converted(listed(_torsion_spring(context), None, MAX_ENTRIES, "[{angle: th, k: 1}]"), _UNWRITTEN, _torsion),
+            "Springs between directions: energy k (1 - cos(angle - rest)), moment k sin(angle - rest). For small "
+            "angles that is the linear spring of energy k (angle - rest)^2/2, which is no polynomial in cosines and "
+            "sines and no function on a circle.",
+            (),
+        ),
+        "loads": part(
+            converted(
+                named(_load(context), context.known_point, MAX_ENTRIES, "{P: [0, -W]}"),
+                _UNWRITTEN,
+                lambda loads: tuple(Load(point, x, y) for point, (x, y) in loads.items()),
+            ),
+            "Dead forces at points: two components, or a weight, in parameters.",
+            (),
+        ),
+        "moments": part(
+            converted(
+                named(context.value(moving=True), context.known_unknown, MAX_ENTRIES, "{th: M}"),
+                _UNWRITTEN,
+                lambda moments: tuple(Moment(*moment) for moment in moments.items()),
+            ),
+            "Generalised forces on unknowns. Of one that depends on its own unknown the part that varies is the slope "
+            "of an energy; the work of the constant part is in no energy that is shown. With one that depends on "
+            "another unknown nothing says what is stable.",
+            (),
+        ),
+    }
+
+
+def _spring(context: Context) -> Codec[dict[str, Any]]:
+    value = context.value()
+    return record(
+        dict,
+        "{between: [A, B], k: 1}",
+        between=part(context.between(), instead=("", "")),
+        k=part(value, "Stiffness.", instead=_ONE),
+        free=part(value, "Free length.", ZERO, shown=0),
+    )
+
+
+def _torsion_spring(context: Context) -> Codec[dict[str, Any]]:
+    return record(
+        dict,
+        "{angle: th, k: 1}",
+        angle=part(
+            reading(context.angle, **VALUE),
+            "A sum of whole multiples of unknown angles, and of quarter turns such as pi/2.",
+            instead=(ZERO, 0),
+        ),
+        k=part(context.value(), "Stiffness, a moment.", instead=_ONE),
+        rest=part(
+            reading(_rest, anyOf=[{"enum": [0, *NAMED_RESTS]}, _DIRECTION.schema]),
+            "The angle at which it is relaxed, or its cosine and sine.",
+            (Fraction(1), Fraction(0)),
+            shown=0,
+        ),
+        at=part(
+            reading(lambda entry: context.known_point(entry, entry.plain), **NAME_SCHEMA),
+            "The point at which it is drawn, where bodies, bars and supports do not tell the joint; it changes no "
+            "result.",
+            "",
         ),
     )
 

@@ -12,7 +12,8 @@ from functools import partial
 from math import comb
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
-from ptmcad.mechanism.description import Load, Mechanism, Model, Spring, System
+from ptmcad.mechanism.description import Mechanism, Model, System
+from ptmcad.mechanism.elements import Load, Spring
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.text.tree import Tree
 

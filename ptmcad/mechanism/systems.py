@@ -62,7 +62,7 @@ def read_system(record: Mapping[str, Any], faults: Faults) -> System:
             "stable", "of a potential the Hessian decides what is stable: leave this out",
         ),
         (
-            "potential" not in record and written not in (0, unknowns),
+            "potential" not in record and unknowns > 0 and written not in (0, unknowns),
             "equations", f"{written} equations for {unknowns} unknowns: give as many as there are unknowns",
         ),
     ):  # fmt: skip

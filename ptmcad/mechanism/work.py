@@ -12,7 +12,8 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
-from ptmcad.mechanism.description import Mechanism, Moment
+from ptmcad.mechanism.description import Mechanism
+from ptmcad.mechanism.elements import Moment
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.proofs import Monomial, Polynomial, Ring
 from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree, names_of

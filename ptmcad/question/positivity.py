@@ -16,10 +16,11 @@ from enum import Enum
 from fractions import Fraction
 from functools import lru_cache
 from heapq import heappop, heappush
-from itertools import count, pairwise
+from itertools import count
 from math import comb, lcm
 from typing import NamedTuple
 
+from ptmcad.cover.tubes import halved
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, Term, polynomial_value
 from ptmcad.text.numerals import approximate_text
@@ -235,7 +236,7 @@ def _halves(part: _Part) -> tuple[_Part, _Part]:
     rows, (x, y) = part.rows, part.box
     columns = tuple(zip(*rows, strict=True))
     across = _variation(rows) > _variation(columns)  # along y
-    first, second = zip(*map(_halved, rows if across else columns), strict=True)
+    first, second = zip(*map(halved, rows if across else columns), strict=True)
     if not across:
         first, second = (tuple(zip(*half, strict=True)) for half in (first, second))
     shift = part.shift + len((rows if across else columns)[0]) - 1
@@ -248,17 +249,6 @@ def _halves(part: _Part) -> tuple[_Part, _Part]:
 def _variation(rows: Sequence[Sequence[int]]) -> int:
     """The largest difference of two coefficients in a row."""
     return max(max(row) - min(row) for row in rows)
-
-
-def _halved(row: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """De Casteljau's subdivision at the middle, times 2^degree."""
-    degree = len(row) - 1
-    left, right, sums = [row[0] << degree], [row[-1] << degree], list(row)
-    for step in range(1, degree + 1):
-        sums = [a + b for a, b in pairwise(sums)]
-        left.append(sums[0] << (degree - step))
-        right.append(sums[-1] << (degree - step))
-    return tuple(left), tuple(reversed(right))
 
 
 def _integer_rows(terms: tuple[Term, ...], window: Box) -> tuple[tuple[tuple[int, ...], ...], Fraction]:

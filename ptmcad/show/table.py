@@ -7,7 +7,8 @@ from collections import Counter
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from ptmcad.answer.regionmap import COMPILATION, Region, RegionMap
+from ptmcad.answer.regionmap import Region, RegionMap
+from ptmcad.answer.timings import COMPILATION
 from ptmcad.answer.words import index_words, noun
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.question.slice import Count

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 
 from ptmcad.errors import ExpressionError
 from ptmcad.mechanism import Kind, Mechanism, Model, Parameter
-from ptmcad.mechanism.description import UnknownKind
+from ptmcad.mechanism.elements import UnknownKind
 from ptmcad.mechanism.evaluate import multiples
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis

@@ -78,7 +78,7 @@ class Index:
         self.rows.executescript(_TABLES)
 
     def claim(self, facts: dict[str, str], asked: str) -> None:
-        """Say of which question this is the index, or find that it is the same one.
+        """Say of which question this is the index, or find that it is the same one, whichever version began it.
 
         Raises
         ------
@@ -87,7 +87,7 @@ class Index:
         """
         known = dict(self.rows.execute("SELECT key, value FROM sweep"))
         wanted = {"format": FORMAT, "asked": asked, **facts}
-        if known and known != wanted:
+        if known and any(known.get(key) != wanted[key] for key in ("format", "asked")):
             what = "another version of ptmcad" if known.get("asked") == asked else "another record, or other options"
             raise ConfigError(f"{self.folder} holds the sweep of {what}: choose another folder", key="--out")
         with self.transaction():

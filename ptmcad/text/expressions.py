@@ -107,10 +107,11 @@ class Expression:
 
     def __add__(self, other: Expression | Fraction | int) -> Expression:
         other = _as_expression(other)
-        if not other.numerator:
-            return self
+        if not (self.numerator and other.numerator):
+            return self if self.numerator else other
         if self.denominator == other.denominator:
-            return _reduced(_sum(dict_of(self.numerator), other.numerator), dict_of(self.denominator))
+            total = _sum(dict_of(self.numerator), other.numerator)
+            return Expression(terms_of(total)) if self.is_polynomial else _reduced(total, dict_of(self.denominator))
         left = _product(self.numerator, other.denominator)
         right = _product(other.numerator, self.denominator)
         return _reduced(_sum(left, terms_of(right)), _product(self.denominator, other.denominator))
@@ -125,7 +126,10 @@ class Expression:
         other = _as_expression(other)
         if not (self.numerator and other.numerator):
             return constant(0)
-        return _reduced(_product(self.numerator, other.numerator), _product(self.denominator, other.denominator))
+        product = _product(self.numerator, other.numerator)
+        if self.is_polynomial and other.is_polynomial:  # as most are
+            return Expression(terms_of(product))
+        return _reduced(product, _product(self.denominator, other.denominator))
 
     def __truediv__(self, other: Expression | Fraction | int) -> Expression:
         other = _as_expression(other)
@@ -196,7 +200,8 @@ def polynomial_value(terms: tuple[Term, ...], x: Fraction, y: Fraction) -> Fract
 
 def _sum(left: _Polynomial, right: tuple[Term, ...]) -> _Polynomial:
     for i, j, c in right:
-        left[i, j] = left.get((i, j), Fraction(0)) + c
+        power = (i, j)
+        left[power] = left[power] + c if power in left else c
     return left
 
 
@@ -204,7 +209,8 @@ def _product(left: tuple[Term, ...], right: tuple[Term, ...]) -> _Polynomial:
     product: _Polynomial = {}
     for i, j, c in left:
         for m, n, d in right:
-            product[i + m, j + n] = product.get((i + m, j + n), Fraction(0)) + c * d
+            power = (i + m, j + n)
+            product[power] = product[power] + c * d if power in product else c * d
     return product
 
 

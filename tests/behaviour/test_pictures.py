@@ -79,7 +79,7 @@ def truss(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_pixels_that_are_undetermined_are_said_to_be_so(truss: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    asked = ["map", str(truss / "truss.json"), "--value", "energy", "--checks", "2", "--pixels", "16", "--out"]
+    asked = ["map", str(truss / "truss.json"), "--value", "energy", "--checks", "2", "--pixels", "12", "--out"]
     assert run([*asked, str(truss), "--format", "svg"]) == 0
     assert re.search(r"of the pixels; [0-9.]+ % undetermined", capsys.readouterr().out)
     found = texts(truss / "truss-energy-stable-1.svg")
@@ -91,7 +91,7 @@ def test_pixels_that_are_undetermined_are_said_to_be_so(truss: Path, capsys: pyt
 
 
 def test_a_barrier_that_is_not_there_is_no_missing_pose(tmp_path: Path) -> None:
-    asked = ["map", str(CONFIGS / "fig4.yaml"), "--value", "barrier", "--checks", "2", "--pixels", "12"]
+    asked = ["map", str(CONFIGS / "fig4.yaml"), "--value", "barrier", "--checks", "2", "--pixels", "6"]
     assert run([*asked, "--format", "svg", "--out", str(tmp_path)]) == 0
     found = texts(tmp_path / "fig4-barrier-stable-1.svg")
     assert "no barrier" in found and "undetermined" not in found

@@ -231,8 +231,8 @@ def test_a_half_of_a_window_says_the_same_as_the_whole_of_it(monkeypatch: pytest
         "potential": "u^4 + v^4 - u^2 - v^2 + u*v/2 + a*u + b*v",
     }  # fmt: skip
     window = {"axes": {"a": [-1, 1], "b": [-1, 1]}}
-    cases = [(load(SHIPPED / "mechanisms" / "three-cables.yaml"), "1/50"),
-             (slice_from_mapping({"name": "pair", "system": truss, "count": "stable", **window}), "1/50")]  # fmt: skip
+    cases = [(load(SHIPPED / "mechanisms" / "three-cables.yaml"), "1/20"),
+             (slice_from_mapping({"name": "pair", "system": truss, "count": "stable", **window}), "1/20")]  # fmt: skip
     rng = random.Random(11)
     for slice, tolerance in cases:
         given: dict[str, Any] = {"engine": "certified", "tolerance": tolerance, "jobs": 1}
@@ -243,8 +243,9 @@ def test_a_half_of_a_window_says_the_same_as_the_whole_of_it(monkeypatch: pytest
             patched.setattr("ptmcad.certified.engine.halving", lambda slice: None)
             whole = ptmcad.classify(slice, **given)
         assert half.undetermined <= Fraction(tolerance)
+        assert ["one half of the window" in str(found.plan[-1]) for found in (half, whole)] == [True, False]
         counter, known = plain_counter(slice), 0
-        for _ in range(60):
+        for _ in range(25):
             x, y = (a.low + (a.high - a.low) * Fraction(rng.randrange(1, 10**4), 10**4) for a in slice.axes)
             for point in ((x, y), change.at((x, y))):
                 at = dict(zip(slice.axis_names, point, strict=True))
@@ -253,7 +254,7 @@ def test_a_half_of_a_window_says_the_same_as_the_whole_of_it(monkeypatch: pytest
                     known += 1
                     assert counter.at(*point, slice.count).stable == one.stable
                     assert other.stable in (None, one.stable) and other.admissible in (None, one.admissible)
-        assert known > 90
+        assert known > 35
         assert ptmcad.verify(half).ok
 
 

@@ -93,6 +93,13 @@ SLICE = "axes: {rho: [0, 1], L2: [1, 2]}\n"
             "axes: {L2: [0, 2], rho: [3, 0], Z: [0, 1]}\n",
             ["1: axes: 3 axes are given", "1: axes.rho: the range of rho is reversed"],
         ),
+        ("axes: [rho, L2]\n", ["1: axes: expected two axes"]),
+        ("axes:\n", ["1: axes: expected two axes"]),
+        ("axes: {}\n", ["1: axes: 0 axes are given"]),
+        ("axes: {rho: 2, L2: [0]}\n", ["1: axes.rho: expected a range", "1: axes.L2: expected a range"]),
+        ("parameters: {k: 1}\n", ["1: axes: is missing"]),
+        ("system: {unknowns: x, equations: [x^2]}\n" + SLICE, ["1: system.unknowns: expected a mapping"]),
+        ("free: F\n" + SLICE, ["1: free: expected one parameter with its range"]),
         (
             "parameters: {k1: L1*rho, L1: k1 + t}\n" + SLICE,
             ["1: parameters.L1: unknown name 't'", "1: parameters.L1: the definition goes round in a circle"],

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from ptmcad.answer.regionmap import COMPILATION, RegionMap
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.answer.timings import COMPILATION
 from ptmcad.cli import run
 from ptmcad.show.table import table
 from ptmcad.verification import verify

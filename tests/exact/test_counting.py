@@ -87,7 +87,7 @@ def check_agreement(values: Values, with_oracle: bool) -> bool:
 
 
 def test_two_methods_agree_at_random_points() -> None:
-    assert sum(check_agreement(v, with_oracle=False) for v in points(150, seed=1)) > 140
+    assert sum(check_agreement(v, with_oracle=False) for v in points(50, seed=1)) > 45
 
 
 @pytest.mark.slow

@@ -9,11 +9,13 @@ from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import ptmcad
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import DegenerateSliceError, GeometryError
 from ptmcad.exact.engine import exact_map
 from ptmcad.exact.stages import Sample, SliceProblem, problem_of
+from ptmcad.options import Options
 from ptmcad.question.config import load, slice_from_mapping
 from ptmcad.question.slice import Slice
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
@@ -60,6 +62,31 @@ def test_a_half_has_the_areas_of_the_whole_window(name: str, monkeypatch: pytest
         assert one.area[0] <= other.area[1]
         assert other.area[0] <= one.area[1]
         assert one.area[1] - one.area[0] <= one.area[0] / 1000
+
+
+@pytest.mark.parametrize(
+    ("name", "moves"),
+    [
+        ("in the second axis, beside zero", "b -> -b + 6, x -> -x"),
+        ("exchange beside the diagonal", "a -> b - 3, b -> a + 3, x -> y, y -> x"),
+        ("rods", "L1 -> L2, L2 -> L1, th1 -> th2, th2 -> th1"),
+    ],
+)
+def test_the_plan_says_which_involution_makes_one_half_enough(name: str, moves: str) -> None:
+    said = f"left out: areas on one half of the window (its solutions are those of the other half, by {moves})"
+    found = exact_map(_record(name))
+    assert [str(step) for step in found.plan][-1] == said
+    assert ptmcad.verify(found).ok
+    for options in (Options(areas=False), Options(without=frozenset({"equal-counts"}))):
+        assert said not in map(str, exact_map(_record(name), options).plan)
+
+
+def test_the_plan_says_nothing_of_a_half_where_areas_are_those_of_the_whole_window(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("ptmcad.exact.areas._images", lambda *given: None)
+    found = exact_map(_record("rods"))
+    assert not [step for step in found.plan if "half" in step.what]
 
 
 def _without_areas(found: RegionMap) -> tuple[object, ...]:

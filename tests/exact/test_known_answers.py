@@ -50,6 +50,7 @@ def test_every_record_has_its_answers() -> None:
 
 
 @pytest.mark.parametrize(("name", "regions"), cases("regions"))
+@pytest.mark.slow_cases("stiffness [no published answer, but at k = 100 a cut of fig. 4]")
 def test_number_of_regions(name: str, regions: str) -> None:
     assert len(shipped(name).regions) == int(regions)
 

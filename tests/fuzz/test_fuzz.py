@@ -1,4 +1,4 @@
-"""Fuzzing in the test suites: a few hundred cases in the fast one, some thousand in the slow one, all in ``make fuzz``.
+"""Fuzzing in the test suites: some hundred cases in the fast one, some thousand in the slow one, all in ``make fuzz``.
 
 A case that takes longer than five seconds of processor time is a failure, since that is what is asked of hostile input.
 """
@@ -21,7 +21,7 @@ from fuzz.seeds import records, results
 from fuzz.watch import Tally, watched
 from ptmcad.errors import PtmcadError
 
-FAST = {"record": 120, "options": 100, "points": 50, "small": 4, "result": 20}
+FAST = {"record": 60, "options": 50, "points": 25, "small": 2, "result": 20}
 SLOW = {"record": 5000, "options": 3000, "points": 1500, "small": 200, "result": 2000}
 
 

@@ -260,7 +260,7 @@ INTERRUPTED = {
         ("map", "configs/fig4.yaml", "--value", "barrier", "--pose", "stable:2"),
     ),
     "range": (
-        "ptmcad.exact.ranges.width intervals",
+        "ptmcad.exact.ranges.rows intervals",
         ("range", "configs/fig4.yaml", "--along", "rho", "--over", "L2", "--format", "json"),
     ),
     "animate": (
@@ -368,7 +368,7 @@ def test_signals_at_any_moment_of_the_start(tmp_path: Path) -> None:
     )
     arguments = [sys.executable, "-c", program, "classify", str(FIG2), "--out", str(tmp_path), "--format", "json"]
     moments = random.Random(2)
-    for _ in range(10):
+    for _ in range(6):
         number = moments.choice((signal.SIGINT, signal.SIGTERM))
         process = subprocess.Popen(arguments, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         assert process.stdout is not None
@@ -620,7 +620,7 @@ def contents(out: Path) -> dict[str, bytes]:
 
 
 @linux
-@pytest.mark.parametrize("times", [20, pytest.param(50, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("times", [10, pytest.param(50, marks=pytest.mark.slow)])
 def test_killed_at_random_moments(tmp_path: Path, times: int) -> None:
     """The old result or the new one, whole; and a later run clears what was left."""
     killed_at_random(tmp_path, "json", times, seed=1)

@@ -236,7 +236,7 @@ SLOW = ("5.2-real", "5.2-degree-328")
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in CLAIMS]
 )
-@pytest.mark.slow_cases("4.3-widest", "5.2-spurious", "5.2-difficult", "a-six", "5.2-degree-28")
+@pytest.mark.slow_cases("4.3-widest", "4.3-slow", "5.2-spurious", "5.2-difficult", "a-six", "a-stable", "5.2-degree-28")
 def test_verdict(name: str) -> None:
     """The verdict, what each kind of verdict must come with, and the facts: known from the paper or docs/errata.md."""
     found = outcome(name)
@@ -562,6 +562,7 @@ def test_six_equilibria_would_not_refute() -> None:
     assert changed("5.2-six", **{"with": {"designs": [AT_ELIMINATED], "sentence": "{at}"}}).verdict is Verdict.UNDECIDED
 
 
+@pytest.mark.slow
 def test_an_elimination_without_spurious_roots_would_not_confirm(monkeypatch: pytest.MonkeyPatch) -> None:
     found = free.elimination()
     monkeypatch.setattr(free, "elimination", lambda: {**found, "real roots": 6})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
+from functools import cache
 from math import hypot
 
 from ptmcad.answer.regionmap import Cell, Region, RegionMap, Status, System
@@ -67,6 +68,7 @@ def certified(
     )  # fmt: skip
 
 
+@cache
 def circle(depth: int = 9) -> RegionMap:
     """A circle of radius 1/2 around the window's centre: 3 stable inside, 2 outside."""
 
@@ -76,6 +78,7 @@ def circle(depth: int = 9) -> RegionMap:
     return certified(around(function, depth), lambda x, y: 3 if hypot(x - 0.5, y - 0.5) < 0.25 else 2)
 
 
+@cache
 def cusp(depth: int = 13) -> RegionMap:
     """A curve with a cusp, which bounds a thin region at the cusp: 4 stable inside, 1 outside."""
 
@@ -86,6 +89,7 @@ def cusp(depth: int = 13) -> RegionMap:
     return certified(around(function, depth), lambda x, y: 4 if x > 0.2 and (y - 0.5) ** 2 < (x - 0.2) ** 3 else 1)
 
 
+@cache
 def crossing(depth: int = 10) -> RegionMap:
     """Two crossing curves and a strip that is undetermined as a whole: counts 1, 2, 3 and 2."""
 

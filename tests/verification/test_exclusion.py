@@ -327,7 +327,7 @@ def test_formulas_that_exclude_nothing_are_left_out(monkeypatch: pytest.MonkeyPa
     assert min(tapes) < 0.8 * max(tapes) == 0.8 * len(system.tape.code)
 
 
-@pytest.mark.parametrize("drawn", [3_000, pytest.param(20_000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("drawn", [1_000, pytest.param(20_000, marks=pytest.mark.slow)])
 def test_what_is_held_lies_in_the_cover(drawn: int) -> None:
     """Strips that are said to be held have no point outside, by the sweep, which is exact."""
     for name, tolerance in (("zeeman", 3e-3), ("zeeman", 1e-5)):

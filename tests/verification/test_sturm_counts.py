@@ -29,7 +29,7 @@ def with_roots(draw: st.DrawFn) -> tuple[fmpz_poly, list[Fraction]]:
 
 
 @given(with_roots(), st.fractions(-4, 4, max_denominator=4), st.fractions(-4, 4, max_denominator=4))
-@settings(max_examples=examples(150))
+@settings(max_examples=examples(60))
 def test_sequences_in_balls_count_roots(found: tuple[fmpz_poly, list[Fraction]], low: Fraction, high: Fraction) -> None:
     p, roots = found
     assume(low < high)

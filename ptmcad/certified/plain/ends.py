@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
 from ptmcad.mechanism import Mechanism, ptm
-from ptmcad.mechanism.description import Spring
+from ptmcad.mechanism.elements import Spring
 from ptmcad.mechanism.energy import points_in
 
 Vector = tuple[TrigonometricPolynomial, TrigonometricPolynomial]

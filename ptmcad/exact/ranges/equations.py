@@ -29,10 +29,13 @@ class Family:
         """How many of the unknowns are on the circle: the first ones."""
         return len(self.system.ring.angles)
 
+    def _numbers(self, low: Fraction, high: Fraction) -> list[Jet]:
+        value = ball_of(low).union(ball_of(high))
+        return [_jet(self.parameters[name], value) for name in self.system.ring.parameters]
+
     def at(self, low: Fraction, high: Fraction) -> Instance:
         """The equations for all parameters from low to high, with their derivatives by the parameter."""
-        value = ball_of(low).union(ball_of(high))
-        numbers = [_jet(self.parameters[name], value) for name in self.system.ring.parameters]
+        numbers = self._numbers(low, high)
         equations = [_specialised(g, numbers) for g in self.system.equation_terms]
         jacobian = [[_specialised(h, numbers) for h in row] for row in self.system.jacobian_terms]
         return Instance(
@@ -46,8 +49,7 @@ class Family:
 
     def conditions(self, low: Fraction, high: Fraction, point: Vector) -> Vector:
         """The left sides of the inequalities for all parameters from low to high, at balls of the unknowns."""
-        value = ball_of(low).union(ball_of(high))
-        numbers = [_jet(self.parameters[name], value) for name in self.system.ring.parameters]
+        numbers = self._numbers(low, high)
         coordinates = coordinates_of(point, self.angles)
         terms = (terms_of(self.system.ring, p) for p in self.system.inequalities)
         return tuple(_evaluated(_specialised(t, numbers)[0], coordinates) for t in terms)
@@ -57,8 +59,7 @@ class Family:
 
         The ring has no unknowns on the line.
         """
-        value = ball_of(low).union(ball_of(high))
-        numbers = [_jet(self.parameters[name], value) for name in self.system.ring.parameters]
+        numbers = self._numbers(low, high)
         return _evaluated(_specialised(terms_of(self.system.ring, p), numbers)[1], [arb(0, 1)] * (2 * self.angles))
 
 

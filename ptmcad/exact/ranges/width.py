@@ -23,7 +23,7 @@ A piece that becomes too small remains, with the bounds that it has: then the pl
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from heapq import heappop, heappush
@@ -35,12 +35,10 @@ from ptmcad.algebra.chords import slope_over
 from ptmcad.algebra.numbers import algebraic_number, compare
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.intervals import End, Span
-from ptmcad.answer.widths import Maximum, OperationWidths, Place, WidthRow
-from ptmcad.errors import A_SLICE, ConfigError, HypothesisError, expect, quoted
+from ptmcad.answer.widths import Maximum, Place
 from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.exact.ranges.anyline import LineRanges, ranges_on
 from ptmcad.exact.ranges.limits import chord_length, limit, narrowing_length
-from ptmcad.exact.ranges.line import intervals
 from ptmcad.exact.ranges.strips import (
     Strip,
     Strips,
@@ -49,14 +47,11 @@ from ptmcad.exact.ranges.strips import (
     bound_over,
     constant_width,
     end_interval,
-    strips,
 )
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
-ROWS = 41
-"""Rows of the table."""
 _END_WIDTH = fmpq(1, 2**120)
 _MIN_PIECE = fmpq(1, 2**50)
 """Length of a piece, against the strip's, that is not cut any more."""
@@ -74,40 +69,6 @@ class _Candidate:
     ends: tuple[End, End] | None = None
     attained: bool | None = True
     sides: dict[End, bool | None] = field(default_factory=dict)
-
-
-def operation_widths(slice: Slice, along: str, rows: int = ROWS) -> OperationWidths:
-    """Tabulate the operation range's width over the other axis and find where it is largest.
-
-    Raises
-    ------
-    HypothesisError
-        When the slice is degenerate or leaves the domain of the geometry.
-    """
-    expect(slice, Slice, "slice", A_SLICE)
-    names = slice.axis_names
-    if along not in names:
-        raise ConfigError(f"{quoted(along)} is not an axis of the slice: choose {names[0]} or {names[1]}", key="along")
-    if isinstance(rows, bool) or not isinstance(rows, int) or rows < 1:
-        raise ConfigError(f"{rows!r:.60} is not a number of rows", key="rows")
-    over = slice.axes[1 - names.index(along)]
-    found = strips(slice, along)
-    table = []
-    for k in range(1, rows + 1):
-        value = over.low + (over.high - over.low) * Fraction(k, rows + 1)
-        table.append(_row(slice, along, {over.name: value}, found.working))
-    maxima = widest(slice, along, found)
-    return OperationWidths(
-        slice.name, slice.axes[names.index(along)], over, tuple(table), maxima, slice.model, found.working
-    )
-
-
-def _row(slice: Slice, along: str, at: Mapping[str, Fraction], working: int) -> WidthRow:
-    (value,) = at.values()
-    try:
-        return WidthRow(value, intervals(slice, along, at, working).operation)
-    except HypothesisError as error:
-        return WidthRow(value, (), str(error))
 
 
 def widest(slice: Slice, along: str, found: Strips) -> tuple[Maximum, ...]:

@@ -16,7 +16,7 @@ from ptmcad.mechanism.reading import NUMBER, two
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.objects import plain, tree_of
 from ptmcad.question.config.options import ranges_of
-from ptmcad.question.config.record import AXIS_NAME, Record, Window, check_axis_name, window_of
+from ptmcad.question.config.record import AXIS_NAME, Record, Window, check_axis_name, window_of, with_ranges
 from ptmcad.question.config.resolution import axis_of, described_record, note_values
 from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
 from ptmcad.question.design import Condition, condition_of, named
@@ -45,10 +45,10 @@ def _flag(entry: Node) -> bool:
 
 
 def _over(entry: Node) -> dict[str, Node]:
-    expected = f"expected design parameters with their bounds, such as {{{FIRST}: [1/2, 2]}}"
-    entries = entry.mapping(expected=expected)
+    what, like = "design parameters with their bounds", f"{{{FIRST}: [1/2, 2]}}"
+    entries = with_ranges(entry, what, like)
     if not 1 <= len(entries) <= MAX_PARAMETERS:
-        raise entry.fault(expected)
+        raise entry.fault(f"expected {what}, such as {like}")
     return entries
 
 

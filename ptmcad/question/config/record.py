@@ -25,7 +25,7 @@ from ptmcad.question.config.scalars import (
 )
 from ptmcad.question.examples import A_DESIGN, A_SWEEP, AXES, FORCE, SECOND, THIRD
 from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count
-from ptmcad.text.codec import Codec, choice, named, part, reading, record
+from ptmcad.text.codec import Codec, Key, choice, named, part, reading, record
 from ptmcad.text.entry import Place, Scalar, Sequence, Tree, Written, plain_data
 from ptmcad.text.node import Node, unstorable
 from ptmcad.text.syntax import NAME, NOT_NUMBERS, did_you_mean
@@ -155,7 +155,6 @@ def record_codec(model: Model | None) -> Codec[dict[str, Any]]:
     ----------
     model : what the record is about; it has been read.
     """
-    windows = {"type": "object", "propertyNames": AXIS_NAME, "additionalProperties": two(NUMBER)}
     told = reading(lambda node: None)
     unit = reading(_unit, type="string", minLength=1, maxLength=MAX_UNIT)
     units = {"type": "object", "additionalProperties": False, "properties": {q: unit.schema for q in QUANTITIES}}
@@ -177,40 +176,7 @@ def record_codec(model: Model | None) -> Codec[dict[str, Any]]:
             f"Fixed values, or expressions in the axes and in other parameters ({FORCE}: F, {SECOND}: 2*{THIRD}). "
             f"Below are those of the mechanism {ptm().name}; others have their own.", {},
         )._replace(field="values"),
-        axes=part(
-            reading(_axes, **windows, minProperties=2, maxProperties=2),
-            "The two axes with their ranges, the horizontal one first: parameters, or new names that expressions use.",
-            {},
-        ),
-        free=part(
-            reading(_free, **windows, minProperties=1, maxProperties=1),
-            "A third parameter with its range: the record is one of a family, with a map for each of its members.",
-            None,
-        ),
-        members=part(
-            reading(
-                lambda node: check_members(node.value),
-                anyOf=[NUMBER, {"type": "array", "items": NUMBER, "minItems": 1, "maxItems": MAX_MEMBERS}],
-            ),
-            "Values of the free parameter at which there are maps, or how many, evenly spaced; 9 when it is not given.",
-            None,
-        ),
-        sweep=part(
-            reading(_sweep),
-            "For ptmcad sweep: parameters, or names that expressions use, with the values that they take, in every "
-            "combination; a list of such mappings is one after another.", None,
-        ),
-        design=part(
-            reading(_design),
-            "For ptmcad design: what is made as large as possible, over which parameters within which bounds, and "
-            "under what conditions. Other commands take the record without it.", None,
-        ),
-        count=part(
-            COUNT,
-            "What distinguishes two regions: stable equilibria, all of them, minima/saddles/maxima, or stable "
-            "equilibria with every spring longer than its free length. Where nothing says what is stable, total is the "
-            "default.", None, shown=Count.STABLE.value,
-        )._replace(field="counting"),
+        **_question(),
         units=part(
             named(unit, _quantity, like="{length: mm}")._replace(schema=units),
             "Units that pictures and tables name; numbers are taken as they are.", {},
@@ -220,6 +186,51 @@ def record_codec(model: Model | None) -> Codec[dict[str, Any]]:
             "Published answers, for tests and benchmarks; never used by the computation.", {},
         ),
     )  # fmt: skip
+
+
+def _question() -> dict[str, Key]:
+    """The keys of what is asked."""
+    windows = {"type": "object", "propertyNames": AXIS_NAME, "additionalProperties": two(NUMBER)}
+    return {
+        "axes": part(
+            reading(_axes, **windows, minProperties=2, maxProperties=2),
+            "The two axes with their ranges, the horizontal one first: parameters, or new names that expressions use.",
+            {},
+        ),
+        "free": part(
+            reading(_free, **windows, minProperties=1, maxProperties=1),
+            "A third parameter with its range: the record is one of a family, with a map for each of its members.",
+            None,
+        ),
+        "members": part(
+            reading(
+                lambda node: check_members(node.value),
+                anyOf=[NUMBER, {"type": "array", "items": NUMBER, "minItems": 1, "maxItems": MAX_MEMBERS}],
+            ),
+            "Values of the free parameter at which there are maps, or how many, evenly spaced; 9 when it is not given.",
+            None,
+        ),
+        "sweep": part(
+            reading(_sweep),
+            "For ptmcad sweep: parameters, or names that expressions use, with the values that they take, in every "
+            "combination; a list of such mappings is one after another.",
+            None,
+        ),
+        "design": part(
+            reading(_design),
+            "For ptmcad design: what is made as large as possible, over which parameters within which bounds, and "
+            "under what conditions. Other commands take the record without it.",
+            None,
+        ),
+        "count": part(
+            COUNT,
+            "What distinguishes two regions: stable equilibria, all of them, minima/saddles/maxima, or stable "
+            "equilibria with every spring longer than its free length. Where nothing says what is stable, total is the "
+            "default.",
+            None,
+            shown=Count.STABLE.value,
+        )._replace(field="counting"),
+    }
 
 
 def with_place(error: ConfigError | HypothesisError, record: Record) -> PtmcadError:
@@ -273,7 +284,7 @@ def _values(parameters: Node, model: Model | None) -> dict[str, Scalar]:
 
 
 def _axes(entry: Node) -> dict[str, Window]:
-    axes = entry.mapping(MAX_VALUES, expected=f"expected two axes with their ranges, such as {AXES}")
+    axes = with_ranges(entry, "two axes with their ranges", AXES)
     if len(axes) != 2:
         entry.note(entry.fault(f"{len(axes)} axes are given: a slice has two, the horizontal one first"))
     return dict(entry.gathered(lambda axis: (axis.name, _window(axis)), axes.values()))
@@ -281,11 +292,26 @@ def _axes(entry: Node) -> dict[str, Window]:
 
 def _free(entry: Node) -> tuple[str, Window]:
     """The third parameter of a family with its range."""
-    expected = "expected one parameter with its range, such as {F: [-20, 0]}"
-    free = [*entry.mapping(expected=expected).values()]
+    what, like = "one parameter with its range", "{F: [-20, 0]}"
+    free = [*with_ranges(entry, what, like).values()]
     if len(free) != 1:
-        raise entry.fault(expected)
+        raise entry.fault(f"expected {what}, such as {like}")
     return free[0].name, _window(free[0])
+
+
+def with_ranges(entry: Node, what: str, like: str) -> dict[str, Node]:
+    """The entries of a mapping of names to ranges; where there are names alone, a fault says that.
+
+    Parameters
+    ----------
+    what, like : it is, and an example, for messages.
+    """
+    parts = entry.value.items if isinstance(entry.value, Sequence) else (entry.value,)
+    texts = [part.text if isinstance(part, Scalar) and not part.is_null else "" for part in parts]
+    names = [name.strip() for text in texts for name in text.split(",")]
+    if names and all(map(NAME.fullmatch, names)):
+        raise entry.fault(f"expected {what}, such as {like}; no range is given for {' and '.join(names)}")
+    return entry.mapping(MAX_VALUES, expected=f"expected {what}, such as {like}")
 
 
 def _window(entry: Node) -> Window:
@@ -308,12 +334,9 @@ def _sweep(node: Node) -> Written:
 
 def swept_names(record: Record) -> dict[str, Place]:
     """What a record sweeps, with its places, as far as that can be read."""
-    found: dict[str, Place] = {}
     node = record.sweep
-    for one in node.items if isinstance(node, Sequence) else (node,):
-        if isinstance(one, Tree):
-            found |= {name: entry.place for name, entry in one.entries.items()}
-    return found
+    parts = node.items if isinstance(node, Sequence) else (node,)
+    return {name: entry.place for part in parts if isinstance(part, Tree) for name, entry in part.entries.items()}
 
 
 def _design(node: Node) -> Written:

@@ -147,7 +147,7 @@ def refuse_free(name: str, window: Window) -> None:
 def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[str, Expression]]:
     """The axes, and every parameter as a function of them; faults are noted, and none that follows from another."""
     with faults:
-        if not record.axes:
+        if not record.axes and not _is_faulty("axes", [fault.key or "" for fault in faults.found]):
             raise record.place.below("axes").error(f"is missing: a slice needs two axes, such as {AXES}")
     for name in record.axes:
         with faults:

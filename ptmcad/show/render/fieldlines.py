@@ -47,8 +47,7 @@ def contour_lines(axes: Any, field: Field, extent: Sequence[float], number: int)
     if not levels:
         return {}
     rows, columns = field.values.shape
-    pixel = np.array([(extent[1] - extent[0]) / columns, (extent[3] - extent[2]) / rows])
-    origin = np.array([extent[0], extent[2]]) + pixel / 2
+    pixel, origin = _pixels(field, extent)
     broken = _broken(field)
     found: dict[float, list[Floats]] = {float(level): [] for level in levels}
     for region in np.unique(field.region[field.region >= 0]):
@@ -66,6 +65,13 @@ def contour_lines(axes: Any, field: Field, extent: Sequence[float], number: int)
                 found[float(level)].extend(part * pixel + origin for part in kept)
             traced.remove()
     return dict(sorted(found.items()))
+
+
+def _pixels(field: Field, extent: Sequence[float]) -> tuple[Floats, Floats]:
+    """Their sides, and the centre of the first one."""
+    left, right, bottom, top = extent
+    pixel = np.array([right - left, top - bottom]) / field.values.shape[::-1]
+    return pixel, np.array([left, bottom]) + pixel / 2
 
 
 def _broken(field: Field) -> Flags:
@@ -113,9 +119,7 @@ def branch_edges(field: Field, extent: Sequence[float]) -> list[Floats]:
     """
     if field.jumps is None or not any(jump.any() for jump in field.jumps):
         return []
-    rows, columns = field.values.shape
-    pixel = np.array([(extent[1] - extent[0]) / columns, (extent[3] - extent[2]) / rows])
-    origin = np.array([extent[0], extent[2]]) + pixel / 2
+    pixel, origin = _pixels(field, extent)
     return [_smooth(np.array(chain) / 2) * pixel + origin for chain in _chains(*field.jumps)]
 
 

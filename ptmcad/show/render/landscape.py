@@ -31,7 +31,7 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import noun
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model
-from ptmcad.mechanism.description import UnknownKind
+from ptmcad.mechanism.elements import UnknownKind
 from ptmcad.mechanism.moments import moments_at
 from ptmcad.show.drawable import no_landscape
 from ptmcad.show.render.axes import Scale, scale_of, symbol

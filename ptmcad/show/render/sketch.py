@@ -16,7 +16,7 @@ from math import hypot
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.mechanism import Mechanism, Support, mechanism_in
-from ptmcad.mechanism.description import Load
+from ptmcad.mechanism.elements import Load
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.joints import joints_of
 from ptmcad.show.render.axes import symbol

@@ -59,7 +59,7 @@ def thin_regions(whole: Shapes, pixels: int) -> tuple[int, ...]:
     pixels : of the drawing's side.
     """
     image = whole.raster(pixels, pixels)
-    return tuple(n for n in range(len(whole.result.regions)) if not _eroded(image == n).any())
+    return tuple(n for n in range(len(whole.result.regions)) if not eroded(image == n).any())
 
 
 def unstable_zooms(whole: Shapes, pixels: int, most: int) -> tuple[Zoom, ...]:
@@ -208,7 +208,7 @@ def _thick(seen: Shapes, region: int) -> tuple[int, tuple[Fraction, Fraction]]:
     depth = -1
     while mask.any():
         depth, last = depth + 1, mask
-        mask = _eroded(mask)
+        mask = eroded(mask)
     if depth < 0:
         return depth, inside(seen, region)
     rows, columns = np.nonzero(last)
@@ -227,7 +227,7 @@ def inside(seen: Shapes, region: int) -> tuple[Fraction, Fraction]:
     return (visible or samples)[0]
 
 
-def _eroded(mask: Mask) -> Mask:
+def eroded(mask: Mask) -> Mask:
     """The pixels whose eight neighbours are all in the mask; outside of it there is nothing."""
     rows = mask[1:-1] & mask[:-2] & mask[2:]
     inner = rows[:, 1:-1] & rows[:, :-2] & rows[:, 2:]

@@ -19,7 +19,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import index_words, moments_work, untold
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model, Support
-from ptmcad.mechanism.description import UnknownKind
+from ptmcad.mechanism.elements import UnknownKind
 from ptmcad.mechanism.joints import joints_of
 from ptmcad.mechanism.work import split_moments
 from ptmcad.question.slice import Slice
