@@ -6,7 +6,7 @@ m - C f(m) + (I - C f'(X)) (X - m). It has all zeros that X has; if it lies insi
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 from math import inf, isfinite
 from operator import lt
@@ -97,14 +97,20 @@ def newton(field: Field, box: Box) -> Floats | None:
 def proved(field: Field, center: Floats, shapes: Iterable[Floats]) -> Zero | None:
     """The solution around a point that is alone in a box of some shape; None when it is not proved, nor its signs."""
     values = _at(field, center)
+    least = _reaches(field, center, values, (0.0,) * len(center))
+    if least is None:
+        return None
     for shape, power in product(_with_steep(field, center, shapes), _SHRINKINGS):
         sizes = tuple(r * 2.0**power for r in shape)
         if any(circle and r > _MAX_TURN for circle, r in zip(field.form.is_circle, sizes, strict=True)):
             continue
+        # nearly what is left of the image as the box becomes a point
+        if not all(map(lt, least, sizes)):
+            continue
         reaches = _reaches(field, center, values, sizes)
         if reaches is None or not all(map(lt, reaches, sizes)):
             continue
-        radii = _narrowed(field, center, values, sizes)
+        radii = _narrowed(field, center, values, sizes, least)
         near = field(list(map(arb, center, radii)))
         signs = "" if not field.form.is_gradient else None if near.short else inertia(near.jacobian)
         return None if signs is None else Zero(center, radii, sizes, signs)
@@ -121,22 +127,32 @@ def _with_steep(field: Field, center: Floats, shapes: Iterable[Floats]) -> Itera
         yield tuple(r * min(steep) / s for r, s in zip(given[0], steep, strict=True))
 
 
-def _narrowed(field: Field, center: Floats, values: arb_mat, radii: Floats) -> Floats:
+def _narrowed(field: Field, center: Floats, values: arb_mat, radii: Floats, least: Sequence[arb]) -> Floats:
     """A smaller box that has the only solution of a box, too: its image, and that of that, while it gets narrower.
 
     Parameters
     ----------
     values : of the equations at the center.
+    least : half widths that the image of a point would have: a little more of them is tried at first.
     """
+    near = tuple(min(r, 2 * _above(x)) for r, x in zip(radii, least, strict=True))
+    reaches = _reaches(field, center, values, near)
+    if reaches is not None and all(map(lt, reaches, near)):
+        radii = near
     for _ in range(_NARROWING):
         reaches = _reaches(field, center, values, radii)
         if reaches is None:
             break
         before = radii
-        radii = tuple(min(r, float(x.upper()) * 1.0001 + 2.0**-1000) for r, x in zip(radii, reaches, strict=True))
+        radii = tuple(min(r, _above(x)) for r, x in zip(radii, reaches, strict=True))
         if all(r > _WORTHWHILE * b for r, b in zip(radii, before, strict=True)):
             break
     return radii
+
+
+def _above(reach: arb) -> float:
+    """A double above a half width."""
+    return float(reach.upper()) * 1.0001 + 2.0**-1000
 
 
 def _reaches(field: Field, center: Floats, values: arb_mat, radii: Floats) -> list[arb] | None:

@@ -21,7 +21,7 @@ from ptmcad.verification.exclusion.pieces import no_pieces
 from ptmcad.verification.exclusion.search import isolate
 from ptmcad.verification.exclusion.systems import halves_over, solutions_of, window_of
 
-BUDGET = 4000
+BUDGET = 16_000
 """Boxes that are looked at for one place and one choice of sides ..."""
 MAX_LEFT = 512
 """... and that may be left."""
