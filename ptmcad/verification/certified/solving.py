@@ -62,7 +62,8 @@ def zeros(
     minima : whether only minima of a potential are asked for; others may then be missing.
     budget : number of boxes after which the search gives up.
     smallest : share of the first boxes' widths below which one is not halved again.
-    near : solutions for one choice of the parameters; those near them are proved first, which saves a hopeless search.
+    near : solutions for one choice of the parameters; those near them are proved first, before any box of the start is
+        asked for, which saves a hopeless search.
     whole : half the width of the box that those of the start are parts of; of the first of these where it is None.
 
     Raises
@@ -71,13 +72,14 @@ def zeros(
         When a solution is degenerate or nearly so for some parameters, or the budget was spent.
     """
     circles = field.circles
-    waiting = list(start)
-    whole = whole or waiting[0][1]
+    if whole is None:
+        start = list(start)
+        whole = start[0][1]
     least = [smallest * w for w in whole]
     found = [_persisting(field, zero, whole) for zero in near]
     if not all(disjoint(one, two, circles) for one, two in combinations(found, 2)):
         raise Unproved("two solutions may meet")
-    used = 0
+    waiting, used = list(start), 0
     while waiting:
         box = waiting.pop()
         used += 1
