@@ -25,6 +25,8 @@ _NEWTON_STEPS = 12
 _CLOSE = 2.0**-20
 """Of a box's width: where Newton's method does not come closer to rest, nothing is to be proved."""
 _ROUNDING = 2.0**-50
+_STEEP = 2.0**16
+"""So many times as steep in one unknown as in another: a box is to be narrower in it, not in both."""
 _NARROWING, _WORTHWHILE = 40, 0.999
 """Steps by which a box is made narrower at most, while one makes it so much narrower."""
 
@@ -96,11 +98,13 @@ def newton(field: Field, box: Box) -> Floats | None:
 
 def proved(field: Field, center: Floats, shapes: Iterable[Floats]) -> Zero | None:
     """The solution around a point that is alone in a box of some shape; None when it is not proved, nor its signs."""
-    values = _at(field, center)
-    least = _reaches(field, center, values, (0.0,) * len(center))
-    if least is None:
+    jet = field([arb(x) for x in center])
+    inverse = None if jet.short else inverse_of(jet.jacobian)
+    if inverse is None:
         return None
-    for shape, power in product(_with_steep(field, center, shapes), _SHRINKINGS):
+    values = arb_mat(len(center), 1, jet.values)
+    least = [step.abs_upper() for step in _steps(values, inverse)]
+    for shape, power in product(_with_steep(jet.jacobian, shapes), _SHRINKINGS):
         sizes = tuple(r * 2.0**power for r in shape)
         if any(circle and r > _MAX_TURN for circle, r in zip(field.form.is_circle, sizes, strict=True)):
             continue
@@ -117,14 +121,15 @@ def proved(field: Field, center: Floats, shapes: Iterable[Floats]) -> Zero | Non
     return None
 
 
-def _with_steep(field: Field, center: Floats, shapes: Iterable[Floats]) -> Iterator[Floats]:
+def _with_steep(jacobian: Matrix, shapes: Iterable[Floats]) -> Iterator[Floats]:
     """Shapes, and one that is narrower where the equations are steeper, as next to a place where a spring is short."""
-    given = list(shapes)
-    yield from given
-    jet = field([arb(x) for x in center])
-    steep = [float(abs(row[k]).mid()) for k, row in enumerate(jet.jacobian)]
-    if given and not jet.short and all(0 < s < inf for s in steep):
-        yield tuple(r * min(steep) / s for r, s in zip(given[0], steep, strict=True))
+    first, *others = shapes
+    steep = [float(abs(row[k]).mid()) for k, row in enumerate(jacobian)]
+    known = all(0 < s < inf for s in steep)
+    narrow = [tuple(r * min(steep) / s for r, s in zip(first, steep, strict=True))] if known else []
+    if known and max(steep) > _STEEP * min(steep):
+        yield from narrow
+    yield from (first, *others, *narrow)
 
 
 def _narrowed(field: Field, center: Floats, values: arb_mat, radii: Floats, least: Sequence[arb]) -> Floats:
