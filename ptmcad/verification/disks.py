@@ -183,21 +183,21 @@ def _series(d: Sequence[arb_poly], start: arb_series, order: int) -> list[arb]:
     while lengths[-1] > 1:
         lengths.append((lengths[-1] + 1) // 2)
     cap = ctx.cap
-    t = start
+    t, rows = start, [_lengthened(row.coeffs()[:order], order) for row in reversed(d)]
     try:
         for known, length in pairwise(reversed(lengths)):
             t = _lengthened(t.coeffs()[:known], length)
             ctx.cap = length - known
             slope, value = _lengthened([], ctx.cap), _lengthened([], ctx.cap)
-            for row in reversed(d):
+            for row in rows:
                 slope = slope * t + value
-                value = value * t + arb_series(row.coeffs()[: ctx.cap], prec=ctx.cap)
+                value = value * t + row
             if slope.coeffs() == [] or slope.coeffs()[0].contains(0):
                 raise PrecisionTooLow  # the root is simple
             ctx.cap = length
             value = _lengthened([], length)
-            for row in reversed(d):
-                value = value * t + arb_series(row.coeffs()[:length], prec=length)
+            for row in rows:
+                value = value * t + row
             # the first ones are zero, but for rounding: t has been a root to this order
             step = arb_series(value.coeffs()[known:], prec=length - known) / slope
             t = t - arb_series([arb(0)] * known + step.coeffs(), prec=length)

@@ -5,7 +5,7 @@ Guarantee: data only.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -54,11 +54,12 @@ class Where:
 
     Attributes
     ----------
-    boxes : for each choice of sides of springs on one line each, in the order of `kinks.sides`.
+    boxes : for each choice of sides of springs on one line each, in the order of `kinks.sides`; they may be looked for
+        when they are asked for.
     whole : half the width of all configurations, in each unknown.
     """
 
-    boxes: Sequence[Sequence[Box]]
+    boxes: Sequence[Iterable[Box]]
     whole: Floats
 
 

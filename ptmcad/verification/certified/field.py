@@ -11,10 +11,10 @@ Where u is on a line that turns by n_j with the unknowns, c_j/|d| is n_j.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from itertools import combinations
+from functools import cached_property, partial
+from itertools import chain, combinations
 from math import inf
 from types import MappingProxyType
 from typing import NamedTuple
@@ -24,7 +24,7 @@ from flint import arb, arb_mat
 from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.kinks import Sides
 from ptmcad.verification.certified.terms import ball, power, square
-from ptmcad.verification.certified.waves import Cone, Form, Waves
+from ptmcad.verification.certified.waves import Cone, Form, Multi, Waves
 from ptmcad.verification.inertia import determinant
 
 Matrix = list[list[arb]]
@@ -37,12 +37,11 @@ class Spring(NamedTuple):
 
     Attributes
     ----------
-    number : of the cone.
+    number : its place among those that pull.
     squared : |d|^2.
     slopes : g_i.
     weights : w_i, which are the g_i but with closed loops.
     part : K u.w_i.
-    bends : the derivatives of the weights by the unknowns, row by row.
     turns : the spring's direction and how the Jacobian follows from it; None where it may have no length.
     shape : where its parts are not nothing.
     """
@@ -53,7 +52,6 @@ class Spring(NamedTuple):
     slopes: tuple[Vector, ...]
     weights: tuple[Vector, ...]
     part: list[arb]
-    bends: tuple[Vector, ...]
     turns: _Turns | None
     shape: _Shape
 
@@ -89,25 +87,36 @@ class Jet:
 
     Attributes
     ----------
-    smooth, linear : the equations and their derivatives without the springs' parts.
+    smooth : the equations without the springs' parts.
     conditions : what is positive at solutions that count.
+    derivatives : of `smooth`, row by row, and after them of each spring's weights by the unknowns, row by row.
     """
 
     values: list[arb]
     smooth: list[arb]
-    linear: list[arb]
     springs: tuple[Spring, ...]
     conditions: list[arb]
+    derivatives: Callable[[], list[arb]]
+
+    @cached_property
+    def _derivatives(self) -> list[arb]:
+        return self.derivatives()
 
     @cached_property
     def jacobian(self) -> Matrix:
-        """The derivatives, which most boxes are discarded without."""
+        """The derivatives, which points and most boxes that are discarded do without."""
         n = len(self.values)
-        found = [self.linear[n * i : n * i + n] for i in range(n)]
+        found = [self._derivatives[n * i : n * i + n] for i in range(n)]
         for s in self.springs:
             if s.turns is not None:
-                _take_off(found, s, s.turns)
+                _take_off(found, s, s.turns, self._bends(s))
         return found
+
+    def _bends(self, s: Spring) -> list[Vector]:
+        """The derivatives of a spring's weights by the unknowns, row by row."""
+        n = len(self.values)
+        rows = self._derivatives[n * n * (2 * s.number + 1) : n * n * (2 * s.number + 3)]
+        return list(zip(rows[::2], rows[1::2], strict=True))
 
     @property
     def short(self) -> list[Spring]:
@@ -142,8 +151,8 @@ class Jet:
         yy = sum((square(b) for _, b in s.slopes), arb(0))
         # Lagrange's identity: no difference of large numbers
         gram = sum((square(a * d - b * c) for (a, b), (c, d) in combinations(s.slopes, 2)), arb(0))
-        n = len(s.slopes)
-        trace = sum((self.jacobian[i][i] + s.pull * size(*s.bends[i * n + i]) for i in range(n)), arb(0))
+        n, bends = len(s.slopes), self._bends(s)
+        trace = sum((self.jacobian[i][i] + s.pull * size(*bends[i * n + i]) for i in range(n)), arb(0))
         if not (gram > 0 and xx + yy > 0):
             return False
         return bool(trace.upper() - (s.pull * gram / (xx + yy)).lower() / s.length.upper() < 0)
@@ -177,36 +186,26 @@ class Field:
         self.sides = sides
         self._with_determinant = with_determinant
         self.form, self.values, self._conditions = form, dict(values), len(conditions)
-        self.cones: list[tuple[int, Cone, arb]] = []
-        for number, cone in enumerate(form.cones):
+        self._springs: list[_Pulling] = []
+        first, derivatives = list[Waves](form.equations), list[Waves](form.jacobian)
+        for cone in form.cones:
             pull = ball(cone.pull, values)
             # one that pulls nothing at a point has its sides there, too, as all other choices of them have
             if cone.name in sides or not (pull == 0):  # noqa: SIM201 (not exactly zero: != asks for no zero in a ball)
-                self.cones.append((number, cone, pull))
-        rows: list[Waves] = [*form.equations, *form.jacobian]
-        self._lines = {
-            number: _pointed(cone, values, sides[cone.name]) for number, cone, _ in self.cones if cone.name in sides
-        }
-        for _, cone, _ in self.cones:
-            for pair in (cone.vector, *cone.slopes, *(cone.weights if form.closing else ()), *cone.bends):
-                rows += pair
-        rows += conditions
-        self._shapes = {number: _shape(form, cone) for number, cone, _ in self.cones}
-        found = sorted({(turned, raised) for row in rows for turned, raised, _ in row})
-        self.basis = found
-        place = {key: 2 * k for k, key in enumerate(found)}
-        entries = [arb(0)] * (len(rows) * 2 * len(found))
-        for n, row in enumerate(rows):
-            for (turned, raised, sine), terms in row.items():
-                entries[n * 2 * len(found) + place[turned, raised] + sine] = ball(terms, values)
-        self._matrix = arb_mat(len(rows), 2 * len(found), entries)
+                line = _pointed(cone, values, sides[cone.name]) if cone.name in sides else None
+                self._springs.append(_Pulling(pull, _shape(form, cone), line))
+                first += chain(cone.vector, *cone.slopes, *(cone.weights if form.closing else ()))
+                derivatives += chain(*cone.bends)
+        first += conditions
+        found = sorted({(turned, raised) for row in (*first, *derivatives) for turned, raised, _ in row})
+        self._first, self._derivatives = (_Rows(rows, found, values) for rows in (first, derivatives))
         self._turned = {turned: _nonzero(turned) for turned, _ in found if any(turned)}
         self._columns = [(turned, _nonzero(raised)) for turned, raised in found]
 
     @property
     def circles(self) -> tuple[bool, ...]:
         """Of each unknown, whether the equations are the same after a full turn: not where half of it turns a line."""
-        lines = self._lines.values()
+        lines = [s.line for s in self._springs if s.line is not None]
         return tuple(c and not any(line.twice[k] % 2 for line in lines) for k, c in enumerate(self.form.is_circle))
 
     def _waves(self, at: Sequence[arb]) -> arb_mat:
@@ -228,27 +227,54 @@ class Field:
 
     def __call__(self, at: Sequence[arb]) -> Jet:
         """At all configurations in a box."""
-        n = self.form.size
-        rows: list[arb] = (self._matrix * self._waves(at)).entries()
-        smooth, place = rows[:n], n + n * n
-        values, linear = list(smooth), rows[n:place]
-        springs, ahead = [], list[arb]()
-        length = 2 + (4 if self.form.closing else 2) * n + 2 * n * n
-        for number, _, pull in self.cones:
-            line = self._lines[number].at(at) if number in self._lines else None
-            new = _spring(number, pull, rows[place : place + length], n, self._shapes[number], line)
+        n, waves = self.form.size, self._waves(at)
+        rows = self._first(waves)
+        smooth, place = rows[:n], n
+        values, springs, ahead = list(smooth), list[Spring](), list[arb]()
+        length = 2 + (4 if self.form.closing else 2) * n
+        for number, pulling in enumerate(self._springs):
+            line = None if pulling.line is None else pulling.line.at(at)
+            new = _spring(number, pulling, rows[place : place + length], n, line)
             if line is not None:
                 ahead.append(line.unit[0] * rows[place] + line.unit[1] * rows[place + 1])
             for k in new.shape.equations:
                 values[k] = values[k] - new.part[k]
             springs.append(new)
             place += length
-        conditions = [*ahead, *rows[len(rows) - self._conditions :]]
-        jet = Jet(values, smooth, linear, tuple(springs), conditions)
+        conditions = [*ahead, *rows[place:]]
+        jet = Jet(values, smooth, tuple(springs), conditions, partial(self._derivatives, waves))
         if self._with_determinant:
             ordered = [[row[k] for k in self.form.closing] for row in jet.jacobian]
             conditions.append(arb(0, inf) if jet.short else determinant(ordered))
         return jet
+
+
+class _Pulling(NamedTuple):
+    """Of a spring with a free length what is the same in all boxes: its pull, where its parts are, and its line."""
+
+    pull: arb
+    shape: _Shape
+    line: _Pointed | None
+
+
+class _Rows:
+    """Sums of waves at given parameters, as a matrix by the waves, in which those of no wave have no row."""
+
+    def __init__(self, rows: Sequence[Waves], waves: Sequence[tuple[Multi, Multi]], values: Mapping[str, arb]):
+        self._number, self._places = len(rows), [n for n, row in enumerate(rows) if row]
+        columns = {key: 2 * k for k, key in enumerate(waves)}
+        entries = [_ZERO] * (len(self._places) * 2 * len(waves))
+        for n, place in enumerate(self._places):
+            for (turned, raised, sine), terms in rows[place].items():
+                entries[n * 2 * len(waves) + columns[turned, raised] + sine] = ball(terms, values)
+        self._matrix = arb_mat(len(self._places), 2 * len(waves), entries)
+
+    def __call__(self, waves: arb_mat) -> list[arb]:
+        """The sums where the cosines and sines of the waves are these."""
+        found = [_ZERO] * self._number
+        for place, value in zip(self._places, (self._matrix * waves).entries(), strict=True):
+            found[place] = value
+        return found
 
 
 def _nonzero(numbers: Sequence[int]) -> list[tuple[int, int]]:
@@ -314,16 +340,16 @@ def _shape(form: Form, cone: Cone) -> _Shape:
     return _Shape(equations, entries)
 
 
-def _spring(number: int, pull: arb, rows: list[arb], n: int, shape: _Shape, line: _Pointed | None) -> Spring:
-    """A spring from its vector, n slopes, with closed loops n weights, and n^2 bends.
+def _spring(number: int, pulling: _Pulling, rows: list[arb], n: int, line: _Pointed | None) -> Spring:
+    """A spring from its vector, n slopes, and with closed loops n weights.
 
     Parameters
     ----------
     line : its direction, where it is on one line: then it turns as that does.
     """
-    pairs = tuple(zip(rows[::2], rows[1::2], strict=True))
-    (a, b), slopes, bends = pairs[0], pairs[1 : n + 1], pairs[-n * n :]
-    weights = slopes if len(pairs) == 1 + n + n * n else pairs[n + 1 : 2 * n + 1]
+    (a, b), *pairs = zip(rows[::2], rows[1::2], strict=True)
+    pull, shape, slopes = pulling.pull, pulling.shape, tuple(pairs[:n])
+    weights = tuple(pairs[n:]) or slopes
     q, part = square(a) + square(b), [_ZERO] * n
     turns = None
     if line is not None:
@@ -334,15 +360,15 @@ def _spring(number: int, pull: arb, rows: list[arb], n: int, shape: _Shape, line
     for i in shape.equations:
         x, y = weights[i]
         part[i] = pull * (_ANY * size(x, y) if turns is None else turns.unit[0] * x + turns.unit[1] * y)
-    return Spring(number, pull, q, slopes, weights, part, bends, turns, shape)
+    return Spring(number, pull, q, slopes, weights, part, turns, shape)
 
 
-def _take_off(jacobian: Matrix, s: Spring, turns: _Turns) -> None:
+def _take_off(jacobian: Matrix, s: Spring, turns: _Turns, bends: Sequence[Vector]) -> None:
     """Take a spring's part off the Jacobian."""
     n, (u, v) = len(jacobian), turns.unit
     is_gradient = s.weights is s.slopes
     for i, j in s.shape.entries:
-        (gx, gy), (wx, wy), (across, up) = s.slopes[j], s.weights[i], s.bends[i * n + j]
+        (gx, gy), (wx, wy), (across, up) = s.slopes[j], s.weights[i], bends[i * n + j]
         cross = turns.spins[j] if turns.spins else u * gy - v * gx
         is_square = is_gradient and i == j and not turns.spins
         turning = square(cross) if is_square else (u * wy - v * wx) * cross

@@ -6,7 +6,7 @@ m - C f(m) + (I - C f'(X)) (X - m). It has all zeros that X has; if it lies insi
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 from math import inf, isfinite
 from operator import lt
@@ -25,6 +25,8 @@ _NEWTON_STEPS = 12
 _CLOSE = 2.0**-20
 """Of a box's width: where Newton's method does not come closer to rest, nothing is to be proved."""
 _ROUNDING = 2.0**-50
+_STEEP = 2.0**16
+"""So many times as steep in one unknown as in another: a box is to be narrower in it, not in both."""
 _NARROWING, _WORTHWHILE = 40, 0.999
 """Steps by which a box is made narrower at most, while one makes it so much narrower."""
 
@@ -96,47 +98,66 @@ def newton(field: Field, box: Box) -> Floats | None:
 
 def proved(field: Field, center: Floats, shapes: Iterable[Floats]) -> Zero | None:
     """The solution around a point that is alone in a box of some shape; None when it is not proved, nor its signs."""
-    values = _at(field, center)
-    for shape, power in product(_with_steep(field, center, shapes), _SHRINKINGS):
+    jet = field([arb(x) for x in center])
+    inverse = None if jet.short else inverse_of(jet.jacobian)
+    if inverse is None:
+        return None
+    values = arb_mat(len(center), 1, jet.values)
+    least = [step.abs_upper() for step in _steps(values, inverse)]
+    for shape, power in product(_with_steep(jet.jacobian, shapes), _SHRINKINGS):
         sizes = tuple(r * 2.0**power for r in shape)
         if any(circle and r > _MAX_TURN for circle, r in zip(field.form.is_circle, sizes, strict=True)):
+            continue
+        # nearly what is left of the image as the box becomes a point
+        if not all(map(lt, least, sizes)):
             continue
         reaches = _reaches(field, center, values, sizes)
         if reaches is None or not all(map(lt, reaches, sizes)):
             continue
-        radii = _narrowed(field, center, values, sizes)
+        radii = _narrowed(field, center, values, sizes, least)
         near = field(list(map(arb, center, radii)))
         signs = "" if not field.form.is_gradient else None if near.short else inertia(near.jacobian)
         return None if signs is None else Zero(center, radii, sizes, signs)
     return None
 
 
-def _with_steep(field: Field, center: Floats, shapes: Iterable[Floats]) -> Iterator[Floats]:
+def _with_steep(jacobian: Matrix, shapes: Iterable[Floats]) -> Iterator[Floats]:
     """Shapes, and one that is narrower where the equations are steeper, as next to a place where a spring is short."""
-    given = list(shapes)
-    yield from given
-    jet = field([arb(x) for x in center])
-    steep = [float(abs(row[k]).mid()) for k, row in enumerate(jet.jacobian)]
-    if given and not jet.short and all(0 < s < inf for s in steep):
-        yield tuple(r * min(steep) / s for r, s in zip(given[0], steep, strict=True))
+    first, *others = shapes
+    steep = [float(abs(row[k]).mid()) for k, row in enumerate(jacobian)]
+    known = all(0 < s < inf for s in steep)
+    narrow = [tuple(r * min(steep) / s for r, s in zip(first, steep, strict=True))] if known else []
+    if known and max(steep) > _STEEP * min(steep):
+        yield from narrow
+    yield from (first, *others, *narrow)
 
 
-def _narrowed(field: Field, center: Floats, values: arb_mat, radii: Floats) -> Floats:
+def _narrowed(field: Field, center: Floats, values: arb_mat, radii: Floats, least: Sequence[arb]) -> Floats:
     """A smaller box that has the only solution of a box, too: its image, and that of that, while it gets narrower.
 
     Parameters
     ----------
     values : of the equations at the center.
+    least : half widths that the image of a point would have: a little more of them is tried at first.
     """
+    near = tuple(min(r, 2 * _above(x)) for r, x in zip(radii, least, strict=True))
+    reaches = _reaches(field, center, values, near)
+    if reaches is not None and all(map(lt, reaches, near)):
+        radii = near
     for _ in range(_NARROWING):
         reaches = _reaches(field, center, values, radii)
         if reaches is None:
             break
         before = radii
-        radii = tuple(min(r, float(x.upper()) * 1.0001 + 2.0**-1000) for r, x in zip(radii, reaches, strict=True))
+        radii = tuple(min(r, _above(x)) for r, x in zip(radii, reaches, strict=True))
         if all(r > _WORTHWHILE * b for r, b in zip(radii, before, strict=True)):
             break
     return radii
+
+
+def _above(reach: arb) -> float:
+    """A double above a half width."""
+    return float(reach.upper()) * 1.0001 + 2.0**-1000
 
 
 def _reaches(field: Field, center: Floats, values: arb_mat, radii: Floats) -> list[arb] | None:

@@ -7,7 +7,7 @@ Guarantee: counts that are returned are true, at the point or at every point of 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -113,7 +113,7 @@ class ModelCounting:
         values: Mapping[str, Fraction],
         count: Count,
         side: Sides,
-        where: tuple[Sequence[Box], Floats] | None,
+        where: tuple[Iterable[Box], Floats] | None,
         smallest: float,
     ) -> list[Zero]:
         """The solutions that count at a point, with springs on one line each on one side of length zero."""

@@ -61,8 +61,10 @@ def zeros(
     ----------
     minima : whether only minima of a potential are asked for; others may then be missing.
     budget : number of boxes after which the search gives up.
-    smallest : share of the first boxes' widths below which one is not halved again.
-    near : solutions for one choice of the parameters; those near them are proved first, which saves a hopeless search.
+    smallest : share of the first boxes' widths below which one is not halved again: in an unknown in which those near
+        are closely alone, less.
+    near : solutions for one choice of the parameters; those near them are proved first, before any box of the start is
+        asked for, which saves a hopeless search.
     whole : half the width of the box that those of the start are parts of; of the first of these where it is None.
 
     Raises
@@ -71,13 +73,15 @@ def zeros(
         When a solution is degenerate or nearly so for some parameters, or the budget was spent.
     """
     circles = field.circles
-    waiting = list(start)
-    whole = whole or waiting[0][1]
-    least = [smallest * w for w in whole]
+    if whole is None:
+        start = list(start)
+        whole = start[0][1]
     found = [_persisting(field, zero, whole) for zero in near]
+    units = _units(found, whole)
+    least = [smallest * unit for unit in units]
     if not all(disjoint(one, two, circles) for one, two in combinations(found, 2)):
         raise Unproved("two solutions may meet")
-    used = 0
+    waiting, used = list(start), 0
     while waiting:
         box = waiting.pop()
         used += 1
@@ -101,7 +105,7 @@ def zeros(
             if narrower is not None and all(map(gt, narrower[1], least)):
                 waiting.append(narrower)
                 continue
-        parts = halves(box, _widest(jet, box, whole), least)
+        parts = halves(box, _widest(jet, box, units), least)
         if parts is None:
             where = ", ".join(f"{x:.6g}" for x in box[0])
             raise Unproved(f"a solution near ({where}) may be degenerate")
@@ -172,7 +176,13 @@ def _shapes(radii: Floats, whole: Floats) -> tuple[Floats, Floats]:
     return tuple(share * w for w in whole), radii
 
 
-def _widest(jet: Jet, box: Box, whole: Floats) -> list[int]:
+def _units(found: Sequence[Zero], whole: Floats) -> list[float]:
+    """Widths to compare those of boxes with: shares of the whole, as different as where known solutions are alone."""
+    shares = [[r / w for r, w in zip(zero.alone, whole, strict=True)] for zero in found]
+    return [w * min((some[k] / max(some) for some in shares), default=1.0) for k, w in enumerate(whole)]
+
+
+def _widest(jet: Jet, box: Box, units: Sequence[float]) -> list[int]:
     """The unknowns in the order in which halving is worth most: those first that the equations vary with most."""
 
     def weight(k: int) -> float:
@@ -180,10 +190,10 @@ def _widest(jet: Jet, box: Box, whole: Floats) -> list[int]:
             change = sum(float((s.pull * (abs(s.slopes[k][0]) + abs(s.slopes[k][1]))).upper()) for s in jet.short)
         else:
             change = sum(float(row[k].abs_upper()) for row in jet.jacobian)
-        return change * box[1][k] if isfinite(change) else box[1][k] / whole[k]
+        return change * box[1][k] if isfinite(change) else box[1][k] / units[k]
 
-    weights = [weight(k) for k in range(len(whole))]
-    shares = [r / w for r, w in zip(box[1], whole, strict=True)]
+    weights = [weight(k) for k in range(len(units))]
+    shares = [r / unit for r, unit in zip(box[1], units, strict=True)]
     largest = max(shares)
     # no unknown is left behind by far
-    return sorted(range(len(whole)), key=lambda k: (shares[k] * 64 > largest, weights[k]), reverse=True)
+    return sorted(range(len(units)), key=lambda k: (shares[k] * 64 > largest, weights[k]), reverse=True)

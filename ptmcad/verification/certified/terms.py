@@ -58,7 +58,10 @@ def ball(terms: Terms, values: Mapping[str, Any]) -> arb:
 
 def square(x: arb) -> arb:
     """The square."""
-    return _ZERO.union(_product(x.abs_upper(), 2)) if x.contains(0) else x * x
+    if x > 0 or x < 0:
+        return x * x
+    most = x.abs_upper()
+    return _ZERO.union(most * most)
 
 
 def power(x: arb, exponent: int) -> arb:

@@ -6,8 +6,11 @@ proved elsewhere.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 
 import numpy as np
 from flint import arb
@@ -17,11 +20,11 @@ from ptmcad.verification.certified.boxes import Box, Floats, Unproved
 from ptmcad.verification.certified.counted import Where
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.exclusion.formulas import enclosing
-from ptmcad.verification.exclusion.pieces import no_pieces
+from ptmcad.verification.exclusion.pieces import Pieces, no_pieces
 from ptmcad.verification.exclusion.search import isolate
-from ptmcad.verification.exclusion.systems import halves_over, solutions_of, window_of
+from ptmcad.verification.exclusion.systems import System, halves_over, solutions_of, window_of
 
-BUDGET = 4000
+BUDGET = 16_000
 """Boxes that are looked at for one place and one choice of sides ..."""
 MAX_LEFT = 512
 """... and that may be left."""
@@ -69,20 +72,35 @@ class Places:
         whole = tuple(high for _, high in systems[0].start[2:].tolist())
         share = max(high - low for low, high in (u, v)) / self._steps
         smallest = max(MIN_WIDTH, PER_SHARE * float(share))
-        found = []
-        for system in systems:
-            boxes = np.empty((MAX_LEFT, *system.start.shape))
-            boxes[0] = system.start
-            for k, (low, high) in enumerate((u, v)):
-                boxes[0, k] = enclosing(low)[0], enclosing(high)[1]
-            left = isolate(system.over_place(smallest), system.tape, self._pieces, boxes, BUDGET)
-            found.append([_box(rows, whole) for rows in boxes[:left, 2:].tolist()])
-        return Where(found, whole)
+        rectangle = [(enclosing(low)[0], enclosing(high)[1]) for low, high in (u, v)]
+        return Where([_Isolated(system, rectangle, smallest, self._pieces) for system in systems], whole)
 
     def _balls(self, u: Range, v: Range) -> tuple[arb, arb]:
         low, high = (self._claims.off_lattice(*corner) for corner in zip(u, v, strict=True))
         x, y = (ball_of(a).union(ball_of(b)) for a, b in zip(low, high, strict=True))
         return x, y
+
+
+@dataclass(frozen=True)
+class _Isolated:
+    """The boxes of one system's solutions over a rectangle, which are looked for when they are asked for."""
+
+    system: System
+    rectangle: Sequence[tuple[float, float]]
+    smallest: float
+    pieces: Pieces
+
+    def __iter__(self) -> Iterator[Box]:
+        return iter(self._boxes)
+
+    @cached_property
+    def _boxes(self) -> list[Box]:
+        boxes = np.empty((MAX_LEFT, *self.system.start.shape))
+        boxes[0] = self.system.start
+        boxes[0, :2] = self.rectangle
+        left = isolate(self.system.over_place(self.smallest), self.system.tape, self.pieces, boxes, BUDGET)
+        whole = tuple(self.system.start[2:, 1].tolist())
+        return [_box(rows, whole) for rows in boxes[:left, 2:].tolist()]
 
 
 def _box(rows: list[list[float]], whole: Floats) -> Box:
