@@ -116,7 +116,8 @@ def _slices(configs: tuple[Path, ...]) -> list[tuple[Slice, Path]]:
 
 def _compare(old: Path, new: Path) -> int:
     require(Extra.data, key="bench")
-    from ptmcad.studies.bench.study import BAD, compare, comparison_table, read_study
+    from ptmcad.studies.bench.changes import BAD, compare, comparison_table
+    from ptmcad.studies.bench.stored import read_study
 
     changes = compare(read_study(old), read_study(new))
     click.echo(comparison_table(changes))

@@ -20,12 +20,6 @@ def page(*blocks: str | Iterable[str]) -> str:
     return "\n\n".join(text.strip("\n") for text in texts if text) + "\n"
 
 
-def columns(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Rows as lines with aligned columns, two spaces apart."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
-
-
 def listed(found: Mapping[str, str]) -> str:
     """What a machine or a version is, in one sentence."""
     return "; ".join(f"{key} {value}" for key, value in found.items()) + "."

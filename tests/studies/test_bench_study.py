@@ -23,22 +23,14 @@ from ptmcad.question.config import load
 from ptmcad.show.report.error_curve import read_error_curve
 from ptmcad.show.schemas import with_prose
 from ptmcad.studies.bench import harness
+from ptmcad.studies.bench.changes import BAD, compare, comparison_table
 from ptmcad.studies.bench.error import figures, outward
 from ptmcad.studies.bench.harness import Row
 from ptmcad.studies.bench.methods import RIVALS
-from ptmcad.studies.bench.picture import draw
 from ptmcad.studies.bench.process import Usage
-from ptmcad.studies.bench.report import curve_file, page, points, sentences, terminal
-from ptmcad.studies.bench.study import (
-    BAD,
-    compare,
-    comparison_table,
-    measurement,
-    study_of,
-    study_schema,
-    write_study,
-    write_table,
-)
+from ptmcad.studies.bench.report import curve_file, curves, page, sentences, terminal
+from ptmcad.studies.bench.stored import measurement, study_of, study_schema, write_study, write_table
+from ptmcad.studies.picture import draw
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIGS = ROOT / "configs"
@@ -325,7 +317,7 @@ def test_everything_but_the_times_is_repeatable(tmp_path: Path) -> None:
 
 
 def test_a_zero_is_drawn_below_the_logarithms() -> None:
-    figure = draw("fig4", "seconds", "share", points(STUDY), sentences(STUDY))
+    figure = draw("fig4", "seconds", "share", {"": curves(STUDY)}, sentences(STUDY))
     (axes,) = figure.axes
     marks = [line for line in axes.lines if line.get_marker() in ("o", "P", "X", "D")]
     zeros = [y for line in marks for y in line.get_ydata() if y == 0]

@@ -470,7 +470,7 @@ def test_real_roots_by_isolation() -> None:
 def test_maps_with_free_lengths_at_points() -> None:
     """5.2-difficult: as many stable equilibria as Newton's method in balls proves from a grid of starting points."""
     from ptmcad.ask.location import locate
-    from ptmcad.studies.equilibria import guesses, newton_pose
+    from ptmcad.studies.stress.methods import guesses, newton_pose
 
     draw, seen = Random(7), list[int]()
     map_ = free.certified("L2 = 3/2")

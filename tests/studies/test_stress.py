@@ -17,15 +17,14 @@ from support.examples import examples
 import ptmcad
 from ptmcad.answer.regionmap import Status
 from ptmcad.cli import run
-from ptmcad.studies.equilibria import angle_error, newton_pose
 from ptmcad.studies.stress import campaign as campaign_module
 from ptmcad.studies.stress.campaign import answer, campaign, markdown, to_csv, to_json, work_of
 from ptmcad.studies.stress.case import Case, Question, chosen, named_cases, point
 from ptmcad.studies.stress.constructions import FEW, NAMED, Degenerate
 from ptmcad.studies.stress.judgement import Row, judge
 from ptmcad.studies.stress.methods import Degenerate as DegeneratePoint
-from ptmcad.studies.stress.methods import double_poses, sextic_poses
-from ptmcad.studies.stress.picture import draw_stress, exponent
+from ptmcad.studies.stress.methods import angle_error, double_poses, newton_pose, sextic_poses
+from ptmcad.studies.stress.picture import draw_stress
 from ptmcad.studies.stress.random_cases import KINDS, changed, random_case, stiffened, stretched
 from ptmcad.text.flint_numbers import from_fraction
 
@@ -152,7 +151,7 @@ def test_there_are_enough_cases_and_all_that_was_asked_for() -> None:
     assert len({c.name for c in CASES}) == len(CASES)
     assert all(c.source for c in CASES)
     reach = {
-        family: [exponent(c.stiffness) for c in CASES if c.family == family] for family in {c.family for c in CASES}
+        family: [math.log10(c.stiffness) for c in CASES if c.family == family] for family in {c.family for c in CASES}
     }
     for family, low, high in (
         ("stiffness", -12, 12), ("lengths", -9, 9), ("short base", -12, -3), ("forces", -30, 30), ("symmetry", -20, -5),
@@ -187,7 +186,7 @@ def test_double_precision_is_right_where_nothing_cancels(name: str) -> None:
 
 HARDEST = [
     max((c for c in CASES if c.family == family and not c.question.axes), default=None,
-        key=lambda c: abs(exponent(c.stiffness)))
+        key=lambda c: abs(math.log10(c.stiffness)))
     for family in dict.fromkeys(c.family for c in CASES)
 ]  # fmt: skip
 

@@ -23,9 +23,10 @@ import pandas as pd
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.question.slice import Slice
+from ptmcad.show.ranges.table import aligned
 from ptmcad.studies.bench.error import Truth
 from ptmcad.studies.bench.process import Outcome, Usage, run
-from ptmcad.studies.tables import columns, installed
+from ptmcad.studies.tables import installed
 
 PACKAGES = ("ptmcad", "python-flint", "numpy", "click", "PyYAML", "matplotlib", "sympy", "numba", "scipy", "gcad")
 PTMCAD = (sys.executable, "-m", "ptmcad")
@@ -183,4 +184,4 @@ def table(rows: pd.DataFrame) -> str:
     shown = rows.dropna(axis=1, how="all").map(
         lambda x: "-" if pd.isna(x) else f"{x:.4g}" if isinstance(x, float) else str(x)
     )
-    return "\n".join(columns([list(map(str, shown)), *shown.to_numpy().tolist()]))
+    return "\n".join(aligned([list(map(str, shown)), *shown.to_numpy().tolist()]))

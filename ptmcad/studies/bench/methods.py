@@ -24,9 +24,11 @@ from ptmcad.studies.bench import programs
 from ptmcad.studies.bench.error import cover_error, exact_error, figures, grid_error, outward, shown_count
 from ptmcad.studies.bench.harness import PTMCAD, Case, Job, Make, Row
 from ptmcad.studies.bench.records import difference
+from ptmcad.studies.byhand import sextic
 
 GRIDS = ("companion", "multistart")
 NO_MAP = "no exact map to compare with: the share is the engine's"
+LOSES_PI = "an equilibrium at theta2 = pi over the whole window: t2 = tan(theta2/2) loses it"
 NO_WALLS = "errors not measured: the true walls are too steep for chains of chords; shares are the engine's"
 
 
@@ -133,8 +135,8 @@ def _read_grid(case: Case, job: Job) -> Row:
     stable, total = np.load(job.answer).astype(np.int16)
     cells = case.exact.grid(len(stable)).cell.T
     found = {count: grid_error(truth, cells, shown_count(stable, total, count)) for count, truth in case.known.items()}
-    lost = programs.question(case.slice) == programs.LOSES_PI
-    return {"figures": found, "note": programs.LOSES_PI if lost else ""}
+    coefficients = sextic(case.slice.parameters)[0]
+    return {"figures": found, "note": "" if coefficients[-1].numerator else LOSES_PI}
 
 
 RIVALS = {
@@ -146,8 +148,8 @@ RIVALS = {
                        partial(_start_grid, "companion"), _read_grid),
     "multistart": Rival("grid of scipy starts", "N = {}", ("12", "25"), 1,
                         partial(_start_grid, "multistart"), _read_grid, "scipy"),
-    "qepcad": Rival("QEPCAD", "{}", (programs.CELLS, "where 6, where 4", "where 2 stable"), 3,
-                    programs.start_qepcad, programs.read_qepcad),
+    "qepcad": Rival("QEPCAD", "{}", ("cells of the curves",), 1,
+                    programs.start_qepcad, partial(programs.beside, programs.by_qepcad)),
     "singular": Rival("Singular, critical curve alone", "{}", ("critical curve",), 1,
                       programs.start_singular, partial(programs.beside, programs.by_singular)),
     "msolve": Rival("msolve, critical curve alone", "{}", ("critical curve",), 1,

@@ -3,7 +3,7 @@
 Guarantee: none for the counts, as with every such program; they are what floating point and a tolerance say. The same
 input and seed give the same counts.
 
-``companion`` takes eigenvalues of stacked companion matrices (numpy, hence LAPACK) of `ptmcad.studies.sextic`, drops
+``companion`` takes eigenvalues of stacked companion matrices (numpy, hence LAPACK) of `ptmcad.studies.byhand`, drops
 imaginary parts, takes two Newton steps on what is left, theta1 from the first equation, and stability from the
 Hessian's signs. ``multistart`` finds roots in (theta1, theta2) at each point and removes duplicates; an
 equilibrium that no start leads to is not counted. They run as
@@ -23,7 +23,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
 from numpy.typing import NDArray
 
-from ptmcad.studies.sextic import sextic
+from ptmcad.studies.byhand import derivatives, parts, sextic
 
 Array = NDArray[np.float64]
 MAX_IMAGINARY = 1e-7
@@ -41,36 +41,6 @@ SAME_SOLUTION = 1e-5
 """Two solutions closer than this in both angles are one."""
 
 Values = Mapping[str, Any]
-
-
-def equations(p: Values, c1: Any, s1: Any, c2: Any, s2: Any) -> tuple[Any, Any, Any, Any, Any, Any]:
-    """The derivatives of the potential by th1 and th2, divided by L1 and L2; and their derivatives.
-
-    Parameters
-    ----------
-    c1, s1, c2, s2 : cosines and sines of the angles.
-
-    Returns
-    -------
-    Both derivatives, then the derivatives of the first by th1 and th2, then those of the second.
-    """
-    b1 = (p["k2"] + p["k3"]) * p["rho"] + p["F3x"]
-    b2 = (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
-    s12, c12 = s1 * c2 + c1 * s2, c1 * c2 - s1 * s2
-    pull, stretch = p["k3"] * p["L1"], p["k3"] * p["L2"]
-    return (
-        b1 * s1 - p["F3"] * c1 - stretch * s12,
-        b2 * s2 - p["F4"] * c2 - pull * s12,
-        b1 * c1 + p["F3"] * s1 - stretch * c12,
-        -stretch * c12,
-        -pull * c12,
-        b2 * c2 + p["F4"] * s2 - pull * c12,
-    )
-
-
-def is_stable(h11: Any, h12: Any, h21: Any, h22: Any) -> Any:
-    """Whether the Hessian, whose rows are these slopes times L1 and L2, is positive definite."""
-    return (h11 > 0) & (h11 * h22 > h12 * h21)
 
 
 def grid_values(question: Mapping[str, Any], n: int) -> dict[str, Array]:
@@ -112,14 +82,15 @@ def _from_sextic(p: Values) -> NDArray[np.int8]:
             good = np.isfinite(step) & (np.abs(step) < 1e-3 * (1 + np.abs(t)))
             t = np.where(good, t - step, t)
         c2, s2 = (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
-        along, across = equations(p, 0, 1, c2, s2)[0], equations(p, 1, 0, c2, s2)[0]
-        # the first equation is along s1 + across c1 = 0; of its two solutions one fulfils the second
-        norm = np.hypot(along, across)
-        c1, s1 = along / norm, -across / norm
-        fulfilled, rest = equations(p, c1, s1, c2, s2)[1], equations(p, 0, 0, c2, s2)[1]
-        sign = np.where(abs(fulfilled) <= abs(2 * rest - fulfilled), 1.0, -1.0)
-        stable = real & is_stable(*equations(p, sign * c1, sign * s1, c2, s2)[2:])
+        v, w, x, y = parts(p, c2, s2)
+        norm = np.copysign(np.hypot(x, y), v * w)
+        stable = real & is_stable(*derivatives(p, [(x / norm, y / norm), (c2, s2)], np.sqrt).hessian)
     return np.stack([stable.sum(axis=0), real.sum(axis=0)]).astype(np.int8)
+
+
+def is_stable(h11: Any, h12: Any, h22: Any) -> Any:
+    """Whether the Hessian is positive definite."""
+    return (h11 > 0) & (h11 * h22 > h12 * h12)
 
 
 def multistart(values: Mapping[str, Array], seed: int) -> NDArray[np.int8]:
@@ -140,20 +111,19 @@ def _from_starts(p: Values, starts: Array) -> tuple[int, int]:
 
     scale = sum(map(abs, p.values()))
 
-    def gradient(angles: Array) -> tuple[Array, Array]:
-        (c1, c2), (s1, s2) = np.cos(angles), np.sin(angles)
-        found = np.array(equations(p, c1, s1, c2, s2))
-        return found[:2], found[2:].reshape(2, 2)
+    def at(angles: Array) -> tuple[Array, Array]:
+        (g1, g2), (h11, h12, h22) = derivatives(p, list(zip(np.cos(angles), np.sin(angles), strict=True)), np.sqrt)
+        return np.array([g1, g2]), np.array([[h11, h12], [h12, h22]])
 
     seen: list[Array] = []
     stable = 0
     for start in starts:
-        angles = root(gradient, start, jac=True, method="hybr").x
-        value, slopes = gradient(angles)
+        angles = root(at, start, jac=True, method="hybr").x
+        gradient, hessian = at(angles)
         apart = [np.abs(np.remainder(angles - a + np.pi, 2 * np.pi) - np.pi).max() for a in seen]
-        if np.abs(value).max() < RESIDUAL * scale and min(apart, default=1.0) >= SAME_SOLUTION:
+        if np.abs(gradient).max() < RESIDUAL * scale and min(apart, default=1.0) >= SAME_SOLUTION:
             seen.append(angles)
-            stable += bool(is_stable(*slopes.ravel()))
+            stable += bool(is_stable(*hessian.ravel()[[0, 1, 3]]))
     return stable, len(seen)
 
 

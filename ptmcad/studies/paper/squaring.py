@@ -24,13 +24,15 @@ from flint import acb, acb_poly, arb, ctx, fmpz_poly
 
 from ptmcad.algebra.polynomials import PLANE, Coefficient, coefficients_in
 from ptmcad.algebra.resultants import resultant
-from ptmcad.studies.equilibria import derivatives
+from ptmcad.studies.byhand import derivatives
 from ptmcad.studies.paper import symbolic
 from ptmcad.studies.paper.symbolic import CLEAR, HORIZONTAL, LENGTHS, k, l0, t1, t2, without
 from ptmcad.text.balls import ball_of
 
 Design = tuple[str, str, str, str, str, str]
 """rho, L1, L2, l0, F3/k and F4/k as decimals or fractions."""
+Signs = tuple[int, ...]
+"""Of l1, l2 and l3."""
 NAMES = (symbolic.rho, symbolic.L1, symbolic.L2, l0, symbolic.F3, symbolic.F4)
 CIRCLE = fmpz_poly([1, 0, 1])
 BITS = 400
@@ -105,7 +107,7 @@ class SignedSolutions:
     unsettled : of so many, none of them real, it was not decided.
     """
 
-    solutions: tuple[tuple[acb, acb, tuple[int, int, int]], ...]
+    solutions: tuple[tuple[acb, acb, Signs], ...]
     opposed: int
     unsettled: int
 
@@ -136,15 +138,15 @@ def signed_solutions(design: Design) -> SignedSolutions:
         rows = [coefficients_in(p, 0) for p in system.equations]
         for t2 in _complex_roots(system.factors.get(1, fmpz_poly([1]))):
             t1 = _common_root(*([acb_poly(c)(t2) for c in row] for row in rows))
-            own, other = (None, None) if t1 is None else _signs(values, (t1, t2))
-            if t1 is None or own is None or other is None:
+            zeros = [] if t1 is None else _vanishing(values, (t1, t2))
+            if t1 is None or any(len(signs) != 2 for signs in zeros):  # the other own length has either sign
                 unsettled += 1
                 if t2.imag == 0:
                     raise ArithmeticError("a real root is not settled")
-            elif own[1] != other[1]:
+            elif common := set.intersection(*zeros):
+                found.append((t1, t2, common.pop()))  # t1 is a rational function of t2, so it is real where t2 is
+            else:
                 opposed += 1
-            else:  # t1 is a rational function of t2, so it is real where t2 is
-                found.append((t1, t2, (other[0], own[0], own[1])))
     return SignedSolutions(tuple(found), opposed, unsettled)
 
 
@@ -166,17 +168,16 @@ def _common_root(first: Sequence[acb], second: Sequence[acb]) -> acb | None:
     return common[0] if len(common) == 1 else None
 
 
-def _signs(values: Mapping[str, Any], tangents: Sequence[acb]) -> list[tuple[int, int] | None]:
-    """For each equation the only signs of its own length and l3 at which it can hold; None when it is not clear."""
+def _vanishing(values: Mapping[str, Any], tangents: Sequence[acb]) -> list[set[Signs]]:
+    """For each equation the signs of l1, l2 and l3 at which it may hold."""
     circles = [((1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)) for t in tangents]
-    zero: tuple[set[tuple[int, int]], ...] = (set(), set())
+    zeros: list[set[Signs]] = [set(), set()]
     for signs in product((1, -1), repeat=3):
         # any continuous choice of the roots serves: both signs are tried
-        gradient = derivatives(values, circles, partial(_root, iter(signs))).gradient
-        for n, slope in enumerate(gradient):
+        for found, slope in zip(zeros, derivatives(values, circles, partial(_root, iter(signs))).gradient, strict=True):
             if slope.contains(0):
-                zero[n].add((signs[1 - n], signs[2]))
-    return [next(iter(found)) if len(found) == 1 else None for found in zero]
+                found.add(signs)
+    return zeros
 
 
 def _root(signs: Iterator[int], square: acb) -> acb:

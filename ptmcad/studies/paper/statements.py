@@ -13,11 +13,13 @@ remains of (11) where the angles differ.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache, partial
+from pathlib import Path
 from typing import Any
 
 import sympy as sp
+import yaml
 
 from ptmcad.answer.poses import Poses
 from ptmcad.ask.solving import solve
@@ -28,26 +30,8 @@ T, e1, e2, height, scale = sp.symbols("T e1 e2 height scale")
 ANGLES = (*CIRCLES[0], *CIRCLES[1])
 _ALL = (*symbolic.PARAMETERS, *symbolic.LENGTHS, *ANGLES, t1, t2, T, e1, e2, height, scale)
 SYMBOLS = {str(symbol): symbol for symbol in _ALL}
-DEFINITIONS = {
-    "sin12": "s1*c2 + c1*s2",
-    "cos12": "c1*c2 - s1*s2",
-    "COS1": "(4*rho^2 + L1^2 - L2^2)/(4*rho*L1)",
-    "COS2": "(4*rho^2 + L2^2 - L1^2)/(4*rho*L2)",
-    "OTHER": "-(F4*t2 + 2*k*rho)/(F4 - 2*k*rho*t2)",
-    "detH": "expand(H11*H22 - H12^2)",
-    "E1": "expand(cancel(half_angles(g1)*(1 + t1^2)*(1 + t2^2)/(L1*k)))",
-    "E2": "expand(cancel(half_angles(g2)*(1 + t1^2)*(1 + t2^2)/(L2*k)))",
-    "a": "expand(at(E1.coeff(t1, 2)*E2.coeff(t1, 1) - E2.coeff(t1, 2)*E1.coeff(t1, 1), k=1))",
-    "b": "expand(at(E1.coeff(t1, 2)*E2.coeff(t1, 0) - E2.coeff(t1, 2)*E1.coeff(t1, 0), k=1))",
-    "resultant": "expand(b^2 - a*at(E1.coeff(t1, 1)*E2.coeff(t1, 0) - E2.coeff(t1, 1)*E1.coeff(t1, 0), k=1))",
-    "sextic": "quo(resultant, 1 + t2^2, t2)",
-}
-"""Of names without horizontal loads, and with them, in the language of statements; a t1 + b is what two polynomials of
-degree 2 in t1 leave without t1^2."""
-PLAIN = {f"q{n}": f"factor(sextic.coeff(t2, {n}))" for n in range(7)} | {
-    "eliminated_12": "expand(quo(numerator(at(symmetric(k*E2), t1=OTHER)), 1 + t2^2, t2))"
-}
-"""Of those that are used without horizontal loads alone."""
+TEXTS: Mapping[str, Any] = yaml.safe_load(Path(__file__).with_name("expressions.yaml").read_text(encoding="utf-8"))
+"""What further names stand for, in the language of statements; and the paper's equations."""
 
 
 def holds(statement: str) -> bool:
@@ -71,9 +55,9 @@ def names() -> dict[str, Any]:
     found = (symbolic.potential(), *symbolic.gradient(), *symbolic.hessian())
     derived = dict(zip(("U", "g1", "g2", "H11", "H12", "H22"), found, strict=True))
     known |= {f"{name}_l": e for name, e in derived.items()}
-    for suffix, absent, texts in (("_h", (l0,), DEFINITIONS), ("", (l0, *HORIZONTAL), DEFINITIONS | PLAIN)):
+    for suffix, absent, plain in (("_h", (l0,), {}), ("", (l0, *HORIZONTAL), TEXTS["plain"])):
         local = {name: sp.expand(symbolic.without(e, *absent)) for name, e in derived.items()}
-        for name, text in texts.items():
+        for name, text in {**TEXTS["definitions"], **plain}.items():
             local[name] = sp.sympify(text, locals=known | local)
         known |= {f"{name}{suffix}": e for name, e in local.items()}
     return known

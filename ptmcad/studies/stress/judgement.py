@@ -22,9 +22,8 @@ from ptmcad.answer.intervals import CountIntervals, lower, upper
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.mechanism import ptm
-from ptmcad.studies.equilibria import IndexedPose, newton_pose, scale
 from ptmcad.studies.stress.case import Case
-from ptmcad.studies.stress.methods import double_poses, sextic_poses
+from ptmcad.studies.stress.methods import IndexedPose, double_poses, newton_pose, scale, sextic_poses
 from ptmcad.text.balls import ball_of, exact
 from ptmcad.text.expressions import Expression
 
@@ -35,6 +34,9 @@ STEPS = 200
 _BITS = 512
 DECIDED = (Status.EXACT, Status.CERTIFIED)
 
+COLUMNS = (
+    "expected", "found", "right", "remarks", "double", "double_right", "error", "double_error", "condition", "bits",
+)  # fmt: skip
 Row = dict[str, Any]
 """What came out of a case.
 
@@ -66,19 +68,8 @@ def judge(case: Case, found: Any) -> Row:
     with ctx.workprec(_BITS):
         checks, row = judgement(case, found)
     remarks = [remark for holds, remark in checks if not holds]
-    nothing = {
-        "expected": case.expected,
-        "found": "",
-        "right": not remarks,
-        "remarks": remarks,
-        "double": "",
-        "double_right": False,
-        "error": None,
-        "double_error": None,
-        "condition": None,
-        "bits": 0,
-    }
-    return {**nothing, **row}
+    known: Row = {"expected": case.expected, "right": not remarks, "remarks": remarks, "bits": 0}
+    return {**dict.fromkeys(COLUMNS), **known, **row}
 
 
 Checks = list[tuple[bool, str]]

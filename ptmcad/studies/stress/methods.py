@@ -1,31 +1,38 @@
 """The equilibria at a point: to a hundred digits with proof, and in double precision as they are computed in practice.
 
 Neither shares anything with `ptmcad.solve` but FLINT's numbers; both begin with the sextic in t = tan(th2/2)
-(`ptmcad.studies.sextic`) where no spring has a free length.
+(`ptmcad.studies.byhand`) where no spring has a free length.
+
+Guarantee of `newton_pose`: a pose that it gives is the only zero of the gradient (`ptmcad.studies.byhand`) in its
+box, with a nonsingular Hessian.
 
 Guarantee of `sextic_poses`: all equilibria are there, each proved and in the balls that are given. The real roots are
 isolated with proof; th2 = pi counts as a root for each degree that is missing. Where V and W vanish both signs hold,
-elsewhere that of V W. Nothing is lost, as multiplicities are compared. From there
-`ptmcad.studies.equilibria.newton_pose` goes on.
+elsewhere that of V W. Nothing is lost, as multiplicities are compared.
 
 `double_poses` guarantees nothing; it is the baseline that can be wrong. Without free lengths: eigenvalues of the
 companion matrix, th1 from the first equation, the Hessian's signs in floats. It is treated kindly: th2 = pi, which t
 cannot reach, is put back where the leading coefficients vanish. With free lengths: Newton's method from a grid of
 starts. Deciding which roots are real, which are one, and what is zero takes tolerances; they are usual ones.
+
+References: Krawczyk, Computing 4 (1969); Neumaier, Interval Methods for Systems of Equations (1990), theorem 5.1.8;
+Rump, Acta Numerica 19 (2010), section 13.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from flint import arb, ctx, fmpq, fmpq_poly
+from flint import arb, arb_mat, ctx, fmpq, fmpq_poly
+from numpy.typing import NDArray
 
 from ptmcad.mechanism import ptm
-from ptmcad.studies.equilibria import SAME_POSE, IndexedPose, different, guesses, in_doubles, newton_pose, sign
-from ptmcad.studies.sextic import parts, sextic
+from ptmcad.studies.byhand import Derivatives, derivatives, parts, sextic
+from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction
 
 BITS = (600, 2400, 9600)
@@ -36,10 +43,69 @@ ZERO_TOLERANCE = 1e-12
 """A coefficient is taken for zero when it is at most this much of the largest."""
 STARTS = 24
 """Starts of Newton's method along each angle."""
+ROUNDS = 60
+"""Of Newton's method."""
+RESIDUAL = 1e-9
+"""A gradient is taken for zero when it is at most this much of the largest force times length."""
+SAME_POSE = 1e-6
+"""Poses no farther apart than this (radians) are taken for one."""
+
+
+@dataclass(frozen=True, slots=True)
+class IndexedPose:
+    """A pose that is, or is taken for, an equilibrium: its angles, and the Hessian's number of negative eigenvalues."""
+
+    th1: Any
+    th2: Any
+    index: int
 
 
 class Degenerate(ArithmeticError):
     """Some equilibrium has a singular Hessian, or there are infinitely many."""
+
+
+def in_balls(parameters: Mapping[str, arb], angles: Sequence[arb]) -> tuple[arb_mat, arb_mat]:
+    """Gradient and Hessian at a pose, or over a box of angles."""
+    (g1, g2), (h11, h12, h22) = derivatives(parameters, [(a.cos(), a.sin()) for a in angles], arb.sqrt)
+    return arb_mat([[g1], [g2]]), arb_mat([[h11, h12], [h12, h22]])
+
+
+def sign(value: arb) -> int:
+    """The sign of a ball, 0 when it contains zero."""
+    return int(value > 0) - int(value < 0)
+
+
+def newton_pose(
+    parameters: Mapping[str, Fraction], start: tuple[arb | float, arb | float], bits: int = BITS[0]
+) -> IndexedPose | None:
+    """The equilibrium that Newton's method finds from a start, proved by Krawczyk's test; None when it finds none.
+
+    Parameters
+    ----------
+    start : th1, th2 in radians.
+    bits : of precision; the pose is enclosed within 2^(-2/3 bits) of its angles.
+    """
+    with ctx.workprec(bits):
+        p, radius = {name: ball_of(v) for name, v in parameters.items()}, arb(2) ** (-2 * bits // 3)
+        middle = [arb(arb(a).mid()) for a in start]
+        try:
+            for _ in range(ROUNDS):
+                gradient, hessian = in_balls(p, middle)
+                step = (hessian.mid().inv() * gradient).entries()
+                middle = [arb((a - s).mid()) for a, s in zip(middle, step, strict=True)]
+                if all(abs(s) < radius for s in step):
+                    break
+            box = [a + radius * arb(0, 1) for a in middle]
+            gradient, hessian = in_balls(p, middle)[0], in_balls(p, box)[1]
+            inverse = hessian.mid().inv().mid()
+        except ZeroDivisionError:  # a Hessian that is singular, or not finite
+            return None
+        at, rest = inverse * gradient, arb_mat(2, 2, 1) - inverse * hessian
+        reaches = [abs(at[n, 0]) + (abs(rest[n, 0]) + abs(rest[n, 1])) * radius for n in (0, 1)]
+        determinant, first = sign(hessian.det()), sign(hessian[0, 0])
+        if not all(reach < radius for reach in reaches) or not determinant or (determinant > 0 and not first):
+            return None
+        return IndexedPose(box[0], box[1], 1 if determinant < 0 else 0 if first > 0 else 2)
 
 
 def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...]:
@@ -91,6 +157,53 @@ def _angles(p: Mapping[str, fmpq], t: arb | None, both: bool) -> list[tuple[arb,
 
 
 # ---------------------------------------------------------------------------------------------------------- in doubles
+
+Floats = NDArray[np.float64]
+
+
+def in_doubles(parameters: Mapping[str, float], th1: Floats, th2: Floats) -> Derivatives:
+    """The derivatives at many poses."""
+    return derivatives(parameters, [(np.cos(a), np.sin(a)) for a in (th1, th2)], np.sqrt)
+
+
+def angle_error(a: float, b: float) -> float:
+    """The distance of two angles on the circle."""
+    return abs((a - b + np.pi) % (2 * np.pi) - np.pi)
+
+
+def different(poses: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """The poses without those that are taken for one before them."""
+    found: list[tuple[float, float]] = []
+    for pose in poses:
+        if all(max(map(angle_error, pose, other)) > SAME_POSE for other in found):
+            found.append(pose)
+    return found
+
+
+def guesses(parameters: Mapping[str, float], starts: int) -> list[tuple[float, float]]:
+    """Different poses to which Newton's method leads from a grid with so many starts along each angle."""
+    grid = 2 * np.pi * (np.arange(starts) + 0.37) / starts - np.pi
+    th1, th2 = (a.ravel() for a in np.meshgrid(grid, grid))
+    with np.errstate(all="ignore"):
+        for _ in range(ROUNDS):
+            (g1, g2), (h11, h12, h22) = in_doubles(parameters, th1, th2)
+            determinant = h11 * h22 - h12 * h12
+            step1, step2 = (h22 * g1 - h12 * g2) / determinant, (h11 * g2 - h12 * g1) / determinant
+            longest = np.maximum(1.0, 2 * np.hypot(step1, step2))  # steps of at most half a radian
+            th1, th2 = th1 - step1 / longest, th2 - step2 / longest
+        (g1, g2), _ = in_doubles(parameters, th1, th2)
+        good = (np.hypot(g1, g2) <= RESIDUAL * scale(parameters)) & np.isfinite(th1) & np.isfinite(th2)
+    turned = ((angles[good] + np.pi) % (2 * np.pi) - np.pi for angles in (th1, th2))
+    return different(list(zip(*(angles.tolist() for angles in turned), strict=True)))
+
+
+def scale(p: Mapping[str, float]) -> float:
+    """The largest summand of the gradient: of a spring's or a load's moment about a joint."""
+    mechanism = ptm()
+    longest = max(p["L1"], p["L2"])
+    span = max(p["rho"], longest, *(p.get(name, 0.0) for name in mechanism.free_lengths))
+    loads = max(abs(p.get(name, 0.0)) for name in mechanism.forces)
+    return max(max(p[name] for name in mechanism.stiffnesses) * span, loads) * longest
 
 
 def double_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...] | None:
