@@ -42,7 +42,7 @@ class Job:
     Attributes
     ----------
     text : its standard input.
-    answer : the file that it writes; None where the answer is on standard output.
+    answer : the file that it writes, text but for NumPy's arrays; None where the answer is on standard output.
     check : what is wrong with a process that is done; empty when nothing is.
     saves : whether it takes ``--timeout`` and leaves an answer when its time is over, as the certified engine does.
     reason : why there are no figures; empty while there may be.
@@ -78,15 +78,24 @@ class Job:
             self.reason = f"failed: {(usage.message or 'no message').splitlines()[-1]}"
         elif self.answer is not None and not self.answer.exists():
             self.reason = "failed: no answer"
-        elif wrong := self.check(usage):
-            self.reason = f"failed: {wrong}"
         else:
-            self.usages.append(usage)
+            if self.answer is not None and self.answer.suffix != ".npy":
+                usage = replace(usage, output=self.answer.read_text(encoding="utf-8"))
+            if wrong := self.check(usage):
+                self.reason = f"failed: {wrong}"
+            else:
+                self.usages.append(usage)
         return usage
 
     def said(self) -> str:
         """The text of the last answer."""
-        return self.usages[-1].output if self.answer is None else self.answer.read_text(encoding="utf-8")
+        return self.usages[-1].output
+
+
+def classification(record: Path, words: tuple[str, str, str], folder: Path, *options: str, name: str) -> Job:
+    """A job that writes the JSON of a record's map into a folder; the words are its subject, what, and setting."""
+    command = (*PTMCAD, "classify", str(record), *options, "--out", str(folder))
+    return Job(*words, command, answer=folder / f"{name}.json")
 
 
 class Case(NamedTuple):

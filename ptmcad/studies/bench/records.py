@@ -21,7 +21,7 @@ from ptmcad.errors import PtmcadError
 from ptmcad.question.config import load
 from ptmcad.question.savings import ALL, SAVINGS, Engine
 from ptmcad.question.slice import Slice
-from ptmcad.studies.bench.harness import PTMCAD, Job, summary, turns
+from ptmcad.studies.bench.harness import Job, classification, summary, turns
 
 FLOOR = (sys.executable, "-c", "import flint, numpy, click, yaml")
 LIMITS = ("--tolerance", "1/20", "--jobs", "1", "--timeout", "30")
@@ -54,8 +54,8 @@ def timed(options: argparse.Namespace) -> pd.DataFrame:
                 continue  # such a map takes as long as it is given
             foretold[len(jobs)] = check(slice).forecast
             for formats in ("json", "json,png,svg"):
-                command = (*PTMCAD, "classify", str(path), "--format", formats, "--out", folder)
-                jobs.append(Job(str(path.with_suffix("")), "classify", formats, command))
+                words = str(path.with_suffix("")), "classify", formats
+                jobs.append(classification(path, words, Path(folder), "--format", formats, name=slice.name))
         turns(jobs, options)
     rows = summary(jobs, "floor", "seconds")
     costs = {number: cost for number, cost in foretold.items() if cost is not None}
@@ -67,34 +67,31 @@ def timed(options: argparse.Namespace) -> pd.DataFrame:
 def ablation(options: argparse.Namespace) -> pd.DataFrame:
     """Records with each saving switched off, and with all of them; their own engine's savings, and "imports"."""
     tables = []
-    with tempfile.TemporaryDirectory() as name:
-        for path, slice in slices_of(options.records).items():
-            savings = [s.name for s in SAVINGS if (s.engine is Engine.CERTIFIED) == slice.has_free_lengths]
-            more = LIMITS if slice.has_free_lengths else ()
-            tables.append(_without(path, slice.name, [*savings, ALL], more, Path(name), options))
-            if not slice.has_free_lengths:
-                turned = ("--slice", ",".join(slice.axis_names[::-1]))
-                subject = f"{slice.name}, axes exchanged"
-                tables.append(_without(path, subject, ["axis-order"], turned, Path(name), options))
+    for path, slice in slices_of(options.records).items():
+        savings = [s.name for s in SAVINGS if (s.engine is Engine.CERTIFIED) == slice.has_free_lengths]
+        more = LIMITS if slice.has_free_lengths else ()
+        tables.append(_without(path, slice.name, slice.name, [*savings, ALL], more, options))
+        if not slice.has_free_lengths:
+            turned, subject = ("--slice", ",".join(slice.axis_names[::-1])), f"{slice.name}, axes exchanged"
+            tables.append(_without(path, slice.name, subject, ["axis-order"], turned, options))
     return pd.concat(tables)
 
 
 def _without(
-    record: Path, subject: str, savings: Sequence[str], more: Sequence[str], folder: Path, options: argparse.Namespace
+    record: Path, name: str, subject: str, savings: Sequence[str], more: Sequence[str], options: argparse.Namespace
 ) -> pd.DataFrame:
     """The rows of one record: all savings made, and each switched off."""
-    name = load(record).name
-    made: list[Job] = []
-    for saving in ("", *savings):
-        target = folder / f"{len(made)}-{saving}"
-        off = ("--without", saving) if saving else ()
-        command = (*PTMCAD, "classify", str(record), *more, *off, "--format", "json", "--out", str(target))
-        made.append(Job(subject, "classify", saving or "all made", command, answer=target / f"{name}.json"))
-    made[0].attempt(options.timeout)  # fills caches, and compiles
-    made[0].usages.clear()
-    turns(made, options)
-    results = [RegionMap.from_json(job.said()) if job.usages else None for job in made]
-    rows = summary(made, "all made")
+    with tempfile.TemporaryDirectory() as folder:
+        jobs = []
+        for saving in ("", *savings):
+            off = ("--without", saving) if saving else ()
+            words = subject, "classify", saving or "all made"
+            jobs.append(classification(record, words, Path(folder), *more, *off, "--format", "json", name=name))
+        jobs[0].attempt(options.timeout)  # fills caches, and compiles
+        jobs[0].usages.clear()
+        turns(jobs, options)
+    results = [RegionMap.from_json(job.said()) if job.usages else None for job in jobs]
+    rows = summary(jobs, "all made")
     rows["differs"] = [
         None if results[0] is None or result is None else difference(results[0], result) for result in results
     ]

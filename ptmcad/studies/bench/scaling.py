@@ -26,7 +26,7 @@ import pandas as pd
 
 from ptmcad.errors import PtmcadError
 from ptmcad.show.render.printing import save
-from ptmcad.studies.bench.harness import PTMCAD, Job, Row, summary, turns
+from ptmcad.studies.bench.harness import Row, classification, summary, turns
 from ptmcad.studies.bench.process import Usage
 from ptmcad.studies.picture import STYLES, Curve, Mark, draw
 
@@ -97,39 +97,38 @@ def measure(options: argparse.Namespace) -> pd.DataFrame:
     unknown = [name for name in names if name not in FAMILIES]
     if unknown:
         raise PtmcadError(f"no family {unknown[0]!r}; there are {', '.join(FAMILIES)}")
-    jobs: list[Job] = []
-    stages: list[Row] = []
+    jobs = []
     with tempfile.TemporaryDirectory() as folder:
         for name, n in [(family, size) for family in names for size in FAMILIES[family].sizes]:
-            family, record = FAMILIES[name], Path(folder, f"{name}-{n}.json")
+            family, record = FAMILIES[name], Path(folder, f"{name}-{n}.yaml")
             record.write_text(json.dumps({"name": record.stem, **family.record(n, options.seed)}), encoding="utf-8")
-            target = Path(folder, "out", record.name)
-            command = (*PTMCAD, "classify", str(record), "--format", "json", "--out", str(target.parent))
-            check = partial(_checked, target, family.regions(n), (name, n), stages)
-            jobs.append(Job(name, family.title, str(n), command, answer=target, check=check))
+            words = name, family.title, str(n)
+            job = classification(record, words, Path(folder), "--format", "json", name=record.stem)
+            job.check = partial(_unlike, family.regions(n))
+            jobs.append(job)
         turns(jobs, options)
     rows = summary(jobs)
+    stages = [
+        {"subject": job.subject, "setting": job.setting, **json.loads(usage.output)["timings"]}
+        for job in jobs for usage in job.usages
+    ]  # fmt: skip
     if not stages:
         return rows
-    taken = pd.DataFrame(stages).groupby(["subject", "n"], sort=False).median()
-    seconds = taken.round(5).rename(columns="{} s".format).reset_index()
-    rows = rows.merge(seconds.assign(setting=seconds.pop("n").map(str)), on=["subject", "setting"], how="left")
+    taken = pd.DataFrame(stages).groupby(["subject", "setting"], sort=False).median()
+    rows = rows.join(taken.round(5).rename(columns="{} s".format), on=["subject", "setting"])
     laws = [
         {"subject": name, "what": FAMILIES[str(name)].title, "setting": f"fit: {stage}", **law}
         for name, of_family in taken.groupby("subject", sort=False)
-        for stage, seconds in of_family.droplevel("subject").items()
+        for stage, seconds in of_family.droplevel("subject").rename(index=int).items()
         if (law := fit(seconds.dropna()))
     ]
     return pd.concat([rows, pd.DataFrame(laws)], ignore_index=True)
 
 
-def _checked(target: Path, regions: int, size: tuple[str, int], stages: list[Row], _: Usage) -> str:
-    """Note the seconds of a map's stages; what is wrong with its number of regions."""
-    found = json.loads(target.read_text(encoding="utf-8"))
-    if len(found["regions"]) != regions:
-        return f"{len(found['regions'])} regions"
-    stages.append({"subject": size[0], "n": size[1], **found["timings"]})
-    return ""
+def _unlike(regions: int, usage: Usage) -> str:
+    """What is wrong with a map's number of regions."""
+    found = len(json.loads(usage.output)["regions"])
+    return "" if found == regions else f"{found} regions"
 
 
 def fit(taken: pd.Series[float]) -> Row | None:

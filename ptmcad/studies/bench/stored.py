@@ -15,20 +15,8 @@ import pandas as pd
 from ptmcad.question.slice import Count
 from ptmcad.studies.bench.harness import Row
 from ptmcad.studies.bench.methods import RIVALS
-from ptmcad.text.codec import (
-    NATURAL,
-    POSITIVE,
-    SECONDS,
-    TRUTH,
-    WHOLE,
-    Codec,
-    document_schema,
-    line,
-    listed,
-    named,
-    optional,
-    record,
-)
+from ptmcad.text import codec
+from ptmcad.text.codec import POSITIVE, SECONDS, Codec, line, listed, named, optional, record
 from ptmcad.text.node import Node, opened
 from ptmcad.text.textfile import read_as
 
@@ -133,7 +121,7 @@ def study_of(text: str) -> Row:
 
 def study_schema() -> dict[str, Any]:
     """The schema of a study's JSON, without prose."""
-    return document_schema(FORMAT, _STUDY.schema)
+    return codec.document_schema(FORMAT, _STUDY.schema)
 
 
 def _positive(node: Node) -> float:
@@ -150,9 +138,9 @@ _FIGURES: Codec[Row] = record(
     dict,
     wrong=_PAIR,
     undetermined=SECONDS,
-    wrong_centres=optional(NATURAL),
+    wrong_centres=optional(codec.NATURAL),
     regions=optional(POSITIVE),
-    missed=optional(NATURAL),
+    missed=optional(codec.NATURAL),
     faintest=optional(_PAIR),
     distance=optional(_PAIR),
 )
@@ -174,11 +162,11 @@ _STUDY: Codec[Row] = record(
     heading=line(1000),
     machine=named(line(300)),
     versions=named(line(300)),
-    seed=WHOLE,
+    seed=codec.WHOLE,
     rounds=POSITIVE,
     time_limit=_TAKEN,
-    quick=TRUTH,
-    verified=optional(TRUTH),
+    quick=codec.TRUTH,
+    verified=optional(codec.TRUTH),
     floor=_TIMES,
     measurements=listed(_MEASUREMENT),
 )
