@@ -13,6 +13,7 @@ from typing import Any
 import pandas as pd
 
 from ptmcad.question.slice import Count
+from ptmcad.studies.bench.error import FIGURES
 from ptmcad.studies.bench.harness import Row
 from ptmcad.studies.bench.methods import RIVALS
 from ptmcad.text import codec
@@ -23,32 +24,19 @@ from ptmcad.text.textfile import read_as
 FORMAT = "ptmcad-bench/1"
 MAX_BYTES = 10_000_000
 _FINEST = ("index", "total", "stable", "admissible")
-_COLUMNS = {
-    "slice": "slice",
-    "method": "method",
-    "setting": "setting",
-    "seconds_median": "seconds_median",
+_SHORT = {
     "seconds_minimum": "seconds_min",
     "seconds_maximum": "seconds_max",
     "seconds_runs": "runs",
-    "computing_median": "computing_median",
     "peak": "peak_mib",
-    "count": "count",
-    "wrong_low": "wrong_low",
-    "wrong_high": "wrong_high",
-    "undetermined": "undetermined",
-    "wrong_centres": "wrong_centres",
-    "regions": "regions",
-    "missed": "missed",
-    "faintest_low": "faintest_low",
-    "faintest_high": "faintest_high",
-    "distance_low": "distance_low",
-    "distance_high": "distance_high",
-    "area_width": "area_width",
-    "reason": "reason",
-    "note": "note",
 }
-"""Those of the table, by the keys of the document."""
+_TAKEN = ("seconds_median", "seconds_min", "seconds_max", "runs", "computing_median", "peak_mib")
+_PAIRS = ("wrong", "faintest", "distance")
+"""Figures that are bounds: of each are two columns."""
+_FIGURE_COLUMNS = [
+    column for name in FIGURES for column in ([f"{name}_low", f"{name}_high"] if name in _PAIRS else [name])
+]
+_COLUMNS = ["slice", "method", "setting", *_TAKEN, "count", *_FIGURE_COLUMNS, "area_width", "reason", "note"]
 _WHOLE = ("runs", "wrong_centres", "regions", "missed")
 
 
@@ -70,7 +58,7 @@ def frame(study: Row) -> pd.DataFrame:
                 for name, x in figures.items()
             }
             rows.append({"slice": study["slice"], "count": count, **m, **parts, "figures": None})
-    table = pd.json_normalize(rows, sep="_").reindex(columns=list(_COLUMNS)).rename(columns=_COLUMNS)
+    table = pd.json_normalize(rows, sep="_").rename(columns=_SHORT).reindex(columns=_COLUMNS)
     return table.astype(dict.fromkeys(_WHOLE, "Int64"))
 
 
@@ -131,9 +119,9 @@ def _positive(node: Node) -> float:
     return seconds
 
 
-_TAKEN: Codec[float] = Codec(SECONDS.write, _positive, {"type": "number", "exclusiveMinimum": 0})
+_TIME: Codec[float] = Codec(SECONDS.write, _positive, {"type": "number", "exclusiveMinimum": 0})
 _PAIR = listed(SECONDS, 2)
-_TIMES: Codec[Row] = record(dict, runs=POSITIVE, median=_TAKEN, minimum=_TAKEN, maximum=_TAKEN)
+_TIMES: Codec[Row] = record(dict, runs=POSITIVE, median=_TIME, minimum=_TIME, maximum=_TIME)
 _FIGURES: Codec[Row] = record(
     dict,
     wrong=_PAIR,
@@ -164,7 +152,7 @@ _STUDY: Codec[Row] = record(
     versions=named(line(300)),
     seed=codec.WHOLE,
     rounds=POSITIVE,
-    time_limit=_TAKEN,
+    time_limit=_TIME,
     quick=codec.TRUTH,
     verified=optional(codec.TRUTH),
     floor=_TIMES,

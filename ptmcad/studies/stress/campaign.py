@@ -211,11 +211,11 @@ def to_json(campaign: Row) -> str:
 
 def to_csv(campaign: Row) -> str:
     """The same, one row for each case."""
-    text, rows = io.StringIO(), _plain(campaign)
-    writer = csv.DictWriter(text, list(rows[0]) if rows else [], lineterminator="\n")
+    text, rows = io.StringIO(), [{**row, "remarks": "; ".join(row["remarks"])} for row in _plain(campaign)]
     if rows:
+        writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
         writer.writeheader()
-    writer.writerows({**row, "remarks": "; ".join(row["remarks"])} for row in rows)
+        writer.writerows(rows)
     return text.getvalue()
 
 

@@ -7,8 +7,8 @@ Guarantee of `newton_pose`: a pose that it gives is the only zero of the gradien
 box, with a nonsingular Hessian.
 
 Guarantee of `sextic_poses`: all equilibria are there, each proved and in the balls that are given. The real roots are
-isolated with proof; th2 = pi counts as a root for each degree that is missing. Where V and W vanish both signs hold,
-elsewhere that of V W. Nothing is lost, as multiplicities are compared.
+isolated with proof; th2 = pi counts as a root for each degree that is missing. No more equilibria than its multiplicity
+belong to a root, and as many are proved as all roots have together.
 
 `double_poses` guarantees nothing; it is the baseline that can be wrong. Without free lengths: eigenvalues of the
 companion matrix, th1 from the first equation, the Hessian's signs in floats. It is treated kindly: th2 = pi, which t
@@ -21,7 +21,7 @@ Rump, Acta Numerica 19 (2010), section 13.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -108,52 +108,55 @@ def newton_pose(
         return IndexedPose(box[0], box[1], 1 if determinant < 0 else 0 if first > 0 else 2)
 
 
+def apart(first: IndexedPose, second: IndexedPose) -> arb:
+    """The larger of the distances of both angles, on the circle."""
+    gaps = [arb(a) - b for a, b in ((first.th1, second.th1), (first.th2, second.th2))]
+    turn = 2 * arb.pi()
+    one, other = (abs(gap - turn * (gap / turn + 0.5).mid().floor()) for gap in gaps)
+    return arb(one.max(other))
+
+
+def proved_poses(
+    parameters: Mapping[str, Fraction], starts: Iterable[tuple[Any, Any]], bits: int = BITS[0], most: float = np.inf
+) -> tuple[IndexedPose, ...]:
+    """The different equilibria that Newton's method finds from starts, each proved; not more than are asked for."""
+    known: list[IndexedPose] = []
+    for start in starts:
+        pose = newton_pose(parameters, start, bits) if len(known) < most else None
+        if pose is not None and not any(apart(pose, other).contains(0) for other in known):
+            known.append(pose)
+    return tuple(known)
+
+
 def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...]:
     """All equilibria of a mechanism whose springs have no free length.
 
     Raises
     ------
     Degenerate
-        When some equilibrium is, or when N has no finite number of roots.
+        When some equilibrium is, when N has no finite number of roots, or when the bits do not settle it.
     """
     p = {name: from_fraction(v) for name, v in parameters.items()}
-    for bits in BITS:
-        with ctx.workprec(bits):
-            candidates = _candidates(p)
-        poses = [newton_pose(parameters, c, bits) if c else None for c in candidates]
-        found = tuple(pose for pose in poses if pose is not None)
-        if len(found) == len(poses):
-            return found
-    raise ArithmeticError(f"{BITS[-1]} bits do not settle the equilibria")
-
-
-def _candidates(p: Mapping[str, fmpq]) -> list[tuple[arb, arb] | None]:
-    """The angles that belong to the real roots of N, None where the precision is too low for a sign."""
-    polynomial, v, w, square = (fmpq_poly(list(c)) for c in sextic(p))
+    polynomial = fmpq_poly(list(sextic(p)[0]))
     missing = 6 - polynomial.degree()
-    # at th2 = pi, V = -F3 and W = F4
-    flat = p["F3"] == 0 and p["F4"] == 0
-    if missing not in ((0, 2) if flat else (0, 1)) or (missing == 1 and p["F3"] == 0):
-        raise Degenerate("the sextic vanishes, or th2 = pi is a multiple solution")
-    found = _angles(p, None, flat) if missing else []
-    for factor, multiplicity in polynomial.numer().factor()[1]:
-        v_zero, w_zero, square_zero = ((q % fmpq_poly(factor)).degree() < 0 for q in (v, w, square))
-        both = v_zero and w_zero
-        pairs: Any = factor.complex_roots()  # FLINT's stub says otherwise
-        for root in (root.real for root, _ in pairs if root.imag == 0):
-            if multiplicity != (2 if both else 1) or (both and square_zero):
-                raise Degenerate("the sextic has a multiple root, or the first equation leaves th1 free")
-            found += _angles(p, root, both)
-    return found
+    for bits in BITS if polynomial else ():
+        with ctx.workprec(bits):
+            factors: Any = [(f.complex_roots(), multiplicity) for f, multiplicity in polynomial.numer().factor()[1]]
+            real = [(root.real, multiplicity) for roots, multiplicity in factors for root, _ in roots if root.imag == 0]
+            seconds = [2 * t.atan() for t, _ in real] + [arb.pi()] * (missing > 0)
+            number = sum(multiplicity for _, multiplicity in real) + missing
+            starts = [_start(p, th2, side) for side in (1, -1) for th2 in seconds]
+            found = proved_poses(parameters, starts, bits, number)
+        if len(found) == number:
+            return found
+    raise Degenerate("the sextic vanishes, or has a multiple root that is not two equilibria")
 
 
-def _angles(p: Mapping[str, fmpq], t: arb | None, both: bool) -> list[tuple[arb, arb] | None]:
-    """th1 and th2 of a root (None for th2 = pi), with both signs of (cos th1, sin th1), or with that of V W."""
-    c2, s2 = (arb(-1), arb(0)) if t is None else ((1 - t * t) / (1 + t * t), 2 * t / (1 + t * t))
-    v, w, x, y = parts({name: arb(value) for name, value in p.items()}, c2, s2)
-    th2 = arb.pi() if t is None else 2 * t.atan()
-    sides = (1, -1) if both else (sign(v * w),)
-    return [(arb.atan2(arb((y * side).mid()), arb((x * side).mid())), th2) if side else None for side in sides]
+def _start(p: Mapping[str, fmpq], th2: arb, side: int) -> tuple[arb, arb]:
+    """A pose at which the first equation holds: th1 along (X, Y) times the sign of V W, for side -1 against it."""
+    v, w, x, y = (arb(e.mid()) for e in parts({name: arb(value) for name, value in p.items()}, th2.cos(), th2.sin()))
+    side = -side if v * w < 0 else side
+    return arb.atan2(y * side, x * side), th2
 
 
 # ---------------------------------------------------------------------------------------------------------- in doubles

@@ -33,22 +33,12 @@ def draw_stress(outcomes: Sequence[Row]) -> Figure:
     points = [o for o in outcomes if o["condition"] is not None or o["error"] is not None]
     double, ours = (sum(not o[key] for o in points) for key in ("double_right", "right"))
     found = f"{len(points)} cases; the count of double precision is wrong in {double}, ptmcad's in {ours}."
-    families = dict.fromkeys(o["family"] for o in points)
-    panels = {family: _curves([o for o in points if o["family"] == family]) for family in families}
+    panels: dict[str, list[Curve]] = {o["family"]: [] for o in points}
+    for family, curves in panels.items():
+        for label, key, right, marker, color in MARKS:
+            drawn = [o for o in points if o["family"] == family and right in (None, o["double_right"])]
+            places = [float(Fraction(o["stiffness"])) for o in drawn]
+            heights = [NO_POSE if o[key] is None else max(o[key], MIN_DRAWN_ERROR) for o in drawn]
+            marks = [Mark(x, y, x, x) for x, y in zip(places, heights, strict=True)]
+            curves.append(Curve(label, {"marker": marker, "color": color, "linestyle": "none"}, marks))
     return draw(TITLE, "", "error", panels, (NOTE, found))
-
-
-def _curves(outcomes: Sequence[Row]) -> list[Curve]:
-    return [
-        Curve(
-            label,
-            {"marker": marker, "color": color, "linestyle": "none"},
-            [_mark(o, key) for o in outcomes if right in (None, o["double_right"])],
-        )
-        for label, key, right, marker, color in MARKS
-    ]
-
-
-def _mark(outcome: Row, key: str) -> Mark:
-    x, error = float(Fraction(outcome["stiffness"])), outcome[key]
-    return Mark(x, NO_POSE if error is None else max(error, MIN_DRAWN_ERROR), x, x)
