@@ -24,20 +24,13 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple
-
-
-class Derivatives(NamedTuple):
-    """dU/dth1 and dU/dth2; U11, U12 and U22."""
-
-    gradient: tuple[Any, Any]
-    hessian: tuple[Any, Any, Any]
+from typing import Any
 
 
 def derivatives(
     parameters: Mapping[str, Any], circles: Sequence[tuple[Any, Any]], root: Callable[[Any], Any]
-) -> Derivatives:
-    """The potential's derivatives at a pose.
+) -> tuple[tuple[Any, Any], tuple[Any, Any, Any]]:
+    """The potential's derivatives at a pose: dU/dth1 and dU/dth2; U11, U12 and U22.
 
     Parameters
     ----------
@@ -64,7 +57,7 @@ def derivatives(
             k = k * (1 - free / length)
         pulls.append(k)
     k1, k2, k3 = pulls
-    return Derivatives(
+    return (
         (
             k2 * u + k3 * (u - w) + first * (p["F3x"] * s1 - p["F3"] * c1),
             k1 * v + k3 * (v - w) - second * (p["F4x"] * s2 + p["F4"] * c2),

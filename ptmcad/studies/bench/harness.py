@@ -112,8 +112,8 @@ class Case(NamedTuple):
     seed: int
 
 
-Make = Callable[..., Job]
-"""A job from its command and what else it has."""
+Asked = dict[str, Any] | str
+"""The command of a job and what else it has, by the names of `Job`; or why there is none."""
 
 
 def take_turns(jobs: Sequence[Job], rounds: int, order: random.Random, attempt: Callable[[Job], object]) -> None:

@@ -22,7 +22,7 @@ from ptmcad.question.slice import Slice
 from ptmcad.show.table import area_by_count
 from ptmcad.studies.bench import programs
 from ptmcad.studies.bench.error import cover_error, exact_error, figures, grid_error, outward, shown_count
-from ptmcad.studies.bench.harness import PTMCAD, Case, Job, Make, Row
+from ptmcad.studies.bench.harness import PTMCAD, Asked, Case, Job, Row
 from ptmcad.studies.bench.records import difference
 from ptmcad.studies.byhand import sextic
 
@@ -40,7 +40,7 @@ class Rival(NamedTuple):
     label : of a setting, which goes in the place of the braces.
     settings : from the coarsest.
     quick : how many of them are run when it has to be quick.
-    start : the job at a setting, or why there is none.
+    start : what the job at a setting has, or why there is none.
     read : figures and notes of a job that is done, as of a measurement.
     needs : an optional package.
     """
@@ -49,7 +49,7 @@ class Rival(NamedTuple):
     label: str
     settings: tuple[str, ...]
     quick: int
-    start: Callable[[Case, str, Make], Job | str]
+    start: Callable[[Case, str], Asked]
     read: Callable[[Case, Job], Row]
     needs: str = ""
 
@@ -64,21 +64,20 @@ def jobs(method: str, case: Case) -> list[Job] | str:
     if rival.needs and find_spec(rival.needs) is None:
         return f"{rival.needs} is not installed (make bench installs it)"
     settings = rival.settings[: rival.quick if case.quick else None]
-    asked = [
-        rival.start(case, setting, partial(Job, slice.name, method, rival.label.format(setting)))
-        for setting in settings
-    ]
-    return [job for job in asked if isinstance(job, Job)] or str(asked[0])
+    asked = {rival.label.format(setting): rival.start(case, setting) for setting in settings}
+    found = [Job(slice.name, method, label, **more) for label, more in asked.items() if not isinstance(more, str)]
+    return found or str(next(iter(asked.values())))
 
 
 # ------------------------------------------------------------------------------------------------- ptmcad and grids
 
 
-def _start_engine(engine: str, option: str, case: Case, setting: str, make: Make) -> Job:
+def _start_engine(engine: str, option: str, case: Case, setting: str) -> Asked:
     target = case.folder / f"{engine}-{setting}"
     command = [*PTMCAD, "classify", str(case.record), "--engine", engine, "--count", finest_count(case.slice),
                option, setting, "--format", "json", "--out", str(target)]  # fmt: skip
-    return make(command, answer=target / f"{case.slice.name}.json", saves=engine == "certified")
+    answer = target / f"{case.slice.name}.json"
+    return {"command": command, "answer": answer, "saves": engine == "certified"}
 
 
 def finest_count(slice: Slice) -> str:
@@ -121,11 +120,11 @@ def question(slice: Slice) -> str:
     return json.dumps({"window": [[float(a.low), float(a.high)] for a in slice.axes], "parameters": parameters})
 
 
-def _start_grid(method: str, case: Case, setting: str, make: Make) -> Job:
+def _start_grid(method: str, case: Case, setting: str) -> Asked:
     asked, target = case.folder / "question.json", case.folder / f"{method}-{setting}.npy"
     asked.write_text(question(case.slice), encoding="utf-8")
     command = [sys.executable, "-m", "ptmcad.studies.bench.rivals", method, asked, setting, target, case.seed]
-    return make(list(map(str, command)), answer=target)
+    return {"command": list(map(str, command)), "answer": target}
 
 
 def _read_grid(case: Case, job: Job) -> Row:

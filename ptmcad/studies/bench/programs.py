@@ -13,6 +13,7 @@ import re
 import shutil
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 import yaml
@@ -24,7 +25,7 @@ from ptmcad.exact.models.elimination import elimination_system
 from ptmcad.exact.slicevariety import slice_variety
 from ptmcad.exact.stages import domain_limits, problem_of
 from ptmcad.question.slice import Slice
-from ptmcad.studies.bench.harness import Case, Job, Make, Row
+from ptmcad.studies.bench.harness import Asked, Case, Job, Row
 from ptmcad.studies.bench.process import Usage
 from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.plane import PlanePolynomial
@@ -60,7 +61,7 @@ def elimination(slice: Slice, has_map: bool) -> tuple[list[str], list[str]]:
     return names, [text.replace(" ", "") for text in system.texts(tuple(names))]
 
 
-def start_singular(case: Case, _: str, make: Make) -> Job | str:
+def start_singular(case: Case, _: str) -> Asked:
     """The factors of the elimination ideal's common divisor, one on a line."""
     if shutil.which("Singular") is None:
         return "Singular is not installed"
@@ -68,7 +69,8 @@ def start_singular(case: Case, _: str, make: Make) -> Job | str:
     script = SCRIPTS["singular"].format(
         names=",".join(names), ideal=",".join(polynomials), unknowns="*".join(names[:-2]), end=END
     )
-    return make(["Singular", "--quiet", "--no-rc"], script, check=lambda usage: incomplete(END, usage))
+    command = ["Singular", "--quiet", "--no-rc"]
+    return {"command": command, "text": script, "check": partial(incomplete, END)}
 
 
 def by_singular(result: RegionMap, said: str) -> tuple[bool, str]:
@@ -76,7 +78,7 @@ def by_singular(result: RegionMap, said: str) -> tuple[bool, str]:
     return same_curves(result, curves(said.partition(END)[0].split(), factors=True))
 
 
-def start_msolve(case: Case, _: str, make: Make) -> Job | str:
+def start_msolve(case: Case, _: str) -> Asked:
     """A Groebner basis of the elimination ideal."""
     program = msolve.program()
     if program is None:
@@ -85,7 +87,7 @@ def start_msolve(case: Case, _: str, make: Make) -> Job | str:
     system, target = case.folder / "system.ms", case.folder / "msolve"
     system.write_text(f"{','.join(names)}\n0\n" + ",\n".join(polynomials) + "\n", encoding="ascii")
     command = [program, "-e", str(len(names) - 2), "-g", "2", "-f", str(system), "-o", str(target)]
-    return make(command, answer=target)
+    return {"command": command, "answer": target}
 
 
 def by_msolve(result: RegionMap, said: str) -> tuple[bool, str]:
@@ -133,7 +135,7 @@ def same_curves(result: RegionMap, found: set[PlanePolynomial]) -> tuple[bool, s
 # ------------------------------------------------------------------------------------------------- cells of the curves
 
 
-def start_gcad(case: Case, _: str, make: Make) -> Job | str:
+def start_gcad(case: Case, _: str) -> Asked:
     """The number of open cells that gcad makes of the map's curves, in an interpreter of its own."""
     if case.exact is None:
         return NO_CURVES
@@ -141,7 +143,7 @@ def start_gcad(case: Case, _: str, make: Make) -> Job | str:
     product = "*".join(f"({curve.replace('^', '**')})" for curve in curves) or "1"
     window = [(str(a.low), str(a.high)) for a in case.slice.axes]
     script = SCRIPTS["gcad"].format(product=product, window=window, step=1 - 2 * case.exact.base)
-    return make([sys.executable, "-"], script)
+    return {"command": [sys.executable, "-"], "text": script}
 
 
 def by_gcad(result: RegionMap, said: str) -> tuple[bool, str]:
@@ -149,7 +151,7 @@ def by_gcad(result: RegionMap, said: str) -> tuple[bool, str]:
     return True, f"{json.loads(said)['cells']} cells, the map has {len(result.cells)}"
 
 
-def start_qepcad(case: Case, _: str, make: Make) -> Job | str:
+def start_qepcad(case: Case, _: str) -> Asked:
     """Cells of the map's curves, with its base axis first."""
     if case.exact is None:
         return NO_CURVES
@@ -160,7 +162,7 @@ def start_qepcad(case: Case, _: str, make: Make) -> Job | str:
     if case.exact.base == 1:
         order = f"({', '.join(case.slice.axis_names[::-1])})"
         problem = re.sub(r"^\(.*\)$", order, problem, count=1, flags=re.MULTILINE)
-    return make(command, qepcad_session([problem]), check=lambda usage: incomplete(QUIT, usage))
+    return {"command": command, "text": qepcad_session([problem]), "check": partial(incomplete, QUIT)}
 
 
 def qepcad_command() -> tuple[str, ...] | None:

@@ -84,7 +84,7 @@ def _from_sextic(p: Values) -> NDArray[np.int8]:
         c2, s2 = (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
         v, w, x, y = parts(p, c2, s2)
         norm = np.copysign(np.hypot(x, y), v * w)
-        stable = real & is_stable(*derivatives(p, [(x / norm, y / norm), (c2, s2)], np.sqrt).hessian)
+        stable = real & is_stable(*derivatives(p, [(x / norm, y / norm), (c2, s2)], np.sqrt)[1])
     return np.stack([stable.sum(axis=0), real.sum(axis=0)]).astype(np.int8)
 
 

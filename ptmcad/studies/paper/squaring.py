@@ -174,7 +174,7 @@ def _vanishing(values: Mapping[str, Any], tangents: Sequence[acb]) -> list[set[S
     zeros: list[set[Signs]] = [set(), set()]
     for signs in product((1, -1), repeat=3):
         # any continuous choice of the roots serves: both signs are tried
-        for found, slope in zip(zeros, derivatives(values, circles, partial(_root, iter(signs))).gradient, strict=True):
+        for found, slope in zip(zeros, derivatives(values, circles, partial(_root, iter(signs)))[0], strict=True):
             if slope.contains(0):
                 found.add(signs)
     return zeros

@@ -31,7 +31,7 @@ from flint import arb, arb_mat, ctx, fmpq, fmpq_poly
 from numpy.typing import NDArray
 
 from ptmcad.mechanism import ptm
-from ptmcad.studies.byhand import Derivatives, derivatives, parts, sextic
+from ptmcad.studies.byhand import derivatives, parts, sextic
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction
 
@@ -58,10 +58,6 @@ class IndexedPose:
     th1: Any
     th2: Any
     index: int
-
-
-class Degenerate(ArithmeticError):
-    """Some equilibrium has a singular Hessian, or there are infinitely many."""
 
 
 def in_balls(parameters: Mapping[str, arb], angles: Sequence[arb]) -> tuple[arb_mat, arb_mat]:
@@ -133,8 +129,8 @@ def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...]:
 
     Raises
     ------
-    Degenerate
-        When some equilibrium is, when N has no finite number of roots, or when the bits do not settle it.
+    ArithmeticError
+        When some equilibrium is degenerate, when N has no finite number of roots, or when the bits do not settle it.
     """
     p = {name: from_fraction(v) for name, v in parameters.items()}
     polynomial = fmpq_poly(list(sextic(p)[0]))
@@ -149,7 +145,7 @@ def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...]:
             found = proved_poses(parameters, starts, bits, number)
         if len(found) == number:
             return found
-    raise Degenerate("the sextic vanishes, or has a multiple root that is not two equilibria")
+    raise ArithmeticError("the sextic vanishes, or has a multiple root that is not two equilibria")
 
 
 def _start(p: Mapping[str, fmpq], th2: arb, side: int) -> tuple[arb, arb]:
@@ -164,8 +160,10 @@ def _start(p: Mapping[str, fmpq], th2: arb, side: int) -> tuple[arb, arb]:
 Floats = NDArray[np.float64]
 
 
-def in_doubles(parameters: Mapping[str, float], th1: Floats, th2: Floats) -> Derivatives:
-    """The derivatives at many poses."""
+def in_doubles(
+    parameters: Mapping[str, float], th1: Floats, th2: Floats
+) -> tuple[tuple[Any, Any], tuple[Any, Any, Any]]:
+    """Gradient and Hessian at many poses."""
     return derivatives(parameters, [(np.cos(a), np.sin(a)) for a in (th1, th2)], np.sqrt)
 
 
@@ -219,7 +217,7 @@ def double_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...] 
 
 
 def _pose(p: Mapping[str, float], th1: float, th2: float) -> IndexedPose:
-    h11, h12, h22 = in_doubles(p, np.array(th1), np.array(th2)).hessian
+    h11, h12, h22 = in_doubles(p, np.array(th1), np.array(th2))[1]
     return IndexedPose(th1, th2, int((np.linalg.eigvalsh([[h11, h12], [h12, h22]]) < 0).sum()))
 
 
