@@ -14,8 +14,7 @@ from functools import cache
 import sympy as sp
 
 from ptmcad.studies.paper.maps import curves
-from ptmcad.studies.paper.statements import TEXTS, expression
-from ptmcad.studies.paper.symbolic import F3, F4, HORIZONTAL, Expr, c1, c2, k, s1, s2
+from ptmcad.studies.paper.statements import F3, F4, HORIZONTAL, TEXTS, Expr, c1, c2, expression, k, s1, s2
 from ptmcad.studies.tables import page
 
 _OVER_K = {force: k * sp.Symbol(str(force).lower()) for force in (F3, F4, *HORIZONTAL)}

@@ -25,15 +25,15 @@ from flint import acb, acb_poly, arb, ctx, fmpz_poly
 from ptmcad.algebra.polynomials import PLANE, Coefficient, coefficients_in
 from ptmcad.algebra.resultants import resultant
 from ptmcad.studies.byhand import derivatives
-from ptmcad.studies.paper import symbolic
-from ptmcad.studies.paper.symbolic import CLEAR, HORIZONTAL, LENGTHS, k, l0, t1, t2, without
+from ptmcad.studies.paper import statements
+from ptmcad.studies.paper.statements import CLEAR, HORIZONTAL, LENGTHS, k, l0, t1, t2
 from ptmcad.text.balls import ball_of
 
 Design = tuple[str, str, str, str, str, str]
 """rho, L1, L2, l0, F3/k and F4/k as decimals or fractions."""
 Signs = tuple[int, ...]
 """Of l1, l2 and l3."""
-NAMES = (symbolic.rho, symbolic.L1, symbolic.L2, l0, symbolic.F3, symbolic.F4)
+NAMES = (statements.rho, statements.L1, statements.L2, l0, statements.F3, statements.F4)
 CIRCLE = fmpz_poly([1, 0, 1])
 BITS = 400
 TOLERANCE = arb(10) ** -60
@@ -68,11 +68,11 @@ def squared(design: Design) -> Elimination:
     numbers = [sp.Rational(x) for x in design]
     # all are lengths, loads over k too: scaling them leaves the angles as they are
     at = dict(zip(NAMES, (x * sp.ilcm(*(x.q for x in numbers)) for x in numbers), strict=True)) | {k: 1}
-    squares, whole = symbolic.squares(), _cleared(CLEAR, 1)
+    squares, whole = statements.squares(), _cleared(CLEAR, 1)
     equations = []
-    for slope, own, other in zip(symbolic.gradient(), (1, 0), (t2, t1), strict=True):
-        g = without(slope, *HORIZONTAL)
-        parts = (without(g, l0), g.coeff(LENGTHS[own], -1), g.coeff(LENGTHS[2], -1), squares[own], squares[2])
+    for slope, own, other in zip(statements.gradient(), (1, 0), (t2, t1), strict=True):
+        g = slope.subs(dict.fromkeys(HORIZONTAL, 0))
+        parts = (g.subs(l0, 0), g.coeff(LENGTHS[own], -1), g.coeff(LENGTHS[2], -1), squares[own], squares[2])
         a, b, c, q, q3 = (_cleared(part.subs(at), CLEAR) for part in parts)
         inner = a**2 * q * q3 - whole * (b**2 * q3 + c**2 * q)
         # the angle that a and the own spring's length have not in common was cleared once too often
@@ -90,7 +90,7 @@ def squared(design: Design) -> Elimination:
 
 
 def _cleared(expression: Any, factor: Any) -> Any:
-    return sp.Poly(sp.cancel(symbolic.half_angles(expression) * factor), t1, t2, domain="QQ")
+    return sp.Poly(sp.cancel(statements.half_angles(expression) * factor), t1, t2, domain="QQ")
 
 
 # ---------------------------------------------------------------------------------------------- which roots solve both
