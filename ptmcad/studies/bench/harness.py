@@ -29,7 +29,6 @@ from ptmcad.studies.bench.process import Outcome, Usage, run
 from ptmcad.studies.tables import installed
 
 PACKAGES = ("ptmcad", "python-flint", "numpy", "click", "PyYAML", "matplotlib", "sympy", "numba", "scipy", "gcad")
-PTMCAD = (sys.executable, "-m", "ptmcad")
 GRACE_SECONDS = 1.0
 """Seconds that an engine has to save what it has when its time is over."""
 Row = dict[str, Any]
@@ -92,12 +91,6 @@ class Job:
         return self.usages[-1].output
 
 
-def classification(record: Path, words: tuple[str, str, str], folder: Path, *options: str, name: str) -> Job:
-    """A job that writes the JSON of a record's map into a folder; the words are its subject, what, and setting."""
-    command = (*PTMCAD, "classify", str(record), *options, "--out", str(folder))
-    return Job(*words, command, answer=folder / f"{name}.json")
-
-
 class Case(NamedTuple):
     """What the methods are asked about: a slice with its own file, its map and what errors are measured against where
     there are such, a folder for answers, whether settings have to be few and coarse, and a seed.
@@ -114,6 +107,12 @@ class Case(NamedTuple):
 
 Asked = dict[str, Any] | str
 """The command of a job and what else it has, by the names of `Job`; or why there is none."""
+
+
+def classification(record: Path, name: str, folder: Path, *options: str) -> dict[str, Any]:
+    """What a job has that writes the map of a record of this name into a folder."""
+    command = (sys.executable, "-m", "ptmcad", "classify", str(record), *options, "--out", str(folder))
+    return {"command": command, "answer": folder / f"{name}.json"}
 
 
 def take_turns(jobs: Sequence[Job], rounds: int, order: random.Random, attempt: Callable[[Job], object]) -> None:

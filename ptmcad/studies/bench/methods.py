@@ -22,7 +22,7 @@ from ptmcad.question.slice import Slice
 from ptmcad.show.table import area_by_count
 from ptmcad.studies.bench import programs
 from ptmcad.studies.bench.error import cover_error, exact_error, figures, grid_error, outward, shown_count
-from ptmcad.studies.bench.harness import PTMCAD, Asked, Case, Job, Row
+from ptmcad.studies.bench.harness import Asked, Case, Job, Row, classification
 from ptmcad.studies.bench.records import difference
 from ptmcad.studies.byhand import sextic
 
@@ -73,11 +73,9 @@ def jobs(method: str, case: Case) -> list[Job] | str:
 
 
 def _start_engine(engine: str, option: str, case: Case, setting: str) -> Asked:
-    target = case.folder / f"{engine}-{setting}"
-    command = [*PTMCAD, "classify", str(case.record), "--engine", engine, "--count", finest_count(case.slice),
-               option, setting, "--format", "json", "--out", str(target)]  # fmt: skip
-    answer = target / f"{case.slice.name}.json"
-    return {"command": command, "answer": answer, "saves": engine == "certified"}
+    options = ("--engine", engine, "--count", finest_count(case.slice), option, setting, "--format", "json")
+    asked = classification(case.record, case.slice.name, case.folder / f"{engine}-{setting}", *options)
+    return asked | {"saves": engine == "certified"}
 
 
 def finest_count(slice: Slice) -> str:

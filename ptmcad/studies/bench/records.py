@@ -54,8 +54,8 @@ def timed(options: argparse.Namespace) -> pd.DataFrame:
                 continue  # such a map takes as long as it is given
             foretold[len(jobs)] = check(slice).forecast
             for formats in ("json", "json,png,svg"):
-                words = str(path.with_suffix("")), "classify", formats
-                jobs.append(classification(path, words, Path(folder), "--format", formats, name=slice.name))
+                asked = classification(path, slice.name, Path(folder), "--format", formats)
+                jobs.append(Job(str(path.with_suffix("")), "classify", formats, **asked))
         turns(jobs, options)
     rows = summary(jobs, "floor", "seconds")
     costs = {number: cost for number, cost in foretold.items() if cost is not None}
@@ -85,8 +85,8 @@ def _without(
         jobs = []
         for saving in ("", *savings):
             off = ("--without", saving) if saving else ()
-            words = subject, "classify", saving or "all made"
-            jobs.append(classification(record, words, Path(folder), *more, *off, "--format", "json", name=name))
+            asked = classification(record, name, Path(folder), *more, *off, "--format", "json")
+            jobs.append(Job(subject, "classify", saving or "all made", **asked))
         jobs[0].attempt(options.timeout)  # fills caches, and compiles
         jobs[0].usages.clear()
         turns(jobs, options)

@@ -26,7 +26,7 @@ import pandas as pd
 
 from ptmcad.errors import PtmcadError
 from ptmcad.show.render.printing import save
-from ptmcad.studies.bench.harness import Row, classification, summary, turns
+from ptmcad.studies.bench.harness import Job, Row, classification, summary, turns
 from ptmcad.studies.bench.process import Usage
 from ptmcad.studies.picture import STYLES, Curve, Mark, draw
 
@@ -102,10 +102,8 @@ def measure(options: argparse.Namespace) -> pd.DataFrame:
         for name, n in [(family, size) for family in names for size in FAMILIES[family].sizes]:
             family, record = FAMILIES[name], Path(folder, f"{name}-{n}.yaml")
             record.write_text(json.dumps({"name": record.stem, **family.record(n, options.seed)}), encoding="utf-8")
-            words = name, family.title, str(n)
-            job = classification(record, words, Path(folder), "--format", "json", name=record.stem)
-            job.check = partial(_unlike, family.regions(n))
-            jobs.append(job)
+            asked = classification(record, record.stem, Path(folder), "--format", "json")
+            jobs.append(Job(name, family.title, str(n), **asked, check=partial(_unlike, family.regions(n))))
         turns(jobs, options)
     rows = summary(jobs)
     stages = [
