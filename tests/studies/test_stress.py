@@ -17,12 +17,13 @@ from support.examples import examples
 import ptmcad
 from ptmcad.answer.regionmap import Status
 from ptmcad.cli import run
+from ptmcad.studies.doubles import angle_error
 from ptmcad.studies.stress import campaign as campaign_module
 from ptmcad.studies.stress.campaign import answer, campaign, markdown, to_csv, to_json, work_of
 from ptmcad.studies.stress.case import Case, Question, chosen, named_cases, point
 from ptmcad.studies.stress.constructions import FEW, NAMED, Degenerate
 from ptmcad.studies.stress.judgement import Row, judge
-from ptmcad.studies.stress.methods import angle_error, double_poses, newton_pose, sextic_poses
+from ptmcad.studies.stress.methods import double_poses, newton_pose, sextic_poses
 from ptmcad.studies.stress.picture import draw_stress
 from ptmcad.studies.stress.random_cases import KINDS, changed, random_case, stiffened, stretched
 from ptmcad.text.flint_numbers import from_fraction

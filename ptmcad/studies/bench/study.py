@@ -60,7 +60,7 @@ def measure(
     record : the slice's own file.
     verified : whether an independent check confirms a map, such as `ptmcad.verify`; the errors rest on it.
     rounds : runs of each job that takes no longer than `MAX_REPEATED_SECONDS`; others are run once.
-    seed : of the order within a round, and of the starts of the scipy grid.
+    seed : of the order within a round.
     time_limit : seconds for each method's measured runs; settings that do not fit are left out, with the reason.
     quick : fewer and coarser settings.
     warm_up : run the certified engine once before, because the first run on a machine compiles.

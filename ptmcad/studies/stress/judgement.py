@@ -21,9 +21,9 @@ from flint import ctx
 from ptmcad.answer.intervals import CountIntervals, lower, upper
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.mechanism import ptm
+from ptmcad.studies.doubles import scale
 from ptmcad.studies.stress.case import Case
-from ptmcad.studies.stress.methods import IndexedPose, apart, double_poses, proved_poses, scale, sextic_poses
+from ptmcad.studies.stress.methods import IndexedPose, apart, double_poses, free_lengths, proved_poses, sextic_poses
 from ptmcad.text.balls import ball_of, exact
 from ptmcad.text.expressions import Expression
 
@@ -105,7 +105,7 @@ def _point(case: Case, found: Poses) -> tuple[Checks, Row]:
     parameters = case.question.parameters
     double = double_poses(parameters)
     ours = [_boxed(pose) for pose in found.equilibria]
-    if any(parameters.get(name) for name in ptm().free_lengths):
+    if free_lengths(parameters):
         known = proved_poses(parameters, [(pose.th1, pose.th2) for pose in (*(double or ()), *ours)])
     else:
         known = sextic_poses(parameters)

@@ -10,10 +10,8 @@ Guarantee of `sextic_poses`: all equilibria are there, each proved and in the ba
 isolated with proof; th2 = pi counts as a root for each degree that is missing. No more equilibria than its multiplicity
 belong to a root, and as many are proved as all roots have together.
 
-`double_poses` guarantees nothing; it is the baseline that can be wrong. Without free lengths: eigenvalues of the
-companion matrix, th1 from the first equation, the Hessian's signs in floats. It is treated kindly: th2 = pi, which t
-cannot reach, is put back where the leading coefficients vanish. With free lengths: Newton's method from a grid of
-starts. Deciding which roots are real, which are one, and what is zero takes tolerances; they are usual ones.
+`double_poses` guarantees nothing; it is the baseline that can be wrong (`ptmcad.studies.doubles`): companion matrices
+without free lengths, and Newton's method from a grid of starts with them.
 
 References: Krawczyk, Computing 4 (1969); Neumaier, Interval Methods for Systems of Equations (1990), theorem 5.1.8;
 Rump, Acta Numerica 19 (2010), section 13.
@@ -28,27 +26,19 @@ from typing import Any
 
 import numpy as np
 from flint import arb, arb_mat, ctx, fmpq, fmpq_poly
-from numpy.typing import NDArray
 
 from ptmcad.mechanism import ptm
+from ptmcad.studies import doubles
 from ptmcad.studies.byhand import derivatives, parts, sextic
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction
 
 BITS = (600, 2400, 9600)
 """Of precision, tried in turn."""
-REAL_TOLERANCE = 1e-8
-"""A root is taken for real when its imaginary part is at most this much of 1 + its modulus."""
-ZERO_TOLERANCE = 1e-12
-"""A coefficient is taken for zero when it is at most this much of the largest."""
 STARTS = 24
 """Starts of Newton's method along each angle."""
 ROUNDS = 60
 """Of Newton's method."""
-RESIDUAL = 1e-9
-"""A gradient is taken for zero when it is at most this much of the largest force times length."""
-SAME_POSE = 1e-6
-"""Poses no farther apart than this (radians) are taken for one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,90 +145,20 @@ def _start(p: Mapping[str, fmpq], th2: arb, side: int) -> tuple[arb, arb]:
     return arb.atan2(y * side, x * side), th2
 
 
-# ---------------------------------------------------------------------------------------------------------- in doubles
-
-Floats = NDArray[np.float64]
-
-
-def in_doubles(
-    parameters: Mapping[str, float], th1: Floats, th2: Floats
-) -> tuple[tuple[Any, Any], tuple[Any, Any, Any]]:
-    """Gradient and Hessian at many poses."""
-    return derivatives(parameters, [(np.cos(a), np.sin(a)) for a in (th1, th2)], np.sqrt)
-
-
-def angle_error(a: float, b: float) -> float:
-    """The distance of two angles on the circle."""
-    return abs((a - b + np.pi) % (2 * np.pi) - np.pi)
-
-
-def different(poses: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """The poses without those that are taken for one before them."""
-    found: list[tuple[float, float]] = []
-    for pose in poses:
-        if all(max(map(angle_error, pose, other)) > SAME_POSE for other in found):
-            found.append(pose)
-    return found
-
-
-def guesses(parameters: Mapping[str, float], starts: int) -> list[tuple[float, float]]:
-    """Different poses to which Newton's method leads from a grid with so many starts along each angle."""
-    grid = 2 * np.pi * (np.arange(starts) + 0.37) / starts - np.pi
-    th1, th2 = (a.ravel() for a in np.meshgrid(grid, grid))
-    with np.errstate(all="ignore"):
-        for _ in range(ROUNDS):
-            (g1, g2), (h11, h12, h22) = in_doubles(parameters, th1, th2)
-            determinant = h11 * h22 - h12 * h12
-            step1, step2 = (h22 * g1 - h12 * g2) / determinant, (h11 * g2 - h12 * g1) / determinant
-            longest = np.maximum(1.0, 2 * np.hypot(step1, step2))  # steps of at most half a radian
-            th1, th2 = th1 - step1 / longest, th2 - step2 / longest
-        (g1, g2), _ = in_doubles(parameters, th1, th2)
-        good = (np.hypot(g1, g2) <= RESIDUAL * scale(parameters)) & np.isfinite(th1) & np.isfinite(th2)
-    turned = ((angles[good] + np.pi) % (2 * np.pi) - np.pi for angles in (th1, th2))
-    return different(list(zip(*(angles.tolist() for angles in turned), strict=True)))
-
-
-def scale(p: Mapping[str, float]) -> float:
-    """The largest summand of the gradient: of a spring's or a load's moment about a joint."""
-    mechanism = ptm()
-    longest = max(p["L1"], p["L2"])
-    span = max(p["rho"], longest, *(p.get(name, 0.0) for name in mechanism.free_lengths))
-    loads = max(abs(p.get(name, 0.0)) for name in mechanism.forces)
-    return max(max(p[name] for name in mechanism.stiffnesses) * span, loads) * longest
-
-
 def double_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...] | None:
     """The equilibria in double precision; None when numbers overflow or the eigenvalue method fails."""
-    p = {name: float(value) for name, value in parameters.items()}
-    with np.errstate(all="ignore"):
-        free = any(p.get(name) for name in ptm().free_lengths)
-        angles = guesses(p, STARTS) if free else _companion(p)
-        return None if angles is None else tuple(_pose(p, *pair) for pair in angles)
-
-
-def _pose(p: Mapping[str, float], th1: float, th2: float) -> IndexedPose:
-    h11, h12, h22 = in_doubles(p, np.array(th1), np.array(th2))[1]
-    return IndexedPose(th1, th2, int((np.linalg.eigvalsh([[h11, h12], [h12, h22]]) < 0).sum()))
-
-
-def _companion(p: Mapping[str, float]) -> list[tuple[float, float]] | None:
-    """Different pairs of angles."""
-    coefficients = np.array(sextic(p)[0][::-1])
-    largest = float(np.max(np.abs(coefficients), initial=0.0))
-    if not np.isfinite(largest) or largest == 0:
-        return None
-    leading = int(np.argmax(np.abs(coefficients) > ZERO_TOLERANCE * largest))
+    p = {name: np.array([float(value)]) for name, value in parameters.items()}
     try:
-        roots = np.roots(coefficients[leading:])
+        with np.errstate(all="ignore"):
+            th1, th2 = doubles.newton(p, STARTS) if free_lengths(parameters) else doubles.companion(p)
+            kept = doubles.distinct(th1, th2)
+            h11, h12, h22 = doubles.at(p, th1[kept], th2[kept])[1]
+            eigenvalues = np.linalg.eigvalsh(np.array([[h11, h12], [h12, h22]]).transpose(2, 0, 1))
     except np.linalg.LinAlgError:
         return None
-    second = [2 * float(np.arctan(r.real)) for r in roots if abs(r.imag) <= REAL_TOLERANCE * (1 + abs(r))]
-    return different([(th1, th2) for th2 in second + [float(np.pi)] * leading for th1 in _first_angles(p, th2)])
+    return tuple(map(IndexedPose, th1[kept].tolist(), th2[kept].tolist(), (eigenvalues < 0).sum(axis=1).tolist()))
 
 
-def _first_angles(p: Mapping[str, float], th2: float) -> list[float]:
-    """The angles th1 that belong to th2: both where the mechanism is flat."""
-    v, w, x, y = parts(p, np.cos(th2), np.sin(th2))
-    a1, a2, *_ = parts(p, 0.0, 1.0)
-    flat = abs(v) <= SAME_POSE * abs(a1) and abs(w) <= SAME_POSE * abs(a2)
-    return [float(np.arctan2(sign * y, sign * x)) for sign in ((1.0, -1.0) if flat else (np.sign(v * w),))]
+def free_lengths(parameters: Mapping[str, Fraction]) -> bool:
+    """Whether a spring has one."""
+    return any(parameters.get(name) for name in ptm().free_lengths)
