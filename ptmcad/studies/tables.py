@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib.metadata
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
 
 def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
@@ -18,11 +18,6 @@ def page(*blocks: str | Iterable[str]) -> str:
     """A Markdown page: paragraphs, headings, and tables and lists as their lines, with blank lines between them."""
     texts = (block if isinstance(block, str) else "\n".join(block) for block in blocks)
     return "\n\n".join(text.strip("\n") for text in texts if text) + "\n"
-
-
-def listed(found: Mapping[str, str]) -> str:
-    """What a machine or a version is, in one sentence."""
-    return "; ".join(f"{key} {value}" for key, value in found.items()) + "."
 
 
 def installed(packages: Iterable[str]) -> dict[str, str]:

@@ -203,6 +203,6 @@ def page(studies: Sequence[Row]) -> str:
         "Seconds are of whole processes, start-up included, medians of repeated runs that took turns.",
         *blocks,
         "## Machine",
-        *(tables.listed(part) for part in (first["machine"], first["versions"])),
+        *("; ".join(map(" ".join, first[part].items())) + "." for part in ("machine", "versions")),
         f"Seed {first['seed']}; the reference job takes {floor}.",
     )

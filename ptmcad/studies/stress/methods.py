@@ -27,9 +27,9 @@ from typing import Any
 import numpy as np
 from flint import arb, arb_mat, ctx, fmpq, fmpq_poly
 
-from ptmcad.mechanism import ptm
 from ptmcad.studies import doubles
 from ptmcad.studies.byhand import derivatives, parts, sextic
+from ptmcad.studies.stress.case import free_lengths
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction
 
@@ -157,8 +157,3 @@ def double_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...] 
     except np.linalg.LinAlgError:
         return None
     return tuple(map(IndexedPose, th1[kept].tolist(), th2[kept].tolist(), (eigenvalues < 0).sum(axis=1).tolist()))
-
-
-def free_lengths(parameters: Mapping[str, Fraction]) -> bool:
-    """Whether a spring has one."""
-    return any(parameters.get(name) for name in ptm().free_lengths)
