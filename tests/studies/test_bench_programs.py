@@ -29,7 +29,7 @@ def cubic() -> RegionMap:
 
 def case(folder: Path, exact: RegionMap | None, name: str = "systems/cubic") -> Case:
     record = CONFIGS / f"{name}.yaml"
-    return Case(ptmcad.load(record), record, exact, None, folder, True, 1)
+    return Case(ptmcad.load(record), record, exact, None, folder, True)
 
 
 def terms_of(polynomial: str) -> set[tuple[str, ...]]:

@@ -93,7 +93,7 @@ class Job:
 
 class Case(NamedTuple):
     """What the methods are asked about: a slice with its own file, its map and what errors are measured against where
-    there are such, a folder for answers, whether settings have to be few and coarse, and a seed.
+    there are such, a folder for answers, and whether settings have to be few and coarse.
     """
 
     slice: Slice
@@ -102,7 +102,6 @@ class Case(NamedTuple):
     known: dict[str, Truth] | None
     folder: Path
     quick: bool
-    seed: int
 
 
 Asked = dict[str, Any] | str

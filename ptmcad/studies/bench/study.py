@@ -79,7 +79,7 @@ def measure(
             sound = verified(exact)
             known = truths(exact)
     with tempfile.TemporaryDirectory() as name:
-        case = Case(slice, record.resolve(), exact, known, Path(name), quick, seed)
+        case = Case(slice, record.resolve(), exact, known, Path(name), quick)
         found = {method: jobs(method, case) for method in methods}
         ranked = [asked for asked in found.values() if not isinstance(asked, str)]
         floor = Job(slice.name, "", "reference job", FLOOR)
