@@ -6,11 +6,11 @@ import importlib.metadata
 from collections.abc import Iterable, Sequence
 
 
-def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
-    """The lines of a Markdown table."""
+def markdown(rows: Sequence[Sequence[str]]) -> list[str]:
+    """The lines of a Markdown table, whose first row is its header."""
     return [
         "| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in cells) + " |"
-        for cells in (header, ("---",) * len(header), *rows)
+        for cells in (rows[0], ("---",) * len(rows[0]), *rows[1:])
     ]
 
 

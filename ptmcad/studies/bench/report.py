@@ -7,7 +7,7 @@ JSON, which vouches for the others, last.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -29,16 +29,6 @@ SEEN_SHARE = 0.99
 CURVE_FORMAT = "ptmcad-error-time/1"
 """What ``ptmcad report`` reads."""
 _NAMES = {"stable": "stable equilibria", "total": "equilibria", "index": "index"}
-_HEADER = (
-    "method",
-    "setting",
-    "seconds (least-largest)",
-    "wrong or undetermined",
-    "regions missed",
-    "faintest region",
-    "boundary off by",
-    "area bounds apart",
-)
 _LABELLED = {"certified": "tolerance ", "companion": "N = ", "multistart": "N = ", "qepcad": "where "}
 """Methods whose points have their setting beside them in the picture, without these words."""
 
@@ -69,23 +59,18 @@ def sentences(study: Row) -> list[str]:
     return found
 
 
-def rows(study: Row) -> list[tuple[str, ...]]:
-    """The cells of the table, one row for each method and setting that was run, with the finest count it gives."""
-    return [_cells(m) for m in records(finest(study).dropna(subset="seconds_median"))]
-
-
-def _cells(m: Row) -> tuple[str, ...]:
+def _cells(m: Row) -> dict[str, str]:
     spread = " ({seconds_min:.2f}-{seconds_max:.2f})".format(**m) if m["runs"] > 1 else ""
-    return (
-        m["method"],
-        m["setting"],
-        f"{m['seconds_median']:.2f}{spread}",
-        _about(m, "wrong") + (" *" if m["note"] else ""),
-        "-" if pd.isna(m["missed"]) else f"{m['missed']} of {m['regions']}",
-        "-" if pd.isna(m["faintest_low"]) else f"{m['faintest_low']:.2%}",
-        _about(m, "distance"),
-        "-" if pd.isna(m["area_width"]) else f"{m['area_width']:.1e}",
-    )
+    return {
+        "method": m["method"],
+        "setting": m["setting"],
+        "seconds (least-largest)": f"{m['seconds_median']:.2f}{spread}",
+        "wrong or undetermined": _about(m, "wrong") + (" *" if m["note"] else ""),
+        "regions missed": "-" if pd.isna(m["missed"]) else f"{m['missed']} of {m['regions']}",
+        "faintest region": "-" if pd.isna(m["faintest_low"]) else f"{m['faintest_low']:.2%}",
+        "boundary off by": _about(m, "distance"),
+        "area bounds apart": "-" if pd.isna(m["area_width"]) else f"{m['area_width']:.1e}",
+    }
 
 
 def _about(m: Row, name: str) -> str:
@@ -104,9 +89,15 @@ def notes(study: Row) -> list[str]:
     return list(dict.fromkeys([*done, *(line.replace(", :", ":") for line in left)]))
 
 
+def _lines(study: Row, written: Callable[[list[list[str]]], list[str]]) -> list[str]:
+    """The table, one row for each method and setting that was run, with the finest count it gives."""
+    found = [_cells(m) for m in records(finest(study).dropna(subset="seconds_median"))]
+    return written([list(found[0]), *(list(row.values()) for row in found)]) if found else []
+
+
 def terminal(study: Row) -> str:
     """The table in columns, the notes and the sentences."""
-    return "\n".join([*aligned([_HEADER, *rows(study)]), *notes(study), "", *sentences(study)])
+    return "\n".join([*_lines(study, aligned), *notes(study), "", *sentences(study)])
 
 
 def curves(study: Row) -> list[Curve]:
@@ -194,7 +185,7 @@ def page(studies: Sequence[Row]) -> str:
         blocks += [f"## {study['slice']}", f"{study['heading']}. {checked}"]
         if curves(study):
             blocks.append(f"![Error against seconds for {study['slice']}]({study['slice']}.bench.svg)")
-        blocks += [[f"- {s}" for s in sentences(study)], tables.markdown(_HEADER, rows(study))]
+        blocks += [[f"- {s}" for s in sentences(study)], _lines(study, tables.markdown)]
         blocks.append([f"- {note}".replace("- *", "- \\*") for note in notes(study)])
     first = studies[0]
     floor = "{median:g} s ({minimum:g}-{maximum:g})".format(**first["floor"])

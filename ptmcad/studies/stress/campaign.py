@@ -171,7 +171,7 @@ def markdown(campaign: Row) -> str:
     blocks: list[str | list[str]] = []
     for family, members in groupby(rows, lambda row: row["family"]):
         shown = [(*cells(row), f"{row['calls'] / max(row['sibling_calls'], 1):.2g}") for row in members]
-        blocks += [f"## {family[0].upper()}{family[1:]}", table_of([*HEADINGS, "work x tame"], shown)]
+        blocks += [f"## {family[0].upper()}{family[1:]}", table_of([(*HEADINGS, "work x tame"), *shown])]
     right, double, *_ = summary(campaign, len(rows), remarks=False)
     written = f"Written by `ptmcad stress` with seed {campaign['seed']}. {right}; {double}."
     return page("# The stress cases, one by one", written, *blocks)
