@@ -73,10 +73,10 @@ def as_markdown() -> str:
 
 def as_latex() -> str:
     """The equations as a LaTeX document; long ones are set by the breqn package, which breaks lines."""
-    blocks = [
-        rf"\noindent {_escaped(f'{e.number}: {e.what}')}" + "\n\\begin{dmath*}\n" + e.latex + "\n\\end{dmath*}"
-        for e in equations()
-    ]
+    blocks = []
+    for e in equations():
+        title = f"{e.number}: {e.what}".replace("^", r"\textasciicircum{}").replace("_", r"\_")
+        blocks.append(rf"\noindent {title}" + "\n\\begin{dmath*}\n" + e.latex + "\n\\end{dmath*}")
     names = re.sub(r"\b([fFLt])(\dx?)\b", r"$\1_{\2}$", INTRODUCTION)
     return "\n".join([_HEAD, rf"{names}\par", *blocks, "\\end{document}\n"])
 
@@ -86,7 +86,3 @@ _HEAD = r"""\documentclass{article}
 \usepackage{amsmath,breqn}
 \begin{document}
 \section*{The equations of the planar tensegrity mechanism, corrected}"""
-
-
-def _escaped(text: str) -> str:
-    return text.replace("^", r"\textasciicircum{}").replace("_", r"\_")
