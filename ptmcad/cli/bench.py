@@ -40,7 +40,7 @@ def _seconds(_context: click.Context, parameter: click.Parameter, value: float) 
 @click.option("--rounds", type=click.IntRange(1, 1000), default=3, show_default=True,
               help="Runs of each job that takes less than 2 seconds; others are run once.")  # fmt: skip
 @click.option("--seed", type=click.IntRange(0, 2**31), default=1, show_default=True,
-              help="Of the order of the methods, and of the starting points of scipy.")  # fmt: skip
+              help="Of the order of the methods.")  # fmt: skip
 @click.option("--time-limit", type=float, default=60.0, show_default=True, callback=_seconds, metavar="S",
               help="Seconds for each method on each slice; what does not fit is left out, and reported.")  # fmt: skip
 @click.option("--quick", is_flag=True, help="Fewer and coarser settings.")
@@ -60,7 +60,7 @@ def command(
     """Error against run time of several methods on the slice of each CONFIG, side by side.
 
     Without CONFIG: fig4, which is shipped. Methods are the exact engine at several area
-    tolerances, the certified engine at falling tolerances, grids of companion matrices and of scipy's root finder,
+    tolerances, the certified engine at falling tolerances, grids of companion matrices and of Newton's method,
     and QEPCAD, Singular, msolve and gcad where they are installed, on the parts that are theirs. Each runs as a process
     of its own; methods take turns. Errors are measured exactly against the exact map.
 
@@ -116,7 +116,8 @@ def _slices(configs: tuple[Path, ...]) -> list[tuple[Slice, Path]]:
 
 def _compare(old: Path, new: Path) -> int:
     require(Extra.data, key="bench")
-    from ptmcad.studies.bench.study import BAD, compare, comparison_table, read_study
+    from ptmcad.studies.bench.changes import BAD, compare, comparison_table
+    from ptmcad.studies.bench.stored import read_study
 
     changes = compare(read_study(old), read_study(new))
     click.echo(comparison_table(changes))

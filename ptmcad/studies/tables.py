@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import importlib.metadata
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
 
-def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
-    """The lines of a Markdown table."""
+def markdown(rows: Sequence[Sequence[str]]) -> list[str]:
+    """The lines of a Markdown table, whose first row is its header."""
     return [
         "| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in cells) + " |"
-        for cells in (header, ("---",) * len(header), *rows)
+        for cells in (rows[0], ("---",) * len(rows[0]), *rows[1:])
     ]
 
 
@@ -18,17 +18,6 @@ def page(*blocks: str | Iterable[str]) -> str:
     """A Markdown page: paragraphs, headings, and tables and lists as their lines, with blank lines between them."""
     texts = (block if isinstance(block, str) else "\n".join(block) for block in blocks)
     return "\n\n".join(text.strip("\n") for text in texts if text) + "\n"
-
-
-def columns(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Rows as lines with aligned columns, two spaces apart."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
-
-
-def listed(found: Mapping[str, str]) -> str:
-    """What a machine or a version is, in one sentence."""
-    return "; ".join(f"{key} {value}" for key, value in found.items()) + "."
 
 
 def installed(packages: Iterable[str]) -> dict[str, str]:

@@ -12,11 +12,11 @@ from support.few import few
 from support.maps import shipped
 from support.programs import ProgramError, needs_qepcad, needs_singular, qepcad_session
 from support.qepcad_cells import DISPLAY, Decomposition, compare, decided, decomposition, exactly, indices, window_cad
+from support.sextic_question import Question, Task, Terms, question
 from support.singular_slice import SHIPPED, axes, counting_formulas
 
 from ptmcad import RegionMap
 from ptmcad.answer.regionmap import CriticalValue, Kind, Stack, Status, Wall
-from ptmcad.studies.bench.programs import Question, Task, Terms, question
 from ptmcad.text.plane import PlanePolynomial
 
 pytestmark = needs_qepcad
@@ -26,8 +26,7 @@ QUICK = ("fig2", "fig3", "fig4", "rods")
 LIFTED = ("fig2", "fig3", "forces", "rods")
 """Slices on which QEPCAD lifts over the sections of the base axis too in seconds; fig. 4 takes it over a minute."""
 WITH_SEXTIC = tuple(name for name in SHIPPED if name != "fig2")
-"""On fig. 2 theta2 = pi is an equilibrium everywhere, which t2 = tan(theta2/2) loses: see
-`ptmcad.studies.bench.programs`."""
+"""On fig. 2 theta2 = pi is an equilibrium everywhere, which t2 = tan(theta2/2) loses: see `support.sextic_question`."""
 
 
 def slow_unless(names: tuple[str, ...], quick: tuple[str, ...]) -> list[object]:

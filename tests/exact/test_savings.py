@@ -16,6 +16,7 @@ from support.examples import examples
 from support.few import few
 from support.poles import power_trace_denominators
 from support.random_slices import drawn
+from support.same_maps import difference, exchanged
 from support.shipped_records import EXACT
 
 import ptmcad
@@ -47,7 +48,6 @@ from ptmcad.exact.models.system import on_slice
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.savings import ALL, SAVINGS, Engine, switched_off
 from ptmcad.question.slice import Slice
-from ptmcad.studies.bench.records import difference, exchanged
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = tuple(s.name for s in SAVINGS if s.engine is Engine.EXACT)

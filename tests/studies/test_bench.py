@@ -1,11 +1,9 @@
-"""The benchmark: what it asks QEPCAD is the right question, and its figures are put together rightly."""
+"""The benchmark: whole processes are measured, and their figures are put together rightly."""
 
 from __future__ import annotations
 
 import json
-import math
 import sys
-from fractions import Fraction
 from pathlib import Path
 from random import Random
 from types import SimpleNamespace
@@ -15,9 +13,8 @@ import pandas as pd
 import pytest
 from support.shipped_records import EXACT
 
-from ptmcad.question import config
 from ptmcad.studies.bench import __main__ as command
-from ptmcad.studies.bench import programs, records
+from ptmcad.studies.bench import records
 from ptmcad.studies.bench.harness import Job, summary, table, take_turns
 from ptmcad.studies.bench.process import Outcome, Usage, run
 
@@ -38,81 +35,12 @@ def test_maps_with_free_lengths_are_not_timed_by_default(
     assert "not run" in capsys.readouterr().out
 
 
-def value(terms: programs.Terms, x: float, y: float, t: float) -> float:
-    return math.fsum(float(c) * x**i * y**j * t**n for i, j, n, c in terms)
-
-
-def roots(terms: programs.Terms, x: float, y: float) -> list[float]:
-    """The real roots in t, in floating point: good enough for points far from the variety."""
-    numpy = pytest.importorskip("numpy")
-    coefficients = [0.0] * 7
-    for i, j, n, c in terms:
-        coefficients[6 - n] += float(c * Fraction(x) ** i * Fraction(y) ** j)
-    return [root.real for root in numpy.roots(coefficients) if abs(root.imag) < 1e-9]
-
-
-@pytest.mark.parametrize(
-    ("name", "point", "total", "stable"),
-    [
-        ("fig4", {"rho": 0.7, "L2": 1.5}, 6, 2),
-        ("fig4", {"rho": 0.3, "L2": 1.5}, 4, 1),
-        ("fig4", {"rho": 1.5, "L2": 0.5}, 4, 1),
-        ("fig3", {"rho": 0.75, "F": -10.0}, 6, 2),
-        ("fig3", {"rho": 0.1, "F": -10.0}, 4, 1),
-        ("fig3", {"rho": 0.0015, "F": -10.0}, 6, 1),
-        ("fig5-text", {"rho": 0.75, "F4": -20.0}, 6, 2),
-        ("fig5-caption", {"rho": 0.5, "F4": -20.0}, 6, 2),
-        ("fig5-caption", {"rho": 0.8, "F4": -20.0}, 4, 1),
-    ],
-)
-def test_sextic_has_the_known_counts(name: str, point: dict[str, float], total: int, stable: int) -> None:
-    """Counts of the reference, from the sextic and from the sign conditions that QEPCAD is given."""
-    slice = config.load(CONFIGS / f"{name}.yaml")
-    asked = programs.question(slice)
-    assert isinstance(asked, programs.Question)
-    x, y = (point.get(axis, point.get("F")) for axis in slice.axis_names)
-    assert x is not None and y is not None
-    found = roots(asked.sextic, x, y)
-    assert len(found) == total
-    signs = [[math.copysign(1, value(p, x, y, t)) for p in (asked.v, asked.w, asked.slope)] for t in found]
-    assert sum(v == w == -slope for v, w, slope in signs) == stable
-
-
-def test_unloaded_slice_has_no_sextic() -> None:
-    assert "theta2 = pi" in str(programs.question(config.load(CONFIGS / "fig2.yaml")))
-
-
-def test_text_for_qepcad() -> None:
-    asked = programs.Question(
-        sextic=[(0, 0, 2, Fraction(3, 2)), (1, 2, 0, Fraction(-1))],
-        slope=[(0, 0, 1, Fraction(1))],
-        v=[(0, 0, 1, Fraction(1))],
-        w=[(1, 0, 1, Fraction(-2))],
-        axes=config.slice_from_mapping({"axes": {"rho": ["1/2", 2], "F3": [-30, 0]}}).axes,
-    )
-    lines = asked.problem(programs.Task.SIX, swapped=True).splitlines()
-    assert lines[1:5] == [
-        "(y,x,t)",
-        "2",
-        "(X6 t)[ 3/2 t^2 - x y^2 = 0 ].",
-        r"assume [ x > 1/2 /\ x < 2 /\ y > -30 /\ y < 0 ]",
-    ]
-    stable = asked.problem(programs.Task.TWO_STABLE)
-    assert r"(X2 t)[ 3/2 t^2 - x y^2 = 0 /\ [[t > 0 /\ -2 x t > 0 /\ t < 0] \/" in stable
-
-
 def test_process_that_fails_and_process_that_hangs() -> None:
     failed = run([sys.executable, "-c", "import sys; sys.exit('no good')"])
     assert (failed.outcome, failed.message) == (Outcome.FAILED, "no good")
     hanging = run([sys.executable, "-c", "import time; time.sleep(60)"], timeout=0.3)
     assert hanging.outcome is Outcome.TIMED_OUT
     assert hanging.seconds < 30
-
-
-def test_qepcad_that_ends_without_an_answer_has_none() -> None:
-    assert programs.formulas("Failure occurred in: GCSI") == []
-    one = "\nAn equivalent quantifier-free formula:\n\nx > 0 /\\\ny < 0\n\n\n"
-    assert programs.formulas(one + "QEPCAD" + one) == ["x > 0 /\\ y < 0"] * 2
 
 
 def job(code: str, answer: Path | None = None, check: Any = lambda usage: "") -> Job:
@@ -207,14 +135,3 @@ def test_ablation(tmp_path: Path) -> None:
     assert {"all made", "axis-order", "imports", "all"} <= {row["setting"] for row in rows}
     assert {row["differs"] for row in rows} == {""}
     assert all(row["over all made"] > 0 for row in rows)
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(programs.qepcad_command() is None, reason="qepcad is not installed")
-def test_qepcad_answers() -> None:
-    asked = programs.question(config.load(CONFIGS / "fig3.yaml"))
-    command = programs.qepcad_command()
-    assert isinstance(asked, programs.Question) and command is not None
-    problems = [asked.problem(task) for task in (programs.Task.SIX, programs.Task.FOUR)]
-    usage = run(command, text=programs.qepcad_session(problems), timeout=60)
-    assert len(programs.formulas(usage.output)) == 2, usage.message

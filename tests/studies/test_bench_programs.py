@@ -29,7 +29,7 @@ def cubic() -> RegionMap:
 
 def case(folder: Path, exact: RegionMap | None, name: str = "systems/cubic") -> Case:
     record = CONFIGS / f"{name}.yaml"
-    return Case(ptmcad.load(record), record, exact, None, folder, True, 1)
+    return Case(ptmcad.load(record), record, exact, None, folder, True)
 
 
 def terms_of(polynomial: str) -> set[tuple[str, ...]]:
@@ -134,7 +134,7 @@ Quitting the QEPCAD system... Bye!
 
 def agreement(program: str, answer: str, folder: Path) -> str:
     """What is said of an answer to the question about the cubic."""
-    job = Job("cubic", program, programs.CELLS, [], usages=[told(answer)])
+    job = Job("cubic", program, "", [], usages=[told(answer)])
     said: str = RIVALS[program].read(case(folder, cubic()), job)["note"]
     return said.removeprefix("no counts; ")
 

@@ -26,7 +26,7 @@ from support.free_length_equilibria import free_length_equilibria
 from support.maps import once_per_run
 
 from ptmcad.answer.regionmap import Merge, Status
-from ptmcad.studies.paper import claim, free, maps, statements, symbolic
+from ptmcad.studies.paper import claim, free, maps, statements
 from ptmcad.studies.paper.claim import TEXTS, Claim, Verdict, judge, texts
 from ptmcad.studies.paper.maps import FIGURES, region_map
 from ptmcad.studies.paper.squaring import squared
@@ -430,7 +430,7 @@ def test_gradient_by_difference_quotients() -> None:
     values = {"rho": rho, "L1": length1, "L2": length2, "k": 1.0, "F3": f3, "F4": f4, "F3x": 0.0, "F4x": 0.0,
               "c1": math.cos(a), "s1": math.sin(a), "c2": math.cos(b), "s2": math.sin(b)}  # fmt: skip
     values |= {"l0": free_length} | dict(zip(("l1", "l2", "l3"), elastic_energy(design, (a, b))[1], strict=True))
-    for n, slope in enumerate(symbolic.gradient()):
+    for n, slope in enumerate(statements.gradient()):
         up, down = ((a + h * (n == 0) * e, b + h * (n == 1) * e) for e in (1, -1))
         found = (elastic_energy(design, up)[0] - elastic_energy(design, down)[0]) / (2 * h)
         assert float(slope.subs({s: values[s.name] for s in slope.free_symbols})) == pytest.approx(found, abs=1e-8)
@@ -470,7 +470,7 @@ def test_real_roots_by_isolation() -> None:
 def test_maps_with_free_lengths_at_points() -> None:
     """5.2-difficult: as many stable equilibria as Newton's method in balls proves from a grid of starting points."""
     from ptmcad.ask.location import locate
-    from ptmcad.studies.equilibria import guesses, newton_pose
+    from ptmcad.studies.stress.methods import double_poses, proved_poses
 
     draw, seen = Random(7), list[int]()
     map_ = free.certified("L2 = 3/2")
@@ -480,8 +480,8 @@ def test_maps_with_free_lengths_at_points() -> None:
         if there.stable is not None:
             p = {"rho": rho, "L1": Fraction(1), "L2": Fraction(3, 2), "F3": Fraction(-10), "F4": Fraction(-10)}
             p |= dict.fromkeys(("k1", "k2", "k3"), Fraction(100)) | dict.fromkeys(("l0_1", "l0_2", "l0_3"), length)
-            poses = [newton_pose(p, start) for start in guesses({n: float(v) for n, v in p.items()}, 24)]
-            assert there.stable == sum(pose is not None and pose.index == 0 for pose in poses)
+            poses = proved_poses(p, [(pose.th1, pose.th2) for pose in double_poses(p) or ()])
+            assert there.stable == sum(pose.index == 0 for pose in poses)
             seen.append(there.stable)
     assert set(seen) == {1, 2}
 
@@ -619,8 +619,8 @@ def test_a_general_count_that_is_not_general_corrects_nothing(monkeypatch: pytes
 
 def test_a_rod_that_does_not_move_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     """2-dof rests on the model's nodes."""
-    at = dict(symbolic.points()) | {"A3": symbolic.points()["A2"]}
-    monkeypatch.setattr(symbolic, "points", lambda: at)
+    at = dict(statements.points()) | {"A3": statements.points()["A2"]}
+    monkeypatch.setattr(statements, "points", lambda: at)
     assert statements.independent() == 2
 
 

@@ -15,10 +15,10 @@ from itertools import pairwise
 from ptmcad import RegionMap
 from ptmcad.answer.regionmap import CriticalValue
 from ptmcad.question.slice import Axis
-from ptmcad.studies.bench.programs import formulas
 from ptmcad.text.plane import PlanePolynomial
 from support import oracle
 from support.programs import ProgramError, monomials, qepcad_session
+from support.sextic_question import formulas
 from support.singular_slice import CountingFormula, integral
 
 # a label, where the factor comes from (one line or more), and last the factor itself

@@ -23,12 +23,12 @@ import pandas as pd
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.question.slice import Slice
+from ptmcad.show.ranges.table import aligned
 from ptmcad.studies.bench.error import Truth
 from ptmcad.studies.bench.process import Outcome, Usage, run
-from ptmcad.studies.tables import columns, installed
+from ptmcad.studies.tables import installed
 
 PACKAGES = ("ptmcad", "python-flint", "numpy", "click", "PyYAML", "matplotlib", "sympy", "numba", "scipy", "gcad")
-PTMCAD = (sys.executable, "-m", "ptmcad")
 GRACE_SECONDS = 1.0
 """Seconds that an engine has to save what it has when its time is over."""
 Row = dict[str, Any]
@@ -41,7 +41,7 @@ class Job:
     Attributes
     ----------
     text : its standard input.
-    answer : the file that it writes; None where the answer is on standard output.
+    answer : the file that it writes, text but for NumPy's arrays; None where the answer is on standard output.
     check : what is wrong with a process that is done; empty when nothing is.
     saves : whether it takes ``--timeout`` and leaves an answer when its time is over, as the certified engine does.
     reason : why there are no figures; empty while there may be.
@@ -77,20 +77,23 @@ class Job:
             self.reason = f"failed: {(usage.message or 'no message').splitlines()[-1]}"
         elif self.answer is not None and not self.answer.exists():
             self.reason = "failed: no answer"
-        elif wrong := self.check(usage):
-            self.reason = f"failed: {wrong}"
         else:
-            self.usages.append(usage)
+            if self.answer is not None and self.answer.suffix != ".npy":
+                usage = replace(usage, output=self.answer.read_text(encoding="utf-8"))
+            if wrong := self.check(usage):
+                self.reason = f"failed: {wrong}"
+            else:
+                self.usages.append(usage)
         return usage
 
     def said(self) -> str:
         """The text of the last answer."""
-        return self.usages[-1].output if self.answer is None else self.answer.read_text(encoding="utf-8")
+        return self.usages[-1].output
 
 
 class Case(NamedTuple):
     """What the methods are asked about: a slice with its own file, its map and what errors are measured against where
-    there are such, a folder for answers, whether settings have to be few and coarse, and a seed.
+    there are such, a folder for answers, and whether settings have to be few and coarse.
     """
 
     slice: Slice
@@ -99,11 +102,16 @@ class Case(NamedTuple):
     known: dict[str, Truth] | None
     folder: Path
     quick: bool
-    seed: int
 
 
-Make = Callable[..., Job]
-"""A job from its command and what else it has."""
+Asked = dict[str, Any] | str
+"""The command of a job and what else it has, by the names of `Job`; or why there is none."""
+
+
+def classification(record: Path, name: str, folder: Path, *options: str) -> dict[str, Any]:
+    """What a job has that writes the map of a record of this name into a folder."""
+    command = (sys.executable, "-m", "ptmcad", "classify", str(record), *options, "--out", str(folder))
+    return {"command": command, "answer": folder / f"{name}.json"}
 
 
 def take_turns(jobs: Sequence[Job], rounds: int, order: random.Random, attempt: Callable[[Job], object]) -> None:
@@ -183,4 +191,4 @@ def table(rows: pd.DataFrame) -> str:
     shown = rows.dropna(axis=1, how="all").map(
         lambda x: "-" if pd.isna(x) else f"{x:.4g}" if isinstance(x, float) else str(x)
     )
-    return "\n".join(columns([list(map(str, shown)), *shown.to_numpy().tolist()]))
+    return "\n".join(aligned([list(map(str, shown)), *shown.to_numpy().tolist()]))

@@ -22,7 +22,7 @@ from ptmcad.question.slice import Slice
 from ptmcad.show.table import area_by_count
 from ptmcad.studies.bench import programs
 from ptmcad.studies.bench.error import cover_error, exact_error, figures, grid_error, outward, shown_count
-from ptmcad.studies.bench.harness import PTMCAD, Case, Job, Make, Row
+from ptmcad.studies.bench.harness import Asked, Case, Job, Row, classification
 from ptmcad.studies.bench.records import difference
 
 GRIDS = ("companion", "multistart")
@@ -38,7 +38,7 @@ class Rival(NamedTuple):
     label : of a setting, which goes in the place of the braces.
     settings : from the coarsest.
     quick : how many of them are run when it has to be quick.
-    start : the job at a setting, or why there is none.
+    start : what the job at a setting has, or why there is none.
     read : figures and notes of a job that is done, as of a measurement.
     needs : an optional package.
     """
@@ -47,7 +47,7 @@ class Rival(NamedTuple):
     label: str
     settings: tuple[str, ...]
     quick: int
-    start: Callable[[Case, str, Make], Job | str]
+    start: Callable[[Case, str], Asked]
     read: Callable[[Case, Job], Row]
     needs: str = ""
 
@@ -62,21 +62,18 @@ def jobs(method: str, case: Case) -> list[Job] | str:
     if rival.needs and find_spec(rival.needs) is None:
         return f"{rival.needs} is not installed (make bench installs it)"
     settings = rival.settings[: rival.quick if case.quick else None]
-    asked = [
-        rival.start(case, setting, partial(Job, slice.name, method, rival.label.format(setting)))
-        for setting in settings
-    ]
-    return [job for job in asked if isinstance(job, Job)] or str(asked[0])
+    asked = {rival.label.format(setting): rival.start(case, setting) for setting in settings}
+    found = [Job(slice.name, method, label, **more) for label, more in asked.items() if not isinstance(more, str)]
+    return found or str(next(iter(asked.values())))
 
 
 # ------------------------------------------------------------------------------------------------- ptmcad and grids
 
 
-def _start_engine(engine: str, option: str, case: Case, setting: str, make: Make) -> Job:
-    target = case.folder / f"{engine}-{setting}"
-    command = [*PTMCAD, "classify", str(case.record), "--engine", engine, "--count", finest_count(case.slice),
-               option, setting, "--format", "json", "--out", str(target)]  # fmt: skip
-    return make(command, answer=target / f"{case.slice.name}.json", saves=engine == "certified")
+def _start_engine(engine: str, option: str, case: Case, setting: str) -> Asked:
+    options = ("--engine", engine, "--count", finest_count(case.slice), option, setting, "--format", "json")
+    asked = classification(case.record, case.slice.name, case.folder / f"{engine}-{setting}", *options)
+    return asked | {"saves": engine == "certified"}
 
 
 def finest_count(slice: Slice) -> str:
@@ -119,11 +116,11 @@ def question(slice: Slice) -> str:
     return json.dumps({"window": [[float(a.low), float(a.high)] for a in slice.axes], "parameters": parameters})
 
 
-def _start_grid(method: str, case: Case, setting: str, make: Make) -> Job:
+def _start_grid(method: str, case: Case, setting: str) -> Asked:
     asked, target = case.folder / "question.json", case.folder / f"{method}-{setting}.npy"
     asked.write_text(question(case.slice), encoding="utf-8")
-    command = [sys.executable, "-m", "ptmcad.studies.bench.rivals", method, asked, setting, target, case.seed]
-    return make(list(map(str, command)), answer=target)
+    command = [sys.executable, "-m", "ptmcad.studies.bench.rivals", method, asked, setting, target]
+    return {"command": list(map(str, command)), "answer": target}
 
 
 def _read_grid(case: Case, job: Job) -> Row:
@@ -133,8 +130,7 @@ def _read_grid(case: Case, job: Job) -> Row:
     stable, total = np.load(job.answer).astype(np.int16)
     cells = case.exact.grid(len(stable)).cell.T
     found = {count: grid_error(truth, cells, shown_count(stable, total, count)) for count, truth in case.known.items()}
-    lost = programs.question(case.slice) == programs.LOSES_PI
-    return {"figures": found, "note": programs.LOSES_PI if lost else ""}
+    return {"figures": found}
 
 
 RIVALS = {
@@ -144,10 +140,10 @@ RIVALS = {
                        partial(_start_engine, "certified", "--tolerance"), _read_map, "numba"),
     "companion": Rival("grid of companion matrices", "N = {}", ("25", "50", "100", "200", "400", "800", "1600"), 4,
                        partial(_start_grid, "companion"), _read_grid),
-    "multistart": Rival("grid of scipy starts", "N = {}", ("12", "25"), 1,
-                        partial(_start_grid, "multistart"), _read_grid, "scipy"),
-    "qepcad": Rival("QEPCAD", "{}", (programs.CELLS, "where 6, where 4", "where 2 stable"), 3,
-                    programs.start_qepcad, programs.read_qepcad),
+    "multistart": Rival("grid of Newton's starts", "N = {}", ("12", "25"), 1,
+                        partial(_start_grid, "multistart"), _read_grid),
+    "qepcad": Rival("QEPCAD", "{}", ("cells of the curves",), 1,
+                    programs.start_qepcad, partial(programs.beside, programs.by_qepcad)),
     "singular": Rival("Singular, critical curve alone", "{}", ("critical curve",), 1,
                       programs.start_singular, partial(programs.beside, programs.by_singular)),
     "msolve": Rival("msolve, critical curve alone", "{}", ("critical curve",), 1,

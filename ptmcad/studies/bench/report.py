@@ -7,19 +7,20 @@ JSON, which vouches for the others, last.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
 from ptmcad.process.output import Writer, text_writer, write_files
+from ptmcad.show.ranges.table import aligned
 from ptmcad.show.render.printing import save as save_figure
 from ptmcad.studies import tables
 from ptmcad.studies.bench.harness import Row
 from ptmcad.studies.bench.methods import RIVALS
-from ptmcad.studies.bench.picture import DPI, draw
-from ptmcad.studies.bench.study import finest, frame, read_study, records, write_study, write_table
+from ptmcad.studies.bench.stored import finest, frame, read_study, records, write_study, write_table
+from ptmcad.studies.picture import DPI, STYLES, Curve, Mark, draw
 
 SUFFIXES = ("bench.csv", "bench.svg", "bench.png", "error-time.json", "bench.json")
 PAGE = "error-time.md"
@@ -28,16 +29,6 @@ SEEN_SHARE = 0.99
 CURVE_FORMAT = "ptmcad-error-time/1"
 """What ``ptmcad report`` reads."""
 _NAMES = {"stable": "stable equilibria", "total": "equilibria", "index": "index"}
-_HEADER = (
-    "method",
-    "setting",
-    "seconds (least-largest)",
-    "wrong or undetermined",
-    "regions missed",
-    "faintest region",
-    "boundary off by",
-    "area bounds apart",
-)
 _LABELLED = {"certified": "tolerance ", "companion": "N = ", "multistart": "N = ", "qepcad": "where "}
 """Methods whose points have their setting beside them in the picture, without these words."""
 
@@ -68,23 +59,18 @@ def sentences(study: Row) -> list[str]:
     return found
 
 
-def rows(study: Row) -> list[tuple[str, ...]]:
-    """The cells of the table, one row for each method and setting that was run, with the finest count it gives."""
-    return [_cells(m) for m in records(finest(study).dropna(subset="seconds_median"))]
-
-
-def _cells(m: Row) -> tuple[str, ...]:
+def _cells(m: Row) -> dict[str, str]:
     spread = " ({seconds_min:.2f}-{seconds_max:.2f})".format(**m) if m["runs"] > 1 else ""
-    return (
-        m["method"],
-        m["setting"],
-        f"{m['seconds_median']:.2f}{spread}",
-        _about(m, "wrong") + (" *" if m["note"] else ""),
-        "-" if pd.isna(m["missed"]) else f"{m['missed']} of {m['regions']}",
-        "-" if pd.isna(m["faintest_low"]) else f"{m['faintest_low']:.2%}",
-        _about(m, "distance"),
-        "-" if pd.isna(m["area_width"]) else f"{m['area_width']:.1e}",
-    )
+    return {
+        "method": m["method"],
+        "setting": m["setting"],
+        "seconds (least-largest)": f"{m['seconds_median']:.2f}{spread}",
+        "wrong or undetermined": _about(m, "wrong") + (" *" if m["note"] else ""),
+        "regions missed": "-" if pd.isna(m["missed"]) else f"{m['missed']} of {m['regions']}",
+        "faintest region": "-" if pd.isna(m["faintest_low"]) else f"{m['faintest_low']:.2%}",
+        "boundary off by": _about(m, "distance"),
+        "area bounds apart": "-" if pd.isna(m["area_width"]) else f"{m['area_width']:.1e}",
+    }
 
 
 def _about(m: Row, name: str) -> str:
@@ -103,38 +89,52 @@ def notes(study: Row) -> list[str]:
     return list(dict.fromkeys([*done, *(line.replace(", :", ":") for line in left)]))
 
 
+def _lines(study: Row, written: Callable[[list[list[str]]], list[str]]) -> list[str]:
+    """The table, one row for each method and setting that was run, with the finest count it gives."""
+    found = [_cells(m) for m in records(finest(study).dropna(subset="seconds_median"))]
+    return written([list(found[0]), *(list(row.values()) for row in found)]) if found else []
+
+
 def terminal(study: Row) -> str:
     """The table in columns, the notes and the sentences."""
-    return "\n".join([*tables.columns([_HEADER, *rows(study)]), *notes(study), "", *sentences(study)])
+    return "\n".join([*_lines(study, aligned), *notes(study), "", *sentences(study)])
 
 
-def points(study: Row) -> pd.DataFrame:
-    """What can be drawn of a study, as of `draw`: every measurement with a time and an error, and widths of areas."""
-    found = []
-    for m in records(finest(study).dropna(subset="seconds_median")):
-        title, rank = RIVALS[m["method"]].title, [*RIVALS].index(m["method"])
-        at = (rank, m["seconds_median"], m["seconds_min"], m["seconds_max"])
-        label = m["setting"].removeprefix(_LABELLED.get(m["method"], m["setting"]))
-        found.append((title, rank, *at, m["wrong_low"], m["wrong_high"], label))
-        if m["method"] == "exact" and m["area_width"] > 0:  # another kind of error
-            title += ": width of the area bounds"
-            found.append((title, len(RIVALS), *at, m["area_width"], m["area_width"], ""))
-    names = ["curve", "style", "rank", "x", "least", "most", "low", "high", "label"]
-    return pd.DataFrame(found, columns=names).dropna(subset="low").sort_values("rank", kind="stable")
+def curves(study: Row) -> list[Curve]:
+    """What can be drawn of a study: every measurement with a time and an error, and widths of the exact maps' areas."""
+    table = finest(study).dropna(subset="seconds_median")
+    found = [
+        _curve(number, rival.title, table[table["method"] == method], "wrong_low", "wrong_high", _LABELLED.get(method))
+        for number, (method, rival) in enumerate(RIVALS.items())
+    ]
+    widths = table[(table["method"] == "exact") & (table["area_width"] > 0)]  # another kind of error
+    title = f"{RIVALS['exact'].title}: width of the area bounds"
+    found.insert(1, _curve(len(RIVALS), title, widths, "area_width", "area_width", None))
+    return [curve for curve in found if curve.marks]
+
+
+def _curve(style: int, title: str, rows: pd.DataFrame, low: str, high: str, before: str | None) -> Curve:
+    """A curve through the middles of bounds; settings stand beside it, without the words before them."""
+    marks = [
+        Mark(m["seconds_median"], (m[low] + m[high]) / 2, m["seconds_min"], m["seconds_max"],
+             "" if before is None else m["setting"].removeprefix(before))
+        for m in records(rows.dropna(subset=low))
+    ]  # fmt: skip
+    return Curve(title, STYLES[style], marks)
 
 
 def curve_file(study: Row) -> str:
     """The measurements for ``ptmcad report``, which draws positive errors only."""
-    shown = points(study).query("high > 0")
     series: list[dict[str, Any]] = [
-        {"name": name, "points": [[m["x"], (m["low"] + m["high"]) / 2] for m in records(curve)]}
-        for name, curve in shown.groupby("curve", sort=False)
+        {"name": curve.name, "points": [[mark.x, mark.y] for mark in curve.marks if mark.y > 0]}
+        for curve in curves(study)
     ]
     text = (
         "Share of the window that is wrong or undetermined; for the exact engine, where that is 0, the width of its "
         "area bounds."
     )
-    return json.dumps({"format": CURVE_FORMAT, "error": text, "series": series}, indent=1) + "\n"
+    shown = [curve for curve in series if curve["points"]]
+    return json.dumps({"format": CURVE_FORMAT, "error": text, "series": shown}, indent=1) + "\n"
 
 
 def save(study: Row, folder: Path) -> tuple[Path, ...]:
@@ -145,15 +145,15 @@ def save(study: Row, folder: Path) -> tuple[Path, ...]:
     OutputError
         When one cannot be written.
     """
-    name, drawn = study["slice"], points(study)
+    name, drawn = study["slice"], curves(study)
     title = f"{name}: {study['heading']}"
     x = "seconds of whole processes, start-up included: medians, least and largest"
 
     def picture(path: Path) -> None:
-        save_figure(draw(title, x, "share of the window", drawn, sentences(study)), path, dpi=DPI)
+        save_figure(draw(title, x, "share of the window", {"": drawn}, sentences(study)), path, dpi=DPI)
 
     writers: dict[str, Writer] = {f"{name}.bench.csv": text_writer(write_table(study))}
-    if not drawn.empty:
+    if drawn:
         writers |= {f"{name}.bench.svg": picture, f"{name}.bench.png": picture}
         writers[f"{name}.error-time.json"] = text_writer(curve_file(study))
     writers[f"{name}.bench.json"] = text_writer(write_study(study))
@@ -183,9 +183,9 @@ def page(studies: Sequence[Row]) -> str:
             passed = "passed" if study["verified"] else "did NOT pass"
             checked = f"The exact map that errors are measured against {passed} `ptmcad verify`."
         blocks += [f"## {study['slice']}", f"{study['heading']}. {checked}"]
-        if not points(study).empty:
+        if curves(study):
             blocks.append(f"![Error against seconds for {study['slice']}]({study['slice']}.bench.svg)")
-        blocks += [[f"- {s}" for s in sentences(study)], tables.markdown(_HEADER, rows(study))]
+        blocks += [[f"- {s}" for s in sentences(study)], _lines(study, tables.markdown)]
         blocks.append([f"- {note}".replace("- *", "- \\*") for note in notes(study)])
     first = studies[0]
     floor = "{median:g} s ({minimum:g}-{maximum:g})".format(**first["floor"])
@@ -194,6 +194,6 @@ def page(studies: Sequence[Row]) -> str:
         "Seconds are of whole processes, start-up included, medians of repeated runs that took turns.",
         *blocks,
         "## Machine",
-        *(tables.listed(part) for part in (first["machine"], first["versions"])),
+        *("; ".join(map(" ".join, first[part].items())) + "." for part in ("machine", "versions")),
         f"Seed {first['seed']}; the reference job takes {floor}.",
     )

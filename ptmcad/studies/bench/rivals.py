@@ -1,13 +1,8 @@
-"""The rivals that people write, on a grid: companion matrices of a sextic, or scipy's root finder from many starts.
+"""The rivals that people write, on a grid: companion matrices of a sextic, or Newton's method from many starts.
 
-Guarantee: none for the counts, as with every such program; they are what floating point and a tolerance say. The same
-input and seed give the same counts.
-
-``companion`` takes eigenvalues of stacked companion matrices (numpy, hence LAPACK) of `ptmcad.studies.sextic`, drops
-imaginary parts, takes two Newton steps on what is left, theta1 from the first equation, and stability from the
-Hessian's signs. ``multistart`` finds roots in (theta1, theta2) at each point and removes duplicates; an
-equilibrium that no start leads to is not counted. They run as
-``python -m ptmcad.studies.bench.rivals METHOD QUESTION N RESULT SEED`` and import no algebra.
+Guarantee: none for the counts, as with every such program; they are what floating point and a tolerance say
+(`ptmcad.studies.doubles`). The same input gives the same counts. They run as
+``python -m ptmcad.studies.bench.rivals METHOD QUESTION N RESULT`` and import no algebra.
 """
 
 from __future__ import annotations
@@ -20,149 +15,50 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polyval
 from numpy.typing import NDArray
 
-from ptmcad.studies.sextic import sextic
+from ptmcad.studies.doubles import Floats, Values, at, companion, distinct, newton
 
-Array = NDArray[np.float64]
 MAX_IMAGINARY = 1e-7
 """Relative size of imaginary parts that are taken for rounding; nearby values change little."""
-POLISHING = 2
 BATCH_POINTS = 40_000
 """Points whose matrices are in memory together."""
-MIN_LEADING = 1e-14
-"""A leading coefficient that is relatively smaller everywhere is taken for zero."""
 STARTS = 5
 """Along each angle: 25 starts a point."""
-RESIDUAL = 1e-9
-"""Of the equations, relative to the sizes of their terms."""
-SAME_SOLUTION = 1e-5
-"""Two solutions closer than this in both angles are one."""
-
-Values = Mapping[str, Any]
 
 
-def equations(p: Values, c1: Any, s1: Any, c2: Any, s2: Any) -> tuple[Any, Any, Any, Any, Any, Any]:
-    """The derivatives of the potential by th1 and th2, divided by L1 and L2; and their derivatives.
-
-    Parameters
-    ----------
-    c1, s1, c2, s2 : cosines and sines of the angles.
-
-    Returns
-    -------
-    Both derivatives, then the derivatives of the first by th1 and th2, then those of the second.
-    """
-    b1 = (p["k2"] + p["k3"]) * p["rho"] + p["F3x"]
-    b2 = (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
-    s12, c12 = s1 * c2 + c1 * s2, c1 * c2 - s1 * s2
-    pull, stretch = p["k3"] * p["L1"], p["k3"] * p["L2"]
-    return (
-        b1 * s1 - p["F3"] * c1 - stretch * s12,
-        b2 * s2 - p["F4"] * c2 - pull * s12,
-        b1 * c1 + p["F3"] * s1 - stretch * c12,
-        -stretch * c12,
-        -pull * c12,
-        b2 * c2 + p["F4"] * s2 - pull * c12,
-    )
-
-
-def is_stable(h11: Any, h12: Any, h21: Any, h22: Any) -> Any:
-    """Whether the Hessian, whose rows are these slopes times L1 and L2, is positive definite."""
-    return (h11 > 0) & (h11 * h22 > h12 * h21)
-
-
-def grid_values(question: Mapping[str, Any], n: int) -> dict[str, Array]:
+def grid_values(question: Mapping[str, Any], n: int) -> dict[str, Floats]:
     """The mechanism's parameters at the n x n pixel centres, of shape (n * n,), the second axis running fastest."""
     x, y = (low + (high - low) * (np.arange(n) + 0.5) / n for low, high in question["window"])
     first, second = (a.ravel() for a in np.meshgrid(x, y, indexing="ij"))
 
-    def evaluated(terms: list[list[float]]) -> Array:
+    def evaluated(terms: list[list[float]]) -> Floats:
         return sum((c * first ** int(i) * second ** int(j) for i, j, c in terms), np.zeros(n * n))
 
     return {name: evaluated(a) / evaluated(b) for name, (a, b) in question["parameters"].items()}
 
 
-def companion(p: Mapping[str, Array], seed: int = 0) -> NDArray[np.int8]:
+def counts(method: str, p: Values) -> NDArray[np.int8]:
     """Stable and total counts at each point, of shape (2, points)."""
-    starts = range(0, len(p["rho"]), BATCH_POINTS)
-    parts = [{name: values[k : k + BATCH_POINTS] for name, values in p.items()} for k in starts]
-    return np.concatenate([_from_sextic(part) for part in parts], axis=1)
+    found = []
+    for k in range(0, len(p["rho"]), BATCH_POINTS):
+        part = {name: values[k : k + BATCH_POINTS] for name, values in p.items()}
+        with np.errstate(all="ignore"):
+            poses = companion(part, MAX_IMAGINARY) if method == "companion" else newton(part, STARTS)
+            kept = distinct(*poses)
+            # roots count as often as they are there: at a double one floating point has two poses that differ
+            total = np.isfinite(poses[1][::2]) if method == "companion" else kept
+            h11, h12, h22 = at(part, *poses)[1]
+            stable = kept & (h11 > 0) & (h11 * h22 > h12 * h12)
+        found.append(np.stack([stable.sum(axis=0), total.sum(axis=0)]).astype(np.int8))
+    return np.concatenate(found, axis=1)
 
 
-def _from_sextic(p: Values) -> NDArray[np.int8]:
-    polynomial = np.stack(sextic(p)[0])
-    size = np.abs(polynomial).max(axis=0)
-    polynomial = polynomial / np.where(size > 0, size, 1)
-    while len(polynomial) > 2 and np.abs(polynomial[-1]).max() < MIN_LEADING:
-        polynomial = polynomial[:-1]
-    degree, points = len(polynomial) - 1, polynomial.shape[1]
-    leading = np.where(polynomial[-1] == 0, np.finfo(float).tiny ** 0.25, polynomial[-1])
-    matrices = np.zeros((points, degree, degree))
-    matrices[:, 0, :] = (-polynomial[-2::-1] / leading).T
-    matrices[:, np.arange(1, degree), np.arange(degree - 1)] = 1
-    roots = np.linalg.eigvals(matrices).T
-    real = np.abs(roots.imag) < MAX_IMAGINARY * (1 + np.abs(roots.real))
-    t, slope = roots.real, polyder(polynomial)
-
-    with np.errstate(all="ignore"):
-        for _ in range(POLISHING):
-            step = polyval(t, polynomial[:, None], tensor=False) / polyval(t, slope[:, None], tensor=False)
-            good = np.isfinite(step) & (np.abs(step) < 1e-3 * (1 + np.abs(t)))
-            t = np.where(good, t - step, t)
-        c2, s2 = (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
-        along, across = equations(p, 0, 1, c2, s2)[0], equations(p, 1, 0, c2, s2)[0]
-        # the first equation is along s1 + across c1 = 0; of its two solutions one fulfils the second
-        norm = np.hypot(along, across)
-        c1, s1 = along / norm, -across / norm
-        fulfilled, rest = equations(p, c1, s1, c2, s2)[1], equations(p, 0, 0, c2, s2)[1]
-        sign = np.where(abs(fulfilled) <= abs(2 * rest - fulfilled), 1.0, -1.0)
-        stable = real & is_stable(*equations(p, sign * c1, sign * s1, c2, s2)[2:])
-    return np.stack([stable.sum(axis=0), real.sum(axis=0)]).astype(np.int8)
-
-
-def multistart(values: Mapping[str, Array], seed: int) -> NDArray[np.int8]:
-    """Stable and total counts at each point, of shape (2, points)."""
-    generator = np.random.default_rng(seed)
-    apart = 2 * np.pi / STARTS
-    places = (np.arange(STARTS) + 0.5) * apart - np.pi
-    starts = np.stack(np.meshgrid(places, places), axis=-1).reshape(-1, 2)
-    counts = [
-        _from_starts(dict(zip(values, point, strict=True)), starts + generator.uniform(-0.5, 0.5, starts.shape) * apart)
-        for point in zip(*values.values(), strict=True)
-    ]
-    return np.array(counts, dtype=np.int8).T
-
-
-def _from_starts(p: Values, starts: Array) -> tuple[int, int]:
-    from scipy.optimize import root
-
-    scale = sum(map(abs, p.values()))
-
-    def gradient(angles: Array) -> tuple[Array, Array]:
-        (c1, c2), (s1, s2) = np.cos(angles), np.sin(angles)
-        found = np.array(equations(p, c1, s1, c2, s2))
-        return found[:2], found[2:].reshape(2, 2)
-
-    seen: list[Array] = []
-    stable = 0
-    for start in starts:
-        angles = root(gradient, start, jac=True, method="hybr").x
-        value, slopes = gradient(angles)
-        apart = [np.abs(np.remainder(angles - a + np.pi, 2 * np.pi) - np.pi).max() for a in seen]
-        if np.abs(value).max() < RESIDUAL * scale and min(apart, default=1.0) >= SAME_SOLUTION:
-            seen.append(angles)
-            stable += bool(is_stable(*slopes.ravel()))
-    return stable, len(seen)
-
-
-def main(method: str, question: str, n: str, result: str, seed: str) -> None:
+def main(method: str, question: str, n: str, result: str) -> None:
     """Count on N x N points, save the counts, of shape (2, N, N), and print the seconds."""
     asked = json.loads(Path(question).read_text(encoding="utf-8"))
-    counts = companion if method == "companion" else multistart
     start = perf_counter()
-    found = counts(grid_values(asked, int(n)), int(seed)).reshape(2, int(n), int(n))
+    found = counts(method, grid_values(asked, int(n))).reshape(2, int(n), int(n))
     seconds = perf_counter() - start
     np.save(result, found)
     print(json.dumps({"computing": seconds}))

@@ -26,9 +26,9 @@ import pandas as pd
 
 from ptmcad.errors import PtmcadError
 from ptmcad.show.render.printing import save
-from ptmcad.studies.bench.harness import PTMCAD, Job, Row, summary, turns
-from ptmcad.studies.bench.picture import draw
+from ptmcad.studies.bench.harness import Job, Row, classification, summary, turns
 from ptmcad.studies.bench.process import Usage
+from ptmcad.studies.picture import STYLES, Curve, Mark, draw
 
 SHIFT = Fraction(1, 100)
 """What a bend's coefficients' moduli add up to at most: the window's edge meets the same curves in the same order."""
@@ -77,28 +77,11 @@ def fold(n: int, seed: int = 0) -> Row:
     return _record({"x": [-1, 1], "y": [0, 2]}, rho="y", L2=f"1 + ({chebyshev(n, 'x')})/2")
 
 
-def grid(n: int, seed: int = 0) -> Row:
-    """L2 = 1 + T_n(x)/2 and rho = 1/2 + T_n(y)/3: n by n copies, mirrored in turn, of one square."""
-    rho, bar = f"1/2 + ({chebyshev(n, 'y')})/3", f"1 + ({chebyshev(n, 'x')})/2"
-    return _record({"x": [-1, 1], "y": [-1, 1]}, rho=rho, L2=bar)
-
-
-def regions_of_grid(n: int) -> int:
-    """One region of two stable poses, and one around each corner of the copies but those where L2 and rho are largest.
-
-    In the square -1 < a, b < 1 with L2 = 1 + a/2, rho = 1/2 + b/3 the three lines cut off the corners (-1, 1), (1, -1)
-    and (-1, -1), each by a triangle; copies that share a corner are mirrored there, so their triangles join.
-    """
-    even = n // 2 + 1
-    return 1 + (n + 1) ** 2 - even**2
-
-
 FAMILIES = {
     "degree": Family("Degree of the curves: no loads", (2, 4, 6, 8, 12, 16), unloaded, lambda n: 4),
     "digits": Family("Digits of each parameter", (5, 10, 25, 50, 100, 200), digits, lambda n: 3),
     # below 2 rho = |T_n|/2 one region on either side of each of the n zeros; that of two; that above
     "fold": Family("Folds along one axis", (2, 4, 8, 16, 32), fold, lambda n: n + 3),
-    "grid": Family("Folds along both axes", (2, 3, 4, 5, 6), grid, regions_of_grid),
 }  # fmt: skip
 
 
@@ -114,42 +97,36 @@ def measure(options: argparse.Namespace) -> pd.DataFrame:
     unknown = [name for name in names if name not in FAMILIES]
     if unknown:
         raise PtmcadError(f"no family {unknown[0]!r}; there are {', '.join(FAMILIES)}")
-    jobs: list[Job] = []
-    stages: list[Row] = []
+    jobs = []
     with tempfile.TemporaryDirectory() as folder:
-        for name in names:
-            family = FAMILIES[name]
-            for n in family.sizes:
-                record = Path(folder, f"{name}-{n}.json")
-                data = {"name": record.stem, **family.record(n, options.seed)}
-                record.write_text(json.dumps(data), encoding="utf-8")
-                target = Path(folder, "out", record.name)
-                command = (*PTMCAD, "classify", str(record), "--format", "json", "--out", str(target.parent))
-                check = partial(_checked, target, family.regions(n), (name, n), stages)
-                jobs.append(Job(name, family.title, str(n), command, answer=target, check=check))
+        for name, n in [(family, size) for family in names for size in FAMILIES[family].sizes]:
+            family, record = FAMILIES[name], Path(folder, f"{name}-{n}.yaml")
+            record.write_text(json.dumps({"name": record.stem, **family.record(n, options.seed)}), encoding="utf-8")
+            asked = classification(record, record.stem, Path(folder), "--format", "json")
+            jobs.append(Job(name, family.title, str(n), **asked, check=partial(_unlike, family.regions(n))))
         turns(jobs, options)
     rows = summary(jobs)
+    stages = [
+        {"subject": job.subject, "setting": job.setting, **json.loads(usage.output)["timings"]}
+        for job in jobs for usage in job.usages
+    ]  # fmt: skip
     if not stages:
         return rows
-    taken = pd.DataFrame(stages).groupby(["subject", "n"], sort=False).median()
-    seconds = taken.round(5).rename(columns="{} s".format).reset_index()
-    rows = rows.merge(seconds.assign(setting=seconds.pop("n").map(str)), on=["subject", "setting"], how="left")
+    taken = pd.DataFrame(stages).groupby(["subject", "setting"], sort=False).median()
+    rows = rows.join(taken.round(5).rename(columns="{} s".format), on=["subject", "setting"])
     laws = [
-        {"subject": name, "what": FAMILIES[name].title, "setting": f"fit: {stage}", **law}
-        for name in names
-        for stage, seconds in (taken.loc[name].items() if name in taken.index else ())
+        {"subject": name, "what": FAMILIES[str(name)].title, "setting": f"fit: {stage}", **law}
+        for name, of_family in taken.groupby("subject", sort=False)
+        for stage, seconds in of_family.droplevel("subject").rename(index=int).items()
         if (law := fit(seconds.dropna()))
     ]
     return pd.concat([rows, pd.DataFrame(laws)], ignore_index=True)
 
 
-def _checked(target: Path, regions: int, size: tuple[str, int], stages: list[Row], _: Usage) -> str:
-    """Note the seconds of a map's stages; what is wrong with its number of regions."""
-    found = json.loads(target.read_text(encoding="utf-8"))
-    if len(found["regions"]) != regions:
-        return f"{len(found['regions'])} regions"
-    stages.append({"subject": size[0], "n": size[1], **found["timings"]})
-    return ""
+def _unlike(regions: int, usage: Usage) -> str:
+    """What is wrong with a map's number of regions."""
+    found = len(json.loads(usage.output)["regions"])
+    return "" if found == regions else f"{found} regions"
 
 
 def fit(taken: pd.Series[float]) -> Row | None:
@@ -177,9 +154,9 @@ def fit(taken: pd.Series[float]) -> Row | None:
 def save_picture(rows: pd.DataFrame, folder: Path) -> None:
     """Draw the seconds of the computation along all families into scaling.svg."""
     if "total s" in rows:
-        shown = rows.dropna(subset="total s")
-        n, seconds = shown["setting"].astype(float), shown["total s"]
-        points = pd.DataFrame({"curve": shown["what"], "style": pd.factorize(shown["what"])[0], "x": n, "least": n,
-                               "most": n, "low": seconds, "high": seconds, "label": ""})  # fmt: skip
-        figure = draw("How cost grows", "size", "seconds of the computation, medians", points)
+        curves = []
+        for style, (title, own) in zip(STYLES, rows.dropna(subset="total s").groupby("what", sort=False), strict=False):
+            places = zip(own["setting"].astype(float), own["total s"], strict=True)
+            curves.append(Curve(str(title), style, [Mark(n, seconds, n, n) for n, seconds in places]))
+        figure = draw("How cost grows", "size", "seconds of the computation, medians", {"": curves})
         save(figure, folder / "scaling.svg")

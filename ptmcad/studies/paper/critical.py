@@ -14,7 +14,7 @@ import sympy as sp
 
 from ptmcad.algebra.msolve import MsolveError, real_solutions
 from ptmcad.studies.paper.squaring import NAMES, Design
-from ptmcad.studies.paper.symbolic import CIRCLES, HORIZONTAL, LENGTHS, gradient, hessian, k, l0, squares, without
+from ptmcad.studies.paper.statements import CIRCLES, HORIZONTAL, LENGTHS, gradient, hessian, k, l0, squares
 from ptmcad.text.enclosure import Enclosure
 
 INVERSES = sp.symbols("v1 v2 v3")
@@ -24,8 +24,9 @@ UNKNOWNS = (*INVERSES, *CIRCLES[0], *CIRCLES[1], l0)
 def critical_system(design: Design) -> tuple[str, ...]:
     """Polynomials in `UNKNOWNS` as text that vanish at the degenerate solutions; l0 of the design is left out."""
     at = {name: sp.Rational(x) for name, x in zip(NAMES, design, strict=True) if name != l0} | {k: 1}
+    at |= dict.fromkeys(HORIZONTAL, 0)
     at |= {length: 1 / v for length, v in zip(LENGTHS, INVERSES, strict=True)}
-    g1, g2, h11, h12, h22 = (without(e, *HORIZONTAL).subs(at) for e in (*gradient(), *hessian()))
+    g1, g2, h11, h12, h22 = (e.subs(at) for e in (*gradient(), *hessian()))
     equations = [c**2 + s**2 - 1 for c, s in CIRCLES]
     equations += [v**2 * q.subs(at) - 1 for v, q in zip(INVERSES, squares(), strict=True)]
     equations += [g1, g2, h11 * h22 - h12**2]

@@ -1,7 +1,8 @@
 """The paper's equations, corrected, as text and LaTeX, derived from the model and not from the paper.
 
 Guarantee: every expression is derived from the potential of the model by differentiation, substitution of half angles
-and elimination (`ptmcad.studies.paper.statements`), or is a curve of a computed discriminant variety.
+and elimination (`ptmcad.studies.paper.statements`), or is a curve of a computed discriminant variety. Which they are is
+data, ``expressions.yaml``.
 """
 
 from __future__ import annotations
@@ -13,8 +14,7 @@ from functools import cache
 import sympy as sp
 
 from ptmcad.studies.paper.maps import curves
-from ptmcad.studies.paper.statements import expression
-from ptmcad.studies.paper.symbolic import F3, F4, HORIZONTAL, Expr, c1, c2, k, s1, s2
+from ptmcad.studies.paper.statements import F3, F4, HORIZONTAL, TEXTS, Expr, c1, c2, expression, k, s1, s2
 from ptmcad.studies.tables import page
 
 _OVER_K = {force: k * sp.Symbol(str(force).lower()) for force in (F3, F4, *HORIZONTAL)}
@@ -22,42 +22,7 @@ _THETA1, _THETA2 = sp.symbols("theta_1 theta_2", real=True)
 _ANGLES = {c1: sp.cos(_THETA1), s1: sp.sin(_THETA1), c2: sp.cos(_THETA2), s2: sp.sin(_THETA2)}
 _LATEX = {"cos(theta_1)": r"\cos\theta_1", "cos(theta_2)": r"\cos\theta_2", "det(H)": r"\det H"}
 
-_EQUATIONS = (
-    ("(2)", "potential", "U", "U"),
-    ("(3)", "-(1/(L2 k)) dU/dth2", "0", "-g2/(L2*k)"),
-    ("(4)", "-(1/(L1 k)) dU/dth1", "0", "-g1/(L1*k)"),
-    ("(5)", "(4) in half angles, times -1", "0", "E1"),
-    ("(6)", "(3) in half angles, times -1", "0", "E2"),
-    ("H(1,1)", "Hessian", "H(1,1)", "H11"),
-    ("H(1,2)", "Hessian", "H(1,2)", "H12"),
-    ("H(2,2)", "Hessian", "H(2,2)", "H22"),
-    ("(7)", "(3) unloaded", "0", "-unloaded(g2)/(L2*k)"),
-    ("(8)", "(4) unloaded", "0", "-unloaded(g1)/(L1*k)"),
-    ("(9)", "non-flat equilibria, unloaded; sin th1 and sin th2 have one sign", "cos(theta_1)", "COS1"),
-    ("(9)", "the same", "cos(theta_2)", "COS2"),
-    ("(10)", "equal rods and forces: k/2 times the difference of (5) and (6)", "0", "factor(symmetric(k*(E1 - E2)/2))"),
-    ("(11)", "equal rods and forces: k times (6)", "0", "symmetric(k*E2)"),
-    ("(10')", "t1 from the second factor of (10)", "t1", "OTHER"),
-    ("(12)", "t2 where th1 and th2 differ", "0", "eliminated_12"),
-    ("(13)", "where th1 and th2 differ", "det(H)", "unequal(detH)"),
-    ("(15)", "boundary of fig. 3, L1 = L2 = 1, k = 100", "0", "curve 0"),
-    ("(16)", "boundary of fig. 3, L1 = L2 = 1, k = 100", "0", "curve 1"),
-    ("(5), horizontal forces", "section 5.1", "0", "E1_h"),
-    ("(6), horizontal forces", "section 5.1", "0", "E2_h"),
-    *(
-        (
-            f"q{n}",
-            f"coefficient of t2^{n} in the polynomial of degree 6 that elimination of t1 leaves",
-            f"q{n}",
-            f"q{n}",
-        )
-        for n in range(6, -1, -1)
-    ),
-)
-"""Number in the paper, what it is, its left side, and the right one in the language of statements."""
 _NAMES = {sp.Symbol(f"f{n}x"): f"f_{{{n}x}}" for n in (3, 4)}
-_IN_FORCES = {"(2)", "H(1,1)", "H(2,2)", "(9)", "(10)", "(11)", "(10')", "(12)", "(13)", "(15)", "(16)"}
-"""Those in which forces stay what they are; in the others they are over k."""
 INTRODUCTION = """Derived from the potential of the model. Here f3 = F3/k (the paper's F3'), f4 = F4/k, f3x = F3x/k,
 f4x = F4x/k; t1 and t2 are the tangents of the half angles; in (10) to (13) L1 is the length of both rods."""
 
@@ -79,15 +44,16 @@ def equations() -> tuple[Equation, ...]:
     found = sorted((c.polynomial for c in curves("fig3")), key=lambda p: any(i == j == 0 for i, j, _ in p.terms))
     boundaries = {f"curve {n}": p.to_sympy(("rho", "F4")) for n, p in enumerate(found)}
     result = []
-    for number, what, left, text in _EQUATIONS:
+    for entry in TEXTS["equations"]:
+        number, left, text = entry["number"], entry["left"], entry["right"]
         right = boundaries[text] if text in boundaries else expression(text)
         if number.startswith("q"):
             right = right.subs(_OVER_K).subs(k, 1)
-        elif number not in _IN_FORCES:
+        elif "forces" not in entry:
             right = sp.expand(right.subs(_OVER_K))
         shown = _shown(right)
         latex = f"{_LATEX.get(left, sp.latex(sp.Symbol(left)))} = {sp.latex(shown, symbol_names=_NAMES)}"
-        result.append(Equation(number, what, f"{left} = {sp.sstr(shown).replace('**', '^')}", latex))
+        result.append(Equation(number, entry["what"], f"{left} = {sp.sstr(shown).replace('**', '^')}", latex))
     return tuple(result)
 
 
@@ -107,10 +73,10 @@ def as_markdown() -> str:
 
 def as_latex() -> str:
     """The equations as a LaTeX document; long ones are set by the breqn package, which breaks lines."""
-    blocks = [
-        rf"\noindent {_escaped(f'{e.number}: {e.what}')}" + "\n\\begin{dmath*}\n" + e.latex + "\n\\end{dmath*}"
-        for e in equations()
-    ]
+    blocks = []
+    for e in equations():
+        title = f"{e.number}: {e.what}".replace("^", r"\textasciicircum{}").replace("_", r"\_")
+        blocks.append(rf"\noindent {title}" + "\n\\begin{dmath*}\n" + e.latex + "\n\\end{dmath*}")
     names = re.sub(r"\b([fFLt])(\dx?)\b", r"$\1_{\2}$", INTRODUCTION)
     return "\n".join([_HEAD, rf"{names}\par", *blocks, "\\end{document}\n"])
 
@@ -120,7 +86,3 @@ _HEAD = r"""\documentclass{article}
 \usepackage{amsmath,breqn}
 \begin{document}
 \section*{The equations of the planar tensegrity mechanism, corrected}"""
-
-
-def _escaped(text: str) -> str:
-    return text.replace("^", r"\textasciicircum{}").replace("_", r"\_")

@@ -19,7 +19,6 @@ from ptmcad.studies.paper import statements
 from ptmcad.studies.paper.critical import critical_free_lengths
 from ptmcad.studies.paper.maps import Facts
 from ptmcad.studies.paper.squaring import Design, signed_solutions, squared
-from ptmcad.studies.slices import ptm_slice
 from ptmcad.text.parsing import rational
 
 ELIMINATED: Design = ("7/10", "1", "3/2", "1/5", "-1/10", "-1/10")
@@ -129,9 +128,9 @@ def roots_within(designs: Sequence[Design], least: int, most: int) -> Facts:
 @cache
 def certified(name: str) -> RegionMap:
     """The certified map of one of the slices with free lengths."""
-    _, parameters, axes = MAPS[name]
-    slice = ptm_slice("free", axes, L1=1, k=100, F3=-10, F4=-10, **parameters)
-    return classify(slice, tolerance=TOLERANCE, count="stable")
+    _, free, axes = MAPS[name]
+    parameters = {"L1": 1, "k": 100, "F3": -10, "F4": -10, **free}
+    return classify({"mechanism": "ptm", "parameters": parameters, "axes": axes}, tolerance=TOLERANCE, count="stable")
 
 
 def difficult() -> Facts:

@@ -1,6 +1,7 @@
 """Pages of a reproduction: claims as Markdown, JSON and HTML, and an index with figures and equations.
 
-Guarantee: the HTML is self-contained (pictures are inside, nothing is loaded) and every text in it is escaped.
+Guarantee: the HTML is self-contained (pictures are inside, nothing is loaded) and every text in it is escaped. What
+stands between the texts is data, ``pages.yaml``.
 """
 
 from __future__ import annotations
@@ -13,7 +14,9 @@ from dataclasses import asdict
 from html import escape
 from itertools import groupby
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any
+
+import yaml
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.studies.paper.claim import Claim, Verdict
@@ -23,6 +26,7 @@ from ptmcad.studies.tables import page
 from ptmcad.version import __version__
 
 PAPER = "P. Wenger and D. Chablat, Kinetostatic Analysis and Solution Classification of a Planar Tensegrity Mechanism"
+FORMS: Mapping[str, Any] = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8"))
 _SIGNS = dict(zip(Verdict, "✓≠✗–?", strict=True))
 NOT_AS_PRINTED = (Verdict.REFUTED, Verdict.CORRECTED, Verdict.UNDECIDED)
 
@@ -40,43 +44,33 @@ def claims_json(claims: Sequence[Claim]) -> str:
     return json.dumps(document, indent=1, ensure_ascii=False, default=str) + "\n"
 
 
-class Form(NamedTuple):
-    """How claims are written: a section's heading, a claim, what is said of it, its evidence, and any text in them."""
-
-    section: str
-    claim: str
-    said: str
-    evidence: str
-    text: Callable[[str], str]
+def claims_markdown(claims: Sequence[Claim]) -> str:
+    """All claims as a page of Markdown."""
+    written = _written(claims, "markdown", _markdown)
+    return page("# The claims of the paper", f"{PAPER}.", f"{summary(claims)}.", *written)
 
 
-MARKDOWN = Form(
-    "## {}",
-    '### {number}. {name}: {verdict}\n\n{statement} ("{quotation}")\n\n{said}{evidence}',
-    "- **{}:** {}\n",
-    "- {}\n",
-    lambda text: text.replace("*", r"\*").replace("_", r"\_").replace("|", r"\|").replace("<", "&lt;"),
-)
-_VERDICT = '<span class="verdict {kind}">{sign} {verdict}</span>'
-HTML = Form(
-    "<h2>{}</h2>",
-    '<article id="{name}">\n<h3>{number}. {statement} ' + _VERDICT + "</h3>\n<p><q>{quotation}</q></p>\n"
-    "{said}<ul>{evidence}</ul>\n</article>",
-    '<p class="right"><b>{}:</b> {}</p>\n',
-    "<li>{}</li>",
-    escape,
-)
+def claims_html(claims: Sequence[Claim]) -> str:
+    """All claims as a self-contained page."""
+    first = f"<p>{escape(summary(claims))}. Every verdict was computed by this run of ptmcad.</p>"
+    return _page("The claims of the paper", [first, *_written(claims, "html", escape)])
 
 
-def _written(claims: Sequence[Claim], form: Form) -> Iterator[str]:
+def _markdown(text: str) -> str:
+    return text.replace("*", r"\*").replace("_", r"\_").replace("|", r"\|").replace("<", "&lt;")
+
+
+def _written(claims: Sequence[Claim], form: str, text: Callable[[str], str]) -> Iterator[str]:
+    """Sections with their claims in a form, which a function makes any text fit for."""
+    parts = FORMS[form]
     for section, members in groupby(enumerate(claims, 1), lambda member: member[1].section):
-        yield form.section.format(_title(section))
+        yield parts["section"].format(_title(section))
         for number, c in members:
-            yield form.claim.format(
+            yield parts["claim"].format(
                 number=number,
-                said="".join(form.said.format(name, form.text(text)) for name, text in _said(c)),
-                evidence="".join(form.evidence.format(form.text(sentence)) for sentence in c.evidence),
-                **_fields(c, form.text),
+                said="".join(parts["said"].format(name, text(said)) for name, said in _said(c)),
+                evidence="".join(parts["evidence"].format(text(sentence)) for sentence in c.evidence),
+                **_fields(c, text),
             )
 
 
@@ -95,53 +89,29 @@ def _said(c: Claim) -> list[tuple[str, str]]:
     return [(name.capitalize(), text) for name in ("right", "witness", "reason") if (text := getattr(c, name))]
 
 
-def claims_markdown(claims: Sequence[Claim]) -> str:
-    """All claims as a page of Markdown."""
-    return page("# The claims of the paper", f"{PAPER}.", f"{summary(claims)}.", *_written(claims, MARKDOWN))
-
-
-def claims_html(claims: Sequence[Claim]) -> str:
-    """All claims as a self-contained page."""
-    first = f"<p>{escape(summary(claims))}. Every verdict was computed by this run of ptmcad.</p>"
-    return _page("The claims of the paper", [first, *_written(claims, HTML)])
-
-
 def _page(title: str, body: Iterable[str]) -> str:
     style = Path(__file__).with_suffix(".css").read_text(encoding="utf-8")
-    return (
-        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{escape(title)}</title>\n<style>\n{style}</style>\n</head>\n<body>\n<main>\n"
-        f"<h1>{escape(title)}</h1>\n<p>{escape(PAPER)}.</p>\n" + "\n".join(body) + "\n</main>\n</body>\n</html>\n"
-    )
-
-
-_CONTENTS = """<p>{}: <a href="claims.html">all of them with their evidence</a> (<a href="claims.md">Markdown</a>,
-<a href="claims.json">JSON</a>). <a href="#figures">Figures</a>; <a href="#equations">equations</a>
-(<a href="equations.md">text</a>, <a href="equations.tex">LaTeX</a>).</p>
-<h2>What is not as printed</h2>
-<div class="wide"><table><thead>
-<tr><th>Place</th><th>Claim</th><th>Verdict</th><th>Right, or where it fails</th></tr></thead><tbody>"""
-_ROW = (
-    '<tr><td>{place}</td><td><a href="claims.html#{name}">{statement}</a></td><td>' + _VERDICT + "</td>"
-    "<td>{said}</td></tr>"
-)
+    return str(FORMS["page"]).format(title=escape(title), style=style, paper=escape(PAPER), body="\n".join(body))
 
 
 def index_html(claims: Sequence[Claim], figures: Sequence[str], equations: Sequence[Equation]) -> str:
     """The first page: what is in the folder, the verdicts that are not plain confirmations, figures and equations."""
     rows = [
-        _ROW.format(place=_title(c.section), said=escape(_said(c)[0][1]), **_fields(c, escape))
-        for c in claims if c.verdict in NOT_AS_PRINTED
-    ]  # fmt: skip
-    texts = [
-        f'<p>{escape(e.number)}: {escape(e.what)}</p>\n<pre class="equation">{escape(e.text)}</pre>' for e in equations
+        FORMS["row"].format(place=_title(c.section), said=escape(_said(c)[0][1]), **_fields(c, escape))
+        for c in claims
+        if c.verdict in NOT_AS_PRINTED
     ]
-    return _page("The paper, reproduced", [
-        _CONTENTS.format(escape(summary(claims))), *rows, "</tbody></table></div>",
-        '<h2 id="figures">Figures</h2>', *figures,
-        f'<h2 id="equations">Equations</h2>\n<p>{escape(INTRODUCTION)}</p>', *texts,
-    ])  # fmt: skip
+    texts = [
+        FORMS["equation"].format(number=escape(e.number), what=escape(e.what), text=escape(e.text)) for e in equations
+    ]
+    body = FORMS["index"].format(
+        summary=escape(summary(claims)),
+        rows="\n".join(rows),
+        figures="\n".join(figures),
+        introduction=escape(INTRODUCTION),
+        equations="\n".join(texts),
+    )
+    return _page("The paper, reproduced", [body])
 
 
 def figure_html(name: str, result: RegionMap, pictures: Mapping[str, bytes]) -> str:
@@ -152,17 +122,12 @@ def figure_html(name: str, result: RegionMap, pictures: Mapping[str, bytes]) -> 
     pictures : the files that are shown, PNG, by their names.
     """
     source, point = POINTS[name]
-    at = escape(", ".join(f"{axis} = {value}" for axis, value in point.items()))
-    title = escape(result.slice.heading)
-    return f"""<figure id="{name}">
-<figcaption><b>{name}.</b> {title} (<a href="{name}.svg">SVG</a>, <a href="{name}-poses.svg">poses as SVG</a>,
-<a href="{name}.json">result</a>)</figcaption>
-{_image(pictures[f"{name}.png"], f"Region map and stable poses: {title}")}
-<p>All equilibria at {at} ({escape(source)}):</p>
-{_image(pictures[f"{name}-poses.png"], f"All equilibria at {at}")}
-<pre>{escape(result.table())}</pre>
-</figure>"""
-
-
-def _image(data: bytes, text: str) -> str:
-    return f'<img alt="{text}" src="data:image/png;base64,{b64encode(data).decode("ascii")}">'
+    shown = {"map": pictures[f"{name}.png"], "poses": pictures[f"{name}-poses.png"]}
+    return str(FORMS["figure"]).format(
+        name=name,
+        title=escape(result.slice.heading),
+        at=escape(", ".join(f"{axis} = {value}" for axis, value in point.items())),
+        source=escape(source),
+        table=escape(result.table()),
+        **{key: b64encode(data).decode("ascii") for key, data in shown.items()},
+    )

@@ -24,14 +24,16 @@ from flint import acb, acb_poly, arb, ctx, fmpz_poly
 
 from ptmcad.algebra.polynomials import PLANE, Coefficient, coefficients_in
 from ptmcad.algebra.resultants import resultant
-from ptmcad.studies.equilibria import derivatives
-from ptmcad.studies.paper import symbolic
-from ptmcad.studies.paper.symbolic import CLEAR, HORIZONTAL, LENGTHS, k, l0, t1, t2, without
+from ptmcad.studies.byhand import derivatives
+from ptmcad.studies.paper import statements
+from ptmcad.studies.paper.statements import CLEAR, HORIZONTAL, LENGTHS, k, l0, t1, t2
 from ptmcad.text.balls import ball_of
 
 Design = tuple[str, str, str, str, str, str]
 """rho, L1, L2, l0, F3/k and F4/k as decimals or fractions."""
-NAMES = (symbolic.rho, symbolic.L1, symbolic.L2, l0, symbolic.F3, symbolic.F4)
+Signs = tuple[int, ...]
+"""Of l1, l2 and l3."""
+NAMES = (statements.rho, statements.L1, statements.L2, l0, statements.F3, statements.F4)
 CIRCLE = fmpz_poly([1, 0, 1])
 BITS = 400
 TOLERANCE = arb(10) ** -60
@@ -66,11 +68,11 @@ def squared(design: Design) -> Elimination:
     numbers = [sp.Rational(x) for x in design]
     # all are lengths, loads over k too: scaling them leaves the angles as they are
     at = dict(zip(NAMES, (x * sp.ilcm(*(x.q for x in numbers)) for x in numbers), strict=True)) | {k: 1}
-    squares, whole = symbolic.squares(), _cleared(CLEAR, 1)
+    squares, whole = statements.squares(), _cleared(CLEAR, 1)
     equations = []
-    for slope, own, other in zip(symbolic.gradient(), (1, 0), (t2, t1), strict=True):
-        g = without(slope, *HORIZONTAL)
-        parts = (without(g, l0), g.coeff(LENGTHS[own], -1), g.coeff(LENGTHS[2], -1), squares[own], squares[2])
+    for slope, own, other in zip(statements.gradient(), (1, 0), (t2, t1), strict=True):
+        g = slope.subs(dict.fromkeys(HORIZONTAL, 0))
+        parts = (g.subs(l0, 0), g.coeff(LENGTHS[own], -1), g.coeff(LENGTHS[2], -1), squares[own], squares[2])
         a, b, c, q, q3 = (_cleared(part.subs(at), CLEAR) for part in parts)
         inner = a**2 * q * q3 - whole * (b**2 * q3 + c**2 * q)
         # the angle that a and the own spring's length have not in common was cleared once too often
@@ -88,7 +90,7 @@ def squared(design: Design) -> Elimination:
 
 
 def _cleared(expression: Any, factor: Any) -> Any:
-    return sp.Poly(sp.cancel(symbolic.half_angles(expression) * factor), t1, t2, domain="QQ")
+    return sp.Poly(sp.cancel(statements.half_angles(expression) * factor), t1, t2, domain="QQ")
 
 
 # ---------------------------------------------------------------------------------------------- which roots solve both
@@ -105,7 +107,7 @@ class SignedSolutions:
     unsettled : of so many, none of them real, it was not decided.
     """
 
-    solutions: tuple[tuple[acb, acb, tuple[int, int, int]], ...]
+    solutions: tuple[tuple[acb, acb, Signs], ...]
     opposed: int
     unsettled: int
 
@@ -136,15 +138,15 @@ def signed_solutions(design: Design) -> SignedSolutions:
         rows = [coefficients_in(p, 0) for p in system.equations]
         for t2 in _complex_roots(system.factors.get(1, fmpz_poly([1]))):
             t1 = _common_root(*([acb_poly(c)(t2) for c in row] for row in rows))
-            own, other = (None, None) if t1 is None else _signs(values, (t1, t2))
-            if t1 is None or own is None or other is None:
+            zeros = [] if t1 is None else _vanishing(values, (t1, t2))
+            if t1 is None or any(len(signs) != 2 for signs in zeros):  # the other own length has either sign
                 unsettled += 1
                 if t2.imag == 0:
                     raise ArithmeticError("a real root is not settled")
-            elif own[1] != other[1]:
+            elif common := set.intersection(*zeros):
+                found.append((t1, t2, common.pop()))  # t1 is a rational function of t2, so it is real where t2 is
+            else:
                 opposed += 1
-            else:  # t1 is a rational function of t2, so it is real where t2 is
-                found.append((t1, t2, (other[0], own[0], own[1])))
     return SignedSolutions(tuple(found), opposed, unsettled)
 
 
@@ -166,17 +168,16 @@ def _common_root(first: Sequence[acb], second: Sequence[acb]) -> acb | None:
     return common[0] if len(common) == 1 else None
 
 
-def _signs(values: Mapping[str, Any], tangents: Sequence[acb]) -> list[tuple[int, int] | None]:
-    """For each equation the only signs of its own length and l3 at which it can hold; None when it is not clear."""
+def _vanishing(values: Mapping[str, Any], tangents: Sequence[acb]) -> list[set[Signs]]:
+    """For each equation the signs of l1, l2 and l3 at which it may hold."""
     circles = [((1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)) for t in tangents]
-    zero: tuple[set[tuple[int, int]], ...] = (set(), set())
+    zeros: list[set[Signs]] = [set(), set()]
     for signs in product((1, -1), repeat=3):
         # any continuous choice of the roots serves: both signs are tried
-        gradient = derivatives(values, circles, partial(_root, iter(signs))).gradient
-        for n, slope in enumerate(gradient):
+        for found, slope in zip(zeros, derivatives(values, circles, partial(_root, iter(signs)))[0], strict=True):
             if slope.contains(0):
-                zero[n].add((signs[1 - n], signs[2]))
-    return [next(iter(found)) if len(found) == 1 else None for found in zero]
+                found.add(signs)
+    return zeros
 
 
 def _root(signs: Iterator[int], square: acb) -> acb:

@@ -1,8 +1,13 @@
 """Statements about the mechanism as text, such as ``g1 = -L1*k*(L2*sin12 - 2*rho*s1 + F3/k*c1)``, and if they hold.
 
-Guarantee: an equation holds when both sides agree as functions of the angles and of all parameters; ``not`` before it
-says that they do not. Anything else is a comparison of numbers. What the names stand for is derived from the
-description (`ptmcad.studies.paper.symbolic`), and numbers of equilibria are those of `ptmcad.solve`.
+Guarantee: potential, gradient and Hessian follow from the description's points, springs and loads by differentiation;
+nothing of the paper enters them. An equation holds when both sides agree as functions of the angles and of all
+parameters; ``not`` before it says that they do not. Anything else is a comparison of numbers. Numbers of equilibria are
+those of `ptmcad.solve`.
+
+The symbols are the paper's: L1, L2, rho, k, F3, F4, F3x, F4x; c1, s1, c2, s2 for cosines and sines; t1, t2 for tangents
+of half angles; l1, l2, l3 for the springs' lengths and l0 for their free one. All stiffnesses are k here and all free
+lengths l0.
 
 ``U``, ``g1``, ``H11`` and so on are without horizontal loads and free lengths, those that end in ``_h`` with horizontal
 loads; ``E1`` and ``E2`` are the gradient in half angles, divided by L1 k and L2 k; ``q0`` to ``q6`` the coefficients of
@@ -13,41 +18,103 @@ remains of (11) where the angles differ.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache, partial
+from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import sympy as sp
+import yaml
 
 from ptmcad.answer.poses import Poses
 from ptmcad.ask.solving import solve
-from ptmcad.studies.paper import symbolic
-from ptmcad.studies.paper.symbolic import CIRCLES, F3, F4, HORIZONTAL, L1, L2, Expr, c1, c2, l0, rho, s1, s2, t1, t2
+from ptmcad.mechanism import ptm
+from ptmcad.mechanism.evaluate import evaluate
 
+Expr = Any
+"""A SymPy expression; SymPy has no types of its own for a type checker."""
+
+L1, L2, rho, k, l0 = sp.symbols("L1 L2 rho k l0", positive=True)
+F3, F4, F3x, F4x = sp.symbols("F3 F4 F3x F4x", real=True)
+c1, s1, c2, s2, t1, t2 = sp.symbols("c1 s1 c2 s2 t1 t2", real=True)
+LENGTHS = sp.symbols("l1 l2 l3", positive=True)
+CIRCLES = ((c1, s1), (c2, s2))
+HORIZONTAL = (F3x, F4x)
+HALF = {c1: (1 - t1**2) / (1 + t1**2), s1: 2 * t1 / (1 + t1**2)}
+HALF |= {c2: (1 - t2**2) / (1 + t2**2), s2: 2 * t2 / (1 + t2**2)}
+CLEAR = (1 + t1**2) * (1 + t2**2)
+
+_MECHANISM = ptm()
+PARAMETERS = (L1, L2, rho, k, l0, F3, F4, F3x, F4x)
+_ALIASES = dict.fromkeys(_MECHANISM.stiffnesses, k) | dict.fromkeys(_MECHANISM.free_lengths, l0)
+_RING: Any = SimpleNamespace(
+    constant=lambda value: sp.Rational(value.numerator, value.denominator),
+    parameter=({str(s): s for s in PARAMETERS} | _ALIASES).__getitem__,
+    cos=lambda angle: CIRCLES[_MECHANISM.angles.index(angle)][0],
+    sin=lambda angle: CIRCLES[_MECHANISM.angles.index(angle)][1],
+)
 T, e1, e2, height, scale = sp.symbols("T e1 e2 height scale")
 ANGLES = (*CIRCLES[0], *CIRCLES[1])
-_ALL = (*symbolic.PARAMETERS, *symbolic.LENGTHS, *ANGLES, t1, t2, T, e1, e2, height, scale)
+_ALL = (*PARAMETERS, *LENGTHS, *ANGLES, t1, t2, T, e1, e2, height, scale)
 SYMBOLS = {str(symbol): symbol for symbol in _ALL}
-DEFINITIONS = {
-    "sin12": "s1*c2 + c1*s2",
-    "cos12": "c1*c2 - s1*s2",
-    "COS1": "(4*rho^2 + L1^2 - L2^2)/(4*rho*L1)",
-    "COS2": "(4*rho^2 + L2^2 - L1^2)/(4*rho*L2)",
-    "OTHER": "-(F4*t2 + 2*k*rho)/(F4 - 2*k*rho*t2)",
-    "detH": "expand(H11*H22 - H12^2)",
-    "E1": "expand(cancel(half_angles(g1)*(1 + t1^2)*(1 + t2^2)/(L1*k)))",
-    "E2": "expand(cancel(half_angles(g2)*(1 + t1^2)*(1 + t2^2)/(L2*k)))",
-    "a": "expand(at(E1.coeff(t1, 2)*E2.coeff(t1, 1) - E2.coeff(t1, 2)*E1.coeff(t1, 1), k=1))",
-    "b": "expand(at(E1.coeff(t1, 2)*E2.coeff(t1, 0) - E2.coeff(t1, 2)*E1.coeff(t1, 0), k=1))",
-    "resultant": "expand(b^2 - a*at(E1.coeff(t1, 1)*E2.coeff(t1, 0) - E2.coeff(t1, 1)*E1.coeff(t1, 0), k=1))",
-    "sextic": "quo(resultant, 1 + t2^2, t2)",
-}
-"""Of names without horizontal loads, and with them, in the language of statements; a t1 + b is what two polynomials of
-degree 2 in t1 leave without t1^2."""
-PLAIN = {f"q{n}": f"factor(sextic.coeff(t2, {n}))" for n in range(7)} | {
-    "eliminated_12": "expand(quo(numerator(at(symmetric(k*E2), t1=OTHER)), 1 + t2^2, t2))"
-}
-"""Of those that are used without horizontal loads alone."""
+TEXTS: Mapping[str, Any] = yaml.safe_load(Path(__file__).with_name("expressions.yaml").read_text(encoding="utf-8"))
+"""What further names stand for, in the language of statements; and the paper's equations."""
+
+
+@cache
+def points() -> Mapping[str, tuple[Expr, Expr]]:
+    """The coordinates of A1, A2, A3 and A4."""
+    return {name: (evaluate(x, _RING), evaluate(y, _RING)) for name, (x, y) in _MECHANISM.points.items()}
+
+
+@cache
+def squares() -> tuple[Expr, ...]:
+    """The squares of the springs' lengths, the sines' squares being eliminated."""
+    ends = ((points()[spring.start], points()[spring.end]) for spring in _MECHANISM.springs)
+    found = (sum((b - a) ** 2 for a, b in zip(*pair, strict=True)) for pair in ends)
+    return tuple(sp.expand(sp.expand(q).subs({s**2: 1 - c**2 for c, s in CIRCLES})) for q in found)
+
+
+@cache
+def potential() -> Expr:
+    """Of springs and loads, with the free length; squares of the lengths are put in."""
+    total = sum(k / 2 * (square - 2 * l0 * x + l0**2) for x, square in zip(LENGTHS, squares(), strict=True))
+    for load in _MECHANISM.loads:
+        x, y = points()[load.point]
+        total -= evaluate(load.x, _RING) * x + evaluate(load.y, _RING) * y
+    return sp.expand(total)
+
+
+def by_angle(expression: Expr, number: int) -> Expr:
+    """The derivative by th1 or th2 of an expression in cosines, sines and the three lengths."""
+    cosine, sine = CIRCLES[number - 1]
+    total = sp.diff(expression, sine) * cosine - sp.diff(expression, cosine) * sine
+    for length, square in zip(LENGTHS, squares(), strict=True):
+        if (slope := sp.diff(expression, length)) != 0:
+            total += slope * by_angle(square, number) / (2 * length)
+    return sp.expand(total)
+
+
+@cache
+def gradient() -> tuple[Expr, Expr]:
+    """dU/dth1 and dU/dth2, with the free length and horizontal loads."""
+    return by_angle(potential(), 1), by_angle(potential(), 2)
+
+
+@cache
+def hessian() -> tuple[Expr, Expr, Expr]:
+    """H(1,1), H(1,2) and H(2,2), likewise."""
+    first, second = gradient()
+    return by_angle(first, 1), by_angle(first, 2), by_angle(second, 2)
+
+
+def half_angles(expression: Expr) -> Expr:
+    """cos = (1 - t^2)/(1 + t^2) and sin = 2 t/(1 + t^2) put in, for both angles."""
+    return sp.sympify(expression).subs(HALF)
+
+
+# ----------------------------------------------------------------------------------------------------------- statements
 
 
 def holds(statement: str) -> bool:
@@ -67,13 +134,13 @@ def expression(text: str) -> Expr:
 def names() -> dict[str, Any]:
     """What names stand for."""
     known = SYMBOLS | FUNCTIONS
-    known |= {f"{name}{axis}": x for name, at in symbolic.points().items() for axis, x in zip("xy", at, strict=True)}
-    found = (symbolic.potential(), *symbolic.gradient(), *symbolic.hessian())
+    known |= {f"{name}{axis}": x for name, at in points().items() for axis, x in zip("xy", at, strict=True)}
+    found = (potential(), *gradient(), *hessian())
     derived = dict(zip(("U", "g1", "g2", "H11", "H12", "H22"), found, strict=True))
     known |= {f"{name}_l": e for name, e in derived.items()}
-    for suffix, absent, texts in (("_h", (l0,), DEFINITIONS), ("", (l0, *HORIZONTAL), DEFINITIONS | PLAIN)):
-        local = {name: sp.expand(symbolic.without(e, *absent)) for name, e in derived.items()}
-        for name, text in texts.items():
+    for suffix, absent, plain in (("_h", (l0,), {}), ("", (l0, *HORIZONTAL), TEXTS["plain"])):
+        local = {name: placed(dict.fromkeys(absent, 0), e) for name, e in derived.items()}
+        for name, text in {**TEXTS["definitions"], **plain}.items():
             local[name] = sp.sympify(text, locals=known | local)
         known |= {f"{name}{suffix}": e for name, e in local.items()}
     return known
@@ -113,14 +180,14 @@ def triangle(e: Expr) -> Expr:
 
 def squared(e: Expr) -> Expr:
     """With the squares of the springs' lengths put in."""
-    for length, square in zip(symbolic.LENGTHS, symbolic.squares(), strict=True):
+    for length, square in zip(LENGTHS, squares(), strict=True):
         e = sp.rem(e, length**2 - square, length)
     return e
 
 
 def numerator(e: Expr) -> Expr:
     """Of what remains in half angles; zero exactly if an expression is, wherever c^2 + s^2 = 1 for both angles."""
-    return sp.expand(sp.numer(sp.together(symbolic.half_angles(e))))
+    return sp.expand(sp.numer(sp.together(half_angles(e))))
 
 
 # ------------------------------------------------------------------------------------------------------------ numbers
@@ -128,10 +195,10 @@ def numerator(e: Expr) -> Expr:
 
 def independent() -> int:
     """How many numbers the nodes' positions depend on: the rank of their derivatives at a pose, which is the most."""
-    places = [x for place in symbolic.points().values() for x in place]
-    derivatives = [[sp.diff(x, rho), symbolic.by_angle(x, 1), symbolic.by_angle(x, 2)] for x in places]
+    places = [x for place in points().values() for x in place]
+    derivatives = [[sp.diff(x, rho), by_angle(x, 1), by_angle(x, 2)] for x in places]
     pose = {L1: 1, L2: 2, t1: sp.Rational(1, 2), t2: sp.Rational(1, 3)}
-    return int(symbolic.half_angles(sp.Matrix(derivatives)).subs(pose).rank())
+    return int(half_angles(sp.Matrix(derivatives)).subs(pose).rank())
 
 
 @cache
@@ -154,12 +221,11 @@ def equal_angles(**values: Expr) -> int:
 
 
 FUNCTIONS: dict[str, Callable[..., Any]] = {
-    f.__name__: f
-    for f in (at, flat, triangle, squared, numerator, independent, flat_stable, equal_angles, symbolic.half_angles)
+    f.__name__: f for f in (at, flat, triangle, squared, numerator, independent, flat_stable, equal_angles, half_angles)
 }
 FUNCTIONS |= {name: partial(placed, values) for name, values in PLACES.items()} | {
     # for equal rods and forces, by t2, where the angles differ
-    "unequal": lambda e: sp.factor(symbolic.half_angles(placed(PLACES["symmetric"], e)).subs(t1, expression("OTHER"))),
+    "unequal": lambda e: sp.factor(half_angles(placed(PLACES["symmetric"], e)).subs(t1, expression("OTHER"))),
     "degree": lambda e, unknown: int(sp.degree(numerator(e), unknown)),
     # in all symbols unless some are named
     "terms": lambda e, *unknowns: len(sp.Poly(e, *unknowns).terms()),

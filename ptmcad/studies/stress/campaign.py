@@ -22,10 +22,10 @@ from typing import Any
 
 from ptmcad.answer.poses import DIGITS
 from ptmcad.extras import Extra, require
-from ptmcad.studies.slices import ptm_slice
+from ptmcad.show.ranges.table import aligned
 from ptmcad.studies.stress.case import Case, Question
 from ptmcad.studies.stress.judgement import Row, judge
-from ptmcad.studies.tables import columns, installed, page
+from ptmcad.studies.tables import installed, page
 from ptmcad.studies.tables import markdown as table_of
 from ptmcad.text.numerals import shortest_text
 from ptmcad.version import __version__
@@ -105,7 +105,8 @@ def answer(question: Question, name: str = "case") -> Any:
 
     if not question.axes:
         return ptmcad.solve(None, DIGITS, None, **question.parameters)
-    slice = ptm_slice(name, question.axes, **question.parameters)
+    record = {"name": name, "mechanism": "ptm", "parameters": question.parameters, "axes": question.axes}
+    slice = ptmcad.slice_from_mapping(record)
     if question.along:
         return ptmcad.intervals(slice, question.along, question.fixed)
     if question.tolerance is not None:
@@ -157,7 +158,7 @@ def cells(row: Row) -> tuple[str, ...]:
 def table(campaign: Row, wanted: int) -> str:
     """The campaign as a table for a terminal, with a summary below."""
     rows = [(*cells(row), f"{1000 * row['seconds']:.3g}", f"{row['ratio']:.2g}") for row in campaign["cases"]]
-    return "\n".join([*columns([(*HEADINGS, "ms", "x tame"), *rows]), "", *summary(campaign, wanted)])
+    return "\n".join([*aligned([(*HEADINGS, "ms", "x tame"), *rows]), "", *summary(campaign, wanted)])
 
 
 def markdown(campaign: Row) -> str:
@@ -170,7 +171,7 @@ def markdown(campaign: Row) -> str:
     blocks: list[str | list[str]] = []
     for family, members in groupby(rows, lambda row: row["family"]):
         shown = [(*cells(row), f"{row['calls'] / max(row['sibling_calls'], 1):.2g}") for row in members]
-        blocks += [f"## {family[0].upper()}{family[1:]}", table_of([*HEADINGS, "work x tame"], shown)]
+        blocks += [f"## {family[0].upper()}{family[1:]}", table_of([(*HEADINGS, "work x tame"), *shown])]
     right, double, *_ = summary(campaign, len(rows), remarks=False)
     written = f"Written by `ptmcad stress` with seed {campaign['seed']}. {right}; {double}."
     return page("# The stress cases, one by one", written, *blocks)
@@ -200,7 +201,7 @@ def summary(campaign: Row, wanted: int, remarks: bool = True) -> list[str]:
 
 def listing(cases: Sequence[Case]) -> str:
     """Name, family, question and source of each case."""
-    return "\n".join(columns([(c.name, c.family, c.question.kind, c.source) for c in cases]))
+    return "\n".join(aligned([(c.name, c.family, c.question.kind, c.source) for c in cases]))
 
 
 def to_json(campaign: Row) -> str:
@@ -210,11 +211,11 @@ def to_json(campaign: Row) -> str:
 
 def to_csv(campaign: Row) -> str:
     """The same, one row for each case."""
-    text, rows = io.StringIO(), _plain(campaign)
-    writer = csv.DictWriter(text, list(rows[0]) if rows else [], lineterminator="\n")
+    text, rows = io.StringIO(), [{**row, "remarks": "; ".join(row["remarks"])} for row in _plain(campaign)]
     if rows:
+        writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
         writer.writeheader()
-    writer.writerows({**row, "remarks": "; ".join(row["remarks"])} for row in rows)
+        writer.writerows(rows)
     return text.getvalue()
 
 

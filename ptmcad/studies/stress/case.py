@@ -91,8 +91,12 @@ class Case:
     @property
     def has_free_lengths(self) -> bool:
         """Whether a question is for the certified engine."""
-        given = (*self.question.parameters.items(), *self.sibling.parameters.items())
-        return any(name.startswith("l0") and value for name, value in given)
+        return free_lengths(self.question.parameters) or free_lengths(self.sibling.parameters)
+
+
+def free_lengths(parameters: Mapping[str, Fraction]) -> bool:
+    """Whether a spring has one."""
+    return any(name.startswith("l0") and value for name, value in parameters.items())
 
 
 def point(**given: Fraction | int | str) -> Question:

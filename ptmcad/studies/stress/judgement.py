@@ -16,15 +16,14 @@ from fractions import Fraction
 from itertools import groupby, product
 from typing import Any
 
-from flint import arb, ctx
+from flint import ctx
 
 from ptmcad.answer.intervals import CountIntervals, lower, upper
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.mechanism import ptm
-from ptmcad.studies.equilibria import IndexedPose, newton_pose, scale
-from ptmcad.studies.stress.case import Case
-from ptmcad.studies.stress.methods import double_poses, sextic_poses
+from ptmcad.studies.doubles import scale
+from ptmcad.studies.stress.case import Case, free_lengths
+from ptmcad.studies.stress.methods import IndexedPose, apart, double_poses, proved_poses, sextic_poses
 from ptmcad.text.balls import ball_of, exact
 from ptmcad.text.expressions import Expression
 
@@ -35,6 +34,9 @@ STEPS = 200
 _BITS = 512
 DECIDED = (Status.EXACT, Status.CERTIFIED)
 
+COLUMNS = (
+    "expected", "found", "right", "remarks", "double", "double_right", "error", "double_error", "condition", "bits",
+)  # fmt: skip
 Row = dict[str, Any]
 """What came out of a case.
 
@@ -66,19 +68,8 @@ def judge(case: Case, found: Any) -> Row:
     with ctx.workprec(_BITS):
         checks, row = judgement(case, found)
     remarks = [remark for holds, remark in checks if not holds]
-    nothing = {
-        "expected": case.expected,
-        "found": "",
-        "right": not remarks,
-        "remarks": remarks,
-        "double": "",
-        "double_right": False,
-        "error": None,
-        "double_error": None,
-        "condition": None,
-        "bits": 0,
-    }
-    return {**nothing, **row}
+    known: Row = {"expected": case.expected, "right": not remarks, "remarks": remarks, "bits": 0}
+    return {**dict.fromkeys(COLUMNS), **known, **row}
 
 
 Checks = list[tuple[bool, str]]
@@ -114,7 +105,10 @@ def _point(case: Case, found: Poses) -> tuple[Checks, Row]:
     parameters = case.question.parameters
     double = double_poses(parameters)
     ours = [_boxed(pose) for pose in found.equilibria]
-    known = _reference(parameters, [*(double or ()), *ours])
+    if free_lengths(parameters):
+        known = proved_poses(parameters, [(pose.th1, pose.th2) for pose in (*(double or ()), *ours)])
+    else:
+        known = sextic_poses(parameters)
     text, other, error = f"{len(ours)}/{found.stable}", _shown(known), _error(ours, known)
     checks = [
         (found.status in DECIDED, f"status {found.status.value}: {found.remark}"),
@@ -122,7 +116,7 @@ def _point(case: Case, found: Poses) -> tuple[Checks, Row]:
         (case.expected in ("", text), f"{text} equilibria and stable ones, but {case.expected} by construction"),
         (error is not None, "an enclosure does not contain the reference to 100 digits"),
     ]
-    errors = [min(float(_apart(p, r).mid()) for r in known) for p in double or () if known]
+    errors = [min(float(apart(p, r).mid()) for r in known) for p in double or () if known]
     smallest = min((abs(e.center) for p in found.equilibria for e in p.eigenvalues), default=Fraction(0))
     largest = Fraction(scale({name: float(value) for name, value in parameters.items()}))
     return checks, {
@@ -143,36 +137,16 @@ def _boxed(pose: Pose) -> IndexedPose:
     return IndexedPose(first, second, -1 if pose.index is None else pose.index)
 
 
-def _reference(parameters: Mapping[str, Fraction], starts: Sequence[IndexedPose]) -> Sequence[IndexedPose]:
-    """The equilibria to 100 digits; with free lengths those from the starts of either method, each proved anew."""
-    if not any(parameters.get(name) for name in ptm().free_lengths):
-        return sextic_poses(parameters)
-    known: list[IndexedPose] = []
-    for start in starts:
-        pose = newton_pose(parameters, (start.th1, start.th2))
-        if pose is not None and not any(_apart(pose, other).contains(0) for other in known):
-            known.append(pose)
-    return known
-
-
-def _apart(first: IndexedPose, second: IndexedPose) -> arb:
-    """The larger of the distances of both angles, on the circle."""
-    gaps = [arb(a) - b for a, b in ((first.th1, second.th1), (first.th2, second.th2))]
-    turn = 2 * arb.pi()
-    one, other = (abs(gap - turn * (gap / turn + 0.5).mid().floor()) for gap in gaps)
-    return arb(one.max(other))
-
-
 def _error(found: Sequence[IndexedPose], reference: Sequence[IndexedPose]) -> Fraction | None:
     """The largest error of an angle; None unless each pose encloses one of the references, with its index."""
     left, largest = list(reference), Fraction(0)
     for pose in found:
-        inside = [r for r in left if r.index == pose.index and _apart(pose, r).contains(0)]
+        inside = [r for r in left if r.index == pose.index and apart(pose, r).contains(0)]
         if not inside:
             return None
         left.remove(inside[0])
         middle = IndexedPose(pose.th1.mid(), pose.th2.mid(), pose.index)
-        largest = max(largest, exact(_apart(middle, inside[0]).mid()))
+        largest = max(largest, exact(apart(middle, inside[0]).mid()))
     return None if left else largest
 
 

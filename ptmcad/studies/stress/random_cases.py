@@ -13,7 +13,6 @@ from ptmcad.mechanism import ptm
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.studies.stress.case import Case, Question
 from ptmcad.studies.stress.constructions import FEW, Degenerate, degenerate
-from ptmcad.studies.stress.methods import Degenerate as DegeneratePoint
 from ptmcad.studies.stress.methods import sextic_poses
 
 KINDS = ("scaled", "mirrored", "swapped", "fold", "cusp")
@@ -76,7 +75,7 @@ def _tame(dice: random.Random) -> tuple[Values, str]:
         p |= {name: Fraction(dice.randint(-40, 40) if sideways else 0) for name in ("F3x", "F4x")}
         try:
             poses = sextic_poses(p)
-        except DegeneratePoint:
+        except ArithmeticError:  # a degenerate point
             continue
         return p, f"{len(poses)}/{sum(pose.index == 0 for pose in poses)}"
 

@@ -1,0 +1,116 @@
+"""The picture of measurements: panels of curves or loose marks on logarithmic axes.
+
+Guarantee: every mark is drawn, none is moved. Below its least decade the ordinate is linear, so that it has a zero; it
+is the same in all panels.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Mapping, Sequence
+from math import ceil, floor, log10
+from typing import Any, NamedTuple
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator, SymmetricalLogLocator
+
+from ptmcad.show.render.legend import INK
+from ptmcad.show.render.printing import settings
+from ptmcad.text.numerals import power_of_ten
+
+DPI = 110
+COLUMNS = 4
+LINE = 145
+"""Letters in a line of what stands below."""
+STYLES: tuple[dict[str, Any], ...] = (
+    {"color": "#0b5394", "marker": "o"},
+    {"color": "#38761d", "marker": "s"},
+    {"color": "#741b47", "marker": "D"},
+    {"color": "#b45f06", "marker": "^"},
+    {"color": "#555555", "marker": "P"},
+    {"color": "#8a7d00", "marker": "X"},
+    {"color": "#009e73", "marker": "v"},
+    {"color": "#c00000", "marker": "*"},
+    {"color": "#0b5394", "marker": "o", "markerfacecolor": "white", "linestyle": (0, (2, 2))},
+)
+"""Of curves that are joined."""
+WIDE = 1e4
+"""Factor between abscissae from which on not every decade has marks."""
+
+
+class Mark(NamedTuple):
+    """A place, the spread of its abscissa, and what is written beside it."""
+
+    x: float
+    y: float
+    least: float
+    most: float
+    label: str = ""
+
+
+class Curve(NamedTuple):
+    """Marks in the order in which they are joined, and how matplotlib draws them."""
+
+    name: str
+    style: Mapping[str, Any]
+    marks: Sequence[Mark]
+
+
+def draw(title: str, x: str, y: str, panels: Mapping[str, Sequence[Curve]], below: Sequence[str] = ()) -> Figure:
+    """The picture of panels by their titles, with what the axes show and sentences below; each has a mark at least.
+
+    The figure's label is its description.
+    """
+    curves = [curve for panel in panels.values() for curve in panel]
+    heights = [mark.y for curve in curves for mark in curve.marks]
+    columns = min(len(panels), COLUMNS) or 1
+    rows = ceil(len(panels) / columns)
+    notes = [line for sentence in below for line in textwrap.wrap(sentence, LINE)]
+    words = [f"{c.name}: {', '.join(f'{m.x:.3g}: {m.y:.3g}' for m in c.marks)}." for c in curves if c.marks]
+    with settings():
+        figure = Figure((9.2, 6.4) if columns == 1 else (3 * columns, 2.6 * rows + 1.5), layout="constrained")
+        figure.set_label(f"{title}\n{' '.join([*words, *below])}")
+        figure.suptitle(title, fontsize=12)
+        for number, (name, panel) in enumerate(panels.items()):
+            axes = figure.add_subplot(rows, columns, number + 1)
+            _scales(axes, [mark for curve in panel for mark in curve.marks], heights)
+            axes.set_title(name, fontsize=10)
+            axes.set_xlabel(x)
+            axes.set_ylabel("" if number % columns else y)
+            for curve in panel:
+                _curve(axes, curve)
+        shown = figure.axes[0].get_legend_handles_labels() if panels else ([], [])
+        figure.legend(*shown, loc="outside lower center", ncols=3 if rows > 1 else 2, frameon=False, fontsize=9,
+                      labelcolor=INK, title="\n".join(notes), title_fontsize=8.5)  # fmt: skip
+    return figure
+
+
+def _scales(axes: Axes, marks: Sequence[Mark], heights: Sequence[float]) -> None:
+    least = 10.0 ** floor(log10(min((y for y in heights if y > 0), default=1e-3)))
+    low, high = min(mark.least for mark in marks), max(mark.most for mark in marks)
+    beside = max(1.6, (high / low) ** 0.1)
+    axes.set_xscale("log")
+    axes.set_yscale("symlog", linthresh=least, linscale=0.5)
+    axes.set_xlim(low / beside, high * beside)
+    axes.set_ylim(-0.4 * least if min(heights) <= 0 else least / 2, 4 * max(least, *heights))
+    axes.axhspan(-least, least, color="#eef3e6", zorder=0)
+    decades = SymmetricalLogLocator(base=10, linthresh=least)
+    decades.set_params(numticks=8)
+    axes.yaxis.set_major_locator(decades)
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: power_of_ten(round(log10(y))) if y > 0 else "0"))
+    axes.xaxis.set_major_locator(LogLocator(numticks=4) if high > WIDE * low else LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.grid(color="#dddddd", linewidth=0.6)
+    axes.set_axisbelow(True)
+
+
+def _curve(axes: Axes, curve: Curve) -> None:
+    color = curve.style["color"]
+    x, y = ([getattr(mark, name) for mark in curve.marks] for name in "xy")
+    axes.plot(x, y, label=curve.name, linewidth=1.3, markersize=6, zorder=4, **curve.style)
+    for mark in curve.marks:
+        axes.hlines(mark.y, mark.least, mark.most, color=color, linewidth=0.8, zorder=2)
+        axes.annotate(mark.label, (mark.x, mark.y), xytext=(5, 5), textcoords="offset points", fontsize=7.5,
+                      color=color, zorder=5)  # fmt: skip
