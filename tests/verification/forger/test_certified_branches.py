@@ -318,10 +318,7 @@ ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
     (check_points, partial(made, "crease", "total"), sample_at(0, 6, 6), "has 0 equilibria, not one"),
     (check_points, partial(made, "other-crease", "total"), sample_at(0, 6, 3), "has 0 equilibria, not one"),
     # and at a pitchfork, where nothing else is decided
-    pytest.param(
-        check_points, partial(made, "pitchfork"), sample_at(0, 400, 0), "has 0 equilibria, not one",
-        marks=pytest.mark.slow,
-    ),
+    (check_points, partial(made, "pitchfork"), sample_at(0, 400, 0), "has 0 equilibria, not one"),
     (partial(check_boxes, seed="branches", number=1), springs, both(0, stable=7), "in cell 0, which is said to have"),
     (partial(check_boxes, seed="branches", number=1), total, both(0, total=7), "in cell 0, which is said to have"),
 ]  # fmt: skip
