@@ -33,11 +33,14 @@ from ptmcad.options import Options, Progress
 from ptmcad.question.config import member_like
 from ptmcad.text.node import opened
 from ptmcad.text.numerals import fraction_of, text_of
+from ptmcad.version import __version__
 
 if TYPE_CHECKING:
     from ptmcad.verification.report import VerifyReport
 
 Verify = Callable[[Progress], "VerifyReport"]
+_MORE_DIGITS = 10
+"""With so many digits more, enclosures of a line are far narrower than those that are stored."""
 
 
 @click.command("verify")
@@ -146,8 +149,8 @@ def _reports(path: Path, seed: int | None, boxes: int | None, effort: int | None
         report_idle([("boxes", boxes is not None, "all that is stored is checked"),
                      ("effort", effort is not None, "all that is stored is checked")])  # fmt: skip
     if kind == "design":
-        design = read_other(path, BestDesign.from_json, "ptmcad-design/1")
-        yield "", partial(_verified_design, design, seed)
+        design, versions = read_other(path, _design_in, "ptmcad-design/1")
+        yield "", partial(_verified_design, design, versions, seed)
     elif kind == "poses":
         poses = read_other(path, Poses.from_json, "ptmcad-poses/1")
         yield "", partial(_verified_poses, poses)
@@ -161,6 +164,11 @@ def _reports(path: Path, seed: int | None, boxes: int | None, effort: int | None
         yield f"what the members have in common over {family.free.name}", partial(_verified_family, family, seed)
     else:
         yield "", of_map(read_result(path, whole=False))
+
+
+def _design_in(text: str) -> tuple[BestDesign, Any]:
+    """A design, and the versions that made it."""
+    return BestDesign.from_json(text), json.loads(text).get("versions")
 
 
 def _range_in(text: str) -> dict[str, Any]:
@@ -231,7 +239,7 @@ def _verified_sweep(
     return VerifyReport(tuple(checked(None, steps, (), Headway(progress))))
 
 
-def _verified_design(found: BestDesign, seed: int | None, progress: Progress) -> VerifyReport:
+def _verified_design(found: BestDesign, versions: Any, seed: int | None, progress: Progress) -> VerifyReport:
     """The best design, and where ranges are longest by exact critical values."""
     from ptmcad.ask.designing.proof import exact_maximum
     from ptmcad.question.config.designs import design_from
@@ -249,7 +257,8 @@ def _verified_design(found: BestDesign, seed: int | None, progress: Progress) ->
     asked = design_from(question, maximise="range", along=data["along"]["name"], over=over,
                         where={"stable": found.working})  # fmt: skip
     anew = extremes_codec(found.over[0].name).write(exact_maximum(asked) or ())
-    compared = check_anew({"extremes": data["extremes"]}, {"extremes": anew})
+    stored = {"extremes": data["extremes"], "versions": versions}
+    compared = check_anew(stored, {"extremes": anew, "versions": data["versions"]})
     return VerifyReport((*report.checks, replace(compared, name="all of the extremes")))
 
 
@@ -272,7 +281,7 @@ def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> Ver
     from ptmcad.options import DEFAULTS
     from ptmcad.show.document.numbers import maximum
     from ptmcad.show.document.slice import SLICE
-    from ptmcad.show.ranges.document import document
+    from ptmcad.show.ranges.document import bands_codec, document, enclosed_codec
     from ptmcad.text.node import Node
     from ptmcad.verification import Check, VerifyReport, check_anew, verify_range
 
@@ -283,6 +292,9 @@ def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> Ver
         request = request_codec().read(Node(data["request"], "request"))
         over = Node(data.get("over", {"maxima": []}), "over")
         maxima = over.entry("maxima").each(lambda node: maximum(over.value["over"]["name"], request.digits).read(node))
+        for key, codec in (("enclosed", enclosed_codec), ("bands", bands_codec)):
+            if key in data:
+                codec(request.digits).read(Node(data[key], key))
         report = verify_range(data, slice, progress, maxima)
     except (ValueError, KeyError, TypeError, AttributeError, IndexError) as error:
         raise ConfigError(f"is damaged or not a ptmcad-range/1 file: {error}", file=str(path)) from error
@@ -290,9 +302,14 @@ def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> Ver
         return report
     if is_enclosed(slice, request):
         load_certified(progress, DEFAULTS)
-    parts = {**answer(slice, request).parts, "slice": data["slice"], "request": data["request"]}
-    anew = json.loads(document(slice.name, slice.mechanism, parts))
-    return VerifyReport((*report.checks, check_anew(data, anew)))
+
+    def anew(digits: int) -> Any:
+        parts = answer(slice, replace(request, digits=digits)).parts
+        asked = {"slice": data["slice"], "request": data["request"]}
+        return json.loads(document(slice.name, slice.mechanism, {**parts, **asked}))
+
+    finer = partial(anew, request.digits + _MORE_DIGITS)
+    return VerifyReport((*report.checks, check_anew(data, anew(request.digits), finer)))
 
 
 def _verified_family(family: FamilyMap, seed: int | None, progress: Progress) -> VerifyReport:
@@ -317,7 +334,8 @@ def _verified_family(family: FamilyMap, seed: int | None, progress: Progress) ->
     if found is not None and all(c.passed is not False for c in checks):
         checks += verify_changes(found, maps_at, seed, progress)
     common = in_common(Restored(family), options)
-    stored, anew = {"surfaces": family.surfaces}, {"surfaces": common.surfaces}
+    stored = {"versions": family.members[0].versions.get("ptmcad"), "surfaces": family.surfaces}
+    anew = {"versions": __version__, "surfaces": common.surfaces}
     if found is not None and all(c.passed is not False for c in checks):
         codec = changes_codec(family.free)
         stored |= codec.write(found)

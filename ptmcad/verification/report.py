@@ -5,15 +5,18 @@ Guarantee: `VerifyReport.ok` is True only when no check failed; a claim that was
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
 from html import escape
 from textwrap import fill
 from typing import Any, TypeVar
 
 from ptmcad.errors import LimitReached, shown
 from ptmcad.options import Progress
+from ptmcad.text.numerals import fraction_of
 
 C = TypeVar("C")
 
@@ -107,32 +110,66 @@ FINISHED: ContextVar[Callable[[Check], None]] = ContextVar("FINISHED", default=l
 """Is told each check as soon as it is finished: a process that is ended has printed those."""
 
 
-def check_anew(stored: Any, found: Any) -> Check:
+def check_anew(stored: Any, found: Any, finer: Callable[[], Any] = lambda: None) -> Check:
     """Compare a document, as JSON's data, with the one that the same question gives now.
 
     Of a document of another version it is said in what it differs, and not that this is false.
+
+    Parameters
+    ----------
+    finer : asked where they differ, gives the document with more digits. An enclosure that has the one in there holds,
+        whatever the one found now is; of one that only meets it nothing is said.
     """
     name, method = "all entries", "answered anew, and compared"
     versions = [part.get("versions") if isinstance(part, dict) else None for part in (stored, found)]
-    place = next(_differences(stored, found, versions[0] != versions[1]), "")
-    if not place:
+    earlier = versions[0] != versions[1]
+    if next(_differences(stored, found, None, earlier), None) is None:
         return Check(name, method, True, "the answer is the same now")
-    if versions[0] != versions[1]:
-        return Check(name, method, None, f"another version made it; now {place}")
-    return Check(name, method, False, shown(place))
+    places = list(_differences(stored, found, finer(), earlier))
+    if not places:
+        return Check(name, method, True, "the answer is the same now; enclosures have those with more digits")
+    if earlier:
+        return Check(name, method, None, f"another version made it; now {places[0]}")
+    false = next((place for place in places if not isinstance(place, Unchecked)), None)
+    return Check(name, method, None if false is None else False, shown(false or places[0]))
 
 
-def _differences(stored: Any, found: Any, earlier: bool, place: str = "") -> Iterator[str]:
+def _differences(stored: Any, found: Any, finer: Any, earlier: bool, place: str = "") -> Iterator[str]:
+    if stored != found and _is_enclosure(stored) and _is_enclosure(finer):
+        (low, high), (least, most) = _ends(stored), _ends(finer)
+        is_rounded = _is_decimal_of(stored["decimal"], (least, most))
+        if not (low <= least and most <= high and is_rounded):
+            differs = f"{place} is in {least!s:.30} to {most!s:.30}, not {stored!r:.80}"
+            yield Unchecked(differs) if low <= most and least <= high and is_rounded else differs
+        return
     # what an earlier version did not write of a part is no difference
     fits = isinstance(stored, dict) and isinstance(found, dict) and stored.keys() <= found.keys()
     if fits and (stored.keys() == found.keys() or (place and earlier)):
         for key in sorted(stored.keys() - {"versions"}):
-            yield from _differences(stored[key], found[key], earlier, f"{place}.{key}".lstrip("."))
+            part = finer.get(key) if isinstance(finer, dict) else None
+            yield from _differences(stored[key], found[key], part, earlier, f"{place}.{key}".lstrip("."))
     elif isinstance(stored, list) and isinstance(found, list) and len(stored) == len(found):
-        for k, (one, other) in enumerate(zip(stored, found, strict=True)):
-            yield from _differences(one, other, earlier, f"{place}[{k}]")
+        parts = finer if isinstance(finer, list) and len(finer) == len(found) else [None] * len(found)
+        for k, (one, other, part) in enumerate(zip(stored, found, parts, strict=True)):
+            yield from _differences(one, other, part, earlier, f"{place}[{k}]")
     elif (type(stored), stored) != (type(found), found):
         yield f"{place} is {found!r:.80}, not {stored!r:.80}"
+
+
+def _is_enclosure(entry: Any) -> bool:
+    return isinstance(entry, dict) and entry.keys() == {"low", "high", "decimal"}
+
+
+def _ends(enclosure: Mapping[str, str]) -> tuple[Fraction, Fraction]:
+    return fraction_of(enclosure["low"]), fraction_of(enclosure["high"])
+
+
+def _is_decimal_of(text: str | None, ends: tuple[Fraction, Fraction]) -> bool:
+    """Whether a decimal, where there is one, is within a unit of its last digit from a number."""
+    if text is None:
+        return True
+    unit = Fraction(10) ** int(Decimal(text).as_tuple().exponent)
+    return all(abs(fraction_of(text) - end) <= unit for end in ends)
 
 
 PARTS = 100

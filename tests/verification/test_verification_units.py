@@ -7,6 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from itertools import combinations
+from typing import Any
 
 import pytest
 from flint import Ordering, fmpz_mpoly_ctx, fmpz_poly
@@ -21,6 +22,7 @@ from ptmcad.text.numerals import decimal, fraction_of, integer_of, integer_text,
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
 from ptmcad.verification.elimination import Terms, discriminant, resultant
+from ptmcad.verification.report import check_anew
 from ptmcad.verification.solutions import check_solutions
 
 PLANE = fmpz_mpoly_ctx.get(("u", "v"), Ordering.lex)
@@ -161,3 +163,20 @@ def test_points_are_drawn_from_the_claims(shipped: Callable[..., RegionMap]) -> 
     assert details[0] == details[3]
     assert len(set(details)) == 3
     assert details[2].endswith("seed 5")
+
+
+def test_enclosures_that_hold_are_not_called_false_since_others_are_found_now() -> None:
+    """One that has the finer one holds; one beside it does not; of one that meets it nothing is said."""
+
+    def line(low: str, high: str, decimal: str | None, version: str = "1", met: str = "fold") -> dict[str, Any]:
+        return {"at": {"low": low, "high": high, "decimal": decimal}, "met": [met], "versions": {"ptmcad": version}}
+
+    now, finer = line("1.41", "1.42", "1.4"), line("1.414", "1.415", "1.41")
+    for stored, passed in (
+        (line("1.4", "1.42", "1.4"), True), (line("7/5", "3/2", None), True), (line("1.4", "1.4145", "1.4"), None),
+        (line("1.416", "1.42", "1.4"), False), (line("1.4", "1.42", "1.43"), False), (line("3/2", "7/5", None), False),
+        (line("1.4", "1.42", "1.4", met="cone"), False), (line("1.4", "1.42", "1.4", "0", "cone"), None),
+        (line("1.4", "1.42", "1.4", "0"), True), (now, True),
+    ):  # fmt: skip
+        assert check_anew(stored, now, lambda: finer).passed is passed, stored
+    assert check_anew(line("1.4", "1.42", "1.4"), now).passed is False
