@@ -206,9 +206,7 @@ def _held(mechanism: Mechanism) -> set[str]:
             held.update(u for u in mechanism.unknowns if squared.derivative(u).terms)
         if len(held) == len(mechanism.unknowns):
             return held
-    energy -= points.work_of_loads()  # twice the energy throughout
-    for torsion in mechanism.torsion:
-        energy += points.value(torsion.energy) * ring.constant(Fraction(2))
+    energy += points.energy_without_springs()  # twice the energy throughout
     held |= {first for second, first in mechanism.followers.items() if energy.derivative(second).terms}
     return held | {u for u in mechanism.unknowns if energy.derivative(u).terms}
 
@@ -301,9 +299,7 @@ def felt(mechanism: Mechanism, ring: Image) -> tuple[Polynomial, Counter[_Spring
             springs.append((_terms(k), _terms(free), _terms(squared)))
         else:
             energy += k * squared
-    energy -= points.work_of_loads()
-    for torsion in mechanism.torsion:
-        energy += points.value(torsion.energy) * ring.constant(Fraction(2))
+    energy += points.energy_without_springs()
     work = {u: ring.constant(Fraction(0)) for u in mechanism.unknowns}
     for moment in mechanism.moments:
         for unknown, c in multiples(ring.images.get(moment.unknown, Name(moment.unknown))).items():
@@ -369,11 +365,12 @@ class Points:
             found[unknown] = n
         return found
 
-    def work_of_loads(self) -> Polynomial:
-        """Twice the work of the dead forces."""
+    def energy_without_springs(self) -> Polynomial:
+        """Twice the energy of torsion springs, and of the dead forces, whose work it is but for the sign."""
         total = self.ring.constant(Fraction(0))
         for load in self.mechanism.loads:
             for force, place in zip((load.x, load.y), self.at(load.point), strict=True):
-                work = self.value(force) * place
-                total += work + work
-        return total
+                total -= self.value(force) * place
+        for torsion in self.mechanism.torsion:
+            total += self.value(torsion.energy)
+        return total + total

@@ -21,7 +21,7 @@ from fuzz.seeds import records, results
 from fuzz.watch import Tally, watched
 from ptmcad.errors import PtmcadError
 
-FAST = {"record": 60, "options": 50, "points": 25, "small": 2, "result": 20}
+FAST = {"record": 60, "options": 50, "points": 25, "small": 4, "result": 20}
 SLOW = {"record": 5000, "options": 3000, "points": 1500, "small": 200, "result": 2000}
 
 

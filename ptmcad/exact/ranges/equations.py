@@ -75,13 +75,17 @@ def _jet(expression: Expression, x: arb) -> Jet:
             power = (ball_of(c), arb(0), arb(0))
             for _ in range(i):
                 power = _times_jet(power, (x, arb(1), arb(0)))
-            total = (total[0] + power[0], total[1] + power[1], total[2] + power[2])
+            total = _plus(total, power)
         return total
 
     top, (b, db, ddb) = of(expression.numerator), of(expression.denominator)
     value = top[0] / b
     slope = (top[1] - value * db) / b
     return value, slope, (top[2] - 2 * slope * db - value * ddb) / b
+
+
+def _plus(first: Jet, second: Jet) -> Jet:
+    return first[0] + second[0], first[1] + second[1], first[2] + second[2]
 
 
 def _times_jet(first: Jet, second: Jet) -> Jet:
@@ -104,7 +108,7 @@ def _specialised(terms: Terms, numbers: list[Jet]) -> tuple[Specialised, Special
             for k, e in powers:
                 for _ in range(e):
                     term = _times_jet(term, numbers[k])
-            total = (total[0] + term[0], total[1] + term[1], total[2] + term[2])
+            total = _plus(total, term)
         for order, (values, x) in enumerate(zip(found, total, strict=True)):
             if order == 0 or x != 0:
                 values.append((monomial, x))

@@ -134,13 +134,8 @@ def _draw_curve(poses: Poses, shown: Sequence[Pose]) -> Figure:
     (side,) = sides_of(poses.model, shown, poses.units)
     values, inputs = side.sampled(_FINE)
     heights = energy(inputs)
-    title = _title(poses)
-    size = (LEFT + SIDE + KEY + 2 * MARGIN, BOTTOM + SIDE + TITLE_LINE * len(title) + 3 * MARGIN)
     with settings():
-        figure = titled(title, size, LEFT)
-        figure.set_label(f"{' '.join(title)}\n{drawn(poses)} over {side.name} as a curve. {describe(poses)}")
-        axes = figure.add_axes((LEFT / size[0], BOTTOM / size[1], SIDE / size[0], SIDE / size[1]))
-        axes.set_gid("landscape")
+        figure, axes, _ = _page(poses, KEY + 2 * MARGIN, f"{side.name} as a curve")
         axes.plot(values, heights, color=_COLOURS[0], linewidth=1.6, zorder=3)
         room = 0.08 * float(np.ptp(heights)) or 1.0
         low, high = float(heights.min()) - room, float(heights.max()) + room
@@ -171,19 +166,25 @@ def _draw_curve(poses: Poses, shown: Sequence[Pose]) -> Figure:
     return figure
 
 
+def _page(poses: Poses, beside: float, what: str) -> tuple[Figure, Any, tuple[float, float]]:
+    """The figure with so much room beside the landscape, its axes, and its size."""
+    title = _title(poses)
+    size = (LEFT + SIDE + beside, BOTTOM + SIDE + TITLE_LINE * len(title) + 3 * MARGIN)
+    figure = titled(title, size, LEFT)
+    figure.set_label(f"{' '.join(title)}\n{drawn(poses)} over {what}. {describe(poses)}")
+    axes = figure.add_axes((LEFT / size[0], BOTTOM / size[1], SIDE / size[0], SIDE / size[1]))
+    axes.set_gid("landscape")
+    return figure, axes, size
+
+
 def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
     """The energy over two unknowns."""
     energy, sides = energy_of(poses.model, poses.parameters), sides_of(poses.model, shown, poses.units)
     (across, up), heights = _sampled(energy, sides, _GRID)
     critical = sorted({level for pose in shown for level in _levels(energy, sides, pose)})
     levels = contour_levels(critical, float(heights.min()), float(heights.max()))
-    title = _title(poses)
-    size = (LEFT + SIDE + BAR + KEY + MARGIN, BOTTOM + SIDE + TITLE_LINE * len(title) + 3 * MARGIN)
     with settings():
-        figure = titled(title, size, LEFT)
-        figure.set_label(f"{' '.join(title)}\n{drawn(poses)} over {_what(sides)} as contours. {describe(poses)}")
-        axes = figure.add_axes((LEFT / size[0], BOTTOM / size[1], SIDE / size[0], SIDE / size[1]))
-        axes.set_gid("landscape")
+        figure, axes, size = _page(poses, BAR + KEY + MARGIN, f"{_what(sides)} as contours")
         colours = LinearSegmentedColormap.from_list("energy", _COLOURS, N=256)
         norm = BoundaryNorm(levels, colours.N)
         clipped = np.clip(heights, levels[0], levels[-1])

@@ -59,7 +59,7 @@ def thin_regions(whole: Shapes, pixels: int) -> tuple[int, ...]:
     pixels : of the drawing's side.
     """
     image = whole.raster(pixels, pixels)
-    return tuple(n for n in range(len(whole.result.regions)) if not eroded(image == n).any())
+    return tuple(n for n in range(len(whole.result.regions)) if not _eroded(image == n).any())
 
 
 def unstable_zooms(whole: Shapes, pixels: int, most: int) -> tuple[Zoom, ...]:
@@ -204,16 +204,10 @@ def _shortened(shown: Interval, at: Fraction, window: Interval, factor: Fraction
 
 def _thick(seen: Shapes, region: int) -> tuple[int, tuple[Fraction, Fraction]]:
     """Half the side, in pixels, of the largest square within the region in the view (-1: none), and its centre."""
-    mask = seen.raster(_PIXELS, _PIXELS) == region
-    depth = -1
-    while mask.any():
-        depth, last = depth + 1, mask
-        mask = eroded(mask)
+    depth, *place = innermost(seen.raster(_PIXELS, _PIXELS) == region)
     if depth < 0:
         return depth, inside(seen, region)
-    rows, columns = np.nonzero(last)
-    middle = int(np.argmin((rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2))
-    x, y = (Fraction(2 * int(k[middle]) + 1, 2 * _PIXELS) for k in (columns, rows))
+    x, y = (Fraction(2 * k + 1, 2 * _PIXELS) for k in place)
     view = seen.view
     return depth, (view.x[0] + (view.x[1] - view.x[0]) * x, view.y[0] + (view.y[1] - view.y[0]) * y)
 
@@ -227,7 +221,20 @@ def inside(seen: Shapes, region: int) -> tuple[Fraction, Fraction]:
     return (visible or samples)[0]
 
 
-def eroded(mask: Mask) -> Mask:
+def innermost(mask: Mask) -> tuple[int, int, int]:
+    """How often a mask can be eroded, and column and row of a pixel that is left then; -1 first of an empty one."""
+    depth, last = -1, mask
+    while mask.any():
+        depth, last = depth + 1, mask
+        mask = _eroded(mask)
+    if depth < 0:
+        return -1, -1, -1
+    rows, columns = np.nonzero(last)
+    middle = int(np.argmin((rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2))
+    return depth, int(columns[middle]), int(rows[middle])
+
+
+def _eroded(mask: Mask) -> Mask:
     """The pixels whose eight neighbours are all in the mask; outside of it there is nothing."""
     rows = mask[1:-1] & mask[:-2] & mask[2:]
     inner = rows[:, 1:-1] & rows[:, :-2] & rows[:, 2:]

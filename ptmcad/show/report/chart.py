@@ -24,7 +24,7 @@ from ptmcad.answer.words import counted
 from ptmcad.mechanism import Model
 from ptmcad.question.slice import Count
 from ptmcad.show.render.colours import Fill, fill_of
-from ptmcad.show.render.slivers import eroded, thin_regions, zooms
+from ptmcad.show.render.slivers import innermost, thin_regions, zooms
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.report.frame import RIM, SIDE, frame, room
 from ptmcad.show.report.pathdata import GRID, path_data
@@ -271,12 +271,7 @@ def region_labels(seen: Shapes) -> list[Label]:
         half = ceil(len(count_text(region, seen.result.slice.count)) * LABEL * _LETTER / 2 * pixels / SIDE) + 1
         padded = np.pad(image == number, ((2, 2), (half, half)))
         room = np.asarray(sliding_window_view(padded, (5, 2 * half + 1)).all(axis=(2, 3)))
-        if not room.any():
-            continue
-        while room.any():
-            last = room
-            room = eroded(room)
-        rows, columns = np.nonzero(last)
-        middle = int(np.argmin((rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2))
-        found.append((number, (columns[middle] + 0.5) / pixels, (rows[middle] + 0.5) / pixels))
+        depth, column, row = innermost(room)
+        if depth >= 0:
+            found.append((number, (column + 0.5) / pixels, (row + 0.5) / pixels))
     return found
