@@ -79,9 +79,12 @@ def boundary_surface(
 
 
 def surface_of(
-    common: Common, changes: Changes, tolerance: Fraction = TOLERANCE, max_members: int = MAX_MEMBERS,
+    common: Common,
+    changes: Changes,
+    tolerance: Fraction = TOLERANCE,
+    max_members: int = MAX_MEMBERS,
     options: Options = DEFAULTS,
-) -> BoundarySurface:  # fmt: skip
+) -> BoundarySurface:
     """The boundary surface of a family of which it is known what its members have in common, and its changes.
 
     Parameters
@@ -103,9 +106,17 @@ def surface_of(
         mesh = mesh_of(runs, axes, tolerance / 4)
     members = tuple(sorted({value for run in runs for value, _ in run}))
     return BoundarySurface(
-        (axes[0].name, axes[1].name, free.name), mesh.vertices, mesh.faces, mesh.sheet, mesh.member, mesh.sheets,
-        members, search.deviation, search.unresolved, changes.complete,
-    )  # fmt: skip
+        (axes[0].name, axes[1].name, free.name),
+        mesh.vertices,
+        mesh.faces,
+        mesh.sheet,
+        mesh.member,
+        mesh.sheets,
+        members,
+        search.deviation,
+        search.unresolved,
+        changes.complete,
+    )
 
 
 class _Gap(NamedTuple):

@@ -293,8 +293,9 @@ def _bisected(members: Members, tolerance: Fraction, reason: str) -> Changes:
     between.append(_simple_alike(members, place, values[-1]))
     arrangements = tuple(members.at(value).arrangement for value in between)
     words = f"found by sampling {len(values)} members, not proved complete: {reason}"
-    return Changes(free, tuple(found), tuple(between), arrangements, (), _at_ends(members, tolerance), False, words,
-                   tolerance)  # fmt: skip
+    return Changes(
+        free, tuple(found), tuple(between), arrangements, (), _at_ends(members, tolerance), False, words, tolerance
+    )
 
 
 def _simple_alike(members: Members, low: Fraction, high: Fraction) -> Fraction:

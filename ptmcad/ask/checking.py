@@ -305,11 +305,14 @@ def asked_text(slice: Slice) -> Iterator[str]:
     if isinstance(model, Mechanism):
         turning = sum(moment.unknown in model.angles for moment in model.moments)
         parts = {
-            ("bar", "bars"): len(model.bars), ("body", "bodies"): len(model.bodies),
-            ("spring", "springs"): len(model.springs), ("torsion spring", "torsion springs"): len(model.torsion),
-            ("load", "loads"): len(model.loads), ("moment", "moments"): turning,
+            ("bar", "bars"): len(model.bars),
+            ("body", "bodies"): len(model.bodies),
+            ("spring", "springs"): len(model.springs),
+            ("torsion spring", "torsion springs"): len(model.torsion),
+            ("load", "loads"): len(model.loads),
+            ("moment", "moments"): turning,
             ("force on a length", "forces on lengths"): len(model.moments) - turning,
-        }  # fmt: skip
+        }
         words = (f"{number} {one if number == 1 else many}" for (one, many), number in parts.items() if number)
         yield f"{'parts':<12}{', '.join(words)}"
         if model.torsion:

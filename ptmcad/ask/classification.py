@@ -263,16 +263,20 @@ def check_resumable(slice: Slice, earlier: RegionMap) -> None:
         That says what differs.
     """
     if earlier.cover is None:
-        raise ConfigError("this is no certified map: only one that the certified engine made can be gone on from",
-                          key="resume")  # fmt: skip
+        raise ConfigError(
+            "this is no certified map: only one that the certified engine made can be gone on from", key="resume"
+        )
     other = earlier.slice
     different = [
         *(["mechanism"] if other.model != slice.model else []),
         *(["axes"] if other.axes != slice.axes else []),
         *(["count"] if other.count is not slice.count else []),
-        *(n for n in dict.fromkeys((*slice.parameters, *other.parameters))
-          if slice.parameters.get(n) != other.parameters.get(n)),
-    ]  # fmt: skip
+        *(
+            n
+            for n in dict.fromkeys((*slice.parameters, *other.parameters))
+            if slice.parameters.get(n) != other.parameters.get(n)
+        ),
+    ]
     if different:
         raise ConfigError(
             f"this map is of another slice: {', '.join(different)} {'differs' if len(different) == 1 else 'differ'}",

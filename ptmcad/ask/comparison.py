@@ -162,9 +162,12 @@ def _region(result: RegionMap, at: Point) -> int:
 
 
 def _as_map(
-    first: RegionMap, components: Sequence[Component], cut: _Cut, points: Sequence[Point],
+    first: RegionMap,
+    components: Sequence[Component],
+    cut: _Cut,
+    points: Sequence[Point],
     found: tuple[Sequence[int], Sequence[tuple[Fraction, Fraction]]],
-) -> RegionMap:  # fmt: skip
+) -> RegionMap:
     """The decomposition in the form that pictures read."""
     of_cell, bounds = found
     places = [(s, level) for s, stack in enumerate(cut.stacks) for level in range(len(stack.heights))]

@@ -92,9 +92,12 @@ def cover_difference(first: Side, second: Side) -> Comparison:
         Change(*held[largest[pair]], number, bounds[pair]) for pair, number in numbers.items() if pair[0] != pair[1]
     ]
     return Comparison(
-        first.result, second.result, decomposition, tuple(sorted(changes, key=lambda c: -c.area[0])),
+        first.result,
+        second.result,
+        decomposition,
+        tuple(sorted(changes, key=lambda c: -c.area[0])),
         square * (steps**2 - certain.total()),
-    )  # fmt: skip
+    )
 
 
 def _finer(cover: Cover, steps: int) -> list[tuple[int, int, int, int]]:

@@ -51,9 +51,13 @@ _PI = (Fraction(314159265358979323846, 10**20), Fraction(314159265358979323847, 
 
 
 def joined_paths(
-    slice: Slice, along: str, at: Mapping[str, Any], start: object, number: int | None = None,
+    slice: Slice,
+    along: str,
+    at: Mapping[str, Any],
+    start: object,
+    number: int | None = None,
     progress: Progress | None = None,
-) -> PosePaths:  # fmt: skip
+) -> PosePaths:
     """Follow stable poses along a line on which springs have free lengths.
 
     Parameters and errors are those of `ptmcad.exact.ranges.path.pose_paths`, and closed loops are refused; ``progress``
@@ -89,9 +93,7 @@ def joined_paths(
             if progress is not None:
                 progress("paths: pose", done, len(chosen))
             paths.append(walker.path(k + 1, here, here.poses[k]))
-    return PosePaths(
-        slice.name, slice.model, axis, {other: value}, begin, tuple(paths), walker.moved, joined=True
-    )  # fmt: skip
+    return PosePaths(slice.name, slice.model, axis, {other: value}, begin, tuple(paths), walker.moved, joined=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,9 +109,14 @@ class _Walker:
     """A line on which poses are followed."""
 
     def __init__(
-        self, slice: Slice, line: SolutionsOnLine, axis: Axis, varying: int, fixed: Fraction,
+        self,
+        slice: Slice,
+        line: SolutionsOnLine,
+        axis: Axis,
+        varying: int,
+        fixed: Fraction,
         intervals: CertifiedIntervals,
-    ):  # fmt: skip
+    ):
         self.slice, self.line, self.axis, self.varying, self.fixed = slice, line, axis, varying, fixed
         self.intervals = intervals
         self.moved = moved(slice.model, line.parameters)
@@ -171,8 +178,11 @@ class _Walker:
             if (last - start) * side <= 0:
                 continue
             width = last - first
-            parts = {NEAR, 1 - NEAR, *(Fraction(round((1 - cos(pi * k / POINTS)) * 2**19), 2**20)
-                                       for k in range(1, POINTS))}  # fmt: skip
+            parts = {
+                NEAR,
+                1 - NEAR,
+                *(Fraction(round((1 - cos(pi * k / POINTS)) * 2**19), 2**20) for k in range(1, POINTS)),
+            }
             for part in sorted(parts):
                 value = short(first + part * width, abs(width))
                 if (value - start) * side > 0:

@@ -53,9 +53,14 @@ def grid(result: RegionMap, columns: int = 200, rows: int | None = None) -> Grid
     with within_doubles(result.slice):
         x, y = (np.array([float(v) for v in values]) for values in centres)
     return Grid(
-        x, y, result.slice.axis_names, cells, _of(result, cells, lambda c: c.region),
-        _of(result, cells, lambda c: c.stable), _of(result, cells, lambda c: c.total),
-    )  # fmt: skip
+        x,
+        y,
+        result.slice.axis_names,
+        cells,
+        _of(result, cells, lambda c: c.region),
+        _of(result, cells, lambda c: c.stable),
+        _of(result, cells, lambda c: c.total),
+    )
 
 
 def _of(result: RegionMap, cells: Labels, value: Callable[[Cell], int | None]) -> Labels:
@@ -125,11 +130,13 @@ def _certified(result: RegionMap, cover: Cover, centres: list[list[Fraction]]) -
             number_of[component] = cell
     places = [
         [in_steps(result, cover, point)[k] for point in points]
-        for k, points in enumerate((
-            [(x, centres[1][0]) for x in centres[0]],
-            [(centres[0][0], y) for y in centres[1]],
-        ))
-    ]  # fmt: skip
+        for k, points in enumerate(
+            (
+                [(x, centres[1][0]) for x in centres[0]],
+                [(centres[0][0], y) for y in centres[1]],
+            )
+        )
+    ]
     tree = complement.subdivision
     whole = [np.array([int(p) for p in values], dtype=np.int64) for values in places]
     columns, rows = (len(values) for values in places)

@@ -37,9 +37,13 @@ __all__ = [
 
 
 def pose_paths(
-    slice: Slice, along: str, at: Mapping[str, Any], start: object, number: int | None = None,
+    slice: Slice,
+    along: str,
+    at: Mapping[str, Any],
+    start: object,
+    number: int | None = None,
     progress: Progress | None = None,
-) -> PosePaths:  # fmt: skip
+) -> PosePaths:
     """Follow stable poses along a line, from their places at one value of the axis.
 
     Parameters

@@ -47,27 +47,45 @@ class Saving(NamedTuple):
 _WHAT_AND_WHY = {
     Engine.EXACT: (
         ("sign-curve", "projection of H11 = 0", "where it vanishes off the critical curves, det H < 0"),
-        ("hermite-matrix", "determinant of the Hermite matrix",
-         "the norm of det H has the same critical factors and no others"),
-        ("infinity", "curves over which solutions leave every bounded set",
-         "near them det H stays away from 0 at every solution, and real ones are bounded"),
+        (
+            "hermite-matrix",
+            "determinant of the Hermite matrix",
+            "the norm of det H has the same critical factors and no others",
+        ),
+        (
+            "infinity",
+            "curves over which solutions leave every bounded set",
+            "near them det H stays away from 0 at every solution, and real ones are bounded",
+        ),
         ("no-real-points", "components without a point in the window", "no cell touches them"),
         ("axis-order", "decomposition over the other axis", "regions do not depend on it"),
-        ("even-powers", "discriminants and resultants of full degree",
-         "where only powers of u^k occur they are computed in u^k"),
-        ("equal-counts", "areas beside walls that separate no regions",
-         "what one cell has too much there its neighbour in the region has too little"),
+        (
+            "even-powers",
+            "discriminants and resultants of full degree",
+            "where only powers of u^k occur they are computed in u^k",
+        ),
+        (
+            "equal-counts",
+            "areas beside walls that separate no regions",
+            "what one cell has too much there its neighbour in the region has too little",
+        ),
     ),
     Engine.CERTIFIED: (
         ("folds-of-saddles", "folds of saddles and maxima", "the number of stable equilibria does not change"),
-        ("cones-and-creases", "points where a spring has no length",
-         "no minimum appears or vanishes there without a fold"),
+        (
+            "cones-and-creases",
+            "points where a spring has no length",
+            "no minimum appears or vanishes there without a fold",
+        ),
         ("dependent-equations", "boxes on which dependent equations do not vanish", "they vanish at every equilibrium"),
-        ("mirror-images", "mirror images of folds, and what is singular on the mirror",
-         "an exchange or a reflection of the unknowns leaves the slice as it is"),
+        (
+            "mirror-images",
+            "mirror images of folds, and what is singular on the mirror",
+            "an exchange or a reflection of the unknowns leaves the slice as it is",
+        ),
     ),
     Engine.ANY: (("imports", "imports of numpy, matplotlib, sympy and numba", "nothing needs them before it asks"),),
-}  # fmt: skip
+}
 SAVINGS = tuple(Saving(name, engine, *rest) for engine, table in _WHAT_AND_WHY.items() for name, *rest in table)
 """Every saving, in the order in which the engines make them."""
 BY_NAME = {saving.name: saving for saving in SAVINGS}

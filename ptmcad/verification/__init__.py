@@ -15,6 +15,13 @@ from ptmcad.verification.report import Check, VerifyReport, check_anew
 from ptmcad.verification.surfaces import verify_surfaces
 
 __all__ = [
-    "Check", "VerifyReport", "check_anew", "verify", "verify_changes", "verify_design", "verify_poses", "verify_range",
+    "Check",
+    "VerifyReport",
+    "check_anew",
+    "verify",
+    "verify_changes",
+    "verify_design",
+    "verify_poses",
+    "verify_range",
     "verify_surfaces",
-]  # fmt: skip
+]

@@ -50,12 +50,16 @@ def check_adjacencies(claims: Claims) -> str:
         stack_number = _stack(first)
         if a.segment is None:
             if (second.stack, second.level) != (stack_number, first.level + 1):
-                raise Violation(f"adjacency {number} has no segment, but cells {a.first} and {a.second} are not "
-                                "neighbours in one stack")  # fmt: skip
+                raise Violation(
+                    f"adjacency {number} has no segment, but cells {a.first} and {a.second} are not "
+                    "neighbours in one stack"
+                )
             wall = result.stacks[stack_number].walls[first.level]
             if wall.component != a.component:
-                raise Violation(f"adjacency {number}: the wall between the cells is on component {wall.component}, "
-                                f"not {a.component}")  # fmt: skip
+                raise Violation(
+                    f"adjacency {number}: the wall between the cells is on component {wall.component}, "
+                    f"not {a.component}"
+                )
             vertical.add((a.first, a.second))
         else:
             _check_segment(claims, number, a)
@@ -175,10 +179,14 @@ def _check_non_adjacency(claims: Claims, number: int, a: NonAdjacency) -> None:
         if segment is not None:
             _check_free(claims, what, segment, (n, result.cells[n]), (m, result.cells[m]))
     at_edges = [height for height, segment in zip(claims.height, (a.below, a.above), strict=True) if segment is None]
-    whole = (a.left[0], a.right[0]) == (result.stacks[a.critical_value].cells[0],
-                                        result.stacks[a.critical_value + 1].cells[0])  # fmt: skip
-    top = (a.left[-1], a.right[-1]) == (result.stacks[a.critical_value].cells[-1],
-                                        result.stacks[a.critical_value + 1].cells[-1])  # fmt: skip
+    whole = (a.left[0], a.right[0]) == (
+        result.stacks[a.critical_value].cells[0],
+        result.stacks[a.critical_value + 1].cells[0],
+    )
+    top = (a.left[-1], a.right[-1]) == (
+        result.stacks[a.critical_value].cells[-1],
+        result.stacks[a.critical_value + 1].cells[-1],
+    )
     if (a.below is None and not whole) or (a.above is None and not top):
         raise Violation(f"{what}: a segment is missing, and the cells do not reach the window's edge")
     branches = len(a.left) + len(a.right) - 2
@@ -193,8 +201,10 @@ def _check_non_adjacency(claims: Claims, number: int, a: NonAdjacency) -> None:
         # at the window's edge the branches may only run into its corner over the critical value
         holds = len(at_edges) < 2 and heights.between(bottom, top_height) <= 1 - len(at_edges)
     if not holds:
-        raise Violation(f"{what}: {branches} half-branches between cells {a.left} and {a.right} are not closed because "
-                        f"of {a.reason.value!r}")  # fmt: skip
+        raise Violation(
+            f"{what}: {branches} half-branches between cells {a.left} and {a.right} are not closed because "
+            f"of {a.reason.value!r}"
+        )
 
 
 def _search(claims: Claims, s: int, bottom: fmpq, top: fmpq, pairs: set[tuple[int, int]]) -> None:
@@ -208,8 +218,10 @@ def _search(claims: Claims, s: int, bottom: fmpq, top: fmpq, pairs: set[tuple[in
         pair = (claims.level(low, v), claims.level(high, v))
         if pair not in pairs:
             first, second = left.cells[pair[0]], right.cells[pair[1]]
-            raise Violation(f"the adjacency of cells {first} and {second} is missing; the segment from {low} to {high} "
-                            f"at height {v} joins them")  # fmt: skip
+            raise Violation(
+                f"the adjacency of cells {first} and {second} is missing; the segment from {low} to {high} "
+                f"at height {v} joins them"
+            )
 
 
 def _closer(low: fmpq, high: fmpq, value: CriticalValue) -> tuple[fmpq, fmpq]:

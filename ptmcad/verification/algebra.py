@@ -23,8 +23,9 @@ def algebra(equations: list[fmpq_mpoly], names: tuple[str, ...]) -> tuple[tuple[
     width = range(len(names))
     if not all(any(sum(lead) == lead[k] for lead in rules) for k in width):
         raise NotFinite
-    bounds = [next(lead[k] for lead in rules if sum(lead) == lead[k]) if (0,) * len(names) not in rules else 0
-              for k in width]  # fmt: skip
+    bounds = [
+        next(lead[k] for lead in rules if sum(lead) == lead[k]) if (0,) * len(names) not in rules else 0 for k in width
+    ]
     basis = tuple(
         sorted(
             (m for m in product(*map(range, bounds)) if not any(_divides(lead, m) for lead in rules)),

@@ -55,8 +55,9 @@ def check_areas(claims: Claims) -> str:
             raise Violation(f"region {n}: no area in the window is {_between(region)}")
     if len(result.regions) == 1:
         if not result.regions[0].area[0] <= window <= result.regions[0].area[1]:
-            raise Violation(f"the only region's area is the window's, {approximate_text(window)}, not "
-                            f"{_between(result.regions[0])}")  # fmt: skip
+            raise Violation(
+                f"the only region's area is the window's, {approximate_text(window)}, not {_between(result.regions[0])}"
+            )
         return "1 region, the window"
     narrowest = min(map(_width, result.regions))
     scale = (narrowest or window / 10**18) / window
@@ -135,8 +136,10 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
         halved = _halved(panels, open_regions, effort)
         if halved is None:
             n = min(open_regions)
-            return (f"region {n}: its area is in {areas[n].str(20)}; that it is {_between(result.regions[n])} "
-                    f"could not be confirmed with {bits} bits")  # fmt: skip
+            return (
+                f"region {n}: its area is in {areas[n].str(20)}; that it is {_between(result.regions[n])} "
+                f"could not be confirmed with {bits} bits"
+            )
         panels = halved
 
 

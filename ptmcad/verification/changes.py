@@ -46,9 +46,11 @@ has none."""
 
 
 def verify_changes(
-    found: Changes, maps_at: MapsAt, seed: int | None = None,
+    found: Changes,
+    maps_at: MapsAt,
+    seed: int | None = None,
     progress: Progress | None = None,
-) -> tuple[Check, ...]:  # fmt: skip
+) -> tuple[Check, ...]:
     """Check where a family changes.
 
     Parameters
@@ -131,8 +133,10 @@ def _check_numbers(numbers: Sequence[AlgebraicNumber | Enclosure]) -> None:
             low, high = (from_fraction(end) for end in (number.low, number.high))
             roots = roots_within(p, low, high)
             if roots != 1:
-                raise Violation(f"{roots} roots of a value's polynomial lie between its bounds {text_of(number.low)} "
-                                f"and {text_of(number.high)}, not one")  # fmt: skip
+                raise Violation(
+                    f"{roots} roots of a value's polynomial lie between its bounds {text_of(number.low)} "
+                    f"and {text_of(number.high)}, not one"
+                )
 
 
 def _gaps(found: Changes) -> list[Fraction]:

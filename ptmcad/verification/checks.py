@@ -53,9 +53,12 @@ _SINCE_VARIETY: tuple[CheckOf, ...] = (
 
 
 def verify(
-    result: RegionMap | BestDesign | Poses, seed: int | None = None, boxes: int | None = None,
-    progress: Progress | None = None, effort: int | None = None,
-) -> VerifyReport:  # fmt: skip
+    result: RegionMap | BestDesign | Poses,
+    seed: int | None = None,
+    boxes: int | None = None,
+    progress: Progress | None = None,
+    effort: int | None = None,
+) -> VerifyReport:
     """Check a result without the code that made it: a map, a design, or the poses at a point.
 
     Parameters

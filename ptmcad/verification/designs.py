@@ -183,10 +183,18 @@ def _check_boxes(lines: _Lines) -> str:
     waiting = [(tuple((axis.low, axis.high) for axis in found.over), found.boxes, 0)]
     while waiting:
         part, boxes, halvings = waiting.pop()
-        met = tuple(box for box in boxes if all(low < b and a < high for (a, b), (low, high)
-                                           in zip(part, box.ranges, strict=True)))  # fmt: skip
-        cuts = [(k, cut) for box in met for k, ends in enumerate(box.ranges) for cut in ends
-                if part[k][0] < cut < part[k][1]]  # fmt: skip
+        met = tuple(
+            box
+            for box in boxes
+            if all(low < b and a < high for (a, b), (low, high) in zip(part, box.ranges, strict=True))
+        )
+        cuts = [
+            (k, cut)
+            for box in met
+            for k, ends in enumerate(box.ranges)
+            for cut in ends
+            if part[k][0] < cut < part[k][1]
+        ]
         if met and not cuts:
             continue
         if not met:
@@ -240,11 +248,15 @@ def _check_values(lines: _Lines, within: Callable[[int, int], None]) -> str:
             continue
         longest = max((span.width for span in ranges), key=lambda width: width.low, default=_NOTHING)
         if (point.value is None) == lines.holds(design):
-            raise Violation(f"the design {_named(design)} has {'no' if point.value is None else 'a'} value, but "
-                            "conditions are satisfied at those that have one")  # fmt: skip
+            raise Violation(
+                f"the design {_named(design)} has {'no' if point.value is None else 'a'} value, but "
+                "conditions are satisfied at those that have one"
+            )
         if point.value is not None and not _meet(longest, point.value):
-            raise Violation(f"the longest range of the design {_named(design)} is {float(longest):.10g}, not "
-                            f"{float(point.value):.10g}")  # fmt: skip
+            raise Violation(
+                f"the longest range of the design {_named(design)} is {float(longest):.10g}, not "
+                f"{float(point.value):.10g}"
+            )
         if design == found.best and found.span is not None:
             low, high = found.span
             if not any(_meet(_enclosed(r.low), low) and _meet(_enclosed(r.high), high) for r in ranges):
@@ -297,8 +309,10 @@ def _check_extremes(lines: _Lines) -> str:
     both = Lines(
         lambda value: lines.line({over.name: constant(value), along.name: axis(0)}, along),
         lambda value: lines.line({along.name: constant(value), over.name: axis(0)}, over),
-        along, over, found.working,
-    )  # fmt: skip
+        along,
+        over,
+        found.working,
+    )
     try:
         return check_maxima(both, found.maxima)
     except NotKnown as reason:

@@ -23,8 +23,10 @@ def check_shape(claims: Claims) -> str:
     if r.status not in (Status.EXACT, Status.PARTIAL):
         raise Violation(f"the status {r.status.value!r} cannot be checked: only exact and partial results can")
     if r.undetermined != (0 if r.stacks else 1):
-        raise Violation(f"{approximate_text(r.undetermined)} of the window is said to be undetermined, but "
-                        f"{'all cells' if r.stacks else 'no cells'} are stored")  # fmt: skip
+        raise Violation(
+            f"{approximate_text(r.undetermined)} of the window is said to be undetermined, but "
+            f"{'all cells' if r.stacks else 'no cells'} are stored"
+        )
     model = r.slice.model
     named = set(r.slice.parameters) - set(shorthands_of(model))
     if not model.unknowns or named != set(parameters_of(model)):
@@ -52,8 +54,10 @@ def check_shape(claims: Claims) -> str:
     for s, stack in enumerate(r.stacks):
         ends = (s - 1 if s else None, s if s < len(r.stacks) - 1 else None)
         if (stack.left, stack.right) != ends:
-            raise Violation(f"stack {s} is said to lie between critical values {stack.left} and {stack.right}, not "
-                            f"{ends[0]} and {ends[1]}")  # fmt: skip
+            raise Violation(
+                f"stack {s} is said to lie between critical values {stack.left} and {stack.right}, not "
+                f"{ends[0]} and {ends[1]}"
+            )
         expected = tuple(range(number, number + len(stack.walls) + 1))
         if stack.cells != expected:
             raise Violation(f"stack {s} has cells {stack.cells}, not {expected}")
@@ -104,8 +108,10 @@ def check_merges(claims: Claims) -> str:
         if a.component is None:
             kind = Merge.PROVEN
             if (one := _counts(first)) != (other := _counts(second)):
-                raise Violation(f"adjacency {k} crosses no component, but cells {a.first} and {a.second} have "
-                                f"different counts {one} and {other}")  # fmt: skip
+                raise Violation(
+                    f"adjacency {k} crosses no component, but cells {a.first} and {a.second} have "
+                    f"different counts {one} and {other}"
+                )
         else:
             kind = Merge.EQUAL_COUNT if equal else Merge.SEPARATED
         if kind is Merge.SEPARATED:
@@ -143,8 +149,9 @@ def check_regions(claims: Claims) -> str:
     for one, two in pairwise(sorted(range(len(r.cells)), key=lambda n: (label[n], n))):
         same = label[one] == label[two]
         if same and r.cells[one].region != r.cells[two].region:
-            raise Violation(f"cells {one} and {two} are joined, but in regions {r.cells[one].region} and "
-                            f"{r.cells[two].region}")  # fmt: skip
+            raise Violation(
+                f"cells {one} and {two} are joined, but in regions {r.cells[one].region} and {r.cells[two].region}"
+            )
     if len(found) != len(r.regions):
         raise Violation(f"{len(r.regions)} regions are stored, the adjacencies make {len(found)}")
     for number, region in enumerate(r.regions):

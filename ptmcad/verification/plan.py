@@ -29,13 +29,22 @@ _GENERAL = (
     ("imports", "imports of numpy, matplotlib, sympy and numba", "nothing needs them before it asks"),
     ("", "terms of {zero}", "they are zero on this slice"),
     ("sign-curve", "projection of H11 = 0", "where it vanishes off the critical curves, det H < 0"),
-    ("hermite-matrix", "determinant of the Hermite matrix",
-     "the norm of det H has the same critical factors and no others"),
-    ("equal-counts", "areas beside walls that separate no regions",
-     "what one cell has too much there its neighbour in the region has too little"),
-    ("infinity", "curves over which solutions leave every bounded set",
-     "near them det H stays away from 0 at every solution, and real ones are bounded"),
-)  # fmt: skip
+    (
+        "hermite-matrix",
+        "determinant of the Hermite matrix",
+        "the norm of det H has the same critical factors and no others",
+    ),
+    (
+        "equal-counts",
+        "areas beside walls that separate no regions",
+        "what one cell has too much there its neighbour in the region has too little",
+    ),
+    (
+        "infinity",
+        "curves over which solutions leave every bounded set",
+        "near them det H stays away from 0 at every solution, and real ones are bounded",
+    ),
+)
 """Names, subjects and reasons of the savings that are made on every slice, and of what needs no saving."""
 
 
@@ -70,8 +79,10 @@ def check_plan(claims: Claims) -> str:
         same = (step.what, step.done, step.saving) == (other.what, other.done, other.saving)
         if not same or not (step.reason == other.reason if other.reason else _is_choice(step.reason)):
             done = "computed" if other.done else "left out"
-            raise Violation(f"step {n} of the plan is not {str(step)[:100]!r}, but {other.what!r}, {done}: "
-                            f"{other.reason or 'by predicted cost'}")  # fmt: skip
+            raise Violation(
+                f"step {n} of the plan is not {str(step)[:100]!r}, but {other.what!r}, {done}: "
+                f"{other.reason or 'by predicted cost'}"
+            )
     _check_left_out(claims)
     return f"{len(expected)} steps"
 
@@ -140,8 +151,10 @@ def _check_left_out(claims: Claims) -> None:
         if c.kind is Kind.AUXILIARY:
             raise Violation(f"component {n} is auxiliary, but no saving was switched off that leaves it out")
         if not c.left_out and plainly_outside(PlaneCurve.of(n, c.polynomial, result.base), claims):
-            raise Violation(f"component {n} is used, but it has no point in the window, and the plan does not say "
-                            "that such are kept")  # fmt: skip
+            raise Violation(
+                f"component {n} is used, but it has no point in the window, and the plan does not say "
+                "that such are kept"
+            )
     if _NO_AREAS in result.plan:
         x, y = result.slice.axes
         window = (x.high - x.low) * (y.high - y.low)

@@ -58,8 +58,11 @@ def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
     if number != len(found.equilibria):
         raise Violation(f"{len(found.equilibria)} poses are listed; there are {max(number, 0) or 'infinitely many'}")
     check_disjoint(0, cell, model)
-    regular = [(k, pose, box) for k, (pose, box) in enumerate(zip(found.equilibria, cell.solutions, strict=True))
-               if pose.multiplicity == 1]  # fmt: skip
+    regular = [
+        (k, pose, box)
+        for k, (pose, box) in enumerate(zip(found.equilibria, cell.solutions, strict=True))
+        if pose.multiplicity == 1
+    ]
     for k, pose, box in regular:
         try:
             signs = signs_of(claims, cell, box)
@@ -76,8 +79,15 @@ def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
 
 def map_of(slice: Slice, cells: tuple[Cell, ...], status: Status = Status.EXACT) -> RegionMap:
     """A map of a slice that has cells only, for what is checked of points."""
-    return RegionMap(slice=slice, status=status, system=System((), (), "", (), ()), cells=cells,
-                     undetermined=Fraction(0), versions={}, cover=Cover(2, ()))  # fmt: skip
+    return RegionMap(
+        slice=slice,
+        status=status,
+        system=System((), (), "", (), ()),
+        cells=cells,
+        undetermined=Fraction(0),
+        versions={},
+        cover=Cover(2, ()),
+    )
 
 
 def _map_of(found: Poses) -> RegionMap:

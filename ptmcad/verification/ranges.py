@@ -140,8 +140,11 @@ def _check_intervals(line: Line, entries: Sequence[Mapping[str, Any]], working: 
     """
     ends = [(_end(line, entry["low"]), _end(line, entry["high"])) for entry in entries]
     for gap in line.gaps():
-        inside = [entry for entry, (low, high) in zip(entries, ends, strict=True)
-                  if _is_below(low, gap.sample) and not _is_below(high, gap.sample)]  # fmt: skip
+        inside = [
+            entry
+            for entry, (low, high) in zip(entries, ends, strict=True)
+            if _is_below(low, gap.sample) and not _is_below(high, gap.sample)
+        ]
         where, there = f"at {shortest_text(gap.sample)}", gap.counts
         if len(inside) != (working is None or gap.working == working):
             raise Violation(f"{len(inside)} of the intervals are {where}, where there are {there.total} solutions")
@@ -192,7 +195,9 @@ def _check_enclosed(asked: _Asked) -> str:
             index = entry["index"] if entry["index"] is None else tuple(entry["index"])
             number += 1
             if entry["total"] is not None and (entry["total"], entry["stable"], index) != (
-                there.total, there.stable, there.index
-            ):  # fmt: skip
+                there.total,
+                there.stable,
+                there.index,
+            ):
                 raise Violation(f"{entry['total']} solutions are said to be at {shortest_text(at)}; there are {there}")
     return Unchecked(f"{number} points; {unknown} were not decided") if unknown else f"{number} points"

@@ -91,8 +91,11 @@ class VerifyReport:
         '1 claim holds, 1 not checked'
         """
         held, false, open_ = (sum(c.passed is answer for c in self.checks) for answer in (True, False, None))
-        parts = [f"{held} claim{'s hold' if held != 1 else ' holds'}"] if not false else [
-            f"{false} claim{'s are' if false != 1 else ' is'} false", f"{held} hold{'s' * (held == 1)}"]  # fmt: skip
+        parts = (
+            [f"{held} claim{'s hold' if held != 1 else ' holds'}"]
+            if not false
+            else [f"{false} claim{'s are' if false != 1 else ' is'} false", f"{held} hold{'s' * (held == 1)}"]
+        )
         return ", ".join(parts + [f"{open_} not checked"] * (open_ > 0))
 
     def table(self) -> str:

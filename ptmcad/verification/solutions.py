@@ -137,8 +137,9 @@ def _check_zeros(claims: Claims, n: int, cell: Cell) -> None:
     for k, p in enumerate(fibre.point.stability):
         stored = sum(solution.signs[k] == "0" for solution in cell.solutions)
         if (true := fibre.number_of_zeros(p)) != stored:
-            raise Violation(f"cell {n}: condition {k} for stability is said to be zero at {stored} solutions, but it "
-                            f"is at {true}")  # fmt: skip
+            raise Violation(
+                f"cell {n}: condition {k} for stability is said to be zero at {stored} solutions, but it is at {true}"
+            )
 
 
 def check_disjoint(n: int, cell: Cell, model: Model) -> None:

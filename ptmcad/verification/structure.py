@@ -86,14 +86,15 @@ def check_critical_values(claims: Claims) -> str:
     factors = _projection(claims)
     for n, value in enumerate(values):
         if value.polynomial not in factors:
-            raise Violation(f"critical value {n}: its polynomial is no irreducible factor of a discriminant, resultant "
-                            "or edge value")  # fmt: skip
+            raise Violation(
+                f"critical value {n}: its polynomial is no irreducible factor of a discriminant, resultant "
+                "or edge value"
+            )
         low, high = from_fraction(value.low), from_fraction(value.high)
         interval = f"[{text_of(value.low)}, {text_of(value.high)}]"
         p = polynomial(value)
         if not previous < low <= high < claims.base[1]:
-            raise Violation(f"critical value {n} in {interval} is not above the one before it and in "
-                            "the window")  # fmt: skip
+            raise Violation(f"critical value {n} in {interval} is not above the one before it and in the window")
         if (roots := roots_within(p, low, high)) != 1:
             raise Violation(f"critical value {n}: its polynomial has {roots} roots in {interval}")
         previous = high
@@ -104,8 +105,10 @@ def check_critical_values(claims: Claims) -> str:
             origins[n] |= whence
         if (roots := roots_between(f, *claims.base)) != len(matching):
             where = [f"({short(a)}, {short(b)})" for a, b in _unmatched(f, claims, matching)]
-            raise Violation(f"a polynomial of the projection of degree {f.degree()} has {roots} roots in the window, "
-                            f"but {len(matching)} of them are stored; not stored: {', '.join(where)}")  # fmt: skip
+            raise Violation(
+                f"a polynomial of the projection of degree {f.degree()} has {roots} roots in the window, "
+                f"but {len(matching)} of them are stored; not stored: {', '.join(where)}"
+            )
     for n, (value, true) in enumerate(zip(values, origins, strict=True)):
         if value.origin not in true:
             raise Violation(
@@ -156,13 +159,17 @@ def check_stacks(claims: Claims) -> str:
             # below the first and above the last sample nothing may lie; between two samples exactly one wall
             expected = {} if gap in (0, len(heights)) else {stack.walls[gap - 1].component: 1}
             if here != expected:
-                raise Violation(f"over {text_of(stack.sample)} (stack {s}) between heights {low} and {high} there are "
-                                f"roots of components {here}, not {expected} (component: number)")  # fmt: skip
+                raise Violation(
+                    f"over {text_of(stack.sample)} (stack {s}) between heights {low} and {high} there are "
+                    f"roots of components {here}, not {expected} (component: number)"
+                )
             if expected:
                 wall = stack.walls[gap - 1]
                 if wall.root != found[wall.component]:
-                    raise Violation(f"wall {gap - 1} of stack {s} is root {found[wall.component]} of component "
-                                    f"{wall.component}, not root {wall.root}")  # fmt: skip
+                    raise Violation(
+                        f"wall {gap - 1} of stack {s} is root {found[wall.component]} of component "
+                        f"{wall.component}, not root {wall.root}"
+                    )
                 found[wall.component] += 1
                 walls += 1
     return f"{len(result.stacks)} stacks, {walls} walls, {len(result.cells)} samples"

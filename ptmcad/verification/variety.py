@@ -91,8 +91,9 @@ def factors(p: object) -> list[PlanePolynomial]:
     for f, _ in rational.factor()[1]:
         coefficients = f.to_dict()
         scale = lcm(*(int(c.q) for c in coefficients.values()))
-        found.append(PlanePolynomial.of((int(m[0]), int(m[1]), int(c.p) * (scale // int(c.q)))
-                                        for m, c in coefficients.items()))  # fmt: skip
+        found.append(
+            PlanePolynomial.of((int(m[0]), int(m[1]), int(c.p) * (scale // int(c.q))) for m, c in coefficients.items())
+        )
     return found
 
 
@@ -162,8 +163,10 @@ def check_identity(claims: Claims, points: Iterator[FibrePoint]) -> tuple[int, l
 
     def norm_at(point: FibrePoint) -> Fraction:
         if point.fibre.dimension != result.complex_solutions:
-            raise Violation(f"there are {point.fibre.dimension} complex solutions at {_at(claims, point)}, "
-                            f"not {result.complex_solutions}")  # fmt: skip
+            raise Violation(
+                f"there are {point.fibre.dimension} complex solutions at {_at(claims, point)}, "
+                f"not {result.complex_solutions}"
+            )
         norm = point.norm()
         if norm == 0:
             raise Violation(f"det H vanishes at {_at(claims, point)}, which is on no stored component")
@@ -172,8 +175,10 @@ def check_identity(claims: Claims, points: Iterator[FibrePoint]) -> tuple[int, l
     norms, exponents = _product_of_powers(claims, points, norm_at, "det H")
     for k, (c, e) in enumerate(zip(result.components, exponents, strict=True)):
         if c.kind is Kind.CRITICAL and e < 1:
-            raise Violation(f"component {k} is said to be critical, but is no factor of the norm of det H "
-                            f"at {_at(claims, norms[0][0])}")  # fmt: skip
+            raise Violation(
+                f"component {k} is said to be critical, but is no factor of the norm of det H "
+                f"at {_at(claims, norms[0][0])}"
+            )
         # with real unknowns det H may vanish at the solutions that escape
         if c.kind is Kind.INFINITY and e > 0 and not result.slice.model.reals:
             raise Violation(f"component {k} is said to be at infinity, but det H vanishes on it")
@@ -250,8 +255,10 @@ def _product_of_powers(
     constants = [n / prod(Fraction(v) ** e for v, e in zip(p.values, exponents, strict=True)) for p, n in norms]
     for (point, _), constant in zip(norms, constants, strict=True):
         if constant != constants[0]:
-            raise Violation(f"the norm of {what} at {_at(claims, point)} is no constant times powers of the stored "
-                            "components: a curve of the variety is missing or wrong")  # fmt: skip
+            raise Violation(
+                f"the norm of {what} at {_at(claims, point)} is no constant times powers of the stored "
+                "components: a curve of the variety is missing or wrong"
+            )
     return norms, exponents
 
 
@@ -288,9 +295,11 @@ def _exponent(claims: Claims, k: int, first: _Norm, second: _Norm, own: int, wha
         while shared % own == 0:
             shared, e = shared // own, e + 1
         if shared > 1:
-            raise Violation(f"the norm of {what} at {_at(claims, first[0])} is no constant times powers of the stored "
-                            f"components, as its prime factors show: component {k}, or another one, is wrong or "
-                            "missing")  # fmt: skip
+            raise Violation(
+                f"the norm of {what} at {_at(claims, first[0])} is no constant times powers of the stored "
+                f"components, as its prime factors show: component {k}, or another one, is wrong or "
+                "missing"
+            )
         if e:
             return sign * e
     return 0

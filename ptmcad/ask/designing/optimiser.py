@@ -80,9 +80,14 @@ def _evolve(look: Evaluate, number: int, seed: int, evaluations: int) -> None:
     size = max(4 * number + 4, len(start) + 4)
     rest = source.random((size - len(start), number))
     differential_evolution(
-        fitness, [(0.0, 1.0)] * number, init=np.vstack([np.array(start), rest]), seed=source, polish=False, tol=0.0,
+        fitness,
+        [(0.0, 1.0)] * number,
+        init=np.vstack([np.array(start), rest]),
+        seed=source,
+        polish=False,
+        tol=0.0,
         maxiter=max(1, evaluations // size),
-    )  # fmt: skip
+    )
 
 
 _NOTHING = 1e100

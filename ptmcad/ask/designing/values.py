@@ -199,9 +199,12 @@ def _barrier_of(design: Design) -> Evaluate:
         at = np.array(points).T[:, None, :]
         stable = eigenvalues(state_at(design.model, given, at).jacobian)[0] > 0
         found = barriers(
-            lambda _pixels, where: state_at(design.model, given, where), at, stable, np.array([number]),
+            lambda _pixels, where: state_at(design.model, given, where),
+            at,
+            stable,
+            np.array([number]),
             len(design.model.angles),
-        )  # fmt: skip
+        )
         if np.isnan(found[0]):
             return None
         low = poses.equilibria[number].known_energy

@@ -242,9 +242,11 @@ def _begin(result: RegionMap, filling: Filling, follower: Follower, seen: Flags,
         rows, columns = np.nonzero(seen & ~filling.done & (cells == number))
         x, y = float(cell.sample[0]), float(cell.sample[1])
         away = np.hypot(
-            *((at[rows, columns] - own) / (np.ptp(np.append(at, own)) or 1.0)
-              for at, own in ((follower.places.x, x), (follower.places.y, y)))
-        )  # fmt: skip
+            *(
+                (at[rows, columns] - own) / (np.ptp(np.append(at, own)) or 1.0)
+                for at, own in ((follower.places.x, x), (follower.places.y, y))
+            )
+        )
         nearest = np.argsort(away, kind="stable")[:9]
         if start.shape[1] == follower.wanted.total[rows[0], columns[0]]:
             guess = np.full((len(start), len(nearest), filling.at.shape[3]), np.nan)

@@ -92,8 +92,10 @@ class Course:
     @classmethod
     def through(cls, slice: Slice, corners: tuple[Place, ...]) -> Course:
         sides = [axis.high - axis.low for axis in slice.axes]
-        lengths = [hypot(*(float((b - a) / side) for a, b, side in zip(p, q, sides, strict=True)))
-                   for p, q in pairwise(corners)]  # fmt: skip
+        lengths = [
+            hypot(*(float((b - a) / side) for a, b, side in zip(p, q, sides, strict=True)))
+            for p, q in pairwise(corners)
+        ]
         kept = [k for k, length in enumerate(lengths) if length > MIN_LENGTH * max(lengths)]
         total, done, ends = sum(lengths[k] for k in kept), 0.0, [Fraction(0)]
         for k in kept:

@@ -93,6 +93,8 @@ def newton(evaluate: At, start: Floats, most: int = 16) -> tuple[Floats, State] 
 
 def negatives(state: State) -> int:
     """The number of negative eigenvalues at a point."""
-    return int((eigenvalues(state.jacobian)[..., 0] < 0).sum()) if len(state.jacobian) > 1 else int(
-        state.jacobian[0, 0, 0] < 0
-    )  # fmt: skip
+    return (
+        int((eigenvalues(state.jacobian)[..., 0] < 0).sum())
+        if len(state.jacobian) > 1
+        else int(state.jacobian[0, 0, 0] < 0)
+    )

@@ -155,9 +155,20 @@ def field_of(
     other = jumps(result, follower, solutions, chosen, grid.region, check)
     number, difference = _checked(result, quantity, choice, values, follower, checks)
     return Field(
-        quantity.name, str(choice), quantity.unit, grid.x, grid.y, grid.names, values, grid.region, missed, number,
-        difference, int(beyond.sum()), other,
-    )  # fmt: skip
+        quantity.name,
+        str(choice),
+        quantity.unit,
+        grid.x,
+        grid.y,
+        grid.names,
+        values,
+        grid.region,
+        missed,
+        number,
+        difference,
+        int(beyond.sum()),
+        other,
+    )
 
 
 def expect_somewhere(result: RegionMap, choice: Choice) -> None:

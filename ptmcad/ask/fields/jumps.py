@@ -27,9 +27,13 @@ Pixels = tuple[Labels, Labels]
 
 
 def jumps(
-    result: RegionMap, follower: Follower, solutions: Filling, chosen: Labels, region: Labels,
+    result: RegionMap,
+    follower: Follower,
+    solutions: Filling,
+    chosen: Labels,
+    region: Labels,
     check: Callable[[], None] = lambda: None,
-) -> tuple[Flags, Flags]:  # fmt: skip
+) -> tuple[Flags, Flags]:
     """Between which neighbours of one region the branch of the chosen solution changes.
 
     Parameters

@@ -48,9 +48,12 @@ class LostError(PtmcadError):
 
 
 def motion_of(
-    result: RegionMap, path: str | Mapping[str, Any], pose: str = "stable:1", frames: int = FRAMES,
+    result: RegionMap,
+    path: str | Mapping[str, Any],
+    pose: str = "stable:1",
+    frames: int = FRAMES,
     progress: Progress | None = None,
-) -> Motion:  # fmt: skip
+) -> Motion:
     """The motion of a pose along a path.
 
     Parameters

@@ -54,10 +54,13 @@ def _over(entry: Node) -> dict[str, Node]:
 
 _TEXT = reading(lambda entry: number_text(entry).text.strip(), type="string")
 _WHERE: Codec[dict[str, Any]] = record(
-    dict, "{stable: 2}",
+    dict,
+    "{stable: 2}",
     stable=part(
         reading(_whole, **NUMBER),
-        "How many stable poses there are, or solutions where nothing says what is stable.", 2, shown=2,
+        "How many stable poses there are, or solutions where nothing says what is stable.",
+        2,
+        shown=2,
     ),
     tension=part(reading(_flag, type="boolean"), "Whether all springs are in tension.", False, shown=False),
     conditions=part(
@@ -65,30 +68,39 @@ _WHERE: Codec[dict[str, Any]] = record(
             lambda entry: (entry,) if isinstance(entry.value, Scalar | Tree) else tuple(entry.items()),
             anyOf=[{"type": "string"}, {"type": "array", "items": {"type": "string"}}],
         ),
-        f"Inequalities between the design parameters, such as {FIRST} + {SECOND} <= 3.", (),
+        f"Inequalities between the design parameters, such as {FIRST} + {SECOND} <= 3.",
+        (),
     ),
-)  # fmt: skip
+)
 _NOTHING: Mapping[str, Any] = {"stable": 2, "tension": False, "conditions": ()}
 DESIGN: Codec[dict[str, Any]] = record(
-    dict, A_DESIGN,
+    dict,
+    A_DESIGN,
     maximise=part(
         _TEXT,
         "range: the length of the widest interval of an axis with the wanted number of stable poses; area: that of the "
         "regions with this number; barrier: the energy that it takes to leave a stable pose for another; or a quantity "
-        "or an expression, as of ptmcad map --value.", "range", shown="range",
+        "or an expression, as of ptmcad map --value.",
+        "range",
+        shown="range",
     ),
     along=part(_TEXT, "The axis along which a range lies; the first one when it is not given.", ""),
     over=part(
         reading(
-            _over, type="object", minProperties=1, maxProperties=MAX_PARAMETERS, propertyNames=AXIS_NAME,
+            _over,
+            type="object",
+            minProperties=1,
+            maxProperties=MAX_PARAMETERS,
+            propertyNames=AXIS_NAME,
             additionalProperties=two(NUMBER),
         ),
         "The design parameters with their bounds. Of a range the other axis is one of them, of an area no axis is, "
-        "else both are.", None,
+        "else both are.",
+        None,
     ),
     where=part(_WHERE, "Conditions that every design satisfies.", _NOTHING),
     pose=part(_TEXT, "Of which pose a barrier, a quantity or an expression is.", "stable:1", shown="stable:1"),
-)  # fmt: skip
+)
 
 
 def design_from(question: str | Path | Mapping[str, Any] | Design, **changes: Any) -> Design:
@@ -114,9 +126,13 @@ def design_from(question: str | Path | Mapping[str, Any] | Design, **changes: An
 
 
 def design_from_options(
-    config: str | Path, maximise: str | None, along: str | None, over: Iterable[str], where: Mapping[str, Any],
+    config: str | Path,
+    maximise: str | None,
+    along: str | None,
+    over: Iterable[str],
+    where: Mapping[str, Any],
     pose: str | None,
-) -> Design:  # fmt: skip
+) -> Design:
     """The design of the command line's options, over those of a record.
 
     Parameters
@@ -201,9 +217,7 @@ def _design(record: Record, asked: Node) -> Design:
     with faults:
         if where["tension"] and not isinstance(record.model, Mechanism):
             raise asked.at("where").at("tension").fault("a system has no springs that would be in tension")
-    found = Design(
-        record, maximise, along, over, where["stable"], tuple(conditions), where["tension"], said["pose"]
-    )  # fmt: skip
+    found = Design(record, maximise, along, over, where["stable"], tuple(conditions), where["tension"], said["pose"])
     if faults.found:
         unread = record.unread | _entries(asked.at("over").value).keys()
         note_values(record._replace(unread=unread), faults)

@@ -193,8 +193,10 @@ def _located(record: Record, name: str, value: Fraction, faults: Faults) -> Slic
                 if (fault.key, fault.line) not in known:
                     raise ConfigError(
                         f"{fault.message} (at {name} = {text_of(value)})",
-                        key=fault.key, file=fault.file, line=fault.line,
-                    ) from error  # fmt: skip
+                        key=fault.key,
+                        file=fault.file,
+                        line=fault.line,
+                    ) from error
         return None
 
 

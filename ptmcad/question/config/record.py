@@ -143,9 +143,12 @@ def read_record(tree: Tree, faults: Faults) -> Record:
     assert described is not None
     return Record(
         described.model,
-        **{**read, "name": read["name"] or name}, described=described, place=tree.place,
-        count_place=node.at("count").place, values_place=node.at("parameters").place,
-    )  # fmt: skip
+        **{**read, "name": read["name"] or name},
+        described=described,
+        place=tree.place,
+        count_place=node.at("count").place,
+        values_place=node.at("parameters").place,
+    )
 
 
 def record_codec(model: Model | None) -> Codec[dict[str, Any]]:
@@ -162,30 +165,36 @@ def record_codec(model: Model | None) -> Codec[dict[str, Any]]:
         dict,
         name=part(
             reading(name_in, type="string", pattern="^[A-Za-z0-9]([A-Za-z0-9._-]*[A-Za-z0-9_-])?$", maxLength=MAX_NAME),
-            "Start of the names of the files that are written; by default the record's own file name.", "",
+            "Start of the names of the files that are written; by default the record's own file name.",
+            "",
         ),
         title=part(reading(title_in, type="string", maxLength=MAX_TITLE), "The picture's title.", ""),
         notes=part(told.narrowed(type="string"), "Free text for the reader of the record.", None),
         mechanism=part(
-            told, "A built-in mechanism's name, a file below the record's folder that describes one, or a description.",
-            None, shown=ptm().name,
+            told,
+            "A built-in mechanism's name, a file below the record's folder that describes one, or a description.",
+            None,
+            shown=ptm().name,
         ),
         system=part(told, "Another parametric system, in place of a mechanism.", None),
         parameters=part(
             reading(lambda node: _values(node, model), type=["object", "null"], additionalProperties=VALUE),
             f"Fixed values, or expressions in the axes and in other parameters ({FORCE}: F, {SECOND}: 2*{THIRD}). "
-            f"Below are those of the mechanism {ptm().name}; others have their own.", {},
+            f"Below are those of the mechanism {ptm().name}; others have their own.",
+            {},
         )._replace(field="values"),
         **_question(),
         units=part(
             named(unit, _quantity, like="{length: mm}")._replace(schema=units),
-            "Units that pictures and tables name; numbers are taken as they are.", {},
+            "Units that pictures and tables name; numbers are taken as they are.",
+            {},
         ),
         reference=part(
             reading(_reference, type=["object", "null"]),
-            "Published answers, for tests and benchmarks; never used by the computation.", {},
+            "Published answers, for tests and benchmarks; never used by the computation.",
+            {},
         ),
-    )  # fmt: skip
+    )
 
 
 def _question() -> dict[str, Key]:

@@ -195,15 +195,14 @@ def _steps(entry: Node) -> int:
 
 _ENDS = {"from": "The first value.", "to": "The last value."}
 _READ: Codec[dict[str, Any]] = record(
-    dict, "{from: -40, to: 0, step: 5}",
+    dict,
+    "{from: -40, to: 0, step: 5}",
     **{name: part(reading(_number, **NUMBER), help) for name, help in _ENDS.items()},
     step=part(
         reading(_step, **NUMBER), "The distance of two values, positive; it divides that of the ends.", None, ...
     ),
-    steps=part(
-        reading(_steps, type="integer", minimum=2, maximum=MAX_MEMBERS), "The number of values.", None, ...
-    ),
-)  # fmt: skip
+    steps=part(reading(_steps, type="integer", minimum=2, maximum=MAX_MEMBERS), "The number of values.", None, ...),
+)
 _RANGE = _READ.narrowed(
     oneOf=[{"required": ["step"]}, {"required": ["steps"]}],
     description="Values at equal distances, both ends among them.",

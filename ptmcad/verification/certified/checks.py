@@ -34,9 +34,13 @@ PlacesOf = Callable[[CertifiedClaims], Places | None]
 
 
 def verify_certified(
-    result: RegionMap, seed: int | None, boxes: int | None, free_area: FreeArea, places_of: PlacesOf,
+    result: RegionMap,
+    seed: int | None,
+    boxes: int | None,
+    free_area: FreeArea,
+    places_of: PlacesOf,
     progress: Progress | None = None,
-) -> VerifyReport:  # fmt: skip
+) -> VerifyReport:
     """Check a map with a cover; see `ptmcad.verification.verify`.
 
     Solutions are looked for in balls where compiled code leaves places, if that is installed.
@@ -58,12 +62,18 @@ def verify_certified(
         ("equations", "potential from the nodes", check_potential),
         ("components", "sweep over the rectangles", check_components),
         ("regions and areas", "sweep, breadth-first search", check_regions),
-        ("counts and solutions", "Krawczyk's test and exclusion in balls",
-         lambda of: check_points(of, places(), within)),
-        ("random boxes", "Krawczyk's test over boxes of parameters",
-         lambda of: check_boxes(of, drawn, number, places(), within)),
+        (
+            "counts and solutions",
+            "Krawczyk's test and exclusion in balls",
+            lambda of: check_points(of, places(), within),
+        ),
+        (
+            "random boxes",
+            "Krawczyk's test over boxes of parameters",
+            lambda of: check_boxes(of, drawn, number, places(), within),
+        ),
         ("the whole free area", "exclusion of critical points", lambda of: free_area(of, within)),
-    )  # fmt: skip
+    )
     checks = checked(claims, steps, headway=headway)
     checks += [Check(name, "", None, reason) for name, reason in NOT_CHECKED]
     return VerifyReport(tuple(checks))

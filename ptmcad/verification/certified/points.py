@@ -40,9 +40,10 @@ class _InBoxes(Unproved):
 
 
 def check_points(
-    claims: CertifiedClaims, places: Places | None = None,
+    claims: CertifiedClaims,
+    places: Places | None = None,
     report: Callable[[int, int], None] = lambda _done, _total: None,
-) -> str:  # fmt: skip
+) -> str:
     """Counts and stored solutions of every cell; and for how many cells nothing was proved.
 
     Where a sample cannot be decided, the counts beside it are those of its cell.
@@ -137,8 +138,9 @@ def _decided(
         except Unproved:
             continue
         if differs(cell, there.counts):
-            raise Violation(f"said to have {stored(cell)}; at {claims.place(*at)}, in the same cell, there are "
-                            f"{there.counts}")  # fmt: skip
+            raise Violation(
+                f"said to have {stored(cell)}; at {claims.place(*at)}, in the same cell, there are {there.counts}"
+            )
         return at, there
     return None
 

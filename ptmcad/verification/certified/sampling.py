@@ -61,9 +61,12 @@ class SampleBox:
 
 
 def check_boxes(
-    claims: CertifiedClaims, seed: str, number: int, places: Places | None = None,
+    claims: CertifiedClaims,
+    seed: str,
+    number: int,
+    places: Places | None = None,
     report: Callable[[int, int], None] = lambda _done, _total: None,
-) -> str:  # fmt: skip
+) -> str:
     """Try so many random boxes, and more points; what was found, and for how many points nothing was proved.
 
     Parameters
@@ -254,8 +257,10 @@ def check_point(
     except Unproved:
         return None
     if differs(cell, there.counts):
-        raise Violation(f"at {claims.place(x, y)} in cell {number}, which is said to have {stored(cell)}, there are "
-                        f"{there.counts}{reason}")  # fmt: skip
+        raise Violation(
+            f"at {claims.place(x, y)} in cell {number}, which is said to have {stored(cell)}, there are "
+            f"{there.counts}{reason}"
+        )
     return there
 
 

@@ -46,8 +46,11 @@ class CertifiedClaims(Claims):
         """By how much areas may be told differently because of rounding, in squares of the lattice."""
         cover = self.result.cover
         assert cover is not None
-        sides = ((right - left + top - bottom) * (len(patch.tubes) + 1) for patch in cover.patches
-                 for left, right, bottom, top in [patch.frame])  # fmt: skip
+        sides = (
+            (right - left + top - bottom) * (len(patch.tubes) + 1)
+            for patch in cover.patches
+            for left, right, bottom, top in [patch.frame]
+        )
         return SLACK * sum(sides)
 
     @cached_property
@@ -188,8 +191,9 @@ def check_components(claims: CertifiedClaims) -> str:
     known = sum(found.areas[component] for component in cells)
     true = 1 - Fraction(known, found.steps**2)
     if not true <= r.undetermined <= true + Fraction(claims.slack, found.steps**2):
-        raise Violation(f"the undetermined share of the window is {approximate_text(true)}, not "
-                        f"{approximate_text(r.undetermined)}")  # fmt: skip
+        raise Violation(
+            f"the undetermined share of the window is {approximate_text(true)}, not {approximate_text(r.undetermined)}"
+        )
     return f"{len(found.areas)} components, {len(found.areas) - len(cells)} of them undetermined"
 
 
@@ -213,12 +217,16 @@ def check_regions(claims: CertifiedClaims) -> str:
         reach, least = _reach(claims, component), found.areas[component]
         low, high = region.area
         if not (0 <= low <= least * claims.square):
-            raise Violation(f"region {number} is said to have at least the area {text_of(low)}, but "
-                            f"only {approximate_text(least * claims.square)} is proved")  # fmt: skip
+            raise Violation(
+                f"region {number} is said to have at least the area {text_of(low)}, but "
+                f"only {approximate_text(least * claims.square)} is proved"
+            )
         if high < (reach - claims.slack) * claims.square:
-            raise Violation(f"region {number} is said to have at most the area {approximate_text(high)}, but with "
-                            f"what is undetermined beside it, it may have "
-                            f"{approximate_text(reach * claims.square)}")  # fmt: skip
+            raise Violation(
+                f"region {number} is said to have at most the area {approximate_text(high)}, but with "
+                f"what is undetermined beside it, it may have "
+                f"{approximate_text(reach * claims.square)}"
+            )
     if sorted(n for region in r.regions for n in region.cells) != list(range(len(r.cells))):
         raise Violation("a cell is in no region")
     return f"{len(r.regions)} regions"

@@ -222,10 +222,16 @@ def sweep(cover: Cover) -> Sweep:
     for n, is_free in enumerate(sets.free):
         found[not is_free][component_of[n]] += sets.areas[n]
     return Sweep(
-        cover.steps, tuple(lines), tuple(rows), frames, component_of, tuple(first_part),
-        {n: area for n, area in found[0].items() if area > 0}, dict(found[1]),
+        cover.steps,
+        tuple(lines),
+        tuple(rows),
+        frames,
+        component_of,
+        tuple(first_part),
+        {n: area for n, area in found[0].items() if area > 0},
+        dict(found[1]),
         frozenset((component_of[a], component_of[b]) for a, b in pairs),
-    )  # fmt: skip
+    )
 
 
 def _zones(changed: Sequence[Entry], row: Sequence[Item]) -> list[tuple[int, int]]:

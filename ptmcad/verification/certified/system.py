@@ -304,8 +304,9 @@ class _Text:
             for _ in range(abs(multiple)):
                 turned = s if multiple > 0 else -s
                 cosine, sine = (
-                    _product(cosine, c) - _product(sine, turned), _product(sine, c) + _product(cosine, turned)
-                )  # fmt: skip
+                    _product(cosine, c) - _product(sine, turned),
+                    _product(sine, c) + _product(cosine, turned),
+                )
         return cosine if name == "cos" else sine
 
     def _angles(self, inner: ast.expr, node: ast.expr) -> dict[str, int]:

@@ -109,8 +109,9 @@ class Equations:
         flat = [rows[n * i + j] for i in range(n) for j in range(n)]
         return [
             _without(_combined([a * b for a in one for b in two], flat), names)
-            for one, names in zip(self.basis, self._common, strict=True) for two in self.basis
-        ]  # fmt: skip
+            for one, names in zip(self.basis, self._common, strict=True)
+            for two in self.basis
+        ]
 
     def _expression(self, e: Expression, axes: Sequence[int]) -> int:
         f = self.list
@@ -255,8 +256,9 @@ class Equations:
     def outweighs(self, k: int, i: int) -> int:
         """(K |g|)^2 - r^2 for the i-th unknown: not negative where a spring without length balances the rest."""
         f, s = self.list, self.springs[k]
-        return f.subtract(f.multiply(f.power(s.pull, 2), f.dot(s.weights[i], s.weights[i])),
-                          f.power(self.without(k)[i], 2))  # fmt: skip
+        return f.subtract(
+            f.multiply(f.power(s.pull, 2), f.dot(s.weights[i], s.weights[i])), f.power(self.without(k)[i], 2)
+        )
 
     def balanced(self, k: int) -> tuple[int, list[int]]:
         """The determinant, and |d| times the diagonal, of the Hessian as they are at equilibria.
@@ -324,7 +326,7 @@ def _combined(factors: Sequence[int], rows: Sequence[Waves]) -> Waves:
     written = {
         key: tuple((c.numerator, c.denominator, names) for names, c in terms.items() if c)
         for key, terms in found.items()
-    }  # fmt: skip
+    }
     return {key: terms for key, terms in written.items() if terms}
 
 

@@ -43,9 +43,13 @@ class Rest:
 
 
 def search(
-    system: System, pieces: Pieces, start: Any, budget: int, smallest: float,
+    system: System,
+    pieces: Pieces,
+    start: Any,
+    budget: int,
+    smallest: float,
     report: Callable[[float], None] = lambda _share: None,
-) -> Rest:  # fmt: skip
+) -> Rest:
     """Look at boxes, and halve them.
 
     Parameters

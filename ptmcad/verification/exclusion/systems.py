@@ -95,9 +95,7 @@ class System:
             for some, which in ((self.zero, chosen[: len(self.zero)]), (self.not_negative, chosen[len(self.zero) :]))
         )
         tape, places = shortened(self.tape, self.first, [*zero, *not_negative])
-        return replace(
-            self, tape=tape, zero=tuple(places[: len(zero)]), not_negative=tuple(places[len(zero) :])
-        )  # fmt: skip
+        return replace(self, tape=tape, zero=tuple(places[: len(zero)]), not_negative=tuple(places[len(zero) :]))
 
     def over_window(self, smallest: float) -> Compiled:
         """In arrays, to be looked at over boxes of the window that are wider than a share of it."""
@@ -271,9 +269,12 @@ class _Systems:
         equations = [*m.equations(directions), f.cross(s.vector, u)]
         short = f.subtract(self._short(k), f.length(*s.vector))
         return self._system(
-            f"folds with {s.name} short", equations, [determinant, *m.balances(k)], [*self.positive, length, short],
+            f"folds with {s.name} short",
+            equations,
+            [determinant, *m.balances(k)],
+            [*self.positive, length, short],
             unknowns=n + 1,
-        )  # fmt: skip
+        )
 
     def _cone(self, k: int) -> System:
         """Configurations in which one spring has no length, and some direction of it balances the other forces."""
@@ -301,9 +302,13 @@ class _Systems:
         return found
 
     def _system(
-        self, name: str, first: Sequence[int], zero: Sequence[int], not_negative: Sequence[int],
+        self,
+        name: str,
+        first: Sequence[int],
+        zero: Sequence[int],
+        not_negative: Sequence[int],
         unknowns: int | None = None,
-    ) -> System:  # fmt: skip
+    ) -> System:
         """A system, of whose formulas that are zero the first ones are evaluated before all others."""
         cover = self.claims.result.cover
         assert cover is not None
@@ -315,7 +320,7 @@ class _Systems:
             ranges += [(-half, half) for half in self._halves] + [_ANGLE] * (number - self.form.size)
         return System(
             name + self.where, tape, tuple(places[:count]), tuple(places[count:]), len(first), early, np.array(ranges)
-        )  # fmt: skip
+        )
 
 
 __all__ = ["Compiled", "System", "halves_over", "solutions_of", "systems_of", "window_of"]
