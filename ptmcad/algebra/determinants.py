@@ -25,12 +25,12 @@ from ptmcad.algebra.polynomials import (
     lcm,
     ratio,
 )
-from ptmcad.algebra.residues import primes
+from ptmcad.algebra.residues import PRIME_BITS, primes
 
 MIN_INTERPOLATED = 12
-"""Rows; of fewer the elimination is as fast."""
-MANY_TERMS = 15_000
-"""Rows times terms, in two variables; with fewer, likewise."""
+"""Rows; of fewer an elimination is as fast."""
+SHARE = 0.05
+"""Products of terms in the elimination tried first, for each step of one in the values: a fifth of what these take."""
 
 
 def laplace(rows: Sequence[Sequence[Any]]) -> Any:
@@ -75,35 +75,47 @@ def determinant(rows: list[list[Ratio]]) -> Ratio:
 
 
 def _primitive_determinant(matrix: list[list[Coefficient]]) -> Coefficient:
-    """The determinant, by the way that is likely to be the shorter one."""
-    terms = sum(len(entry) for row in matrix for entry in row)
-    degrees = [max(d) for d in zip(*(entry.degrees() for row in matrix for entry in row), strict=True)]
-    if len(degrees) != 2 or len(matrix) < MIN_INTERPOLATED or (min(degrees) > 0 and len(matrix) * terms < MANY_TERMS):
-        return _bareiss(matrix)
-    return characteristic(matrix)[0]
+    """The determinant, by values where an elimination turns out to be long, which the entries do not say beforehand."""
+    rows = len(matrix)
+    most = math.inf
+    if matrix[0][0].context().nvars() == 2 and rows >= MIN_INTERPOLATED:
+        across, up, both, size = _bounds(matrix)
+        values = sum(max(0, min(up, both - i)) for i in range(across))
+        most = SHARE * values * (size.bit_length() // PRIME_BITS + 1) * rows**3
+    found = _bareiss([list(row) for row in matrix], most)
+    return characteristic(matrix)[0] if found is None else found
+
+
+def _bounds(matrix: Sequence[Sequence[Coefficient]], scales: Sequence[Coefficient] = ()) -> tuple[int, int, int, int]:
+    """What the exponents of x, of y, and their sum are below, and twice the coefficients' moduli; zeros for det A = 0.
+
+    These degrees are at most those of a product of entries, one of each row and column; the sum of the coefficients'
+    moduli is at most the product over the rows of these sums.
+    """
+    sizes = [[_moduli(entry) for entry in row] for row in matrix]
+    for k, scale in enumerate(scales):
+        sizes[k][k] = sizes[k][k] + _moduli(scale)
+    degrees = [[None if p.is_zero() else (*p.degrees(), p.total_degree()) for p in row] for row in sizes]
+    least = [least_assignment([[None if d is None else -int(d[k]) for d in row] for row in degrees]) for k in range(3)]
+    if None in least:
+        return 0, 0, 0, 0
+    across, up, both = (1 - (bound or 0) for bound in least)
+    return across, up, both, 2 * math.prod(int(sum(p(1, 1) for p in row)) for row in sizes)
 
 
 def characteristic(matrix: Sequence[Sequence[Coefficient]], scales: Sequence[Coefficient] = ()) -> list[Coefficient]:
     """The coefficients of T^0, ..., T^(n-1) in det (T S - A) over Z[x, y]; without S det A alone.
 
-    They come from values at integer points modulo primes of one word. Their degree in x, in y, and in both is at most
-    that of a product of entries, one of each row and column; the sum of their coefficients' moduli is at most the
-    product over the rows of these sums.
+    They come from values at integer points modulo primes of one word, as many as proved bounds ask for.
 
     Parameters
     ----------
     scales : the diagonal of S; none is zero.
     """
     ring = matrix[0][0].context()
-    sizes = [[_moduli(entry) for entry in row] for row in matrix]
-    for k, scale in enumerate(scales):
-        sizes[k][k] = sizes[k][k] + _moduli(scale)
-    degrees = [[None if p.is_zero() else (*p.degrees(), p.total_degree()) for p in row] for row in sizes]
-    bounds = [least_assignment([[None if d is None else -int(d[k]) for d in row] for row in degrees]) for k in range(3)]
-    if None in bounds:
+    across, up, triangle, most = _bounds(matrix, scales)
+    if not across:
         return [ring.constant(0)]
-    across, up, triangle = (1 - (bound or 0) for bound in bounds)
-    most = 2 * math.prod(int(sum(p(1, 1) for p in row)) for row in sizes)
     leading = coefficients_in(math.prod(scales, start=ring.constant(1)), 1)
     xs = _integers(across, lambda x: any(c(x) for c in leading))
     products = [fmpz_poly([c(x) for c in leading]) for x in xs]
@@ -195,8 +207,9 @@ def _expanded(values: Mapping[tuple[int, int], int], across: _Basis, up: _Basis)
     return across[1] * found * up[1].transpose()
 
 
-def _bareiss(matrix: list[list[Coefficient]]) -> Coefficient:
-    size, previous, sign = len(matrix), constant_like(matrix[0][0], 1), 1
+def _bareiss(matrix: list[list[Coefficient]], most: float) -> Coefficient | None:
+    """The determinant by fraction-free elimination in place; None where that takes more products of terms."""
+    size, previous, sign, products = len(matrix), constant_like(matrix[0][0], 1), 1, 0
     for k in range(size - 1):
         candidates = [i for i in range(k, size) if not matrix[i][k].is_zero()]
         if not candidates:
@@ -207,6 +220,9 @@ def _bareiss(matrix: list[list[Coefficient]]) -> Coefficient:
             sign = -sign
         for i in range(k + 1, size):
             for j in range(k + 1, size):
+                products += len(matrix[k][k]) * len(matrix[i][j]) + len(matrix[i][k]) * len(matrix[k][j])
+                if products > most:
+                    return None
                 matrix[i][j] = (matrix[k][k] * matrix[i][j] - matrix[i][k] * matrix[k][j]) / previous
         previous = matrix[k][k]
     return matrix[-1][-1] * sign

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Sequence
 from itertools import permutations
@@ -68,21 +69,34 @@ def test_assignments_of_many_rows_are_those_of_scipy() -> None:
 def test_determinants_are_those_by_permutations(matrix: Matrix) -> None:
     expected = by_permutations(matrix)
     assert determinants.characteristic(matrix) == [expected]
-    assert determinants._bareiss([list(row) for row in matrix]) == expected
+    assert determinants._bareiss([list(row) for row in matrix], math.inf) == expected
 
 
-def test_large_determinants_are_interpolated_and_small_ones_are_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(determinants, "_bareiss", None)
+def test_long_eliminations_are_given_up_for_values(monkeypatch: pytest.MonkeyPatch) -> None:
     source = random.Random(5)
     size = determinants.MIN_INTERPOLATED
-    few = [[PLANE.constant(source.randint(-9, 9)) * (X + i) + (Y if i == j else 0) for j in range(size)]
-           for i in range(size)]  # fmt: skip
-    with pytest.raises(TypeError):
-        determinants._primitive_determinant(few)
-    monkeypatch.setattr(determinants, "MANY_TERMS", 0)
-    found = determinants._primitive_determinant(few)
+    few = [
+        [PLANE.constant(source.randint(-9, 9)) * (X + i) + (Y if i == j else 0) for j in range(size)]
+        for i in range(size)
+    ]
+    expected = determinants._bareiss([list(row) for row in few], math.inf)
+    assert determinants._bareiss([list(row) for row in few], 1000) is None
+    monkeypatch.setattr(determinants, "SHARE", 0)
+    assert determinants._primitive_determinant(few) == expected
     values = fmpz_mat([[int(p(3, 5)) for p in row] for row in few])
-    assert found(3, 5) == values.det()
+    assert expected is not None
+    assert expected(3, 5) == values.det()
+
+
+def test_sparse_determinants_take_an_elimination(monkeypatch: pytest.MonkeyPatch) -> None:
+    """ring-of-three: 28 rows of about one term each took 11 s by values, and take 0.06 s."""
+    monkeypatch.setattr(determinants, "characteristic", None)
+    size = 28
+    terms = {0: X**3 + 2, 1: Y**2 - X}
+    sparse = [[terms.get(j - i, PLANE.constant(0)) for j in range(size)] for i in range(size - 1)]
+    sparse.append([X + j * Y for j in range(size)])
+    values = fmpz_mat([[int(p(3, 5)) for p in row] for row in sparse])
+    assert determinants._primitive_determinant(sparse)(3, 5) == values.det()
 
 
 def test_a_matrix_without_rank_has_determinant_zero() -> None:
