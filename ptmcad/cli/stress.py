@@ -70,7 +70,7 @@ def _draw(found: Row, path: Path) -> None:
 @click.option("--seed", type=click.IntRange(0, 2**31), default=1, show_default=True, metavar="N",
               help="Of the random cases.")  # fmt: skip
 @click.option("--repeats", type=click.IntRange(1, 1000), default=5, show_default=True, metavar="N",
-              help="Timed runs of each case and of its tame sibling; slow cases have one.")  # fmt: skip
+              help="Timed runs of each case; slow cases have one.")  # fmt: skip
 @format_option(FORMATS, "What to make; the table is printed.", "table,json,csv,png,svg")
 @out_option
 @click.option("--list", "only_list", is_flag=True, help="Print the cases with their sources, and run none.")

@@ -1,6 +1,6 @@
-"""A run of stress cases: each put to ptmcad and to double precision, judged, and its cost beside its tame sibling's.
+"""A run of stress cases: each put to ptmcad and to double precision, judged and timed.
 
-Guarantee: everything in a campaign but the seconds and their ratios is the same in the next run with the same versions.
+Guarantee: everything in a campaign but the seconds is the same in the next run with the same versions.
 A run that was stopped by a time limit says so and keeps the cases that were done. It is shown as a table for the
 terminal, a page, JSON and CSV; these two hold every figure, and a number that does not exist is null or empty, never 0.
 """
@@ -8,11 +8,9 @@ terminal, a page, JSON and CSV; these two hold every figure, and a number that d
 from __future__ import annotations
 
 import csv
-import gc
 import io
 import json
 import platform
-import sys
 from collections.abc import Callable, Sequence
 from itertools import groupby
 from math import inf, isfinite
@@ -31,9 +29,6 @@ from ptmcad.text.numerals import shortest_text
 from ptmcad.version import __version__
 
 PACKAGES = ("python-flint", "numpy", "numba")
-MAX_COST = 5.0
-"""An extreme case may cost at most so many times what its tame sibling does."""
-
 HEADINGS = ("case", "known", "ptmcad", "double", "double's error", "condition", "bits")
 
 Progress = Callable[[str, int, int], None]
@@ -52,7 +47,7 @@ def campaign(
     Parameters
     ----------
     seed : of random cases among them; recorded.
-    repeats : runs of each case and of its sibling, in turns, for the medians of their times; one of slow cases.
+    repeats : timed runs of each case; one of slow cases.
     deadline : reading of `time.perf_counter` after which no further case is begun.
     progress : called as progress(name, done, total).
 
@@ -79,23 +74,12 @@ def campaign(
 
 
 def run(case: Case, repeats: int) -> Row:
-    """Answer, judge and time a case: a row with what it and its sibling cost.
-
-    ``calls`` are functions called, Python's and built in, work that is the same in every run; ``seconds`` processor
-    time, medians of runs that take turns; ``ratio`` is of the medians, and ``ratio_low`` and ``ratio_high`` are the
-    smallest and the largest of the runs.
-    """
-    both = (case.question, case.sibling)
+    """Answer and judge a case: a row with the ``seconds`` of processor time that it takes, the median of its runs."""
     verdict = judge(case, answer(case.question, case.name))
-    calls, sibling_calls = map(work_of, both)
-    pairs = [tuple(map(_seconds, both)) for _ in range(repeats)]
-    mine, its = (median(times) for times in zip(*pairs, strict=True))
-    ratio, *ratios = (a / max(b, 1e-9) for a, b in ((mine, its), *pairs))
     return {
         "name": case.name, "family": case.family, "asked": case.question.kind,
         "stiffness": shortest_text(case.stiffness), "source": case.source, **verdict,
-        "calls": calls, "sibling_calls": sibling_calls, "seconds": mine, "sibling_seconds": its,
-        "ratio": ratio, "ratio_low": min(ratios), "ratio_high": max(ratios),
+        "seconds": median(_seconds(case.question) for _ in range(repeats)),
     }  # fmt: skip
 
 
@@ -112,30 +96,6 @@ def answer(question: Question, name: str = "case") -> Any:
     if question.tolerance is not None:
         return ptmcad.classify(slice, tolerance=question.tolerance, jobs=1)
     return ptmcad.classify(slice)
-
-
-def work_of(question: Question) -> int:
-    """How many functions are called to answer a question: a measure of work that depends on no clock.
-
-    The first answer in a process also loads modules and writes out systems, so that it is not counted.
-    """
-    answer(question)
-    calls = 0
-
-    def count(_frame: object, event: str, _argument: object) -> None:
-        nonlocal calls
-        calls += event in ("call", "c_call")
-
-    before, collecting = sys.getprofile(), gc.isenabled()
-    gc.disable()  # what it calls, and when, depends on what else the process has made
-    sys.setprofile(count)
-    try:
-        answer(question)
-    finally:
-        sys.setprofile(before)
-        if collecting:
-            gc.enable()
-    return calls
 
 
 def _seconds(question: Question) -> float:
@@ -157,21 +117,20 @@ def cells(row: Row) -> tuple[str, ...]:
 
 def table(campaign: Row, wanted: int) -> str:
     """The campaign as a table for a terminal, with a summary below."""
-    rows = [(*cells(row), f"{1000 * row['seconds']:.3g}", f"{row['ratio']:.2g}") for row in campaign["cases"]]
-    return "\n".join([*aligned([(*HEADINGS, "ms", "x tame"), *rows]), "", *summary(campaign, wanted)])
+    rows = [(*cells(row), f"{1000 * row['seconds']:.3g}") for row in campaign["cases"]]
+    return "\n".join([*aligned([(*HEADINGS, "ms"), *rows]), "", *summary(campaign, wanted)])
 
 
 def markdown(campaign: Row) -> str:
     """The campaign as a Markdown page, one table for each family.
 
-    Times are left out, so that the same versions write the same page; the work beside its sibling's stands for them.
+    Times are left out, so that the same versions write the same page.
     """
     order = list(dict.fromkeys(row["family"] for row in campaign["cases"]))
     rows = sorted(campaign["cases"], key=lambda row: order.index(row["family"]))
     blocks: list[str | list[str]] = []
     for family, members in groupby(rows, lambda row: row["family"]):
-        shown = [(*cells(row), f"{row['calls'] / max(row['sibling_calls'], 1):.2g}") for row in members]
-        blocks += [f"## {family[0].upper()}{family[1:]}", table_of([(*HEADINGS, "work x tame"), *shown])]
+        blocks += [f"## {family[0].upper()}{family[1:]}", table_of([HEADINGS, *map(cells, members)])]
     right, double, *_ = summary(campaign, len(rows), remarks=False)
     written = f"Written by `ptmcad stress` with seed {campaign['seed']}. {right}; {double}."
     return page("# The stress cases, one by one", written, *blocks)
@@ -190,12 +149,6 @@ def summary(campaign: Row, wanted: int, remarks: bool = True) -> list[str]:
     lines = [f"ptmcad is right in {len(rows) - len(wrong)} of {len(rows)} cases"]
     lines += [f"  {row['name']}: {'; '.join(row['remarks'])}" for row in wrong if remarks]
     lines.append(f"double precision is wrong in {sum(not row['double_right'] for row in rows)} of {len(rows)}")
-    if rows:
-        worst = max(rows, key=lambda row: float(row["ratio"]))
-        lines.append(
-            f"an extreme case costs at most {worst['ratio']:.2g} times its tame sibling ({worst['name']}); "
-            f"more than {MAX_COST:g} times: {sum(row['ratio'] > MAX_COST for row in rows)}"
-        )
     return lines + ([f"stopped: {wanted - len(rows)} cases were not run"] if wanted > len(rows) else [])
 
 

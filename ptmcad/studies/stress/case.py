@@ -1,4 +1,4 @@
-"""A stress case: a question with extreme numbers, its tame sibling, and the answer with where it comes from.
+"""A stress case: a question with extreme numbers, and the answer with where it comes from.
 
 Guarantee: all numbers are exact. An expected answer says what is known beforehand; what it leaves open is empty. Names
 are unique. The named cases are data, ``cases.yaml``, whose head says how they are written. Their counts follow from a
@@ -69,7 +69,6 @@ class Case:
     ----------
     stiffness : what is extreme, as one positive number: a ratio of stiffnesses, lengths or forces, or the distance from
         a fold; the plot's horizontal axis.
-    sibling : the tame question that costs are compared with.
     source : where the expected answer comes from.
     expected : as it is shown: 6/2 of a point (all and stable equilibria), 1 2 1 of maps and lines (stable counts, of
         regions in increasing order, of intervals in theirs); empty where a second method alone knows it.
@@ -82,7 +81,6 @@ class Case:
     family: str
     stiffness: Fraction
     question: Question
-    sibling: Question
     source: str
     expected: str = ""
     bounds: tuple[Span, ...] = ()
@@ -90,8 +88,8 @@ class Case:
 
     @property
     def has_free_lengths(self) -> bool:
-        """Whether a question is for the certified engine."""
-        return free_lengths(self.question.parameters) or free_lengths(self.sibling.parameters)
+        """Whether the question is for the certified engine."""
+        return free_lengths(self.question.parameters)
 
 
 def free_lengths(parameters: Mapping[str, Fraction]) -> bool:
@@ -121,7 +119,6 @@ def _case(entry: Mapping[str, Any], e: int) -> Case:
         name=entry["name"].format(e=e),
         stiffness=known["s"],
         question=_question(entry["question"], known),
-        sibling=_question(entry["tame"], known),
         bounds=_numbers(entry.get("bounds", []), known),
         slow=e in entry.get("slow", ()),
         **{key: entry[key] for key in ("family", "source", "expected") if key in entry},

@@ -36,14 +36,12 @@ def random_case(seed: int, number: int) -> Case:
     if kind in ("fold", "cusp"):
         at, distance = _degenerate(dice, cusp=kind == "cusp"), TEN ** -dice.randint(3, MAX_EXPONENT)
         side, (total, stable) = dice.choice([(1, at.many), (-1, FEW)])
-        near, sibling = (Question(at.beside(side * d)) for d in (distance, Fraction(1, 10)))
-        return Case(name, family, distance, near, sibling, CONSTRUCTED, f"{total}/{stable}")
-    original, expected = _tame(dice)
+        return Case(name, family, distance, Question(at.beside(side * distance)), CONSTRUCTED, f"{total}/{stable}")
+    original, expected = tame(dice)
     scale = TEN ** (dice.choice([-1, 1]) * dice.randint(3, MAX_EXPONENT))
-    moved = changed(original, kind)
     # springs and forces together, then lengths together with forces
-    question = Question(stretched(stiffened(moved, scale), TEN ** dice.randint(-9, 9)))
-    return Case(name, family, scale, question, Question(original), ORIGINAL, expected)
+    question = Question(stretched(stiffened(changed(original, kind), scale), TEN ** dice.randint(-9, 9)))
+    return Case(name, family, scale, question, ORIGINAL, expected)
 
 
 def stiffened(p: Values, factor: Fraction) -> Values:
@@ -63,7 +61,7 @@ def changed(p: Values, kind: str) -> Values:
     return {name: value_at(symmetry[name], p) if name in symmetry else v for name, v in p.items()}
 
 
-def _tame(dice: random.Random) -> tuple[Values, str]:
+def tame(dice: random.Random) -> tuple[Values, str]:
     """A random point with ordinary numbers, and its counts."""
     while True:
         p = {name: Fraction(dice.randint(5, 30), 10) for name in ("L1", "L2", "rho")}
