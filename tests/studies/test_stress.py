@@ -19,7 +19,7 @@ from support.work import work_of
 import ptmcad
 from ptmcad.answer.regionmap import Status
 from ptmcad.cli import run
-from ptmcad.studies.doubles import angle_error
+from ptmcad.studies.byhand import angle_error
 from ptmcad.studies.stress import campaign as campaign_module
 from ptmcad.studies.stress.campaign import answer, campaign, markdown, to_csv, to_json
 from ptmcad.studies.stress.case import Case, Question, chosen, named_cases, point

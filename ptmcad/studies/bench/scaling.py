@@ -98,7 +98,7 @@ def measure(options: argparse.Namespace) -> pd.DataFrame:
             jobs.append(Job(name, family.title, str(n), **asked, check=partial(_unlike, family.regions(n))))
         turns(jobs, options)
     taken = [[json.loads(usage.output)["timings"]["total"] for usage in job.usages] for job in jobs]
-    rows = summary(jobs).assign(computing=[round(median(s), 5) if s else None for s in taken])
+    rows = summary(jobs).assign(computing=pd.Series([median(s) if s else None for s in taken], dtype=float).round(5))
     laws = [
         {"subject": name, "what": FAMILIES[str(name)].title, "setting": "fit", "exponent": exponent(own)}
         for name, own in rows.dropna(subset="computing").astype({"setting": int}).groupby("subject", sort=False)

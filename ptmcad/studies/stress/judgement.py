@@ -21,7 +21,7 @@ from flint import ctx
 from ptmcad.answer.intervals import CountIntervals, lower, upper
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.studies.doubles import scale
+from ptmcad.studies.byhand import scale
 from ptmcad.studies.stress.case import Case, free_lengths
 from ptmcad.studies.stress.methods import IndexedPose, apart, double_poses, proved_poses, sextic_poses
 from ptmcad.text.balls import ball_of, exact
