@@ -22,8 +22,16 @@ from ptmcad.cli import run
 from ptmcad.studies.byhand import angle_error
 from ptmcad.studies.stress import campaign as campaign_module
 from ptmcad.studies.stress.campaign import answer, campaign, markdown, to_csv, to_json
-from ptmcad.studies.stress.case import Case, Question, chosen, named_cases, point
-from ptmcad.studies.stress.constructions import FEW, NAMED, Degenerate
+from ptmcad.studies.stress.case import (
+    FEW,
+    NAMED,
+    Case,
+    Degenerate,
+    Question,
+    chosen,
+    named_cases,
+    point,
+)
 from ptmcad.studies.stress.judgement import Row, judge
 from ptmcad.studies.stress.methods import double_poses, newton_pose, sextic_poses
 from ptmcad.studies.stress.picture import draw_stress

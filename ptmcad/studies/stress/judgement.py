@@ -34,9 +34,6 @@ STEPS = 200
 _BITS = 512
 DECIDED = (Status.EXACT, Status.CERTIFIED)
 
-COLUMNS = (
-    "expected", "found", "right", "remarks", "double", "double_right", "error", "double_error", "condition", "bits",
-)  # fmt: skip
 Row = dict[str, Any]
 """What came out of a case.
 
@@ -68,8 +65,8 @@ def judge(case: Case, found: Any) -> Row:
     with ctx.workprec(_BITS):
         checks, row = judgement(case, found)
     remarks = [remark for holds, remark in checks if not holds]
-    known: Row = {"expected": case.expected, "right": not remarks, "remarks": remarks, "bits": 0}
-    return {**dict.fromkeys(COLUMNS), **known, **row}
+    known: Row = {"expected": case.expected, "right": not remarks, "remarks": remarks}
+    return {**known, "error": None, "condition": None, "bits": 0, **row}
 
 
 Checks = list[tuple[bool, str]]

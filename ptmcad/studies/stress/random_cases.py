@@ -11,8 +11,7 @@ from fractions import Fraction
 
 from ptmcad.mechanism import ptm
 from ptmcad.mechanism.evaluate import value_at
-from ptmcad.studies.stress.case import Case, Question
-from ptmcad.studies.stress.constructions import FEW, Degenerate, degenerate
+from ptmcad.studies.stress.case import FEW, Case, Degenerate, Question, degenerate
 from ptmcad.studies.stress.methods import sextic_poses
 
 KINDS = ("scaled", "mirrored", "swapped", "fold", "cusp")
