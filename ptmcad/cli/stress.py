@@ -100,7 +100,7 @@ def command(
         ptmcad stress --random 100 --seed 7 --format table
         ptmcad stress all --random 100
     """
-    from ptmcad.studies.stress.case import chosen  # the cases' numbers need no library
+    from ptmcad.studies.stress.case import chosen, free_lengths  # the cases' numbers need no library
 
     timeout = limits.timeout
     limit = None if timeout is None else timeout + GRACE_SECONDS
@@ -116,7 +116,7 @@ def command(
             check_writable(out, tuple(f"{NAME}.{kind}" for kind in files))
         from ptmcad.studies.stress.campaign import campaign, summary, table
 
-        if any(case.has_free_lengths for case in cases):
+        if any(free_lengths(case.question.parameters) for case in cases):
             from ptmcad.ask.classification import load_certified
             from ptmcad.options import DEFAULTS
 

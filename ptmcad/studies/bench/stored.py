@@ -123,16 +123,10 @@ def _positive(node: Node) -> float:
 _TIME: Codec[float] = Codec(SECONDS.write, _positive, {"type": "number", "exclusiveMinimum": 0})
 _PAIR = listed(SECONDS, 2)
 _TIMES: Codec[Row] = record(dict, runs=POSITIVE, median=_TIME, minimum=_TIME, maximum=_TIME)
-_FIGURES: Codec[Row] = record(
-    dict,
-    wrong=_PAIR,
-    undetermined=SECONDS,
-    wrong_centres=optional(codec.NATURAL),
-    regions=optional(POSITIVE),
-    missed=optional(codec.NATURAL),
-    faintest=optional(_PAIR),
-    distance=optional(_PAIR),
-)
+_NUMBER: Codec[Any] = optional(codec.NATURAL)
+_BOUNDS: Codec[Any] = optional(_PAIR)
+_KINDS: tuple[Codec[Any], ...] = (_PAIR, SECONDS, _NUMBER, optional(POSITIVE), _NUMBER, _BOUNDS, _BOUNDS)
+_FIGURES: Codec[Row] = record(dict, **dict(zip(FIGURES, _KINDS, strict=True)))
 _MEASUREMENT: Codec[Row] = record(
     dict,
     method=line(60).narrowed(enum=[*RIVALS]),

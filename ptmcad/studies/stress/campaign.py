@@ -20,7 +20,7 @@ from typing import Any
 from ptmcad.answer.poses import DIGITS
 from ptmcad.extras import Extra, require
 from ptmcad.show.ranges.table import aligned
-from ptmcad.studies.stress.case import Case, Question
+from ptmcad.studies.stress.case import Case, Question, free_lengths
 from ptmcad.studies.stress.judgement import Row, judge
 from ptmcad.studies.tables import installed, page
 from ptmcad.studies.tables import markdown as table_of
@@ -55,7 +55,7 @@ def campaign(
     ConfigError
         Before the first case, when one has springs with free lengths and numba is not installed.
     """
-    if any(case.has_free_lengths for case in cases):
+    if any(free_lengths(case.question.parameters) for case in cases):
         require(Extra.certified)
     rows: list[Row] = []
     for k, case in enumerate(cases):
@@ -123,24 +123,23 @@ def table(campaign: Row, wanted: int) -> str:
 def markdown(campaign: Row) -> str:
     """The campaign as a Markdown page; times are left out, so that the same versions write the same page."""
     rows = [(row["family"], *cells(row)) for row in campaign["cases"]]
-    right, double, *_ = summary(campaign, len(rows), remarks=False)
+    right, double, *_ = summary(campaign, len(rows))
     written = f"Written by `ptmcad stress` with seed {campaign['seed']}. {right}; {double}."
     return page("# The stress cases, one by one", written, table_of([("family", *HEADINGS), *rows]))
 
 
-def summary(campaign: Row, wanted: int, remarks: bool = True) -> list[str]:
+def summary(campaign: Row, wanted: int) -> list[str]:
     """What the campaign says, line by line.
 
     Parameters
     ----------
     wanted : how many cases were to be run.
-    remarks : whether what is wrong is said of each case.
     """
     rows = campaign["cases"]
     wrong = [row for row in rows if not row["right"]]
     lines = [f"ptmcad is right in {len(rows) - len(wrong)} of {len(rows)} cases"]
-    lines += [f"  {row['name']}: {'; '.join(row['remarks'])}" for row in wrong if remarks]
     lines.append(f"double precision is wrong in {sum(not row['double_right'] for row in rows)} of {len(rows)}")
+    lines += [f"wrong: {row['name']}: {'; '.join(row['remarks'])}" for row in wrong]
     return lines + ([f"stopped: {wanted - len(rows)} cases were not run"] if wanted > len(rows) else [])
 
 

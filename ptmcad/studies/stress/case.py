@@ -109,11 +109,6 @@ class Case:
     bounds: tuple[Span, ...] = ()
     slow: bool = False
 
-    @property
-    def has_free_lengths(self) -> bool:
-        """Whether the question is for the certified engine."""
-        return free_lengths(self.question.parameters)
-
 
 def free_lengths(parameters: Mapping[str, Fraction]) -> bool:
     """Whether a spring has one."""

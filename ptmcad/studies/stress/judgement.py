@@ -87,14 +87,6 @@ def _text(counts: Iterable[object]) -> str:
     return " ".join(map(str, counts))
 
 
-def as_float(value: Fraction) -> float:
-    """A rational as a float; infinite or zero beyond a float's range."""
-    try:
-        return float(value)
-    except OverflowError:
-        return float("inf") if value > 0 else float("-inf")
-
-
 # ----------------------------------------------------------------------------------------------------------- points
 
 
@@ -121,9 +113,9 @@ def _point(case: Case, found: Poses) -> tuple[Checks, Row]:
         "found": text if ours else "undecided",
         "double": _shown(double),
         "double_right": _shown(double) == other,
-        "error": as_float(error or Fraction(0)),
+        "error": float(ball_of(error or Fraction(0))),
         "double_error": max(errors, default=None),
-        "condition": as_float(largest / smallest) if smallest else None,
+        "condition": float(ball_of(largest / smallest)) if smallest else None,
         "bits": found.bits,
     }
 
@@ -196,8 +188,8 @@ def _line(case: Case, found: CountIntervals) -> tuple[Checks, Row]:
         "found": _text(stable),
         "double": _text(double),
         "double_right": double == stable,
-        "error": as_float(max(((b - a) / 2 for a, b in ends), default=Fraction(0)) / (high - low)),
-        "double_error": as_float(max(errors, default=Fraction(0)) / (high - low)) if len(double) == len(runs) else None,
+        "error": float(max(((b - a) / 2 for a, b in ends), default=Fraction(0)) / (high - low)),
+        "double_error": float(max(errors, default=Fraction(0)) / (high - low)) if len(double) == len(runs) else None,
     }
 
 
@@ -206,7 +198,7 @@ def _expected(case: Case, stable: Sequence[int | None], numbers: Sequence[Sequen
     met = len(numbers) == len(case.bounds) and all(
         low <= most and high >= least for (low, high), (least, most) in zip(numbers, case.bounds, strict=True)
     )
-    shown = "; ".join(f"{as_float(low):.10g} to {as_float(high):.10g}" for low, high in numbers)
+    shown = "; ".join(f"{float(ball_of(low)):.10g} to {float(ball_of(high)):.10g}" for low, high in numbers)
     return [
         (_text(stable) == case.expected, f"stable counts {_text(stable)}, but {case.expected} are expected"),
         (met, f"the ends, or the area on which two are stable, are not where they should be: {shown}"),
