@@ -23,16 +23,10 @@ DPI = 110
 COLUMNS = 4
 LINE = 145
 """Letters in a line of what stands below."""
+COLORS = ("#0b5394", "#38761d", "#741b47", "#b45f06", "#555555", "#8a7d00", "#009e73", "#c00000")
 STYLES: tuple[dict[str, Any], ...] = (
-    {"color": "#0b5394", "marker": "o"},
-    {"color": "#38761d", "marker": "s"},
-    {"color": "#741b47", "marker": "D"},
-    {"color": "#b45f06", "marker": "^"},
-    {"color": "#555555", "marker": "P"},
-    {"color": "#8a7d00", "marker": "X"},
-    {"color": "#009e73", "marker": "v"},
-    {"color": "#c00000", "marker": "*"},
-    {"color": "#0b5394", "marker": "o", "markerfacecolor": "white", "linestyle": (0, (2, 2))},
+    *({"color": color, "marker": marker} for color, marker in zip(COLORS, "osD^PXv*", strict=True)),
+    {"color": COLORS[0], "marker": "o", "markerfacecolor": "white", "linestyle": (0, (2, 2))},
 )
 """Of curves that are joined."""
 WIDE = 1e4

@@ -136,7 +136,7 @@ Quitting the QEPCAD system... Bye!
 def agreement(program: str, answer: str, folder: Path) -> str:
     """What is said of an answer to the question about the cubic."""
     job = Job("cubic", program, "", [], usages=[told(answer)])
-    said: str = RIVALS[program].read(case(folder, cubic()), job)["note"]
+    said: str = programs.read(case(folder, cubic()), job)["note"]
     return said.removeprefix("no counts; ")
 
 

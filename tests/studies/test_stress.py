@@ -35,7 +35,7 @@ from ptmcad.studies.stress.case import (
 from ptmcad.studies.stress.judgement import Row, judge
 from ptmcad.studies.stress.methods import double_poses, newton_pose, sextic_poses
 from ptmcad.studies.stress.picture import draw_stress
-from ptmcad.studies.stress.random_cases import KINDS, changed, random_case, stiffened, stretched, tame
+from ptmcad.studies.stress.random_cases import KINDS, changed, random_case, scaled, tame
 from ptmcad.text.flint_numbers import from_fraction
 
 CASES = named_cases()
@@ -351,7 +351,7 @@ def test_random_cases_are_the_same_in_every_run_and_of_all_kinds() -> None:
 def test_symmetries_undo_each_other(seed: int, factor: Fraction) -> None:
     p, _ = tame(random.Random(seed))
     assert changed(changed(p, "mirrored"), "mirrored") == changed(changed(p, "swapped"), "swapped") == p
-    assert stiffened(stiffened(p, factor), 1 / factor) == stretched(stretched(p, factor), 1 / factor) == p
+    assert scaled(scaled(p, factor, 1 / factor**2), 1 / factor, factor**2) == p
 
 
 # ---------------------------------------------------------------------------------------------- record, plot, command

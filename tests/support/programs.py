@@ -66,7 +66,9 @@ def singular(script: str) -> str:
 
 def qepcad_script(problems: Sequence[str]) -> str:
     """QEPCAD's standard input for several problems, each without a final ``quit``."""
-    return programs.SCRIPTS["qepcad"].format(problems="\ncontinue\n".join(problem.rstrip() for problem in problems))
+    return programs.TEXTS["scripts"]["qepcad"].format(
+        problems="\ncontinue\n".join(problem.rstrip() for problem in problems)
+    )
 
 
 def qepcad_session(problems: Sequence[str]) -> list[str]:

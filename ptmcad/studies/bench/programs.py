@@ -33,7 +33,7 @@ from ptmcad.text.plane import PlanePolynomial
 
 END = "-- the script was read to its end --"
 QUIT = "Quitting the QEPCAD system"
-SCRIPTS: Mapping[str, str] = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8"))
+TEXTS: Mapping[str, Any] = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8"))
 _ERROR = re.compile(r"^\s*\? .*$|^.*(?:\bError\b|Failure|Reason for|expected!).*$", re.MULTILINE)
 _CELL = re.compile(r"Information about the cell \(\d+,\d+\) -+$(.*?)^-{50,}$", re.MULTILINE | re.DOTALL)
 _TRUE = re.compile(r"^Truth value\s*: T", re.MULTILINE)
@@ -71,7 +71,7 @@ def by_singular(result: RegionMap, said: str) -> tuple[bool, str]:
     return same_curves(result, curves(said.partition(END)[0].split(), factors=True))
 
 
-def start_msolve(case: Case, _: str) -> Asked:
+def start_msolve(case: Case) -> Asked:
     """A Groebner basis of the elimination ideal."""
     program = msolve.program()
     if program is None:
@@ -172,13 +172,19 @@ COMPARED = {"singular": by_singular, "msolve": by_msolve, "qepcad": by_qepcad, "
 
 
 def start(program: str, case: Case, _: str) -> Asked:
-    """The job of a program, but for msolve; `SCRIPTS` has what is asked."""
+    """The job of a program; what is asked is in `TEXTS`, but for msolve, which has files."""
+    if program == "msolve":
+        return start_msolve(case)
     command, end, words = SESSIONS[program]
     if case.exact is None and program != "singular":
         return "there are no finished curves"
     if shutil.which(command[0]) is None:
         return f"{command[0]} is not installed"
-    return {"command": command, "text": SCRIPTS[program].format(**words(case)), "check": partial(incomplete, end)}
+    return {
+        "command": command,
+        "text": TEXTS["scripts"][program].format(**words(case)),
+        "check": partial(incomplete, end),
+    }
 
 
 def incomplete(end: str, usage: Usage) -> str:
@@ -189,12 +195,12 @@ def incomplete(end: str, usage: Usage) -> str:
     return "" if end in usage.output else "stopped within its script"
 
 
-def read(program: str, case: Case, job: Job) -> Row:
+def read(case: Case, job: Job) -> Row:
     """What an answer without counts is beside the map, with "DIFFERS" where it is another or cannot be read."""
     if case.exact is None:
         return {}
     try:
-        same, words = COMPARED[program](case.exact, job.said())
+        same, words = COMPARED[job.what](case.exact, job.said())
     except ValueError as error:
         same, words = False, f"cannot be read: {error}"
     return {"note": f"no counts; {words if same else f'DIFFERS: {words}'}"}

@@ -120,7 +120,7 @@ def _positive(node: Node) -> float:
     return seconds
 
 
-_TIME: Codec[float] = Codec(SECONDS.write, _positive, {"type": "number", "exclusiveMinimum": 0})
+_TIME: Codec[float] = codec.reading(_positive, type="number", exclusiveMinimum=0)
 _PAIR = listed(SECONDS, 2)
 _TIMES: Codec[Row] = record(dict, runs=POSITIVE, median=_TIME, minimum=_TIME, maximum=_TIME)
 _NUMBER: Codec[Any] = optional(codec.NATURAL)

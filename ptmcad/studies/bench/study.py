@@ -16,7 +16,6 @@ import tempfile
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from functools import partial
 from importlib.util import find_spec
 from itertools import zip_longest
 from pathlib import Path
@@ -45,6 +44,8 @@ from ptmcad.studies.bench.harness import (
     times,
 )
 
+ENGINES = {"exact": "--area-tolerance", "certified": "--tolerance"}
+"""Those of ptmcad, with the option whose value is the setting."""
 GRIDS = ("companion", "multistart")
 NO_MAP = "no exact map to compare with: the share is the engine's"
 NO_WALLS = "errors not measured: the true walls are too steep for chains of chords; shares are the engine's"
@@ -62,25 +63,19 @@ WARM_UP_SECONDS = 300.0
 
 
 class Rival(NamedTuple):
-    """One of the methods.
+    """One of the methods, as ``programs.yaml`` has them: its title, how a setting is called, and the settings.
 
-    Attributes
-    ----------
-    label : of a setting, which goes in the place of the braces.
-    settings : from the coarsest.
-    quick : how many of them are run when it has to be quick.
-    start : what the job at a setting has, or why there is none.
-    read : figures and notes of a job that is done, as of a measurement.
-    needs : an optional package.
+    Those are in order from the coarsest; so many of them are run when it has to be quick. It may need a package.
     """
 
     title: str
     label: str
-    settings: tuple[str, ...]
+    settings: Sequence[str]
     quick: int
-    start: Callable[[Case, str], Asked]
-    read: Callable[[Case, Job], Row]
     needs: str = ""
+
+
+RIVALS = {name: Rival(**entry) for name, entry in programs.TEXTS["rivals"].items()}
 
 
 def jobs(method: str, case: Case) -> list[Job] | str:
@@ -93,7 +88,8 @@ def jobs(method: str, case: Case) -> list[Job] | str:
     if rival.needs and find_spec(rival.needs) is None:
         return f"{rival.needs} is not installed (make bench installs it)"
     settings = rival.settings[: rival.quick if case.quick else None]
-    asked = {rival.label.format(setting): rival.start(case, setting) for setting in settings}
+    start = _start_engine if method in ENGINES else _start_grid if method in GRIDS else programs.start
+    asked = {rival.label.format(setting): start(method, case, setting) for setting in settings}
     found = [Job(slice.name, method, label, **more) for label, more in asked.items() if not isinstance(more, str)]
     return found or str(next(iter(asked.values())))
 
@@ -101,8 +97,8 @@ def jobs(method: str, case: Case) -> list[Job] | str:
 # ------------------------------------------------------------------------------------------------- ptmcad and grids
 
 
-def _start_engine(engine: str, option: str, case: Case, setting: str) -> Asked:
-    options = ("--engine", engine, "--count", finest_count(case.slice), option, setting, "--format", "json")
+def _start_engine(engine: str, case: Case, setting: str) -> Asked:
+    options = ("--engine", engine, "--count", finest_count(case.slice), ENGINES[engine], setting, "--format", "json")
     asked = classification(case.record, case.slice.name, case.folder / f"{engine}-{setting}", *options)
     return asked | {"saves": engine == "certified"}
 
@@ -176,26 +172,6 @@ def _read_grid(case: Case, job: Job) -> Row:
     cells = case.exact.grid(len(stable)).cell.T
     found = {count: grid_error(truth, cells, shown_count(stable, total, count)) for count, truth in case.known.items()}
     return {"figures": found}
-
-
-RIVALS = {
-    "exact": Rival("ptmcad, exact engine", "area tolerance {}", ("1e-2", "1e-4", "1e-8", "1e-12"), 2,
-                   partial(_start_engine, "exact", "--area-tolerance"), _read_map),
-    "certified": Rival("ptmcad, certified engine", "tolerance {}", ("1e-1", "1e-2", "1e-3", "1e-4"), 2,
-                       partial(_start_engine, "certified", "--tolerance"), _read_map, "numba"),
-    "companion": Rival("grid of companion matrices", "N = {}", ("25", "50", "100", "200", "400", "800", "1600"), 4,
-                       partial(_start_grid, "companion"), _read_grid),
-    "multistart": Rival("grid of Newton's starts", "N = {}", ("12", "25"), 1,
-                        partial(_start_grid, "multistart"), _read_grid),
-    "qepcad": Rival("QEPCAD", "{}", ("cells of the curves",), 1,
-                    partial(programs.start, "qepcad"), partial(programs.read, "qepcad")),
-    "singular": Rival("Singular, critical curve alone", "{}", ("critical curve",), 1,
-                      partial(programs.start, "singular"), partial(programs.read, "singular")),
-    "msolve": Rival("msolve, critical curve alone", "{}", ("critical curve",), 1,
-                    programs.start_msolve, partial(programs.read, "msolve")),
-    "gcad": Rival("gcad on the finished curves, no counts", "{}", ("curves",), 1,
-                  partial(programs.start, "gcad"), partial(programs.read, "gcad"), "gcad"),
-}  # fmt: skip
 
 
 # ---------------------------------------------------------------------------------------------------------- measured
@@ -300,11 +276,12 @@ def _measured(case: Case, job: Job) -> Row:
     """The figures of a job's runs, and of its answer."""
     if not job.usages:
         return measurement(job.what, job.setting, reason=job.reason or "not run")
+    read = _read_map if job.what in ENGINES else _read_grid if job.what in GRIDS else programs.read
     return measurement(
         job.what,
         job.setting,
         seconds=times([usage.seconds for usage in job.usages]),
         computing=times([json.loads(job.said())["timings"]["total"]]) if job.said().startswith("{") else None,
         peak=round(max(usage.peak_mebibytes for usage in job.usages), 1),
-        **RIVALS[job.what].read(case, job),
+        **read(case, job),
     )

@@ -12,7 +12,7 @@ import io
 import json
 import platform
 from collections.abc import Callable, Sequence
-from math import inf, isfinite
+from math import inf
 from statistics import median
 from time import perf_counter, process_time
 from typing import Any
@@ -150,22 +150,14 @@ def listing(cases: Sequence[Case]) -> str:
 
 def to_json(campaign: Row) -> str:
     """Everything about a campaign."""
-    return json.dumps({**campaign, "cases": _plain(campaign)}, indent=1, allow_nan=False) + "\n"
+    return json.dumps(campaign, indent=1, allow_nan=False) + "\n"
 
 
 def to_csv(campaign: Row) -> str:
     """The same, one row for each case."""
-    text, rows = io.StringIO(), [{**row, "remarks": "; ".join(row["remarks"])} for row in _plain(campaign)]
+    text, rows = io.StringIO(), [{**row, "remarks": "; ".join(row["remarks"])} for row in campaign["cases"]]
     if rows:
         writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
     return text.getvalue()
-
-
-def _plain(campaign: Row) -> list[Row]:
-    """The rows with None for a number that JSON does not have."""
-    return [
-        {name: None if isinstance(value, float) and not isfinite(value) else value for name, value in row.items()}
-        for row in campaign["cases"]
-    ]

@@ -47,9 +47,7 @@ from ptmcad.text.syntax import did_you_mean
 
 ALL = "all"
 """The name that stands for every named case."""
-DIGITS = Fraction(1234567891234567891234567891234567891234, 10**40)
-NODE = Fraction("0.70710678118654752440084436210484903928483593768847403658833986899536623923105351")
-TEXTS = Path(__file__).with_name("cases.yaml")
+TEXTS: Mapping[str, Any] = yaml.safe_load(Path(__file__).with_name("cases.yaml").read_text(encoding="utf-8"))
 
 Span = tuple[Fraction, Fraction]
 Parameters = Mapping[str, Fraction]
@@ -201,11 +199,8 @@ def degenerate(
 
 NAMED = {
     name: degenerate([Fraction(t) for t in tangents], cusp="cusp" in name)
-    for name, tangents in {
-        "fold": ("1/3", "2/5"), "other fold": ("3/2", "1/5"), "fold of maxima": ("-2", "3"),
-        "cusp": ("1/2", "3/7"), "cusp of maxima": ("1/3", "2/5"),
-    }.items()
-}  # fmt: skip
+    for name, tangents in TEXTS["degenerate"].items()
+}
 """Those that the named cases lie beside."""
 
 
@@ -215,12 +210,11 @@ NAMED = {
 @cache
 def named_cases() -> tuple[Case, ...]:
     """Every named case."""
-    entries = yaml.safe_load(TEXTS.read_text(encoding="utf-8"))["cases"]
-    return tuple(_case(entry, e) for entry in entries for e in entry["e"])
+    return tuple(_case(entry, e) for entry in TEXTS["cases"] for e in entry["e"])
 
 
 def _case(entry: Mapping[str, Any], e: int) -> Case:
-    known = {"s": Fraction(10) ** e, "digits": DIGITS, "node": NODE}
+    known = {"s": Fraction(10) ** e, **_numbers(TEXTS["numbers"], {})}
     return Case(
         name=entry["name"].format(e=e),
         stiffness=known["s"],

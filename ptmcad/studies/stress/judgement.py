@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from itertools import groupby, product
+from math import isfinite
 from typing import Any
 
 from flint import ctx
@@ -66,7 +67,8 @@ def judge(case: Case, found: Any) -> Row:
         checks, row = judgement(case, found)
     remarks = [remark for holds, remark in checks if not holds]
     known: Row = {"expected": case.expected, "right": not remarks, "remarks": remarks}
-    return {**known, "error": None, "condition": None, "bits": 0, **row}
+    numbers = {name: x if not isinstance(x, float) or isfinite(x) else None for name, x in row.items()}
+    return {**known, "error": None, "condition": None, "bits": 0, **numbers}
 
 
 Checks = list[tuple[bool, str]]

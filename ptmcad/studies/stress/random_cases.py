@@ -38,20 +38,14 @@ def random_case(seed: int, number: int) -> Case:
         return Case(name, family, distance, Question(at.beside(side * distance)), CONSTRUCTED, f"{total}/{stable}")
     original, expected = tame(dice)
     scale = TEN ** (dice.choice([-1, 1]) * dice.randint(3, MAX_EXPONENT))
-    # springs and forces together, then lengths together with forces
-    question = Question(stretched(stiffened(changed(original, kind), scale), TEN ** dice.randint(-9, 9)))
+    question = Question(scaled(changed(original, kind), scale, TEN ** dice.randint(-9, 9)))
     return Case(name, family, scale, question, ORIGINAL, expected)
 
 
-def stiffened(p: Values, factor: Fraction) -> Values:
-    """Stiffnesses and forces multiplied: the equilibria stay."""
-    pulled = _MECHANISM.stiffnesses + _MECHANISM.forces
-    return {name: v * factor if name in pulled else v for name, v in p.items()}
-
-
-def stretched(p: Values, factor: Fraction) -> Values:
-    """Lengths and forces multiplied: the equilibria stay."""
-    return {name: v if name in _MECHANISM.stiffnesses else v * factor for name, v in p.items()}
+def scaled(p: Values, stiffness: Fraction, length: Fraction) -> Values:
+    """Stiffnesses and lengths multiplied, and forces by both: the equilibria stay."""
+    factors = dict.fromkeys(_MECHANISM.stiffnesses, stiffness) | dict.fromkeys(_MECHANISM.forces, stiffness * length)
+    return {name: v * factors.get(name, length) for name, v in p.items()}
 
 
 def changed(p: Values, kind: str) -> Values:
