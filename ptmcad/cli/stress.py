@@ -139,7 +139,7 @@ def _cases(names: tuple[str, ...], number: int, seed: int, *, everything: bool) 
 
     found = chosen(names) if names or not number or everything else ()
     if number:
-        from ptmcad.studies.stress.random_cases import random_case
+        from ptmcad.studies.stress.campaign import random_case
 
         found = (*found, *(random_case(seed, k) for k in range(number)))
     if not found:

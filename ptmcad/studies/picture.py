@@ -104,7 +104,7 @@ def _curve(axes: Axes, curve: Curve) -> None:
     color = curve.style["color"]
     x, y = ([getattr(mark, name) for mark in curve.marks] for name in "xy")
     axes.plot(x, y, label=curve.name, linewidth=1.3, markersize=6, zorder=4, **curve.style)
+    axes.hlines(y, [m.least for m in curve.marks], [m.most for m in curve.marks], color=color, linewidth=0.8, zorder=2)
     for mark in curve.marks:
-        axes.hlines(mark.y, mark.least, mark.most, color=color, linewidth=0.8, zorder=2)
         axes.annotate(mark.label, (mark.x, mark.y), xytext=(5, 5), textcoords="offset points", fontsize=7.5,
                       color=color, zorder=5)  # fmt: skip

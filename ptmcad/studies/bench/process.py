@@ -18,8 +18,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-_MESSAGE_LENGTH = 300
-
 
 @dataclass(frozen=True, slots=True)
 class Usage:
@@ -65,7 +63,7 @@ def run(command: Sequence[str], *, text: str = "", timeout: float = threading.TI
             subprocess.run(starter, stdin=stdin, stdout=stdout, stderr=stderr, check=False)
         output, wrong = (path.read_text(encoding="utf-8", errors="replace") for path in said)
         measured = json.loads(figures.read_text()) if figures.exists() else ("failed", 0.0, 0.0, 0.0)
-    last = (wrong.strip() or "no message").splitlines()[-1][-_MESSAGE_LENGTH:]
+    last = (wrong.strip() or "no message").splitlines()[-1][-300:]
     fault = {"done": "", "late": f"not in {timeout:g} s", "failed": f"failed: {last}"}[measured[0]]
     return Usage(measured[1], measured[2], measured[3], output, fault)
 

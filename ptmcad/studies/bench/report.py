@@ -125,16 +125,16 @@ def _curve(style: int, title: str, rows: pd.DataFrame, low: str, high: str, befo
 
 def curve_file(study: Row) -> str:
     """The measurements for ``ptmcad report``, which draws positive errors only."""
-    series: list[dict[str, Any]] = [
-        {"name": curve.name, "points": [[mark.x, mark.y] for mark in curve.marks if mark.y > 0]}
+    series = [
+        {"name": curve.name, "points": points}
         for curve in curves(study)
+        if (points := [[mark.x, mark.y] for mark in curve.marks if mark.y > 0])
     ]
     text = (
         "Share of the window that is wrong or undetermined; for the exact engine, where that is 0, the width of its "
         "area bounds."
     )
-    shown = [curve for curve in series if curve["points"]]
-    return json.dumps({"format": CURVE_FORMAT, "error": text, "series": shown}, indent=1) + "\n"
+    return json.dumps({"format": CURVE_FORMAT, "error": text, "series": series}, indent=1) + "\n"
 
 
 def save(study: Row, folder: Path) -> tuple[Path, ...]:

@@ -49,11 +49,6 @@ def _record(axes: dict[str, Sequence[Any]], **parameters: Any) -> Row:
     return {"mechanism": "ptm", "parameters": {"L1": 1, "k": 100, **parameters}, "axes": axes}
 
 
-def chebyshev(n: int, x: str) -> str:
-    """T_n as text; up to n = 40 its coefficients are whole in doubles, too."""
-    return " + ".join(f"({c:.0f})*{x}^{k}" for k, c in enumerate(np.polynomial.chebyshev.cheb2poly([0] * n + [1])) if c)
-
-
 def unloaded(n: int, seed: int) -> Row:
     """No loads, rho = 1 + x, L2 = 1 + y + q(x, y): three curves, dense, of total degree n each; four regions."""
     source = random.Random(f"bend {n} {seed}")
@@ -66,8 +61,10 @@ def unloaded(n: int, seed: int) -> Row:
 
 
 def fold(n: int, seed: int = 0) -> Row:
-    """rho = y and L2 = 1 + T_n(x)/2: n folds along x, over -1 < x < 1 and 0 < y < 2."""
-    return _record({"x": [-1, 1], "y": [0, 2]}, rho="y", L2=f"1 + ({chebyshev(n, 'x')})/2")
+    """rho = y and L2 = 1 + T_n(x)/2: n folds along x, over -1 < x < 1 and 0 < y < 2; n is at most 40."""
+    powers = enumerate(np.polynomial.chebyshev.cheb2poly([0] * n + [1]))  # in doubles, and whole up to n = 40
+    terms = " + ".join(f"({c:.0f})*x^{k}" for k, c in powers if c)
+    return _record({"x": [-1, 1], "y": [0, 2]}, rho="y", L2=f"1 + ({terms})/2")
 
 
 FAMILIES = {

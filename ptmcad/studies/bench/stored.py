@@ -21,7 +21,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count
 from ptmcad.show.ranges.table import aligned
 from ptmcad.studies.bench.error import FIGURES
-from ptmcad.studies.bench.harness import FORMAT, Row
+from ptmcad.studies.bench.harness import FORMAT, Row, measurement
 from ptmcad.studies.bench.study import RIVALS
 from ptmcad.text import codec
 from ptmcad.text.codec import POSITIVE, SECONDS, Codec, line, listed, named, optional, record
@@ -37,12 +37,8 @@ BAD = ("slower", "worse", "lost")
 _COMPARED = ("wrong", "undetermined", "wrong_centres", "missed", "distance")
 """Figures, numbers or bounds, larger being worse."""
 _FINEST = ("index", "total", "stable", "admissible")
-_SHORT = {
-    "seconds_minimum": "seconds_min",
-    "seconds_maximum": "seconds_max",
-    "seconds_runs": "runs",
-    "peak": "peak_mib",
-}
+_CSV = {"seconds_minimum": "seconds_min", "seconds_maximum": "seconds_max", "seconds_runs": "runs", "peak": "peak_mib"}
+"""Keys that are other names there."""
 _PAIRS = ("wrong", "faintest", "distance")
 """Figures that are bounds: of each are two columns."""
 _COLUMNS = (
@@ -64,7 +60,7 @@ def frame(study: Row) -> pd.DataFrame:
                 for name, x in figures.items()
             }
             rows.append({"slice": study["slice"], "count": count, **m, **parts, "figures": None})
-    table = pd.json_normalize(rows, sep="_").rename(columns=_SHORT).reindex(columns=list(_COLUMNS))
+    table = pd.json_normalize(rows, sep="_").rename(columns=_CSV).reindex(columns=list(_COLUMNS))
     return table.astype(dict.fromkeys(_WHOLE, "Int64"))
 
 
@@ -170,22 +166,21 @@ def compare(old: Row, new: Row) -> tuple[Row, ...]:
         if old[key] != new[key]:
             raise ConfigError(f"the two studies differ in {key}: {old[key]} and {new[key]}", key=key)
     before, after = ({(m["method"], m["setting"]): m for m in study["measurements"]} for study in (old, new))
+    absent = measurement("", "", reason="not in that study")
     return tuple(
         {"method": place[0], "setting": place[1], "verdict": verdict, "detail": detail}
         for place in dict.fromkeys([*before, *after])
-        for verdict, detail in _changes(before.get(place), old["floor"], after.get(place), new["floor"])
+        for verdict, detail in _changes(before.get(place, absent), old["floor"], after.get(place, absent), new["floor"])
     )
 
 
-def _changes(before: Row | None, old_floor: Row, after: Row | None, new_floor: Row) -> Iterator[tuple[str, str]]:
-    old, new = (m["seconds"] if m is not None else None for m in (before, after))
-    if old is None or before is None:
-        if new is not None:
-            why = "not in the old study" if before is None else f"before: {before['reason']}"
-            yield "gained", f"{new['median']:g} s; {why}"
-        return
-    if new is None or after is None:
-        yield "lost", "not in the new study" if after is None else after["reason"]
+def _changes(before: Row, old_floor: Row, after: Row, new_floor: Row) -> Iterator[tuple[str, str]]:
+    old, new = before["seconds"], after["seconds"]
+    if old is None or new is None:
+        if old is not None:
+            yield "lost", f"now: {after['reason']}"
+        elif new is not None:
+            yield "gained", f"{new['median']:g} s; before: {before['reason']}"
         return
     one, two = _bounds(before, old_floor), _bounds(after, new_floor)
     gone = (before["figures"] or {}).keys() - (after["figures"] or {}).keys()

@@ -15,7 +15,6 @@ import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from fractions import Fraction
 from importlib.util import find_spec
 from itertools import zip_longest
 from pathlib import Path
@@ -30,7 +29,7 @@ from ptmcad.errors import LimitReached, PtmcadError
 from ptmcad.question.slice import Slice
 from ptmcad.show.table import area_by_count
 from ptmcad.studies.bench import programs
-from ptmcad.studies.bench.error import cover_error, exact_error, figures, grid_error, outward, shown_count, truths
+from ptmcad.studies.bench.error import cover_error, figures, grid_error, outward, shown_count, truths
 from ptmcad.studies.bench.harness import (
     FORMAT,
     Asked,
@@ -120,11 +119,15 @@ def _read_map(case: Case, job: Job) -> Row:
         share = outward(result.undetermined, result.undetermined)
         found = {case.slice.count.value: figures(share, share[1])}
     elif result.cover is None:
-        found = {count: exact_error(truth) for count, truth in case.known.items()}
+        right = figures((0.0, 0.0), 0.0, missed=0, faintest=(1.0, 1.0), distance=(0.0, 0.0))
+        found = {count: right | {"regions": len(truth.counts)} for count, truth in case.known.items()}
     else:
         errors = {count: cover_error(truth, result, count) for count, truth in case.known.items()}
         found = {count: error for count, error in errors.items() if error is not None}
-    return {"figures": found, "note": "; ".join(notes), "area_width": outward(0, area_width(result))[1]}
+    first, second = result.slice.axes
+    window = (first.high - first.low) * (second.high - second.low)
+    widest = max((high - low for low, high in area_by_count(result).values()), default=window) / window
+    return {"figures": found, "note": "; ".join(notes), "area_width": outward(0, widest)[1]}
 
 
 def difference(one: RegionMap, other: RegionMap) -> str:
@@ -139,13 +142,6 @@ def difference(one: RegionMap, other: RegionMap) -> str:
     if not changes:
         return ""
     return f"other counts on {len(changes)} parts, the largest of area {float(changes[0].area[1]):.3g}"
-
-
-def area_width(result: RegionMap) -> Fraction:
-    """The widest bounds of the area of all points with one count, as a share of the window's area."""
-    first, second = result.slice.axes
-    window = (first.high - first.low) * (second.high - second.low)
-    return max((high - low for low, high in area_by_count(result).values()), default=window) / window
 
 
 def question(slice: Slice) -> str:

@@ -25,7 +25,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.solving import solve
 from ptmcad.process.output import check_writable, write_files
 from ptmcad.studies.paper import equations
-from ptmcad.studies.paper.claim import Claim, Verdict, judged, texts
+from ptmcad.studies.paper.claim import Claim, Verdict, judge, texts
 from ptmcad.studies.paper.equations import INTRODUCTION, Equation
 from ptmcad.studies.paper.maps import FIGURES, POINTS, region_map
 from ptmcad.studies.tables import page
@@ -172,8 +172,8 @@ def reproduce(folder: Path, progress: Progress = lambda _part, _done, _total: No
     started = perf_counter()
     maps = {figure: region_map(figure) for figure in FIGURES}
     claims: list[Claim] = []
-    for claim in judged(texts()):
-        claims.append(claim)
+    for name, text in texts().items():
+        claims.append(judge(name, text))
         progress("claims", len(claims), len(texts()))
     pictures: dict[str, bytes] = {}
     for number, figure in enumerate(FIGURES):
@@ -189,7 +189,7 @@ def reproduce(folder: Path, progress: Progress = lambda _part, _done, _total: No
         "index.html": index_html(claims, figures, equations.equations()),
     }
     contents = pictures | {name: text.encode() for name, text in files.items()}
-    write_files(folder, {name: partial(_write, contents[name]) for name in FILES})
+    write_files(folder, {name: partial(Path.write_bytes, data=contents[name]) for name in FILES})
     return tuple(claims), perf_counter() - started
 
 
@@ -203,7 +203,3 @@ def _pictures(figure: str) -> dict[str, bytes]:
     poses = solve(figure, **at)
     drawn = {figure: draw_figure(region_map(figure), poses), f"{figure}-poses": draw_poses(poses)}
     return {f"{name}.{kind}": content(picture, kind) for name, picture in drawn.items() for kind in PICTURES}
-
-
-def _write(data: bytes, path: Path) -> None:
-    path.write_bytes(data)

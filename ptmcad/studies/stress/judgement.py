@@ -11,7 +11,7 @@ share e, the pose turns by at most about 2 e S |H^-1| radians. A point's is the 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from itertools import groupby, product
 from math import isfinite
@@ -52,19 +52,10 @@ Row = dict[str, Any]
 
 
 def judge(case: Case, found: Any) -> Row:
-    """The verdict on an answer to the case, without its cost.
-
-    Raises
-    ------
-    TypeError
-        When the answer is of another kind than the question.
-    """
-    kinds: dict[str, Any] = {"point": (Poses, _point), "line": (CountIntervals, _line)}
-    kind, judgement = kinds.get(case.question.kind, (RegionMap, _map))
-    if not isinstance(found, kind):
-        raise TypeError(f"{case.name}: the answer is of another kind than the question")
+    """The verdict on an answer to the case, without its cost."""
+    judgements: dict[str, Callable[[Case, Any], tuple[Checks, Row]]] = {"point": _point, "line": _line}
     with ctx.workprec(_BITS):
-        checks, row = judgement(case, found)
+        checks, row = judgements.get(case.question.kind, _map)(case, found)
     remarks = [remark for holds, remark in checks if not holds]
     known: Row = {"expected": case.expected, "right": not remarks, "remarks": remarks}
     numbers = {name: x if not isinstance(x, float) or isfinite(x) else None for name, x in row.items()}

@@ -56,11 +56,6 @@ def in_balls(parameters: Mapping[str, arb], angles: Sequence[arb]) -> tuple[arb_
     return arb_mat([[g1], [g2]]), arb_mat([[h11, h12], [h12, h22]])
 
 
-def sign(value: arb) -> int:
-    """The sign of a ball, 0 when it contains zero."""
-    return int(value > 0) - int(value < 0)
-
-
 def newton_pose(
     parameters: Mapping[str, Fraction], start: tuple[arb | float, arb | float], bits: int = BITS[0]
 ) -> IndexedPose | None:
@@ -88,8 +83,9 @@ def newton_pose(
             return None
         at, rest = inverse * gradient, arb_mat(2, 2, 1) - inverse * hessian
         reaches = [abs(at[n, 0]) + (abs(rest[n, 0]) + abs(rest[n, 1])) * radius for n in (0, 1)]
-        determinant, first = sign(hessian.det()), sign(hessian[0, 0])
-        if not all(reach < radius for reach in reaches) or not determinant or (determinant > 0 and not first):
+        determinant, first = hessian.det(), hessian[0, 0]
+        undecided = not determinant < 0 and not (determinant > 0 and not first.contains(0))
+        if undecided or not all(reach < radius for reach in reaches):
             return None
         return IndexedPose(box[0], box[1], 1 if determinant < 0 else 0 if first > 0 else 2)
 
