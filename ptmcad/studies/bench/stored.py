@@ -38,7 +38,7 @@ _COMPARED = ("wrong", "undetermined", "wrong_centres", "missed", "distance")
 """Figures, numbers or bounds, larger being worse."""
 _FINEST = ("index", "total", "stable", "admissible")
 _CSV = {"seconds_minimum": "seconds_min", "seconds_maximum": "seconds_max", "seconds_runs": "runs", "peak": "peak_mib"}
-"""Keys that are other names there."""
+"""Keys that have other names in the CSV file."""
 _PAIRS = ("wrong", "faintest", "distance")
 """Figures that are bounds: of each are two columns."""
 _COLUMNS = (

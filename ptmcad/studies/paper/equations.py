@@ -8,8 +8,8 @@ data, ``expressions.yaml``.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import sympy as sp
 
@@ -26,8 +26,7 @@ _NAMES = {sp.Symbol(f"f{n}x"): f"f_{{{n}x}}" for n in (3, 4)}
 INTRODUCTION: str = TEXTS["introduction"].strip()
 
 
-@dataclass(frozen=True, slots=True)
-class Equation:
+class Equation(NamedTuple):
     """One equation: its number in the paper, what it is, and both sides as text and LaTeX."""
 
     number: str

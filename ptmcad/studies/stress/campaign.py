@@ -45,7 +45,6 @@ ORIGINAL = "symmetry of the equations: counts of the tame original, by the secon
 TEN = Fraction(10)
 
 _MECHANISM = ptm()
-_SYMMETRIES = dict(zip(("swapped", "mirrored"), _MECHANISM.symmetries, strict=True))
 
 Values = dict[str, Fraction]
 
@@ -150,7 +149,7 @@ def scaled(p: Values, stiffness: Fraction, length: Fraction) -> Values:
 
 def changed(p: Values, kind: str) -> Values:
     """Vertical forces reversed (mirrored), which changes the angles' signs, or left and right exchanged (swapped)."""
-    symmetry = _SYMMETRIES.get(kind, {})
+    symmetry = dict(zip(("swapped", "mirrored"), _MECHANISM.symmetries, strict=True)).get(kind, {})
     return {name: value_at(symmetry[name], p) if name in symmetry else v for name, v in p.items()}
 
 
