@@ -40,6 +40,7 @@ from ptmcad.studies.stress.case import (
     Degenerate,
     Question,
     chosen,
+    free_lengths,
     named_cases,
     point,
 )
@@ -204,25 +205,19 @@ def test_double_precision_is_right_where_nothing_cancels(name: str) -> None:
 # ------------------------------------------------------------------------------------------------------------- cost
 
 
-HARDEST, TAMEST = (
-    [
-        most(
-            (c for c in CASES if c.family == family and not c.question.axes),
-            default=None,
-            key=lambda c: abs(math.log10(c.stiffness)),
-        )
-        for family in dict.fromkeys(c.family for c in CASES)
-    ]
-    for most in (max, min)
-)
+HARDEST = [
+    max((c for c in CASES if c.family == family and not c.question.axes), default=None,
+        key=lambda c: abs(math.log10(c.stiffness)))
+    for family in dict.fromkeys(c.family for c in CASES)
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("case", [pytest.param(c, id=c.name) for c in HARDEST if c is not None])
 @pytest.mark.fast_cases("stiffness-1e-12", "symmetry-inside-1e-20", "node-right-1e-30", "free-length-1e-12")
-def test_an_extreme_case_takes_at_most_five_times_the_work_of_the_tamest_of_its_family(case: Case) -> None:
-    """Work is counted in calls of functions, so that no clock is asked."""
-    tamest = next(c for c in TAMEST if c is not None and c.family == case.family)
-    assert work_of(case.question) <= 5 * work_of(tamest.question if tamest != case else TAME)
+def test_an_extreme_case_takes_at_most_five_times_the_work_of_a_tame_one(case: Case) -> None:
+    """Work is counted in calls of functions, so that no clock is asked; the tame one has ordinary numbers."""
+    tame = point(l0=Fraction(1, 5), F3=-10, F4=-10) if free_lengths(case.question.parameters) else TAME
+    assert work_of(case.question) <= 5 * work_of(tame)
 
 
 def test_work_is_the_same_in_every_run() -> None:
