@@ -54,6 +54,8 @@ ROUNDS = 60
 """Of Newton's method."""
 RESIDUAL = 1e-9
 """A gradient is taken for zero when it is at most this much of the largest force times length."""
+MAX_IMAGINARY = 1e-7
+"""The same on the grid of a rival; nearby values change little."""
 BATCH_POINTS = 40_000
 """Points whose matrices are in memory together."""
 GRID_STARTS = 5
@@ -138,7 +140,7 @@ def product(left: Sequence[Any], right: Sequence[Any]) -> tuple[Any, ...]:
 # ------------------------------------------------------------------------------------------------ in double precision
 
 
-def companion(p: Values) -> tuple[Floats, Floats]:
+def companion(p: Values, real_tolerance: float = REAL_TOLERANCE) -> tuple[Floats, Floats]:
     """th1 and th2 of equilibria without free lengths, each of shape (12, points), NaN in places that have none.
 
     Two places belong to a root of the sextic; the second one has a pose where the mechanism is flat.
@@ -161,7 +163,7 @@ def companion(p: Values) -> tuple[Floats, Floats]:
         matrices[:, :1] = (-own[1:] / own[0]).T[:, None]
         matrices[:, np.arange(1, degree), np.arange(degree - 1)] = 1
         t = np.linalg.eigvals(matrices).T
-        real = np.abs(t.imag) <= REAL_TOLERANCE * (1 + np.abs(t))
+        real = np.abs(t.imag) <= real_tolerance * (1 + np.abs(t))
         th2[:degree, here] = np.where(real, 2 * np.arctan(t.real), np.nan)
         th2[degree : degree + last, here] = 0
         th2[degree + last :, here] = np.pi
@@ -237,7 +239,7 @@ def counts(method: str, p: Values) -> NDArray[np.int8]:
     for k in range(0, len(p["rho"]), BATCH_POINTS):
         part = {name: values[k : k + BATCH_POINTS] for name, values in p.items()}
         with np.errstate(all="ignore"):
-            poses = companion(part) if method == "companion" else newton(part, GRID_STARTS)
+            poses = companion(part, MAX_IMAGINARY) if method == "companion" else newton(part, GRID_STARTS)
             kept = distinct(*poses)
             # roots count as often as they are there: at a double one floating point has two poses that differ
             total = np.isfinite(poses[1][::2]) if method == "companion" else kept
