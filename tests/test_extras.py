@@ -15,7 +15,7 @@ import pytest
 from ptmcad.cli import run
 from ptmcad.extras import Extra
 from ptmcad.studies.stress import campaign
-from ptmcad.studies.stress.case import Case, chosen, point
+from ptmcad.studies.stress.case import Case, chosen, free_lengths, point
 
 HAS_NUMBA = find_spec("numba") is not None
 ROOT = Path(__file__).resolve().parents[1]
@@ -43,14 +43,13 @@ def test_stress_refuses_before_the_first_case(
 
 
 def test_stress_needs_numba_for_free_lengths_only() -> None:
-    """Of questions and of their siblings, at points, on lines and on maps."""
-    free = {case.name for case in chosen(()) if case.has_free_lengths}
+    """At points, on lines and on maps."""
+    free = {case.name for case in chosen(()) if free_lengths(case.question.parameters)}
     assert {name for name in free if "free" in name}
     for case in chosen(()):
-        given = {**case.question.parameters, **case.sibling.parameters}
-        assert (case.name in free) == any(k.startswith("l0") for k in given), case.name
-    plain = Case("plain", "units", Fraction(1), point(), point(), "none")
-    assert not plain.has_free_lengths
+        assert (case.name in free) == any(k.startswith("l0") for k in case.question.parameters), case.name
+    plain = Case("plain", "units", Fraction(1), point(), "none")
+    assert not free_lengths(plain.question.parameters)
     done = campaign.campaign((plain,), seed=1, repeats=1)
     assert len(done["cases"]) == 1
 

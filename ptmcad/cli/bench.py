@@ -80,9 +80,8 @@ def command(
     slices = _slices(configs)
     for extra in (Extra.bench, Extra.data):
         require(extra, key="bench")
-    from ptmcad.studies.bench.methods import RIVALS
     from ptmcad.studies.bench.report import PAGE, SUFFIXES, save, save_page, terminal
-    from ptmcad.studies.bench.study import measure
+    from ptmcad.studies.bench.study import RIVALS, measure
     from ptmcad.verification import verify
 
     check_writable(out, (*(f"{slice.name}.{suffix}" for slice, _ in slices for suffix in SUFFIXES), PAGE))
@@ -116,8 +115,7 @@ def _slices(configs: tuple[Path, ...]) -> list[tuple[Slice, Path]]:
 
 def _compare(old: Path, new: Path) -> int:
     require(Extra.data, key="bench")
-    from ptmcad.studies.bench.changes import BAD, compare, comparison_table
-    from ptmcad.studies.bench.stored import read_study
+    from ptmcad.studies.bench.stored import BAD, compare, comparison_table, read_study
 
     changes = compare(read_study(old), read_study(new))
     click.echo(comparison_table(changes))

@@ -30,11 +30,11 @@ def command(*, out: Path, limits: Limits) -> int:
     with held(limits):
         check_writable(out)  # before the libraries are loaded, which takes a second
         from ptmcad.studies.paper.claim import Verdict
-        from ptmcad.studies.paper.reproduce import reproduce
+        from ptmcad.studies.paper.pages import reproduce, table
 
         report_deadline(limits.timeout)  # anew: the time that the import took is not the computation's
         with ProgressBar() as progress:
-            found = reproduce(out, progress)
-        click.echo(found.table())
+            claims, seconds = reproduce(out, progress)
+        click.echo(table(claims, seconds))
         click.echo(f"written to {shown_path(out)}: begin with {shown_path(out / 'index.html')}")
-    return 1 if found.number(Verdict.UNDECIDED) else 0
+    return int(any(claim.verdict is Verdict.UNDECIDED for claim in claims))

@@ -70,7 +70,7 @@ def _draw(found: Row, path: Path) -> None:
 @click.option("--seed", type=click.IntRange(0, 2**31), default=1, show_default=True, metavar="N",
               help="Of the random cases.")  # fmt: skip
 @click.option("--repeats", type=click.IntRange(1, 1000), default=5, show_default=True, metavar="N",
-              help="Timed runs of each case and of its tame sibling; slow cases have one.")  # fmt: skip
+              help="Timed runs of each case; slow cases have one.")  # fmt: skip
 @format_option(FORMATS, "What to make; the table is printed.", "table,json,csv,png,svg")
 @out_option
 @click.option("--list", "only_list", is_flag=True, help="Print the cases with their sources, and run none.")
@@ -100,7 +100,7 @@ def command(
         ptmcad stress --random 100 --seed 7 --format table
         ptmcad stress all --random 100
     """
-    from ptmcad.studies.stress.case import chosen  # the cases' numbers need no library
+    from ptmcad.studies.stress.case import chosen, free_lengths  # the cases' numbers need no library
 
     timeout = limits.timeout
     limit = None if timeout is None else timeout + GRACE_SECONDS
@@ -116,7 +116,7 @@ def command(
             check_writable(out, tuple(f"{NAME}.{kind}" for kind in files))
         from ptmcad.studies.stress.campaign import campaign, summary, table
 
-        if any(case.has_free_lengths for case in cases):
+        if any(free_lengths(case.question.parameters) for case in cases):
             from ptmcad.ask.classification import load_certified
             from ptmcad.options import DEFAULTS
 
@@ -139,7 +139,7 @@ def _cases(names: tuple[str, ...], number: int, seed: int, *, everything: bool) 
 
     found = chosen(names) if names or not number or everything else ()
     if number:
-        from ptmcad.studies.stress.random_cases import random_case
+        from ptmcad.studies.stress.campaign import random_case
 
         found = (*found, *(random_case(seed, k) for k in range(number)))
     if not found:

@@ -23,16 +23,10 @@ DPI = 110
 COLUMNS = 4
 LINE = 145
 """Letters in a line of what stands below."""
+COLORS = ("#0b5394", "#38761d", "#741b47", "#b45f06", "#555555", "#8a7d00", "#009e73", "#c00000")
 STYLES: tuple[dict[str, Any], ...] = (
-    {"color": "#0b5394", "marker": "o"},
-    {"color": "#38761d", "marker": "s"},
-    {"color": "#741b47", "marker": "D"},
-    {"color": "#b45f06", "marker": "^"},
-    {"color": "#555555", "marker": "P"},
-    {"color": "#8a7d00", "marker": "X"},
-    {"color": "#009e73", "marker": "v"},
-    {"color": "#c00000", "marker": "*"},
-    {"color": "#0b5394", "marker": "o", "markerfacecolor": "white", "linestyle": (0, (2, 2))},
+    *({"color": color, "marker": marker} for color, marker in zip(COLORS, "osD^PXv*", strict=True)),
+    {"color": COLORS[0], "marker": "o", "markerfacecolor": "white", "linestyle": (0, (2, 2))},
 )
 """Of curves that are joined."""
 WIDE = 1e4
@@ -110,7 +104,7 @@ def _curve(axes: Axes, curve: Curve) -> None:
     color = curve.style["color"]
     x, y = ([getattr(mark, name) for mark in curve.marks] for name in "xy")
     axes.plot(x, y, label=curve.name, linewidth=1.3, markersize=6, zorder=4, **curve.style)
+    axes.hlines(y, [m.least for m in curve.marks], [m.most for m in curve.marks], color=color, linewidth=0.8, zorder=2)
     for mark in curve.marks:
-        axes.hlines(mark.y, mark.least, mark.most, color=color, linewidth=0.8, zorder=2)
         axes.annotate(mark.label, (mark.x, mark.y), xytext=(5, 5), textcoords="offset points", fontsize=7.5,
                       color=color, zorder=5)  # fmt: skip

@@ -7,10 +7,10 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from support.programs import QEPCAD, needs_qepcad, qepcad_script
 from support.sextic_question import Question, Task, Terms, formulas, question
 
 from ptmcad.question import config
-from ptmcad.studies.bench import programs
 from ptmcad.studies.bench.process import run
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
@@ -86,11 +86,10 @@ def test_qepcad_that_ends_without_an_answer_has_none() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(programs.qepcad_command() is None, reason="qepcad is not installed")
+@needs_qepcad
 def test_qepcad_answers() -> None:
     asked = question(config.load(CONFIGS / "fig3.yaml"))
-    command = programs.qepcad_command()
-    assert isinstance(asked, Question) and command is not None
+    assert isinstance(asked, Question) and QEPCAD is not None
     problems = [asked.problem(task) for task in (Task.SIX, Task.FOUR)]
-    usage = run(command, text=programs.qepcad_session(problems), timeout=60)
-    assert len(formulas(usage.output)) == 2, usage.message
+    usage = run(QEPCAD, text=qepcad_script(problems), timeout=60)
+    assert len(formulas(usage.output)) == 2, usage.fault

@@ -22,7 +22,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.exact.cad.chains import chains
 from ptmcad.exact.cad.curves import curve
 from ptmcad.exact.cad.polyline import FLAT, Branch, chords
-from ptmcad.studies.bench import rivals
+from ptmcad.studies import byhand
 from ptmcad.studies.bench.error import (
     COUNTS,
     Truth,
@@ -34,7 +34,7 @@ from ptmcad.studies.bench.error import (
     shown_count,
     truths,
 )
-from ptmcad.studies.bench.methods import question
+from ptmcad.studies.bench.study import question
 from ptmcad.text.plane import PlanePolynomial
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
@@ -53,7 +53,7 @@ def exact(name: str) -> tuple[RegionMap, dict[str, Truth]]:
 @cache
 def grid(name: str, n: int) -> np.ndarray:
     asked = json.loads(question(ptmcad.load(CONFIGS / f"{name}.yaml")))
-    return rivals.counts("companion", rivals.grid_values(asked, n)).reshape(2, n, n).astype(np.int16)
+    return byhand.counts("companion", byhand.grid_values(asked, n)).reshape(2, n, n).astype(np.int16)
 
 
 def polyline(heights: list[Fraction]) -> Truth:
@@ -220,8 +220,8 @@ def test_distance_without_a_drawn_boundary() -> None:
 def test_companion_and_newton_agree_where_both_are_right() -> None:
     """Two rivals that share no code but the grid."""
     asked = json.loads(question(ptmcad.load(CONFIGS / "fig4.yaml")))
-    values = rivals.grid_values(asked, 4)
-    assert (rivals.counts("multistart", values) == rivals.counts("companion", values)).all()
+    values = byhand.grid_values(asked, 4)
+    assert (byhand.counts("multistart", values) == byhand.counts("companion", values)).all()
 
 
 @pytest.mark.parametrize(

@@ -10,17 +10,18 @@ from pathlib import Path
 
 import pytest
 from support.maps import CONFIGS, shipped
+from support.programs import needs_qepcad
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.studies.bench import methods, programs
+from ptmcad.studies.bench import programs, study
 from ptmcad.studies.bench.harness import Case, Job
-from ptmcad.studies.bench.methods import RIVALS, jobs
-from ptmcad.studies.bench.process import Outcome, Usage
+from ptmcad.studies.bench.process import Usage
+from ptmcad.studies.bench.study import RIVALS, jobs
 
 
 def told(output: str) -> Usage:
-    return Usage(Outcome.DONE, 1.0, 0.5, 30.0, output)
+    return Usage(1.0, 0.5, 30.0, output)
 
 
 def cubic() -> RegionMap:
@@ -51,7 +52,7 @@ def test_the_question_about_a_slice() -> None:
     assert [terms_of(p) for p in polynomials] == [terms_of(p) for p in expected]
 
 
-@pytest.mark.skipif(programs.qepcad_command() is None, reason="qepcad is not installed")
+@needs_qepcad
 @pytest.mark.parametrize("base", [0, 1])
 def test_qepcad_gets_the_axis_first_over_which_the_maps_stacks_stand(base: int, tmp_path: Path) -> None:
     found = jobs("qepcad", case(tmp_path, replace(cubic(), base=base)))
@@ -63,7 +64,7 @@ def test_qepcad_gets_the_axis_first_over_which_the_maps_stacks_stand(base: int, 
 def test_what_cannot_be_asked_has_its_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(programs.shutil, "which", lambda name: None)
     monkeypatch.setattr(programs.msolve, "program", lambda: None)
-    monkeypatch.setattr(methods, "find_spec", lambda name: None)
+    monkeypatch.setattr(study, "find_spec", lambda name: None)
     exact = cubic()
     reasons = {method: jobs(method, case(tmp_path, exact)) for method in RIVALS}
     assert reasons["singular"] == "Singular is not installed"
@@ -77,14 +78,14 @@ def test_what_cannot_be_asked_has_its_reason(tmp_path: Path, monkeypatch: pytest
 
 
 def test_without_a_map_there_are_no_curves_to_decompose(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(methods, "find_spec", lambda name: True)
+    monkeypatch.setattr(study, "find_spec", lambda name: True)
     assert jobs("gcad", case(tmp_path, None)) == "there are no finished curves"
     assert jobs("qepcad", case(tmp_path, None)) == "there are no finished curves"
 
 
 def test_gcad_is_a_process_with_a_script(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its licence is another: no module of the package imports it."""
-    monkeypatch.setattr(methods, "find_spec", lambda name: True)
+    monkeypatch.setattr(study, "find_spec", lambda name: True)
     found = jobs("gcad", case(tmp_path, cubic()))
     assert not isinstance(found, str)
     compile(found[0].text, "script", "exec")
@@ -135,7 +136,7 @@ Quitting the QEPCAD system... Bye!
 def agreement(program: str, answer: str, folder: Path) -> str:
     """What is said of an answer to the question about the cubic."""
     job = Job("cubic", program, "", [], usages=[told(answer)])
-    said: str = RIVALS[program].read(case(folder, cubic()), job)["note"]
+    said: str = programs.read(case(folder, cubic()), job)["note"]
     return said.removeprefix("no counts; ")
 
 

@@ -23,13 +23,20 @@ from ptmcad.question.config import load
 from ptmcad.show.report.error_curve import read_error_curve
 from ptmcad.show.schemas import with_prose
 from ptmcad.studies.bench import harness
-from ptmcad.studies.bench.changes import BAD, compare, comparison_table
 from ptmcad.studies.bench.error import figures, outward
-from ptmcad.studies.bench.harness import Row
-from ptmcad.studies.bench.methods import RIVALS
+from ptmcad.studies.bench.harness import Row, measurement
 from ptmcad.studies.bench.process import Usage
 from ptmcad.studies.bench.report import curve_file, curves, page, sentences, terminal
-from ptmcad.studies.bench.stored import measurement, study_of, study_schema, write_study, write_table
+from ptmcad.studies.bench.stored import (
+    BAD,
+    compare,
+    comparison_table,
+    study_of,
+    study_schema,
+    write_study,
+    write_table,
+)
+from ptmcad.studies.bench.study import RIVALS
 from ptmcad.studies.picture import draw
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -8,14 +8,14 @@ from support.mechanisms_energy import energy
 
 from ptmcad.mechanism import ptm
 from ptmcad.mechanism.ptm import RECORD
-from ptmcad.studies import doubles
+from ptmcad.studies import byhand
 
 
 def test_the_derivatives_by_hand_are_those_of_the_record() -> None:
     """With free lengths, springs that differ and all loads: mpmath differentiates the energy that the record says."""
     p = {name: 0.3 + 0.2 * n for n, name in enumerate(ptm().parameters)}
     at = (0.7, -2.1)
-    found = doubles.at(p, *(np.array(angle) for angle in at))
+    found = byhand.at(p, *(np.array(angle) for angle in at))
 
     def by(*orders: int) -> float:
         values = {name: mpf(value) for name, value in p.items()}

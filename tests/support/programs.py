@@ -22,10 +22,10 @@ from pathlib import Path
 import pytest
 
 from ptmcad.studies.bench import programs
-from ptmcad.studies.bench.process import Outcome, run
+from ptmcad.studies.bench.process import run
 
 SINGULAR = shutil.which("Singular")
-QEPCAD = programs.qepcad_command()
+QEPCAD = programs.SESSIONS["qepcad"][0] if shutil.which("qepcad") else None
 # the wheel keeps its program inside the environment, off the PATH
 _WHEEL = Path(sysconfig.get_path("purelib")) / "sage_wheels" / "bin" / "msolve"
 MSOLVE = shutil.which("msolve") or (str(_WHEEL) if _WHEEL.is_file() else None)
@@ -64,6 +64,13 @@ def singular(script: str) -> str:
     return before
 
 
+def qepcad_script(problems: Sequence[str]) -> str:
+    """QEPCAD's standard input for several problems, each without a final ``quit``."""
+    return programs.TEXTS["scripts"]["qepcad"].format(
+        problems="\ncontinue\n".join(problem.rstrip() for problem in problems)
+    )
+
+
 def qepcad_session(problems: Sequence[str]) -> list[str]:
     """What QEPCAD prints for each of several problems, put to it in one session.
 
@@ -77,7 +84,7 @@ def qepcad_session(problems: Sequence[str]) -> list[str]:
         When it reports an error (lack of memory is one), or does not come to the end.
     """
     assert QEPCAD is not None
-    output = _run(QEPCAD, programs.qepcad_session(problems))
+    output = _run(QEPCAD, qepcad_script(problems))
     _refuse("QEPCAD", _QEPCAD_ERROR, output)
     if programs.QUIT not in output:
         raise ProgramError(f"QEPCAD stopped within its script: {output[-300:]}")
@@ -194,8 +201,8 @@ def _msolve(text: str, *options: str) -> str:
 
 def _run(command: Sequence[str], text: str) -> str:
     usage = run(command, text=text)
-    if usage.outcome is not Outcome.DONE:
-        raise ProgramError(f"{command[0]} failed: {usage.message or usage.output[-300:]}")
+    if usage.fault:
+        raise ProgramError(f"{command[0]} {usage.fault}: {usage.output[-300:]}")
     return usage.output
 
 

@@ -1,23 +1,111 @@
-"""``python -m ptmcad.studies.bench STUDY``: measure, print the table, write STUDY.json."""
+"""``python -m ptmcad.studies.bench STUDY``: measure, print the table, write STUDY.json.
+
+The studies of records as whole processes: time, memory and forecasts; and what each saving is worth.
+
+Guarantee: of an ablation every map that is timed was compared with the one that all savings made (`difference`); ratios
+are medians of the ratios within a round, of processor time.
+"""
 
 from __future__ import annotations
 
 import argparse
 import json
 import sys
+import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pandas as pd
 
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.ask.checking import check
 from ptmcad.errors import PtmcadError
 from ptmcad.process.output import check_writable, text_writer, write_files
-from ptmcad.studies.bench import records, scaling
-from ptmcad.studies.bench.harness import made_with, table
+from ptmcad.question.config import load
+from ptmcad.question.savings import ALL, SAVINGS, Engine
+from ptmcad.question.slice import Slice
+from ptmcad.studies.bench import scaling
+from ptmcad.studies.bench.harness import Job, classification, made_with, summary, table, turns
+from ptmcad.studies.bench.study import difference
+
+FLOOR = (sys.executable, "-c", "import flint, numpy, click, yaml")
+LIMITS = ("--tolerance", "1/20", "--jobs", "1", "--timeout", "30")
+"""Of certified runs of an ablation."""
+
+
+def slices_of(given: Sequence[Path]) -> dict[Path, Slice]:
+    """The records that are given, else those in configs/.
+
+    Raises
+    ------
+    PtmcadError
+        When there are none, or one cannot be read.
+    """
+    found = given or sorted(Path("configs").glob("*.yaml"))
+    if not found:
+        raise PtmcadError("no configs/*.yaml here: name the problem records, or change to the project's folder")
+    return {path: load(path) for path in found}
+
+
+def timed(options: argparse.Namespace) -> pd.DataFrame:
+    """Whole ``ptmcad classify`` processes, with JSON only and with pictures too, against the machine's floor.
+
+    Each row of a record without free lengths holds what ``ptmcad check`` foretells.
+    """
+    jobs, foretold = [Job("floor", "", "", FLOOR)], {}
+    with tempfile.TemporaryDirectory() as folder:
+        for path, slice in slices_of(options.records).items():
+            if slice.has_free_lengths and not options.records:
+                continue  # such a map takes as long as it is given
+            foretold[len(jobs)] = check(slice).forecast
+            for formats in ("json", "json,png,svg"):
+                asked = classification(path, slice.name, Path(folder), "--format", formats)
+                jobs.append(Job(str(path.with_suffix("")), "classify", formats, **asked))
+        turns(jobs, options)
+    rows = summary(jobs, "floor", "seconds")
+    costs = {number: cost for number, cost in foretold.items() if cost is not None}
+    rows["foretold s"] = pd.Series({number: round(cost.seconds, 2) for number, cost in costs.items()}, dtype=float)
+    rows["foretold MB"] = pd.Series({number: round(cost.megabytes) for number, cost in costs.items()}, dtype="Int64")
+    return rows
+
+
+def ablation(options: argparse.Namespace) -> pd.DataFrame:
+    """Records with each saving switched off, and with all of them; their own engine's savings, and "imports"."""
+    tables = []
+    for path, slice in slices_of(options.records).items():
+        savings = [s.name for s in SAVINGS if (s.engine is Engine.CERTIFIED) == slice.has_free_lengths]
+        more = LIMITS if slice.has_free_lengths else ()
+        tables.append(_without(path, slice.name, slice.name, [*savings, ALL], more, options))
+        if not slice.has_free_lengths:
+            turned, subject = ("--slice", ",".join(slice.axis_names[::-1])), f"{slice.name}, axes exchanged"
+            tables.append(_without(path, slice.name, subject, ["axis-order"], turned, options))
+    return pd.concat(tables)
+
+
+def _without(
+    record: Path, name: str, subject: str, savings: Sequence[str], more: Sequence[str], options: argparse.Namespace
+) -> pd.DataFrame:
+    """The rows of one record: all savings made, and each switched off."""
+    with tempfile.TemporaryDirectory() as folder:
+        jobs = []
+        for saving in ("", *savings):
+            off = ("--without", saving) if saving else ()
+            asked = classification(record, name, Path(folder), *more, *off, "--format", "json")
+            jobs.append(Job(subject, "classify", saving or "all made", **asked))
+        jobs[0].attempt(options.timeout)  # fills caches, and compiles
+        jobs[0].usages.clear()
+        turns(jobs, options)
+    results = [RegionMap.from_json(job.said()) if job.usages else None for job in jobs]
+    rows = summary(jobs, "all made")
+    rows["differs"] = [
+        None if results[0] is None or result is None else difference(results[0], result) for result in results
+    ]
+    return rows
+
 
 STUDIES: dict[str, tuple[str, Callable[[argparse.Namespace], pd.DataFrame], str]] = {
-    "times": ("bench", records.timed, "time and memory of whole processes, and forecasts"),
-    "ablation": ("ablation", records.ablation, "what each saving is worth"),
+    "times": ("bench", timed, "time and memory of whole processes, and forecasts"),
+    "ablation": ("ablation", ablation, "what each saving is worth"),
     "scaling": ("scaling", scaling.measure, f"how cost grows, along the families {', '.join(scaling.FAMILIES)}"),
 }
 """The name of the file, the measurement, and what it is."""

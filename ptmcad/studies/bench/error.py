@@ -164,12 +164,6 @@ def figures(wrong: Bounds, undetermined: float, **more: Any) -> Figures:
     return {**dict.fromkeys(FIGURES), "wrong": wrong, "undetermined": undetermined, **more}
 
 
-def exact_error(truth: Truth) -> Figures:
-    """Of an exact map: nothing is wrong, and its boundary is the true curves themselves."""
-    zero = (0.0, 0.0)
-    return figures(zero, 0.0, regions=len(truth.counts), missed=0, faintest=(1.0, 1.0), distance=zero)
-
-
 def grid_error(truth: Truth, cells: np.ndarray, drawn: np.ndarray) -> Figures:
     """Of a grid.
 

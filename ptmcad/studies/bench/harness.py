@@ -15,7 +15,7 @@ import shutil
 import statistics
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -25,13 +25,16 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.table import aligned
 from ptmcad.studies.bench.error import Truth
-from ptmcad.studies.bench.process import Outcome, Usage, run
+from ptmcad.studies.bench.process import Usage, run
 from ptmcad.studies.tables import installed
 
 PACKAGES = ("ptmcad", "python-flint", "numpy", "click", "PyYAML", "matplotlib", "sympy", "numba", "scipy", "gcad")
 GRACE_SECONDS = 1.0
 """Seconds that an engine has to save what it has when its time is over."""
+FORMAT = "ptmcad-bench/1"
 Row = dict[str, Any]
+_SHOWN = {"median": "seconds", "minimum": "least", "maximum": "most", "processor": "processor", "peak": "peak MiB"}
+"""Figures of a job, and how their columns are called."""
 
 
 @dataclass(slots=True)
@@ -60,30 +63,22 @@ class Job:
 
     def attempt(self, timeout: float) -> Usage:
         """Run once, within so many seconds, and take the figures, or the reason why there are none."""
+        limit = ("--timeout", f"{max(timeout - GRACE_SECONDS, 0.1):.2f}") if self.saves else ()
         if self.answer is not None:
             self.answer.unlink(missing_ok=True)
-        if self.saves:
-            limit = f"{max(timeout - GRACE_SECONDS, 0.1):.2f}"
-            usage = run((*self.command, "--timeout", limit), text=self.text, timeout=timeout + GRACE_SECONDS)
-            if self.answer is not None and self.answer.exists():
-                usage = replace(usage, outcome=Outcome.DONE)
-            elif "time limit" in usage.message:
-                usage = replace(usage, outcome=Outcome.TIMED_OUT)
+        usage = run((*self.command, *limit), text=self.text, timeout=max(timeout, 0.01) + GRACE_SECONDS * self.saves)
+        if self.answer is None:
+            self.reason = usage.fault
+        elif not self.answer.exists():
+            self.reason = usage.fault or "failed: no answer"
         else:
-            usage = run(self.command, text=self.text, timeout=max(timeout, 0.01))
-        if usage.outcome is Outcome.TIMED_OUT:
-            self.reason = f"not in {timeout:g} s"
-        elif usage.outcome is Outcome.FAILED:
-            self.reason = f"failed: {(usage.message or 'no message').splitlines()[-1]}"
-        elif self.answer is not None and not self.answer.exists():
-            self.reason = "failed: no answer"
-        else:
-            if self.answer is not None and self.answer.suffix != ".npy":
+            self.reason = "" if self.saves else usage.fault
+            if self.answer.suffix != ".npy":
                 usage = replace(usage, output=self.answer.read_text(encoding="utf-8"))
-            if wrong := self.check(usage):
-                self.reason = f"failed: {wrong}"
-            else:
-                self.usages.append(usage)
+        if not self.reason and (wrong := self.check(usage)):
+            self.reason = f"failed: {wrong}"
+        if not self.reason:
+            self.usages.append(usage)
         return usage
 
     def said(self) -> str:
@@ -112,6 +107,14 @@ def classification(record: Path, name: str, folder: Path, *options: str) -> dict
     """What a job has that writes the map of a record of this name into a folder."""
     command = (sys.executable, "-m", "ptmcad", "classify", str(record), *options, "--out", str(folder))
     return {"command": command, "answer": folder / f"{name}.json"}
+
+
+_KEYS = ("method", "setting", "seconds", "computing", "peak", "reason", "note", "figures", "area_width")
+
+
+def measurement(method: str, setting: str, **more: Any) -> Row:
+    """What is known of one method at one setting; ``docs/bench.schema.json`` says what each key means."""
+    return dict.fromkeys(_KEYS) | {"method": method, "setting": setting, "reason": "", "note": "", **more}
 
 
 def take_turns(jobs: Sequence[Job], rounds: int, order: random.Random, attempt: Callable[[Job], object]) -> None:
@@ -146,27 +149,20 @@ def summary(jobs: Sequence[Job], over: str = "", figure: str = "processor_second
     over : what the first job is: the column "over ..." has medians of the ratios to it within a round. None when empty.
     figure : of a `Usage`, of which ratios are taken.
     """
-    measured = [
-        {"job": number, "round": turn, **asdict(usage)}
-        for number, job in enumerate(jobs)
-        for turn, usage in enumerate(job.usages if not job.reason else ())
-    ]
-    runs = pd.DataFrame(measured, columns=["job", "round", *(part.name for part in fields(Usage))])
-    rows = pd.DataFrame([(job.subject, job.what, job.setting) for job in jobs], columns=["subject", "what", "setting"])
-    figures = runs.groupby("job").agg(
-        runs=("seconds", "size"),
-        seconds=("seconds", "median"),
-        least=("seconds", "min"),
-        most=("seconds", "max"),
-        processor=("processor_seconds", "median"),
-        peak=("peak_mebibytes", "max"),
-    )
-    rows = rows.join(figures.round(4)).astype({"runs": "Int64"}).rename(columns={"peak": "peak MiB"})
-    if over:
-        by_round = runs.pivot(index="round", columns="job", values=figure).reindex(columns=range(len(jobs)))
-        rows[f"over {over}"] = by_round.div(by_round[0], axis=0).median().round(3)
-    rows["reason"] = [job.reason or (None if job.usages else "not run") for job in jobs]
-    return rows
+    rows = []
+    for job in jobs:
+        row: Row = {"subject": job.subject, "what": job.what, "setting": job.setting}
+        if job.usages and not job.reason:
+            row |= times([usage.seconds for usage in job.usages])
+            row["processor"] = round(statistics.median(usage.processor_seconds for usage in job.usages), 4)
+            row["peak"] = round(max(usage.peak_mebibytes for usage in job.usages), 4)
+            pairs = zip(job.usages, () if jobs[0].reason else jobs[0].usages, strict=False)
+            ratios = [getattr(usage, figure) / getattr(first, figure) for usage, first in pairs]
+            row["over"] = round(statistics.median(ratios), 3) if ratios else None
+        rows.append(row | {"reason": job.reason or (None if job.usages else "not run")})
+    columns = ["subject", "what", "setting", "runs", *_SHOWN, *(["over"] if over else []), "reason"]
+    shown = pd.DataFrame(rows, columns=columns).astype({"runs": "Int64"})
+    return shown.rename(columns={**_SHOWN, "over": f"over {over}"})
 
 
 def made_with() -> dict[str, dict[str, str]]:

@@ -15,19 +15,8 @@ import threading
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import Enum
 from pathlib import Path
 from tempfile import TemporaryDirectory
-
-_MESSAGE_LENGTH = 300
-
-
-class Outcome(Enum):
-    """How a process ended."""
-
-    DONE = "done"
-    FAILED = "failed"
-    TIMED_OUT = "timed out"
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,15 +29,14 @@ class Usage:
     processor_seconds : user and system time.
     peak_mebibytes : largest resident set.
     output : what it wrote to standard output.
-    message : the end of what it wrote to standard error, empty when it was done.
+    fault : that its time was over, or that it failed, with its last words on standard error; empty when it is done.
     """
 
-    outcome: Outcome
     seconds: float
     processor_seconds: float
     peak_mebibytes: float
     output: str = ""
-    message: str = ""
+    fault: str = ""
 
 
 def run(command: Sequence[str], *, text: str = "", timeout: float = threading.TIMEOUT_MAX) -> Usage:
@@ -63,8 +51,8 @@ def run(command: Sequence[str], *, text: str = "", timeout: float = threading.TI
     --------
     >>> import sys
     >>> usage = run([sys.executable, "-c", "print(input()[::-1])"], text="stressed")
-    >>> usage.outcome, usage.output, usage.peak_mebibytes > 1
-    (<Outcome.DONE: 'done'>, 'desserts\\n', True)
+    >>> usage.fault, usage.output, usage.peak_mebibytes > 1
+    ('', 'desserts\\n', True)
     """
     with TemporaryDirectory() as name:
         figures, given, *said = (Path(name, part) for part in ("figures", "input", "output", "errors"))
@@ -75,9 +63,9 @@ def run(command: Sequence[str], *, text: str = "", timeout: float = threading.TI
             subprocess.run(starter, stdin=stdin, stdout=stdout, stderr=stderr, check=False)
         output, wrong = (path.read_text(encoding="utf-8", errors="replace") for path in said)
         measured = json.loads(figures.read_text()) if figures.exists() else ("failed", 0.0, 0.0, 0.0)
-    outcome = Outcome(measured[0])
-    message = "" if outcome is Outcome.DONE else wrong[-_MESSAGE_LENGTH:].strip()
-    return Usage(outcome, measured[1], measured[2], measured[3], output, message)
+    last = (wrong.strip() or "no message").splitlines()[-1][-300:]
+    fault = {"done": "", "late": f"not in {timeout:g} s", "failed": f"failed: {last}"}[measured[0]]
+    return Usage(measured[1], measured[2], measured[3], output, fault)
 
 
 def _measure(figures: str, timeout: str, *command: str) -> None:
@@ -95,8 +83,8 @@ def _measure(figures: str, timeout: str, *command: str) -> None:
     seconds = time.perf_counter() - start
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     late = process.returncode != 0 and seconds >= float(timeout)
-    outcome = "timed out" if late else "failed" if process.returncode else "done"
-    measured = (outcome, seconds, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024)
+    ended = "late" if late else "failed" if process.returncode else "done"
+    measured = (ended, seconds, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024)
     Path(figures).write_text(json.dumps(measured))
 
 

@@ -15,6 +15,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import yaml
 
@@ -30,11 +31,9 @@ from ptmcad.studies.bench.process import Usage
 from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.plane import PlanePolynomial
 
-NO_CURVES = "there are no finished curves"
 END = "-- the script was read to its end --"
 QUIT = "Quitting the QEPCAD system"
-SCRIPTS: Mapping[str, str] = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8"))
-_GARBAGE_COLLECTED_CELLS = 20_000_000
+TEXTS: Mapping[str, Any] = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8"))
 _ERROR = re.compile(r"^\s*\? .*$|^.*(?:\bError\b|Failure|Reason for|expected!).*$", re.MULTILINE)
 _CELL = re.compile(r"Information about the cell \(\d+,\d+\) -+$(.*?)^-{50,}$", re.MULTILINE | re.DOTALL)
 _TRUE = re.compile(r"^Truth value\s*: T", re.MULTILINE)
@@ -61,16 +60,10 @@ def elimination(slice: Slice, has_map: bool) -> tuple[list[str], list[str]]:
     return names, [text.replace(" ", "") for text in system.texts(tuple(names))]
 
 
-def start_singular(case: Case, _: str) -> Asked:
-    """The factors of the elimination ideal's common divisor, one on a line."""
-    if shutil.which("Singular") is None:
-        return "Singular is not installed"
+def for_singular(case: Case) -> Mapping[str, Any]:
+    """Names and polynomials of the system, and what is eliminated."""
     names, polynomials = elimination(case.slice, case.exact is not None)
-    script = SCRIPTS["singular"].format(
-        names=",".join(names), ideal=",".join(polynomials), unknowns="*".join(names[:-2]), end=END
-    )
-    command = ["Singular", "--quiet", "--no-rc"]
-    return {"command": command, "text": script, "check": partial(incomplete, END)}
+    return {"names": ",".join(names), "ideal": ",".join(polynomials), "unknowns": "*".join(names[:-2])}
 
 
 def by_singular(result: RegionMap, said: str) -> tuple[bool, str]:
@@ -78,7 +71,7 @@ def by_singular(result: RegionMap, said: str) -> tuple[bool, str]:
     return same_curves(result, curves(said.partition(END)[0].split(), factors=True))
 
 
-def start_msolve(case: Case, _: str) -> Asked:
+def start_msolve(case: Case) -> Asked:
     """A Groebner basis of the elimination ideal."""
     program = msolve.program()
     if program is None:
@@ -94,17 +87,6 @@ def by_msolve(result: RegionMap, said: str) -> tuple[bool, str]:
     """Whether the curves are the map's."""
     lines = "".join(line for line in said.splitlines() if not line.startswith("#"))
     return same_curves(result, curves(lines.strip("[]: \n").split(",")))
-
-
-def beside(compared: Callable[[RegionMap, str], tuple[bool, str]], case: Case, job: Job) -> Row:
-    """What an answer without counts is beside the map, with "DIFFERS" where it is another or cannot be read."""
-    if case.exact is None:
-        return {}
-    try:
-        same, words = compared(case.exact, job.said())
-    except ValueError as error:
-        same, words = False, f"cannot be read: {error}"
-    return {"note": f"no counts; {words if same else f'DIFFERS: {words}'}"}
 
 
 def curves(polynomials: Sequence[str], *, factors: bool = False) -> set[PlanePolynomial]:
@@ -135,15 +117,13 @@ def same_curves(result: RegionMap, found: set[PlanePolynomial]) -> tuple[bool, s
 # ------------------------------------------------------------------------------------------------- cells of the curves
 
 
-def start_gcad(case: Case, _: str) -> Asked:
-    """The number of open cells that gcad makes of the map's curves, in an interpreter of its own."""
-    if case.exact is None:
-        return NO_CURVES
+def for_gcad(case: Case) -> Mapping[str, Any]:
+    """The product of the map's curves, the window, and the step that puts the map's base axis first."""
+    assert case.exact is not None
     curves = [c.polynomial.text(("x", "y")) for c in case.exact.components if not c.left_out]
     product = "*".join(f"({curve.replace('^', '**')})" for curve in curves) or "1"
     window = [(str(a.low), str(a.high)) for a in case.slice.axes]
-    script = SCRIPTS["gcad"].format(product=product, window=window, step=1 - 2 * case.exact.base)
-    return {"command": [sys.executable, "-"], "text": script}
+    return {"product": product, "window": window, "step": 1 - 2 * case.exact.base}
 
 
 def by_gcad(result: RegionMap, said: str) -> tuple[bool, str]:
@@ -151,37 +131,14 @@ def by_gcad(result: RegionMap, said: str) -> tuple[bool, str]:
     return True, f"{json.loads(said)['cells']} cells, the map has {len(result.cells)}"
 
 
-def start_qepcad(case: Case, _: str) -> Asked:
-    """Cells of the map's curves, with its base axis first."""
-    if case.exact is None:
-        return NO_CURVES
-    command = qepcad_command()
-    if command is None:
-        return "qepcad is not installed"
-    problem = slice_variety(case.slice).text("qepcad")
+def for_qepcad(case: Case) -> Mapping[str, Any]:
+    """The problem that ``ptmcad variety --format qepcad`` writes, with the map's base axis first."""
+    assert case.exact is not None
+    problem = slice_variety(case.slice).text("qepcad").rstrip()
     if case.exact.base == 1:
         order = f"({', '.join(case.slice.axis_names[::-1])})"
         problem = re.sub(r"^\(.*\)$", order, problem, count=1, flags=re.MULTILINE)
-    return {"command": command, "text": qepcad_session([problem]), "check": partial(incomplete, QUIT)}
-
-
-def qepcad_command() -> tuple[str, ...] | None:
-    """The command that reads a session from standard input, None when QEPCAD is not installed."""
-    where = shutil.which("qepcad")
-    return (where, "-noecho", f"+N{_GARBAGE_COLLECTED_CELLS}") if where is not None else None
-
-
-def qepcad_session(problems: Sequence[str]) -> str:
-    """QEPCAD's standard input for several problems, each without a final ``quit``."""
-    return SCRIPTS["qepcad"].format(problems="\ncontinue\n".join(problem.rstrip() for problem in problems))
-
-
-def incomplete(end: str, usage: Usage) -> str:
-    """What is wrong with a session, which exits with status 0 after most errors; empty when nothing is."""
-    wrong = _ERROR.search(usage.output)
-    if wrong is not None:
-        return " ".join(wrong[0].split())[:100]
-    return "" if end in usage.output else "stopped within its script"
+    return {"problems": problem}
 
 
 def by_qepcad(result: RegionMap, said: str) -> tuple[bool, str]:
@@ -200,3 +157,50 @@ def by_qepcad(result: RegionMap, said: str) -> tuple[bool, str]:
     seen = {result.locate(dict(zip(order, sample, strict=True))).cell for sample in samples}
     words = f"{len(samples)} cells, in {len(seen - {None})} of the map's {len(result.cells)}"
     return None not in seen and len(seen) == len(result.cells), words
+
+
+# --------------------------------------------------------------------------------------------------------- all of them
+
+
+SESSIONS: Mapping[str, tuple[Sequence[str], str, Callable[[Case], Mapping[str, Any]]]] = {
+    "singular": (("Singular", "--quiet", "--no-rc"), END, for_singular),
+    "qepcad": (("qepcad", "-noecho", "+N20000000"), QUIT, for_qepcad),  # so many garbage collected cells
+    "gcad": ((sys.executable, "-"), "}", for_gcad),
+}
+"""Programs that read a script from standard input: the command, what it says at the end, and what is in the script."""
+COMPARED = {"singular": by_singular, "msolve": by_msolve, "qepcad": by_qepcad, "gcad": by_gcad}
+
+
+def start(program: str, case: Case, _: str) -> Asked:
+    """The job of a program; what is asked is in `TEXTS`, but for msolve, which has files."""
+    if program == "msolve":
+        return start_msolve(case)
+    command, end, words = SESSIONS[program]
+    if case.exact is None and program != "singular":
+        return "there are no finished curves"
+    if shutil.which(command[0]) is None:
+        return f"{command[0]} is not installed"
+    return {
+        "command": command,
+        "text": TEXTS["scripts"][program].format(**words(case)),
+        "check": partial(incomplete, end),
+    }
+
+
+def incomplete(end: str, usage: Usage) -> str:
+    """What is wrong with a session, which exits with status 0 after most errors; empty when nothing is."""
+    wrong = _ERROR.search(usage.output)
+    if wrong is not None:
+        return " ".join(wrong[0].split())[:100]
+    return "" if end in usage.output else "stopped within its script"
+
+
+def read(case: Case, job: Job) -> Row:
+    """What an answer without counts is beside the map, with "DIFFERS" where it is another or cannot be read."""
+    if case.exact is None:
+        return {}
+    try:
+        same, words = COMPARED[job.what](case.exact, job.said())
+    except ValueError as error:
+        same, words = False, f"cannot be read: {error}"
+    return {"note": f"no counts; {words if same else f'DIFFERS: {words}'}"}

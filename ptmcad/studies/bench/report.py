@@ -7,7 +7,7 @@ JSON, which vouches for the others, last.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +18,8 @@ from ptmcad.show.ranges.table import aligned
 from ptmcad.show.render.printing import save as save_figure
 from ptmcad.studies import tables
 from ptmcad.studies.bench.harness import Row
-from ptmcad.studies.bench.methods import RIVALS
-from ptmcad.studies.bench.stored import finest, frame, read_study, records, write_study, write_table
+from ptmcad.studies.bench.stored import finest, frame, read_study, write_study, write_table
+from ptmcad.studies.bench.study import RIVALS
 from ptmcad.studies.picture import DPI, STYLES, Curve, Mark, draw
 
 SUFFIXES = ("bench.csv", "bench.svg", "bench.png", "error-time.json", "bench.json")
@@ -50,7 +50,7 @@ def sentences(study: Row) -> list[str]:
             f"{SEEN_SHARE:.0%} of each, {whole}."
         )
     exact = table["seconds_median"][table["method"] == "exact"].min()
-    for m in records(finest(study)):
+    for m in finest(study).to_dict("records"):
         if (m["method"], m["setting"]) == ("companion", "N = 400") and m["seconds_median"] / exact > 0:
             found.append(
                 f"The exact engine has no error after {exact:.2f} s; the 400 x 400 grid has "
@@ -59,7 +59,7 @@ def sentences(study: Row) -> list[str]:
     return found
 
 
-def _cells(m: Row) -> dict[str, str]:
+def _cells(m: Mapping[Any, Any]) -> dict[str, str]:
     spread = " ({seconds_min:.2f}-{seconds_max:.2f})".format(**m) if m["runs"] > 1 else ""
     return {
         "method": m["method"],
@@ -73,7 +73,7 @@ def _cells(m: Row) -> dict[str, str]:
     }
 
 
-def _about(m: Row, name: str) -> str:
+def _about(m: Mapping[Any, Any], name: str) -> str:
     """Bounds as one number where two digits agree."""
     low, high = m[f"{name}_low"], m[f"{name}_high"]
     if pd.isna(low):
@@ -91,7 +91,7 @@ def notes(study: Row) -> list[str]:
 
 def _lines(study: Row, written: Callable[[list[list[str]]], list[str]]) -> list[str]:
     """The table, one row for each method and setting that was run, with the finest count it gives."""
-    found = [_cells(m) for m in records(finest(study).dropna(subset="seconds_median"))]
+    found = [_cells(m) for m in finest(study).dropna(subset="seconds_median").to_dict("records")]
     return written([list(found[0]), *(list(row.values()) for row in found)]) if found else []
 
 
@@ -118,23 +118,23 @@ def _curve(style: int, title: str, rows: pd.DataFrame, low: str, high: str, befo
     marks = [
         Mark(m["seconds_median"], (m[low] + m[high]) / 2, m["seconds_min"], m["seconds_max"],
              "" if before is None else m["setting"].removeprefix(before))
-        for m in records(rows.dropna(subset=low))
+        for m in rows.dropna(subset=low).to_dict("records")
     ]  # fmt: skip
     return Curve(title, STYLES[style], marks)
 
 
 def curve_file(study: Row) -> str:
     """The measurements for ``ptmcad report``, which draws positive errors only."""
-    series: list[dict[str, Any]] = [
-        {"name": curve.name, "points": [[mark.x, mark.y] for mark in curve.marks if mark.y > 0]}
+    series = [
+        {"name": curve.name, "points": points}
         for curve in curves(study)
+        if (points := [[mark.x, mark.y] for mark in curve.marks if mark.y > 0])
     ]
     text = (
         "Share of the window that is wrong or undetermined; for the exact engine, where that is 0, the width of its "
         "area bounds."
     )
-    shown = [curve for curve in series if curve["points"]]
-    return json.dumps({"format": CURVE_FORMAT, "error": text, "series": shown}, indent=1) + "\n"
+    return json.dumps({"format": CURVE_FORMAT, "error": text, "series": series}, indent=1) + "\n"
 
 
 def save(study: Row, folder: Path) -> tuple[Path, ...]:

@@ -1,10 +1,10 @@
-"""How cost grows: families of slices, each growing in one respect, as whole processes, with fitted exponents.
+"""How cost grows: families of slices, each growing in one respect, as whole processes, with a fitted exponent.
 
 Guarantee: the numbers of regions of the slices are known from how they are made, and a run that finds another number is
 a failure. The same measurements give the same fits.
 
 A parameter p becomes p + q(x, y) with a dense polynomial q that is small enough for the picture to stay, so that the
-degree of the curves grows alone; numbers get more digits; and Chebyshev polynomials fold the window: T_n maps each of
+degree of the curves grows alone; and Chebyshev polynomials fold the window: T_n maps each of
 the n intervals between neighbouring points cos(i pi / n) onto [-1, 1]. Without loads the stable count is 2 where
 |L2 - L1| < 2 rho < L2 + L1, and 1 elsewhere.
 """
@@ -19,6 +19,7 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
+from statistics import median
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,7 +33,7 @@ from ptmcad.studies.picture import STYLES, Curve, Mark, draw
 
 SHIFT = Fraction(1, 100)
 """What a bend's coefficients' moduli add up to at most: the window's edge meets the same curves in the same order."""
-MAX_COEFFICIENT, DIGITS = 9, 400
+MAX_COEFFICIENT = 9
 
 
 class Family(NamedTuple):
@@ -48,11 +49,6 @@ def _record(axes: dict[str, Sequence[Any]], **parameters: Any) -> Row:
     return {"mechanism": "ptm", "parameters": {"L1": 1, "k": 100, **parameters}, "axes": axes}
 
 
-def chebyshev(n: int, x: str) -> str:
-    """T_n as text; up to n = 40 its coefficients are whole in doubles, too."""
-    return " + ".join(f"({c:.0f})*{x}^{k}" for k, c in enumerate(np.polynomial.chebyshev.cheb2poly([0] * n + [1])) if c)
-
-
 def unloaded(n: int, seed: int) -> Row:
     """No loads, rho = 1 + x, L2 = 1 + y + q(x, y): three curves, dense, of total degree n each; four regions."""
     source = random.Random(f"bend {n} {seed}")
@@ -64,29 +60,22 @@ def unloaded(n: int, seed: int) -> Row:
     return _record({"x": ends, "y": ends}, rho="1 + x", L2=" + ".join(["1 + y", *terms]))
 
 
-def digits(n: int, seed: int) -> Row:
-    """Equal bars and loads as in the paper's figure 3, with numbers of about n digits for L, k and F/y."""
-    source = random.Random(f"digits {seed}")
-    length, stiffness, force = ("".join(source.choice("1379") for _ in range(DIGITS))[:n] for _ in range(3))
-    bar, load = f"1.00{length}", f"1.00{force}*F"
-    return _record({"rho": [0, 2], "F": [-10, 0]}, L1=bar, L2=bar, k=f"100.00{stiffness}", F3=load, F4=load)
-
-
 def fold(n: int, seed: int = 0) -> Row:
-    """rho = y and L2 = 1 + T_n(x)/2: n folds along x, over -1 < x < 1 and 0 < y < 2."""
-    return _record({"x": [-1, 1], "y": [0, 2]}, rho="y", L2=f"1 + ({chebyshev(n, 'x')})/2")
+    """rho = y and L2 = 1 + T_n(x)/2: n folds along x, over -1 < x < 1 and 0 < y < 2; n is at most 40."""
+    powers = enumerate(np.polynomial.chebyshev.cheb2poly([0] * n + [1]))  # in doubles, and whole up to n = 40
+    terms = " + ".join(f"({c:.0f})*x^{k}" for k, c in powers if c)
+    return _record({"x": [-1, 1], "y": [0, 2]}, rho="y", L2=f"1 + ({terms})/2")
 
 
 FAMILIES = {
     "degree": Family("Degree of the curves: no loads", (2, 4, 6, 8, 12, 16), unloaded, lambda n: 4),
-    "digits": Family("Digits of each parameter", (5, 10, 25, 50, 100, 200), digits, lambda n: 3),
     # below 2 rho = |T_n|/2 one region on either side of each of the n zeros; that of two; that above
     "fold": Family("Folds along one axis", (2, 4, 8, 16, 32), fold, lambda n: n + 3),
 }  # fmt: skip
 
 
 def measure(options: argparse.Namespace) -> pd.DataFrame:
-    """The families' rows: what each size takes, and the exponents that fit.
+    """The families' rows: what each size takes, the computation alone too, and the exponent that fits it.
 
     Raises
     ------
@@ -105,20 +94,11 @@ def measure(options: argparse.Namespace) -> pd.DataFrame:
             asked = classification(record, record.stem, Path(folder), "--format", "json")
             jobs.append(Job(name, family.title, str(n), **asked, check=partial(_unlike, family.regions(n))))
         turns(jobs, options)
-    rows = summary(jobs)
-    stages = [
-        {"subject": job.subject, "setting": job.setting, **json.loads(usage.output)["timings"]}
-        for job in jobs for usage in job.usages
-    ]  # fmt: skip
-    if not stages:
-        return rows
-    taken = pd.DataFrame(stages).groupby(["subject", "setting"], sort=False).median()
-    rows = rows.join(taken.round(5).rename(columns="{} s".format), on=["subject", "setting"])
+    taken = [[json.loads(usage.output)["timings"]["total"] for usage in job.usages] for job in jobs]
+    rows = summary(jobs).assign(computing=pd.Series([median(s) if s else None for s in taken], dtype=float).round(5))
     laws = [
-        {"subject": name, "what": FAMILIES[str(name)].title, "setting": f"fit: {stage}", **law}
-        for name, of_family in taken.groupby("subject", sort=False)
-        for stage, seconds in of_family.droplevel("subject").rename(index=int).items()
-        if (law := fit(seconds.dropna()))
+        {"subject": name, "what": FAMILIES[str(name)].title, "setting": "fit", "exponent": exponent(own)}
+        for name, own in rows.dropna(subset="computing").astype({"setting": int}).groupby("subject", sort=False)
     ]
     return pd.concat([rows, pd.DataFrame(laws)], ignore_index=True)
 
@@ -129,34 +109,22 @@ def _unlike(regions: int, usage: Usage) -> str:
     return "" if found == regions else f"{found} regions"
 
 
-def fit(taken: pd.Series[float]) -> Row | None:
-    """The power law y = c x^p through positive values y, whose index are the x.
+def exponent(rows: pd.DataFrame) -> float | None:
+    """The p of the power law y = c x^p through sizes and positive seconds, by least squares in logarithms.
 
-    Returns
-    -------
-    The exponent p by least squares in logarithms; that over the upper half of the range, which predicts; and the
-    largest factor by which a value is off the line. None when there are fewer than two, or one is not positive.
+    None when there are fewer than two.
     """
-    if len(taken) < 2 or min(*taken.index, *taken) <= 0:
+    if len(rows) < 2:
         return None
-    taken = taken.sort_index()
-    u, v = np.log(np.asarray(taken.index, dtype=float)), np.log(taken.to_numpy())
-    line = np.polyfit(u, v, 1)
-    upper = u >= min((u[0] + u[-1]) / 2, u[-2])
-    found = {
-        "exponent": line[0],
-        "upper": np.polyfit(u[upper], v[upper], 1)[0],
-        "off by": np.exp(np.abs(v - np.polyval(line, u)).max()),
-    }
-    return {name: float(f"{x:.4g}") for name, x in found.items()}
+    return float(f"{np.polyfit(np.log(rows['setting']), np.log(rows['computing']), 1)[0]:.4g}")
 
 
 def save_picture(rows: pd.DataFrame, folder: Path) -> None:
     """Draw the seconds of the computation along all families into scaling.svg."""
-    if "total s" in rows:
-        curves = []
-        for style, (title, own) in zip(STYLES, rows.dropna(subset="total s").groupby("what", sort=False), strict=False):
-            places = zip(own["setting"].astype(float), own["total s"], strict=True)
-            curves.append(Curve(str(title), style, [Mark(n, seconds, n, n) for n, seconds in places]))
+    curves = []
+    for style, (title, own) in zip(STYLES, rows.dropna(subset="computing").groupby("what", sort=False), strict=False):
+        places = zip(own["setting"].astype(float), own["computing"], strict=True)
+        curves.append(Curve(str(title), style, [Mark(n, seconds, n, n) for n, seconds in places]))
+    if curves:
         figure = draw("How cost grows", "size", "seconds of the computation, medians", {"": curves})
         save(figure, folder / "scaling.svg")

@@ -1,9 +1,10 @@
-"""A study: error against run time of several methods on one slice, measured.
+"""A study: error against run time of several rivals on one slice, measured; how each is started, and its answer read.
 
-Guarantee: all methods are run at their first setting before any is at its second; there each round runs every method
-once, in an order drawn from the seed, beside the reference job. Nothing is measured while something else is run.
-Figures of error are rounded outwards, so that bounds stay bounds; everything but times, memory and the machine is the
-same whenever the study is made again with the same seed.
+Guarantee: each job gets the same slice, with exact numbers where the method takes them; what a method cannot do for a
+slice, or what is not installed, is reported with its reason. All methods are run at their first setting before any is
+at its second; there each round runs every method once, in an order drawn from the seed, beside the reference job.
+Nothing is measured while something else is run. Figures of error are rounded outwards, so that bounds stay bounds;
+everything but times, memory and the machine is the same whenever the study is made again with the same seed.
 """
 
 from __future__ import annotations
@@ -14,19 +15,39 @@ import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from importlib.util import find_spec
 from itertools import zip_longest
 from pathlib import Path
+from typing import NamedTuple
 
-from ptmcad.answer.regionmap import RegionMap
+import numpy as np
+
+from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.classification import classify
-from ptmcad.errors import LimitReached
+from ptmcad.ask.comparison import compare
+from ptmcad.errors import LimitReached, PtmcadError
 from ptmcad.question.slice import Slice
-from ptmcad.studies.bench.error import truths
-from ptmcad.studies.bench.harness import Case, Job, Row, made_with, take_turns, times
-from ptmcad.studies.bench.methods import RIVALS, finest_count, jobs
-from ptmcad.studies.bench.process import Outcome
-from ptmcad.studies.bench.stored import FORMAT, measurement
+from ptmcad.show.table import area_by_count
+from ptmcad.studies.bench import programs
+from ptmcad.studies.bench.error import cover_error, figures, grid_error, outward, shown_count, truths
+from ptmcad.studies.bench.harness import (
+    FORMAT,
+    Asked,
+    Case,
+    Job,
+    Row,
+    classification,
+    made_with,
+    measurement,
+    take_turns,
+    times,
+)
 
+ENGINES = {"exact": "--area-tolerance", "certified": "--tolerance"}
+"""Those of ptmcad, with the option whose value is the setting."""
+GRIDS = ("companion", "multistart")
+NO_MAP = "no exact map to compare with: the share is the engine's"
+NO_WALLS = "errors not measured: the true walls are too steep for chains of chords; shares are the engine's"
 FLOOR = (
     sys.executable,
     "-c",
@@ -38,6 +59,118 @@ MAX_REPEATED_SECONDS = 1.25
 MAP_SECONDS = 120.0
 """For the map that errors are measured against, at least; without it shares are the engines'."""
 WARM_UP_SECONDS = 300.0
+
+
+class Rival(NamedTuple):
+    """One of the methods, as ``programs.yaml`` has them: its title, how a setting is called, and the settings.
+
+    Those are in order from the coarsest; so many of them are run when it has to be quick. It may need a package.
+    """
+
+    title: str
+    label: str
+    settings: Sequence[str]
+    quick: int
+    needs: str = ""
+
+
+RIVALS = {name: Rival(**entry) for name, entry in programs.TEXTS["rivals"].items()}
+
+
+def jobs(method: str, case: Case) -> list[Job] | str:
+    """A method's jobs, from the shortest, or why there are none."""
+    rival, slice = RIVALS[method], case.slice
+    if slice.has_free_lengths and method != "certified":
+        return "square roots: springs have a free length"
+    if method in GRIDS and slice.mechanism != "ptm":
+        return f"the sextic is the paper's mechanism's, not that of {slice.mechanism}"
+    if rival.needs and find_spec(rival.needs) is None:
+        return f"{rival.needs} is not installed (make bench installs it)"
+    settings = rival.settings[: rival.quick if case.quick else None]
+    start = _start_engine if method in ENGINES else _start_grid if method in GRIDS else programs.start
+    asked = {rival.label.format(setting): start(method, case, setting) for setting in settings}
+    found = [Job(slice.name, method, label, **more) for label, more in asked.items() if not isinstance(more, str)]
+    return found or str(next(iter(asked.values())))
+
+
+# ------------------------------------------------------------------------------------------------- ptmcad and grids
+
+
+def _start_engine(engine: str, case: Case, setting: str) -> Asked:
+    options = ("--engine", engine, "--count", finest_count(case.slice), ENGINES[engine], setting, "--format", "json")
+    asked = classification(case.record, case.slice.name, case.folder / f"{engine}-{setting}", *options)
+    return asked | {"saves": engine == "certified"}
+
+
+def finest_count(slice: Slice) -> str:
+    """The count that shows most; with free lengths the slice's own."""
+    if slice.has_free_lengths:
+        return slice.count.value
+    return "index" if slice.model.has_potential else "stable" if slice.model.tells_stability else "total"
+
+
+def _read_map(case: Case, job: Job) -> Row:
+    result = RegionMap.from_json(job.said())
+    notes = ["stopped at the limit, short of its tolerance"] if result.status is Status.PARTIAL else []
+    if case.exact is not None and result.cover is None and (wrong := difference(case.exact, result)):
+        raise PtmcadError(f"two exact maps of {case.slice.name} differ: {wrong}")
+    if not case.known:
+        notes.append(NO_MAP if case.exact is None else NO_WALLS)
+        share = outward(result.undetermined, result.undetermined)
+        found = {case.slice.count.value: figures(share, share[1])}
+    elif result.cover is None:
+        right = figures((0.0, 0.0), 0.0, missed=0, faintest=(1.0, 1.0), distance=(0.0, 0.0))
+        found = {count: right | {"regions": len(truth.counts)} for count, truth in case.known.items()}
+    else:
+        errors = {count: cover_error(truth, result, count) for count, truth in case.known.items()}
+        found = {count: error for count, error in errors.items() if error is not None}
+    first, second = result.slice.axes
+    window = (first.high - first.low) * (second.high - second.low)
+    widest = max((high - low for low, high in area_by_count(result).values()), default=window) / window
+    return {"figures": found, "note": "; ".join(notes), "area_width": outward(0, widest)[1]}
+
+
+def difference(one: RegionMap, other: RegionMap) -> str:
+    """Where two maps of one slice have other counts, whatever their decompositions; empty when nowhere.
+
+    Raises
+    ------
+    ConfigError
+        When one of them is not complete.
+    """
+    changes = compare(one, other).changes
+    if not changes:
+        return ""
+    return f"other counts on {len(changes)} parts, the largest of area {float(changes[0].area[1]):.3g}"
+
+
+def question(slice: Slice) -> str:
+    """The slice as JSON for the grids, in floats."""
+    parameters = {
+        name: [[[i, j, float(c)] for i, j, c in terms] for terms in (value.numerator, value.denominator)]
+        for name, value in slice.parameters.items()
+    }
+    return json.dumps({"window": [[float(a.low), float(a.high)] for a in slice.axes], "parameters": parameters})
+
+
+def _start_grid(method: str, case: Case, setting: str) -> Asked:
+    asked, target = case.folder / "question.json", case.folder / f"{method}-{setting}.npy"
+    asked.write_text(question(case.slice), encoding="utf-8")
+    command = [sys.executable, "-m", "ptmcad.studies.byhand", method, asked, setting, target]
+    return {"command": list(map(str, command)), "answer": target}
+
+
+def _read_grid(case: Case, job: Job) -> Row:
+    if case.exact is None or case.known is None:
+        return {"note": NO_MAP if case.exact is None else NO_WALLS}
+    assert job.answer is not None
+    stable, total = np.load(job.answer).astype(np.int16)
+    cells = case.exact.grid(len(stable)).cell.T
+    found = {count: grid_error(truth, cells, shown_count(stable, total, count)) for count, truth in case.known.items()}
+    return {"figures": found}
+
+
+# ---------------------------------------------------------------------------------------------------------- measured
 
 
 def measure(
@@ -127,11 +260,8 @@ def _run_all(
                 job.reason = f"left out: it does not fit into the {limit:g} s for each method"
             return
         report(f"{job.what}, {job.setting}")
-        usage = job.attempt(left[job.what])
-        last[job.what] = usage.seconds
-        left[job.what] -= usage.seconds
-        if usage.outcome is Outcome.TIMED_OUT:
-            job.reason = f"stopped: the {limit:g} s for each method were used up"
+        last[job.what] = job.attempt(left[job.what]).seconds
+        left[job.what] -= last[job.what]
 
     order = random.Random(seed)
     for rank in zip_longest(*ranked):
@@ -142,20 +272,12 @@ def _measured(case: Case, job: Job) -> Row:
     """The figures of a job's runs, and of its answer."""
     if not job.usages:
         return measurement(job.what, job.setting, reason=job.reason or "not run")
+    read = _read_map if job.what in ENGINES else _read_grid if job.what in GRIDS else programs.read
     return measurement(
         job.what,
         job.setting,
         seconds=times([usage.seconds for usage in job.usages]),
-        computing=_computing(job),
+        computing=times([json.loads(job.said())["timings"]["total"]]) if job.said().startswith("{") else None,
         peak=round(max(usage.peak_mebibytes for usage in job.usages), 1),
-        **RIVALS[job.what].read(case, job),
+        **read(case, job),
     )
-
-
-def _computing(job: Job) -> Row | None:
-    """The seconds of the computation alone, where the process says them, as JSON."""
-    if not job.said().startswith("{"):
-        return None
-    found = json.loads(job.said())
-    seconds = found["timings"]["total"] if "timings" in found else found.get("computing")
-    return times([seconds]) if seconds else None

@@ -8,8 +8,8 @@ data, ``claims.yaml``, whose head says how they are written.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from enum import Enum
 from functools import cache, partial
 from importlib import import_module
@@ -74,15 +74,6 @@ def texts() -> Mapping[str, Text]:
     return {name: {**found.get(text.get("like", ""), {}), **text} for name, text in found.items()}
 
 
-def judged(claims: Mapping[str, Text]) -> Iterator[Claim]:
-    """The claims with their verdicts, one after the other; what one shares with another is computed once."""
-    known: dict[str, Claim] = {}
-    for name, text in claims.items():
-        shared = known.get(text.get("like", ""))
-        known[name] = replace(shared, **_place(name, text)) if shared else judge(name, text)
-        yield known[name]
-
-
 def judge(name: str, text: Text) -> Claim:
     """Compute what is to be computed of a claim, and judge it.
 
@@ -91,7 +82,9 @@ def judge(name: str, text: Text) -> Claim:
     CONFIRMED if it holds as it is printed; else CORRECTED if the statement ``right`` was shown to hold in its place;
     else REFUTED if there is a witness; else UNDECIDED.
     """
-    claim = partial(Claim, **_place(name, text))
+    section = name.partition("-")[0]
+    section = {"a": "abstract", "c": "conclusions"}.get(section, section)
+    claim = partial(Claim, name, section, text["quotation"], text["statement"])
     extra = Extra[text["needs"]] if "needs" in text else None
     if extra is not None and find_spec(extra.package) is None:
         return claim(verdict=Verdict.NOT_CHECKED, reason=f"it cannot be computed here: {extra.message}")
@@ -113,13 +106,6 @@ def judge(name: str, text: Text) -> Claim:
         reason="neither the printed statement nor a corrected one was shown to hold",
         facts=facts,
     )
-
-
-def _place(name: str, text: Text) -> dict[str, Any]:
-    """The claim without what is computed of it."""
-    section = name.partition("-")[0]
-    section = {"a": "abstract", "c": "conclusions"}.get(section, section)
-    return {"name": name, "section": section, "quotation": text["quotation"], "statement": text["statement"]}
 
 
 def _facts(text: Text) -> Mapping[str, Any]:

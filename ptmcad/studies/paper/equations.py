@@ -8,8 +8,8 @@ data, ``expressions.yaml``.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import sympy as sp
 
@@ -23,12 +23,10 @@ _ANGLES = {c1: sp.cos(_THETA1), s1: sp.sin(_THETA1), c2: sp.cos(_THETA2), s2: sp
 _LATEX = {"cos(theta_1)": r"\cos\theta_1", "cos(theta_2)": r"\cos\theta_2", "det(H)": r"\det H"}
 
 _NAMES = {sp.Symbol(f"f{n}x"): f"f_{{{n}x}}" for n in (3, 4)}
-INTRODUCTION = """Derived from the potential of the model. Here f3 = F3/k (the paper's F3'), f4 = F4/k, f3x = F3x/k,
-f4x = F4x/k; t1 and t2 are the tangents of the half angles; in (10) to (13) L1 is the length of both rods."""
+INTRODUCTION: str = TEXTS["introduction"].strip()
 
 
-@dataclass(frozen=True, slots=True)
-class Equation:
+class Equation(NamedTuple):
     """One equation: its number in the paper, what it is, and both sides as text and LaTeX."""
 
     number: str
@@ -78,11 +76,4 @@ def as_latex() -> str:
         title = f"{e.number}: {e.what}".replace("^", r"\textasciicircum{}").replace("_", r"\_")
         blocks.append(rf"\noindent {title}" + "\n\\begin{dmath*}\n" + e.latex + "\n\\end{dmath*}")
     names = re.sub(r"\b([fFLt])(\dx?)\b", r"$\1_{\2}$", INTRODUCTION)
-    return "\n".join([_HEAD, rf"{names}\par", *blocks, "\\end{document}\n"])
-
-
-_HEAD = r"""\documentclass{article}
-\usepackage[a4paper,margin=2cm]{geometry}
-\usepackage{amsmath,breqn}
-\begin{document}
-\section*{The equations of the planar tensegrity mechanism, corrected}"""
+    return "\n".join([TEXTS["latex"].rstrip(), rf"{names}\par", *blocks, "\\end{document}\n"])

@@ -101,14 +101,9 @@ def at_designs(designs: Sequence[Sequence[str]], sentence: str) -> Facts:
     }
 
 
-def real_roots(designs: Sequence[Design]) -> list[int]:
-    """How many different real roots the eliminated polynomial has."""
-    return [squared((*design,)).real_roots for design in designs]
-
-
 def roots_within(designs: Sequence[Design], least: int, most: int) -> Facts:
     """Whether the numbers of real roots are within bounds: at all designs, at some, or at none."""
-    found = real_roots(designs)
+    found = [squared((*design,)).real_roots for design in designs]
     inside = [n for n in found if least <= n <= most]
     shown = [f"{n} at rho = {d[0]}, F3/k = F4/k = {d[4]}" for n, d in zip(found, designs, strict=False)]
     return {

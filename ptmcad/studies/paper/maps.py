@@ -29,14 +29,8 @@ from ptmcad.question.slice import Count, Slice
 from ptmcad.studies.paper import statements
 from ptmcad.text.enclosure import Enclosure
 
-POINTS: Mapping[str, tuple[str, Mapping[str, str]]] = {
-    "fig2": ("fig. 2, right", {"L2": "3/2", "rho": "1"}),
-    "fig3": ("fig. 3, right", {"rho": "3/4", "F": "-10"}),
-    "fig4": ("fig. 4, right", {"L2": "3/2", "rho": "7/10"}),
-    "fig5-text": ("a point of the two-solution region; the paper shows no poses", {"rho": "3/4", "F4": "-20"}),
-    "fig5-caption": ("a point of the two-solution region; the paper shows no poses", {"rho": "1/2", "F4": "-20"}),
-}
-"""For each figure, which is the name of a shipped record: the point whose poses are drawn, and whose choice it is."""
+POINTS: Mapping[str, tuple[str, Mapping[str, str]]] = statements.TEXTS["figures"]
+"""For each figure the point whose poses are drawn, and whose choice it is."""
 FIGURES = tuple(POINTS)
 SEED, RANDOM_POINTS = 2018, 40
 FINE = Fraction(1, 10**9)

@@ -1,7 +1,8 @@
-"""Pages of a reproduction: claims as Markdown, JSON and HTML, and an index with figures and equations.
+"""The whole paper in one folder: equations, figures, region maps, and a verdict on every claim, as pages and JSON.
 
-Guarantee: the HTML is self-contained (pictures are inside, nothing is loaded) and every text in it is escaped. What
-stands between the texts is data, ``pages.yaml``.
+Guarantee: verdicts and maps are computed in this run; nothing is read from a file of earlier results. All files are
+written together or none is. The HTML is self-contained (pictures are inside, nothing is loaded) and every text in it is
+escaped. What stands between the texts is data, ``pages.yaml``.
 """
 
 from __future__ import annotations
@@ -11,20 +12,34 @@ from base64 import b64encode
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
+from functools import partial
 from html import escape
 from itertools import groupby
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 import yaml
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.studies.paper.claim import Claim, Verdict
+from ptmcad.ask.solving import solve
+from ptmcad.process.output import check_writable, write_files
+from ptmcad.studies.paper import equations
+from ptmcad.studies.paper.claim import Claim, Verdict, judge, texts
 from ptmcad.studies.paper.equations import INTRODUCTION, Equation
-from ptmcad.studies.paper.maps import POINTS
+from ptmcad.studies.paper.maps import FIGURES, POINTS, region_map
 from ptmcad.studies.tables import page
 from ptmcad.version import __version__
 
+Progress = Callable[[str, int, int], None]
+
+PICTURES = ("png", "svg")
+FILES = (
+    *(f"{figure}{part}.{suffix}" for figure in FIGURES for part in ("", "-poses") for suffix in PICTURES),
+    *(f"{figure}.json" for figure in FIGURES),
+    "equations.md", "equations.tex", "claims.md", "claims.html", "claims.json", "index.html",
+)  # fmt: skip
+"""What a reproduction writes; the last one vouches for the others."""
 PAPER = "P. Wenger and D. Chablat, Kinetostatic Analysis and Solution Classification of a Planar Tensegrity Mechanism"
 FORMS: Mapping[str, Any] = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8"))
 _SIGNS = dict(zip(Verdict, "✓≠✗–?", strict=True))
@@ -35,6 +50,15 @@ def summary(claims: Sequence[Claim]) -> str:
     """The numbers of claims by verdict, in one line."""
     counts = Counter(claim.verdict for claim in claims)
     return f"{len(claims)} claims: " + ", ".join(f"{counts[v]} {v.value}" for v in Verdict if counts[v])
+
+
+def table(claims: Sequence[Claim], seconds: float) -> str:
+    """The summary for the terminal: numbers of verdicts, what was not confirmed, and the time."""
+    lines = [summary(claims)]
+    for verdict in NOT_AS_PRINTED:
+        found = [c for c in claims if c.verdict is verdict]
+        lines += [f"{verdict.value:10} {c.name}: {c.right or c.witness or c.reason}" for c in found]
+    return "\n".join([*lines, f"time       {seconds:.1f} s"])
 
 
 def claims_json(claims: Sequence[Claim]) -> str:
@@ -94,7 +118,7 @@ def _page(title: str, body: Iterable[str]) -> str:
     return str(FORMS["page"]).format(title=escape(title), style=style, paper=escape(PAPER), body="\n".join(body))
 
 
-def index_html(claims: Sequence[Claim], figures: Sequence[str], equations: Sequence[Equation]) -> str:
+def index_html(claims: Sequence[Claim], figures: Sequence[str], formulas: Sequence[Equation]) -> str:
     """The first page: what is in the folder, the verdicts that are not plain confirmations, figures and equations."""
     rows = [
         FORMS["row"].format(place=_title(c.section), said=escape(_said(c)[0][1]), **_fields(c, escape))
@@ -102,7 +126,7 @@ def index_html(claims: Sequence[Claim], figures: Sequence[str], equations: Seque
         if c.verdict in NOT_AS_PRINTED
     ]
     texts = [
-        FORMS["equation"].format(number=escape(e.number), what=escape(e.what), text=escape(e.text)) for e in equations
+        FORMS["equation"].format(number=escape(e.number), what=escape(e.what), text=escape(e.text)) for e in formulas
     ]
     body = FORMS["index"].format(
         summary=escape(summary(claims)),
@@ -131,3 +155,51 @@ def figure_html(name: str, result: RegionMap, pictures: Mapping[str, bytes]) -> 
         table=escape(result.table()),
         **{key: b64encode(data).decode("ascii") for key, data in shown.items()},
     )
+
+
+# ---------------------------------------------------------------------------------------------------------- everything
+
+
+def reproduce(folder: Path, progress: Progress = lambda _part, _done, _total: None) -> tuple[tuple[Claim, ...], float]:
+    """Compute everything and write it into a folder, which is made if it is missing: the claims, and the seconds.
+
+    Raises
+    ------
+    OutputError
+        When a file cannot be written; then none is.
+    """
+    check_writable(folder, FILES)
+    started = perf_counter()
+    maps = {figure: region_map(figure) for figure in FIGURES}
+    claims: list[Claim] = []
+    for name, text in texts().items():
+        claims.append(judge(name, text))
+        progress("claims", len(claims), len(texts()))
+    pictures: dict[str, bytes] = {}
+    for number, figure in enumerate(FIGURES):
+        progress("figures", number, len(FIGURES))
+        pictures |= _pictures(figure)
+    figures = [figure_html(figure, result, pictures) for figure, result in maps.items()]
+    files = {f"{figure}.json": result.to_json(timings=False) for figure, result in maps.items()} | {
+        "equations.md": equations.as_markdown(),
+        "equations.tex": equations.as_latex(),
+        "claims.md": claims_markdown(claims),
+        "claims.html": claims_html(claims),
+        "claims.json": claims_json(claims),
+        "index.html": index_html(claims, figures, equations.equations()),
+    }
+    contents = pictures | {name: text.encode() for name, text in files.items()}
+    write_files(folder, {name: partial(Path.write_bytes, data=contents[name]) for name in FILES})
+    return tuple(claims), perf_counter() - started
+
+
+def _pictures(figure: str) -> dict[str, bytes]:
+    """Names, such as ``fig4.png`` (the map beside the stable poses) and ``fig4-poses.svg``, and contents."""
+    from ptmcad.show.render.figure import draw_figure
+    from ptmcad.show.render.poses import draw_poses
+    from ptmcad.show.render.printing import content
+
+    at: dict[str, Any] = dict(POINTS[figure][1])
+    poses = solve(figure, **at)
+    drawn = {figure: draw_figure(region_map(figure), poses), f"{figure}-poses": draw_poses(poses)}
+    return {f"{name}.{kind}": content(picture, kind) for name, picture in drawn.items() for kind in PICTURES}

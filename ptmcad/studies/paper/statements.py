@@ -117,6 +117,7 @@ def half_angles(expression: Expr) -> Expr:
 # ----------------------------------------------------------------------------------------------------------- statements
 
 
+@cache
 def holds(statement: str) -> bool:
     """Whether a statement does."""
     text = statement.removeprefix("not ")

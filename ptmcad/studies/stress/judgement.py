@@ -11,9 +11,10 @@ share e, the pose turns by at most about 2 e S |H^-1| radians. A point's is the 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from itertools import groupby, product
+from math import isfinite
 from typing import Any
 
 from flint import ctx
@@ -21,7 +22,7 @@ from flint import ctx
 from ptmcad.answer.intervals import CountIntervals, lower, upper
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.studies.doubles import scale
+from ptmcad.studies.byhand import scale
 from ptmcad.studies.stress.case import Case, free_lengths
 from ptmcad.studies.stress.methods import IndexedPose, apart, double_poses, proved_poses, sextic_poses
 from ptmcad.text.balls import ball_of, exact
@@ -34,9 +35,6 @@ STEPS = 200
 _BITS = 512
 DECIDED = (Status.EXACT, Status.CERTIFIED)
 
-COLUMNS = (
-    "expected", "found", "right", "remarks", "double", "double_right", "error", "double_error", "condition", "bits",
-)  # fmt: skip
 Row = dict[str, Any]
 """What came out of a case.
 
@@ -54,22 +52,14 @@ Row = dict[str, Any]
 
 
 def judge(case: Case, found: Any) -> Row:
-    """The verdict on an answer to the case, without its cost.
-
-    Raises
-    ------
-    TypeError
-        When the answer is of another kind than the question.
-    """
-    kinds: dict[str, Any] = {"point": (Poses, _point), "line": (CountIntervals, _line)}
-    kind, judgement = kinds.get(case.question.kind, (RegionMap, _map))
-    if not isinstance(found, kind):
-        raise TypeError(f"{case.name}: the answer is of another kind than the question")
+    """The verdict on an answer to the case, without its cost."""
+    judgements: dict[str, Callable[[Case, Any], tuple[Checks, Row]]] = {"point": _point, "line": _line}
     with ctx.workprec(_BITS):
-        checks, row = judgement(case, found)
+        checks, row = judgements.get(case.question.kind, _map)(case, found)
     remarks = [remark for holds, remark in checks if not holds]
-    known: Row = {"expected": case.expected, "right": not remarks, "remarks": remarks, "bits": 0}
-    return {**dict.fromkeys(COLUMNS), **known, **row}
+    known: Row = {"expected": case.expected, "right": not remarks, "remarks": remarks}
+    numbers = {name: x if not isinstance(x, float) or isfinite(x) else None for name, x in row.items()}
+    return {**known, "error": None, "condition": None, "bits": 0, **numbers}
 
 
 Checks = list[tuple[bool, str]]
@@ -88,14 +78,6 @@ def _shown(poses: Sequence[IndexedPose] | None) -> str:
 
 def _text(counts: Iterable[object]) -> str:
     return " ".join(map(str, counts))
-
-
-def as_float(value: Fraction) -> float:
-    """A rational as a float; infinite or zero beyond a float's range."""
-    try:
-        return float(value)
-    except OverflowError:
-        return float("inf") if value > 0 else float("-inf")
 
 
 # ----------------------------------------------------------------------------------------------------------- points
@@ -124,9 +106,9 @@ def _point(case: Case, found: Poses) -> tuple[Checks, Row]:
         "found": text if ours else "undecided",
         "double": _shown(double),
         "double_right": _shown(double) == other,
-        "error": as_float(error or Fraction(0)),
+        "error": float(ball_of(error or Fraction(0))),
         "double_error": max(errors, default=None),
-        "condition": as_float(largest / smallest) if smallest else None,
+        "condition": float(ball_of(largest / smallest)) if smallest else None,
         "bits": found.bits,
     }
 
@@ -199,8 +181,8 @@ def _line(case: Case, found: CountIntervals) -> tuple[Checks, Row]:
         "found": _text(stable),
         "double": _text(double),
         "double_right": double == stable,
-        "error": as_float(max(((b - a) / 2 for a, b in ends), default=Fraction(0)) / (high - low)),
-        "double_error": as_float(max(errors, default=Fraction(0)) / (high - low)) if len(double) == len(runs) else None,
+        "error": float(max(((b - a) / 2 for a, b in ends), default=Fraction(0)) / (high - low)),
+        "double_error": float(max(errors, default=Fraction(0)) / (high - low)) if len(double) == len(runs) else None,
     }
 
 
@@ -209,7 +191,7 @@ def _expected(case: Case, stable: Sequence[int | None], numbers: Sequence[Sequen
     met = len(numbers) == len(case.bounds) and all(
         low <= most and high >= least for (low, high), (least, most) in zip(numbers, case.bounds, strict=True)
     )
-    shown = "; ".join(f"{as_float(low):.10g} to {as_float(high):.10g}" for low, high in numbers)
+    shown = "; ".join(f"{float(ball_of(low)):.10g} to {float(ball_of(high)):.10g}" for low, high in numbers)
     return [
         (_text(stable) == case.expected, f"stable counts {_text(stable)}, but {case.expected} are expected"),
         (met, f"the ends, or the area on which two are stable, are not where they should be: {shown}"),

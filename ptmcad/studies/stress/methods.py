@@ -10,7 +10,7 @@ Guarantee of `sextic_poses`: all equilibria are there, each proved and in the ba
 isolated with proof; th2 = pi counts as a root for each degree that is missing. No more equilibria than its multiplicity
 belong to a root, and as many are proved as all roots have together.
 
-`double_poses` guarantees nothing; it is the baseline that can be wrong (`ptmcad.studies.doubles`): companion matrices
+`double_poses` guarantees nothing; it is the baseline that can be wrong (`ptmcad.studies.byhand`): companion matrices
 without free lengths, and Newton's method from a grid of starts with them.
 
 References: Krawczyk, Computing 4 (1969); Neumaier, Interval Methods for Systems of Equations (1990), theorem 5.1.8;
@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 from flint import arb, arb_mat, ctx, fmpq, fmpq_poly
 
-from ptmcad.studies import doubles
+from ptmcad.studies import byhand
 from ptmcad.studies.byhand import derivatives, parts, sextic
 from ptmcad.studies.stress.case import free_lengths
 from ptmcad.text.balls import ball_of
@@ -54,11 +54,6 @@ def in_balls(parameters: Mapping[str, arb], angles: Sequence[arb]) -> tuple[arb_
     """Gradient and Hessian at a pose, or over a box of angles."""
     (g1, g2), (h11, h12, h22) = derivatives(parameters, [(a.cos(), a.sin()) for a in angles], arb.sqrt)
     return arb_mat([[g1], [g2]]), arb_mat([[h11, h12], [h12, h22]])
-
-
-def sign(value: arb) -> int:
-    """The sign of a ball, 0 when it contains zero."""
-    return int(value > 0) - int(value < 0)
 
 
 def newton_pose(
@@ -88,8 +83,9 @@ def newton_pose(
             return None
         at, rest = inverse * gradient, arb_mat(2, 2, 1) - inverse * hessian
         reaches = [abs(at[n, 0]) + (abs(rest[n, 0]) + abs(rest[n, 1])) * radius for n in (0, 1)]
-        determinant, first = sign(hessian.det()), sign(hessian[0, 0])
-        if not all(reach < radius for reach in reaches) or not determinant or (determinant > 0 and not first):
+        determinant, first = hessian.det(), hessian[0, 0]
+        undecided = not determinant < 0 and not (determinant > 0 and not first.contains(0))
+        if undecided or not all(reach < radius for reach in reaches):
             return None
         return IndexedPose(box[0], box[1], 1 if determinant < 0 else 0 if first > 0 else 2)
 
@@ -150,9 +146,9 @@ def double_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...] 
     p = {name: np.array([float(value)]) for name, value in parameters.items()}
     try:
         with np.errstate(all="ignore"):
-            th1, th2 = doubles.newton(p, STARTS) if free_lengths(parameters) else doubles.companion(p)
-            kept = doubles.distinct(th1, th2)
-            h11, h12, h22 = doubles.at(p, th1[kept], th2[kept])[1]
+            th1, th2 = byhand.newton(p, STARTS) if free_lengths(parameters) else byhand.companion(p)
+            kept = byhand.distinct(th1, th2)
+            h11, h12, h22 = byhand.at(p, th1[kept], th2[kept])[1]
             eigenvalues = np.linalg.eigvalsh(np.array([[h11, h12], [h12, h22]]).transpose(2, 0, 1))
     except np.linalg.LinAlgError:
         return None
