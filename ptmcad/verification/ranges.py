@@ -192,12 +192,10 @@ def _check_enclosed(asked: _Asked) -> str:
             except Unproved:
                 unknown += 1
                 continue
-            index = entry["index"] if entry["index"] is None else tuple(entry["index"])
-            number += 1
-            if entry["total"] is not None and (entry["total"], entry["stable"], index) != (
-                there.total,
-                there.stable,
-                there.index,
-            ):
-                raise Violation(f"{entry['total']} solutions are said to be at {shortest_text(at)}; there are {there}")
+            said = (entry["total"], entry["stable"], entry["index"] and tuple(entry["index"]))
+            number, unknown = (number, unknown + 1) if said == (None, None, None) else (number + 1, unknown)
+            if any(a not in (None, b) for a, b in zip(said, (there.total, there.stable, there.index), strict=True)):
+                raise Violation(
+                    f"(total, stable, index) {said} are said to be at {shortest_text(at)}; there are {there}"
+                )
     return Unchecked(f"{number} points; {unknown} were not decided") if unknown else f"{number} points"

@@ -121,6 +121,12 @@ def test_a_line_with_free_lengths_as_json(tmp_path: Path, capsys: pytest.Capture
     assert [(i["total"], i["stable"], i["index"]) for i in intervals] == [(4, 1, [1, 2, 1]), (6, 2, [2, 3, 1])]
     assert intervals[0]["high"] == intervals[1]["low"] == data["enclosed"]["changes"][0]["at"]
     assert intervals[0]["high"]["decimal"] == "0.4634527060"
+    # each count that is said is compared, also where another version's answer need not be today's
+    data["versions"]["ptmcad"], intervals[0]["total"], intervals[0]["stable"] = "0.1.0", None, 5
+    (tmp_path / "false.json").write_text(json.dumps(data), encoding="utf-8")
+    capsys.readouterr()
+    assert run(["verify", str(tmp_path / "false.json")]) == 1
+    assert "(None, 5, (1, 2, 1)) are said to be at" in " ".join(capsys.readouterr().out.split())
     assert run(["range", *arguments[:-1], "json,svg", "--out", str(tmp_path), "--name", "y"]) == 2
     assert "and a picture of branches (--quantity NAME)" in capsys.readouterr().err
     assert not (tmp_path / "y.json").exists()
