@@ -29,6 +29,8 @@ from ptmcad.algebra.polynomials import (
 )
 from ptmcad.errors import LimitReached
 
+LINE = 1009
+"""The second axis is so much more than the first one on a line on which poles are looked for; any number does."""
 Vector = tuple[tuple[Coefficient, ...], Coefficient]
 """Coordinates on the monomial basis: numerators and one common denominator."""
 
@@ -211,18 +213,25 @@ def poles(algebra: QuotientAlgebra, suspects: Sequence[Coefficient], coordinates
     """Those of the irreducible polynomials on which the characteristic polynomial of some coordinate has a pole.
 
     Near these points of the plane the coordinate is unbounded on the solutions. Often the entries' orders tell that
-    there is none.
+    there is none, and a line of the plane that there is one: what f^n divides it divides on the line.
     """
     found: list[Coefficient] = []
+    x, y = algebra.one.context().gens()
     for k in coordinates:
-        rows = [algebra.table[shifted(m, k)] for m in algebra.basis]
-        scales = [denominator for _, denominator in rows]
-        open_ones = [f for f in suspects if f not in found and (_least_order(rows, f) or 0) < 0]
-        coefficients = characteristic([row for row, _ in rows], scales) if open_ones else []
-        for f in open_ones:
-            power = f ** sum(multiplicity(scale, f) for scale in scales)
-            if any(not (c % power).is_zero() for c in coefficients):
-                found.append(f)
+        vectors = [algebra.table[shifted(m, k)] for m in algebra.basis]
+        rows, scales = [row for row, _ in vectors], [denominator for _, denominator in vectors]
+        open_ones = [f for f in suspects if f not in found and (_least_order(vectors, f) or 0) < 0]
+        for line in ((x, x + LINE), (x, y)):
+            on_line = [scale.compose(*line) for scale in scales]
+            left = [f for f in open_ones if f not in found]
+            if not left or any(scale.is_zero() for scale in on_line):  # so no curve of a pole is this line
+                continue
+            coefficients = characteristic([[c.compose(*line) for c in row] for row in rows], on_line)
+            for f in left:
+                power = f ** sum(multiplicity(scale, f) for scale in scales)
+                _, divisor = power.compose(*line).primitive()
+                if any(not (c % divisor).is_zero() for c in coefficients):
+                    found.append(f)
     return found
 
 
