@@ -29,8 +29,10 @@ from ptmcad.algebra.residues import PRIME_BITS, primes
 
 MIN_INTERPOLATED = 12
 """Rows; of fewer an elimination is as fast."""
-SHARE = 0.05
-"""Products of terms in the elimination tried first, for each step of one in the values: a fifth of what these take."""
+OVERHEAD = 5000
+"""Of a value, in steps of an elimination in numbers."""
+SHARE = 0.045
+"""Products of terms in the elimination that is tried first, for each step in the values: at most about their time."""
 
 
 def laplace(rows: Sequence[Sequence[Any]]) -> Any:
@@ -81,7 +83,7 @@ def _primitive_determinant(matrix: list[list[Coefficient]]) -> Coefficient:
     if matrix[0][0].context().nvars() == 2 and rows >= MIN_INTERPOLATED:
         across, up, both, size = _bounds(matrix)
         values = sum(max(0, min(up, both - i)) for i in range(across))
-        most = SHARE * values * (size.bit_length() // PRIME_BITS + 1) * rows**3
+        most = SHARE * values * (size.bit_length() // PRIME_BITS + 1) * (OVERHEAD + rows**3)
     found = _bareiss([list(row) for row in matrix], most)
     return characteristic(matrix)[0] if found is None else found
 
