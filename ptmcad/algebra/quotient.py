@@ -209,21 +209,31 @@ def multiplication_denominator(algebra: QuotientAlgebra) -> Coefficient:
     return lcm(algebra.table[shifted(m, k)][1] for m in algebra.basis for k in range(len(m)))
 
 
-def poles(algebra: QuotientAlgebra, suspects: Sequence[Coefficient], coordinates: Sequence[int]) -> list[Coefficient]:
+def poles(
+    algebra: QuotientAlgebra,
+    suspects: Sequence[Coefficient],
+    coordinates: Sequence[int],
+    remarks: Sequence[Coefficient] = (),
+) -> list[Coefficient]:
     """Those of the irreducible polynomials on which the characteristic polynomial of some coordinate has a pole.
 
     Near these points of the plane the coordinate is unbounded on the solutions. Often the entries' orders tell that
     there is none, and a line of the plane that there is one: what f^n divides it divides on the line.
+
+    Parameters
+    ----------
+    suspects : each is found if and only if there is a pole.
+    remarks : of curves that no count depends on: found only if there is a pole and the line shows it, as it does but
+        for a coincidence of zeros.
     """
     found: list[Coefficient] = []
     x, y = algebra.one.context().gens()
     for k in coordinates:
         vectors = [algebra.table[shifted(m, k)] for m in algebra.basis]
         rows, scales = [row for row, _ in vectors], [denominator for _, denominator in vectors]
-        open_ones = [f for f in suspects if f not in found and (_least_order(vectors, f) or 0) < 0]
-        for line in ((x, x + LINE), (x, y)):
+        for line, asked in (((x, x + LINE), (*suspects, *remarks)), ((x, y), suspects)):
             on_line = [scale.compose(*line) for scale in scales]
-            left = [f for f in open_ones if f not in found]
+            left = [f for f in asked if f not in found and (_least_order(vectors, f) or 0) < 0]
             if not left or any(scale.is_zero() for scale in on_line):  # so no curve of a pole is this line
                 continue
             coefficients = characteristic([[c.compose(*line) for c in row] for row in rows], on_line)

@@ -111,7 +111,7 @@ def discriminant_variety(
     tried = visible if settles(equations) and "infinity" not in without else []
     proved = harmless(equations, rows, jacobian_norm, tried)
     doubtful = [f for f in visible if f not in proved]
-    unbounded = poles(algebra, suspects, equations.unbounded)
+    unbounded = poles(algebra, doubtful, equations.unbounded, [*hidden, *proved])
     for factors, why in ((hidden, NO_POINT), (proved, HARMLESS), (doubtful, "")):
         seen.adopt([f for f in factors if f in unbounded], Kind.INFINITY, why)
     if "sign-curve" in without:

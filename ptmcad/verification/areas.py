@@ -100,12 +100,12 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
     width = stop - start
     window = to_fraction(width * (high - low))
     brackets = [bracket(v, strip * width) for v in result.critical_values]
-    points = [None, *(_middle(v, strip * width / 2**bits) for v in result.critical_values), None]
+    points = [start, *(_middle(v, strip * width / 2**bits) for v in result.critical_values), stop]
     lost = sum((b - a for a, b in brackets), fmpq(0)) * (high - low)
     bounds = [(ball_of(r.area[0]), ball_of(r.area[1])) for r in result.regions]
     number = max(1, sum(len(s.walls) for s in result.stacks))
     shares = [ball_of(_width(r)).mid() * margin / number for r in result.regions]
-    effort = Effort(min(shares), width / 2**5, width / 2 ** (bits // 3), (low, high), (2,))
+    effort = Effort(min(shares), width / 2**5, width / 2 ** (bits // 3), (low, high), (2,), (start, stop))
     whole = [arb(0) for _ in result.regions]
     panels: list[_Panel] = []
     for s, stack in enumerate(result.stacks):

@@ -6,11 +6,12 @@ integral over a panel of half width h < R. Where R is too small for the panel, i
 large enough. Where no R does, the panel is halved or the branch is shut in between two heights at which the curve does
 not meet the panel.
 
-Beside a turning point of the curve (k = 2) or a node (k = 1) at (U, V) the branch is V + s t, with s^k the distance
-from U, and t a simple root of p(U +- s^k, V + s t)/s^2. This is a polynomial in s and t but for a_00/s^2, a_01 t/s and,
-with k = 1, a_10/s, which are nothing at the point itself, and little where U and V are its approximations. For each
-real s from some sigma on they are numbers, or numbers times t, that are at most as large as at sigma. So what a disk
-proves of all polynomials with such numbers in their place, whatever they are, holds of t at each such s.
+Beside a turning point, a node or a cusp of the curve at (U, V) the branch is V + a s^k + s^j t, with s^k the distance
+from U, and t a simple root of p(U +- s^k, V + a s^k + s^j t)/s^e (`_Meeting`; e is j times the number of branches).
+This is a polynomial in s and t but for some terms with negative powers of s, which are nothing at the point itself, and
+little where U, V and a are approximations. For each real s from some sigma on they are numbers, times powers of t, that
+are at most as large as at sigma. So what a disk proves of all polynomials with such numbers in their place, whatever
+they are, holds of t at each such s.
 
 Guarantee: what is returned contains the integral of the branch that was asked for.
 """
@@ -24,7 +25,7 @@ from typing import NamedTuple
 from flint import arb, arb_poly, ctx, fmpq
 
 from ptmcad.verification.claims import PlaneCurve
-from ptmcad.verification.disks import Disk, PrecisionTooLow, disk, recentered
+from ptmcad.verification.disks import Disk, PrecisionTooLow, disk, recentered, shifted
 from ptmcad.verification.roots import numbered_root
 
 
@@ -56,7 +57,7 @@ class Effort:
     shut : panels narrower than this are shut in between heights.
     narrowest : panels narrower than this are not halved at this precision.
     heights : the window's edges.
-    points : approximations of the critical values at the ends of the branch's stack; None at an edge of the window.
+    points : approximations of the critical values, or the window's edges, at the ends of the branch's stack.
     degrees : of the polynomials that a branch is compared with; the closer the next branch, the better it has to be.
     """
 
@@ -65,7 +66,7 @@ class Effort:
     narrowest: fmpq
     heights: tuple[fmpq, fmpq]
     degrees: tuple[int, ...]
-    points: tuple[fmpq | None, fmpq | None] = (None, None)
+    points: tuple[fmpq, fmpq]
 
 
 class Part(NamedTuple):
@@ -96,8 +97,8 @@ def integrals_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort, run:
     ------
     PrecisionTooLow
     """
-    if abs(run) == 2 and (at := effort.points[run > 0]) is not None:
-        meeting = _beside(branch, at, (left, right) if run < 0 else (right, left), effort)
+    if abs(run) == 2:
+        meeting = _beside(branch, effort.points[run > 0], (left, right) if run < 0 else (right, left), effort)
         if meeting is not None:
             return meeting
     low, high = effort.heights
@@ -219,22 +220,59 @@ def _beside(branch: Branch, at: fmpq, ends: tuple[fmpq, fmpq], effort: Effort) -
         if height is None:
             return None
         over = arb_poly([row(at) for row in branch.value])
-        slope, v = over.derivative(), height.mid()
-        for _ in range(_NEWTON):
-            v = (v - slope(v) / slope.derivative()(v)).mid()
-        reach = (height - v) ** 2 + (near - at) ** 2
-        if not abs(over(v)) * _SPREAD < abs(slope.derivative()(v)) * reach:
-            return None
-        rows = recentered([row(arb_poly([at, 1 if far > at else -1])) for row in branch.value], v)
-        for k in (2, 1):
-            found = _from_point(rows, k, abs(near - at), abs(far - at), height - v, effort)
-            if found is not None:
-                total, length = found
-                end = at + length if far > at else at - length
-                integral = total + (v - low) * abs(end - near)
-                inner = _between(end, far, effort, 1 if far > at else -1)
-                return [Part(min(near, end), max(near, end), integral, True), *inner, *_between(ends[0], near, effort)]
+        for multiplicity in sorted({m.multiplicity for m in _MEETINGS}):
+            place = _meeting_place(over, multiplicity, height, abs(near - at))
+            if place is None:
+                continue
+            rows = recentered([row(arb_poly([at, 1 if far > at else -1])) for row in branch.value], place)
+            for meeting in (m for m in _MEETINGS if m.multiplicity == multiplicity):
+                found = _from_point(rows, meeting, abs(near - at), abs(far - at), height - place, effort)
+                if found is not None:
+                    total, length = found
+                    end = at + length if far > at else at - length
+                    integral = total + (place - low) * abs(end - near)
+                    inner = _between(end, far, effort, 1 if far > at else -1)
+                    return [
+                        Part(min(near, end), max(near, end), integral, True),
+                        *inner,
+                        *_between(ends[0], near, effort),
+                    ]
     return None
+
+
+class _Meeting(NamedTuple):
+    """How branches meet: at the distance s^k they have the heights slope s^k + s^j t, with different t for s = 0.
+
+    Attributes
+    ----------
+    multiplicity : of the height as a root, so many branches, real or not, meet.
+    sheared : whether there is a slope that they have in common; else it is 0.
+    """
+
+    k: int
+    j: int
+    multiplicity: int
+    sheared: bool
+
+
+_MEETINGS = (
+    _Meeting(2, 1, 2, False),  # a turning point
+    _Meeting(1, 1, 2, False),  # a node
+    _Meeting(2, 3, 2, True),  # a cusp
+    _Meeting(3, 2, 3, False),  # an upright cusp
+)
+
+
+def _meeting_place(over: arb_poly, multiplicity: int, height: arb, away: fmpq) -> arb | None:
+    """A height that is nearly a root so often, near a branch's height at a short distance; None where none is seen."""
+    derivatives = [over]
+    for _ in range(multiplicity):
+        derivatives.append(derivatives[-1].derivative())
+    v = height.mid()
+    for _ in range(_NEWTON):
+        v = (v - derivatives[-2](v) / derivatives[-1](v)).mid()
+    reach = abs(height - v) ** multiplicity + arb(away) ** multiplicity
+    return v if abs(over(v)) * _SPREAD < abs(derivatives[-1](v)) * reach else None
 
 
 def _between(one: fmpq, other: fmpq, effort: Effort, run: int = 0) -> list[Part]:
@@ -245,24 +283,27 @@ def _between(one: fmpq, other: fmpq, effort: Effort, run: int = 0) -> list[Part]
 
 
 def _from_point(
-    rows: Sequence[arb_poly], k: int, near: fmpq, far: fmpq, height: arb, effort: Effort
+    rows: Sequence[arb_poly], meeting: _Meeting, near: fmpq, far: fmpq, height: arb, effort: Effort
 ) -> tuple[arb, fmpq] | None:
-    """The integral of s t over distances from `near` on, and up to where; None when no disk is proved.
+    """The integral of the height over distances from `near` on, and up to where; None when no disk is proved.
 
     Parameters
     ----------
-    rows : coefficients in the distance s^k from the point of the powers of the height s t above it.
+    rows : coefficients in the distance from the point of the powers of the height above it.
     height : of the branch at `near`.
     """
+    k, j, multiplicity, sheared = meeting
+    slope = arb(0)
+    if sheared:
+        slope = (-rows[1][1] / (2 * rows[2][0])).mid()
+        rows = shifted(rows, arb_poly([0, slope]), len(rows))
     sigma = arb(near).root(k)
-    divided = [_divided(row, k, j, sigma) for j, row in enumerate(rows)]
-    constant, linear, square = (row[0] for row in divided[:3])
-    under, there = linear * linear - 4 * constant * square, height / sigma
-    if not (under > 0 and abs(square) > 0):
-        return None
-    root = under.sqrt() if 2 * square * there + linear > 0 else -under.sqrt()
-    root = (root - linear) / (2 * square)
+    divided = [_divided(row, k, j * n, j * multiplicity, sigma) for n, row in enumerate(rows)]
+    there = (height - slope * near) / sigma**j
+    root = _simple_root(arb_poly([row[0] for row in divided]), there.mid())
     whole = arb(far).root(k).mid().fmpq()
+    if root is None:
+        return None
     try:
         found = disk(divided, simple(whole, whole / _NEAREST), root, effort.degrees[0])
     except PrecisionTooLow:
@@ -272,17 +313,31 @@ def _from_point(
         return None
     coefficients, tail = _terms(found, effort.share)
     h, total = arb(found.proved), arb(0)
-    for n, c in enumerate(coefficients, k + 1):
+    for n, c in enumerate(coefficients, j + k):
         total += c * (h**n - sigma**n) * fmpq(k, n)
-    tail = tail * h**k * k
-    return total + arb(0).union(2 * tail) - tail, found.proved**k
+    tail = tail * h ** (j + k - 1) * k
+    end = found.proved**k
+    return total + arb(0).union(2 * tail) - tail + slope * (end * end - near * near) / 2, end
 
 
-def _divided(row: arb_poly, k: int, j: int, sigma: arb) -> arb_poly:
-    """A coefficient in s^k of (s t)^j, divided by s^2; with balls for what then has negative powers of s >= sigma."""
-    found = [arb(0)] * (k * len(row.coeffs()) + j)
+def _simple_root(p: arb_poly, t: arb) -> arb | None:
+    """A ball near t in which each polynomial of a ball of polynomials has one root; None where it is not proved."""
+    slope = p.derivative()
+    for _ in range(_NEWTON):
+        t = (t - p(t) / slope(t)).mid()
+    step = p(t) / slope(t)
+    if not step.is_finite() or step == 0:
+        return t if step == 0 else None
+    around = arb(t, (8 * abs(step) + abs(t) / arb(2) ** (ctx.prec // 2)).upper())
+    root = t - p(t) / slope(around)
+    return root if around.contains_interior(root) else None
+
+
+def _divided(row: arb_poly, k: int, height: int, order: int, sigma: arb) -> arb_poly:
+    """A coefficient in s^k of s^height, divided by s^order; with balls for negative powers of s >= sigma."""
+    found = [arb(0)] * (k * len(row.coeffs()) + height)
     for i, c in enumerate(row.coeffs()):
-        power = k * i + j - 2
+        power = k * i + height - order
         found[max(power, 0)] += c if power >= 0 else arb(0, (abs(c) * sigma**power).upper())
     return arb_poly(found)
 

@@ -82,7 +82,7 @@ def disk(rows: Sequence[arb_poly], half: fmpq, root: arb, degree: int) -> Disk |
     polynomial = arb_poly(
         [arb(0), *(c.mid() for c in _series([row.truncate(length) for row in rows], start, length)[1:])]
     )
-    d = _shifted(rows, polynomial)
+    d = shifted(rows, polynomial, _SHIFTED)
     even = _evening(d[1])
     d = [row * even for row in d]
     steepness = abs(d[1][0])
@@ -112,16 +112,16 @@ def recentered(rows: Sequence[arb_poly], center: arb) -> list[arb_poly]:
 _SHIFTED = 3
 
 
-def _shifted(rows: Sequence[arb_poly], by: arb_poly) -> list[arb_poly]:
-    """Coefficients of the powers of t in p(s, by(s) + t), the first three, given those of the powers of v in p(s, v).
+def shifted(rows: Sequence[arb_poly], by: arb_poly, number: int) -> list[arb_poly]:
+    """Coefficients of the powers of t in p(s, by(s) + t), so many, given those of the powers of v in p(s, v).
 
-    The others that are returned are those of powers of v in q, where t^3 q(s, by(s) + t) is the rest of the sum.
+    The others that are returned are those of powers of v in q, where t^number q(s, by(s) + t) is the rest of the sum.
     """
-    shifted = list(rows)
-    for start in range(min(_SHIFTED, len(shifted) - 1)):
-        for j in range(len(shifted) - 2, start - 1, -1):
-            shifted[j] = shifted[j] + shifted[j + 1] * by
-    return shifted
+    found = list(rows)
+    for start in range(min(number, len(found) - 1)):
+        for j in range(len(found) - 2, start - 1, -1):
+            found[j] = found[j] + found[j + 1] * by
+    return found
 
 
 _EVENED = 12
@@ -159,7 +159,7 @@ def _reach(sizes: list[arb], steepness: arb, slack: arb) -> arb | None:
 
     Parameters
     ----------
-    sizes : bounds on the disk |s| <= R for the rows that `_shifted` returns. The second one
+    sizes : bounds on the disk |s| <= R for the rows that `shifted` returns. The second one
         contains |d_01| itself, which belongs on the other side.
     slack : a bound there for the polynomial by which they were shifted, so that |v| <= slack + r in the others.
     """

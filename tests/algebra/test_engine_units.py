@@ -21,7 +21,7 @@ from ptmcad.algebra.fibre import evaluate as multiplication
 from ptmcad.algebra.fibre import fibre
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
 from ptmcad.algebra.polynomials import PLANE, coefficients_in, evaluate, from_expression, irreducible_factors, to_plane
-from ptmcad.algebra.quotient import multiplication_denominator, norm, poles, quotient_algebra
+from ptmcad.algebra.quotient import LINE, multiplication_denominator, norm, poles, quotient_algebra
 from ptmcad.algebra.real_roots import (
     disjoint,
     has_root_between,
@@ -324,6 +324,16 @@ def test_poles_by_characteristic_polynomials_are_those_by_power_traces(name: str
     found = poles(algebra, suspects, equations.unbounded)
     assert 0 < len(found) < len(suspects)
     assert set(map(str, found)) == {str(f) for f in suspects if any((t % f).is_zero() for t in traces)}
+    assert set(map(str, poles(algebra, [], equations.unbounded, suspects))) == set(map(str, found))
+
+
+def test_a_pole_that_the_line_does_not_show_is_found_in_the_plane() -> None:
+    """The only root is (y - x - 1009)/f, and nothing on the line y = x + 1009: of f = x, so only a suspect is found."""
+    basis = groebner_basis([{(1,): X, (0,): X + LINE - Y}], MonomialOrder((0,)))
+    algebra = quotient_algebra(basis)
+    assert algebra is not None
+    assert poles(algebra, [X], (0,)) == [X]
+    assert poles(algebra, [], (0,), [X]) == []
 
 
 @pytest.mark.parametrize("name", ["fig2", "fig3", "fig4", "fig5-text"])
