@@ -245,18 +245,22 @@ def test_one_series_reaches_a_point_at_which_branches_meet(name: str, error: fmp
         assert first.integral.rad() < 1e-9
 
 
-def turned(a: int, b: int, c: int, d: int, p: int, q: int) -> tuple[Terms, Terms, fmpq, fmpq]:
-    """A fold and a node at (p/8, q/8) on curves that go on as polynomials: their terms, and the point.
+def turned(kind: str, a: int, b: int, c: int, d: int, p: int, q: int) -> tuple[Terms, fmpq, fmpq]:
+    """A fold, node or cusp at (p/8, q/8) on a curve that goes on as a polynomial: its terms, and the point.
 
-    The fold is on (u - p/8) = (v - q/8)^2 (1 + a (v - q/8)/4), and the node on the product of the lines v - q/8 =
-    c (u - p/8) and v - q/8 = d (u - p/8), plus b times the cube of u - p/8.
+    In x and y, eight times the differences from the point: the fold is on x = y^2 (1 + a y/32)/8, the node on the
+    product of the lines y = c x and y = d x, plus b/8 times the cube of x. The cusps are on (y - c x)^2 =
+    x^3 (1 - b x)/8, and on y^3 (1 - a y/64) = x^2 (1 + b x/8)/8.
     """
     ring = fmpz_mpoly_ctx.get(("u", "v"), Ordering.lex)
     x, y = 8 * ring.gen(0) - p, 8 * ring.gen(1) - q
-    fold = 32 * 8 * x - 32 * y * y - a * y * y * y
-    node = 8 * (y - c * x) * (y - d * x) + b * x * x * x
-    fold_terms, node_terms = ([(int(i), int(j), int(k)) for (i, j), k in f.terms()] for f in (fold, node))
-    return fold_terms, node_terms, fmpq(p, 8), fmpq(q, 8)
+    curve = {
+        "fold": 32 * 8 * x - 32 * y * y - a * y * y * y,
+        "node": 8 * (y - c * x) * (y - d * x) + b * x * x * x,
+        "cusp": 8 * (y - c * x) ** 2 - x**3 + b * x**4,
+        "upright cusp": 64 * y**3 - a * y**4 - 8 * x * x - b * x * x * x,
+    }[kind]
+    return [(int(i), int(j), int(k)) for (i, j), k in curve.terms()], fmpq(p, 8), fmpq(q, 8)
 
 
 @settings(deadline=None, max_examples=examples(40))
@@ -264,17 +268,16 @@ def turned(a: int, b: int, c: int, d: int, p: int, q: int) -> tuple[Terms, Terms
     a=st.integers(-8, 8), b=st.integers(-3, 3),
     slopes=st.lists(st.integers(-3, 3), min_size=2, max_size=2, unique=True),
     place=st.tuples(st.integers(-8, 8), st.integers(-8, 8)), side=st.sampled_from([1, -1]), lower=st.booleans(),
-    error=st.sampled_from([0, 1, -1]), is_fold=st.booleans(),
+    error=st.sampled_from([0, 1, -1]), kind=st.sampled_from(["fold", "node", "cusp", "upright cusp"]),
 )  # fmt: skip
-def test_areas_beside_folds_and_nodes_are_those_of_many_strips(
-    a: int, b: int, slopes: list[int], place: tuple[int, int], side: int, lower: bool, error: int, is_fold: bool
+def test_areas_beside_points_at_which_branches_meet_are_those_of_many_strips(
+    a: int, b: int, slopes: list[int], place: tuple[int, int], side: int, lower: bool, error: int, kind: str
 ) -> None:
     """Against sums of the branch's heights, each found by counting roots: bounds of an integral of what is monotone."""
-    fold, node, u, v = turned(a, b, *sorted(slopes), *place)
-    side = 1 if is_fold else side
+    terms, u, v = turned(kind, a, b, *sorted(slopes), *place)
+    side = 1 if kind in ("fold", "cusp") else side
     heights = (v - fmpq(1, 4), v + fmpq(1, 4))
-    terms, far = fold if is_fold else node, u + side * fmpq(1, 64)
-    near, number = u + side * ROOM, 0 if lower else 1
+    far, near, number = u + side * fmpq(1, 64), u + side * ROOM, 0 if lower or kind == "upright cusp" else 1
     with ctx.workprec(128):
         branch = branch_of(terms, number)
         found = part_beside(terms, number, u, far, fmpq(error, 10**30), heights)
