@@ -23,7 +23,7 @@ from ptmcad.cover.rectangles import Cover, Window
 from ptmcad.cover.rounding import cover_of
 from ptmcad.cover.simplification import combined
 from ptmcad.cover.subdivision import Integers, rectangle_array
-from ptmcad.mechanism.involutions import Involution
+from ptmcad.model.involutions import Involution
 
 START_TILES = 8
 """Tiles of the window along each axis, with which a search begins."""

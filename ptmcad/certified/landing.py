@@ -27,7 +27,7 @@ from ptmcad.certified.plain.chart import determinant
 from ptmcad.certified.potential import potential
 from ptmcad.certified.system import System, system
 from ptmcad.certified.tape import Tape, record
-from ptmcad.mechanism import Mechanism
+from ptmcad.model import Mechanism
 from ptmcad.question.slice import Slice
 from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import Enclosure

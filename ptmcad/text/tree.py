@@ -3,7 +3,7 @@
 Guarantee: `to_text` writes a tree that was read in a form that is read as the same tree.
 
 What a tree means is said by an `Interpretation`: rational functions of two axes in `ptmcad.text.parsing`, the elements
-of any ring in `ptmcad.mechanism.evaluate`.
+of any ring in `ptmcad.model.evaluate`.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.search import search_curve
 from ptmcad.certified.tape import record
-from ptmcad.mechanism import ptm
+from ptmcad.model import ptm
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import axis, constant
 

@@ -17,7 +17,7 @@ from ptmcad.certified.parameters import values_at
 from ptmcad.certified.peaks import peaks
 from ptmcad.certified.plain.points import BranchCounter, plain_counter
 from ptmcad.certified.points import PointCount
-from ptmcad.mechanism import ptm
+from ptmcad.model import ptm
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import axis
 

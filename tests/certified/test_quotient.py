@@ -33,7 +33,7 @@ from ptmcad.certified.plain.opening import Coordinates, coordinates, opening, st
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.tape import record
-from ptmcad.mechanism.involutions import Involution
+from ptmcad.model.involutions import Involution
 from ptmcad.question.config import load, slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 

@@ -27,7 +27,7 @@ from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.scales import TURNING_WEIGHT, short_lengths, variable_weights
 from ptmcad.certified.solved import Quotient, quotients
 from ptmcad.certified.system import system
-from ptmcad.mechanism.involutions import Involution
+from ptmcad.model.involutions import Involution
 from ptmcad.question.slice import Count, Slice
 
 SHORT_RATIO = 4

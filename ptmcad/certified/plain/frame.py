@@ -18,7 +18,7 @@ from ptmcad.certified.plain.involution import square_of
 from ptmcad.certified.plain.problem import Problem
 from ptmcad.certified.plain.springs import Matrix
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
-from ptmcad.mechanism.involutions import Involution
+from ptmcad.model.involutions import Involution
 
 
 class Place(NamedTuple):

@@ -35,7 +35,7 @@ from ptmcad.certified.search import Boxes, Found, isolate
 from ptmcad.certified.system import Arguments, System, system
 from ptmcad.certified.tape import Tape, enclosing_floats, record
 from ptmcad.errors import DegenerateSliceError
-from ptmcad.mechanism import ptm
+from ptmcad.model import ptm
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import text_of
 

@@ -29,9 +29,9 @@ from ptmcad.certified.plain.rational import Point, exact_eigenvalues, exact_valu
 from ptmcad.certified.plain.spectrum import ordered_eigenvalues
 from ptmcad.certified.potential import potential
 from ptmcad.certified.tape import Tape, record
-from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, ptm
-from ptmcad.mechanism.evaluate import value_at
-from ptmcad.mechanism.fourbars import flat_everywhere
+from ptmcad.model import ClosedMechanism, Mechanism, Model, ptm
+from ptmcad.model.evaluate import value_at
+from ptmcad.model.fourbars import flat_everywhere
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.balls import bounded, enclosed

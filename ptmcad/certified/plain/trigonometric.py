@@ -166,7 +166,7 @@ def waves(multiples: Multi) -> tuple[TrigonometricPolynomial, TrigonometricPolyn
 
 @dataclass(frozen=True, slots=True)
 class Harmonics:
-    """The ring of these polynomials, for `ptmcad.mechanism.evaluate`.
+    """The ring of these polynomials, for `ptmcad.model.evaluate`.
 
     Attributes
     ----------
