@@ -14,7 +14,7 @@ from math import inf, nextafter
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.certified.formula import Formula, Operation
+from ptmcad.formulas.graph import Formula, Operation
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -23,7 +23,7 @@ class Tape:
 
     Attributes
     ----------
-    operations : int64 (n,): of `ptmcad.certified.formula.Operation`.
+    operations : int64 (n,): of `ptmcad.formulas.graph.Operation`.
     first, second : int64 (n,): the operands' places on the tape, or a variable's number, or -1.
     low, high : float64 (n,): enclosures of the constants, 0 elsewhere.
     constants : exact value of each constant by its place.

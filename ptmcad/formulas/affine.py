@@ -23,9 +23,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ptmcad.certified.arithmetic import MAX_ANGLE, SINE_ERROR, sine_cosine
-from ptmcad.certified.compiled import compiled
-from ptmcad.certified.evaluation import (
+from ptmcad.formulas.compiled import compiled
+from ptmcad.formulas.intervals import (
     ADD,
     CONSTANT,
     COSINE,
@@ -43,6 +42,7 @@ from ptmcad.certified.evaluation import (
     Indices,
     Program,
 )
+from ptmcad.formulas.rounding import MAX_ANGLE, SINE_ERROR, sine_cosine
 
 Place = int
 """Of a node; compiled code is given numbers without a sign, see `Places`."""

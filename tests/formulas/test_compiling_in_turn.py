@@ -13,7 +13,7 @@ import pytest
 
 pytest.importorskip("numba")
 
-from ptmcad.certified import compiled
+from ptmcad.formulas import compiled
 
 
 @pytest.fixture(name="folder")

@@ -18,9 +18,9 @@ from support.examples import examples
 
 pytest.importorskip("numba")
 
-from ptmcad.certified import arithmetic
-from ptmcad.certified import compiled as compilation
-from ptmcad.certified.compiled import compiled
+from ptmcad.formulas import compiled as compilation
+from ptmcad.formulas import rounding as arithmetic
+from ptmcad.formulas.compiled import compiled
 
 Floats = NDArray[np.float64]
 LARGEST, SMALLEST, SUBNORMAL = 1.7976931348623157e308, 2.0**-1022, 5e-324

@@ -1,6 +1,6 @@
 """A tape run on a box in Arb's ball arithmetic, at any precision; it shares no code with the compiled evaluator.
 
-Guarantee: as for `ptmcad.certified.evaluation.run`: value k encloses the k-th node's values at every point of the box;
+Guarantee: as for `ptmcad.formulas.intervals.run`: value k encloses the k-th node's values at every point of the box;
 where a node is a `meet`, at every point at which its two operands are equal. A ball that is not finite says nothing.
 
 References
@@ -15,8 +15,8 @@ from fractions import Fraction
 
 from flint import arb, ctx
 
-from ptmcad.certified.formula import Operation
-from ptmcad.certified.tape import Tape
+from ptmcad.formulas.graph import Operation
+from ptmcad.formulas.tape import Tape
 from ptmcad.text.balls import ball_of, exact
 
 

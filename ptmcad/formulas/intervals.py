@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.certified.arithmetic import direction, down, length, magnitude, mignitude, multiply, reciprocal, sine, up
-from ptmcad.certified.compiled import ONE, ZERO, compiled
-from ptmcad.certified.formula import Operation
-from ptmcad.certified.tape import Tape
+from ptmcad.formulas.compiled import ONE, ZERO, compiled
+from ptmcad.formulas.graph import Operation
+from ptmcad.formulas.rounding import direction, down, length, magnitude, mignitude, multiply, reciprocal, sine, up
+from ptmcad.formulas.tape import Tape
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]

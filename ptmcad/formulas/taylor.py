@@ -16,10 +16,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ptmcad.certified.arithmetic import direction, down, length, multiply, reciprocal, sine, up
-from ptmcad.certified.compiled import ONE, ZERO, compiled, inlined
-from ptmcad.certified.evaluation import Floats, Program
-from ptmcad.certified.formula import Operation
+from ptmcad.formulas.compiled import ONE, ZERO, compiled, inlined
+from ptmcad.formulas.graph import Operation
+from ptmcad.formulas.intervals import Floats, Program
+from ptmcad.formulas.rounding import direction, down, length, multiply, reciprocal, sine, up
 
 _CONSTANT, _VARIABLE, _ADD, _SUBTRACT = (int(x) for x in list(Operation)[:4])
 _MULTIPLY, _SQUARE, _NEGATE, _SINE, _COSINE = (int(x) for x in list(Operation)[4:9])

@@ -2,8 +2,9 @@
 
 Guarantee: each operation is rounded once, to nearest, as IEEE 754 says; no fused or reordered operations, and division
 by zero gives an infinity. Nothing that depends on a slice is compiled in, so a new slice compiles nothing. What is kept
-on disk belongs to the present text of all modules of this package: numba looks only at the file of a function, and not
-at those of the functions that it calls, so that after a correction of the arithmetic old code would have gone on.
+on disk belongs to the present text of all modules of the rooms that have compiled code: numba looks only at the file of
+a function, and not at those of the functions that it calls, so that after a correction of the arithmetic old code would
+have gone on.
 """
 
 from __future__ import annotations
@@ -42,6 +43,8 @@ except ValueError as error:  # numba reads its variables as it loads
 
 
 _CONFIG: Any = config
+ROOMS = ("certified", "formulas")
+"""Folders of the package, all of whose modules the digest is of; elsewhere nothing is compiled."""
 
 
 def _folder() -> Path:
@@ -50,13 +53,19 @@ def _folder() -> Path:
     It is where NUMBA_CACHE_DIR says, else beside the sources, else in the user's cache.
     """
     here = Path(__file__).parent
-    digest = sha256()
-    for source in sorted(here.glob("*.py")):
-        digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
     beside = here / "__pycache__"
     if not os.access(beside if beside.exists() else here, os.W_OK):
         beside = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "ptmcad"
-    return Path(_CONFIG.CACHE_DIR or beside) / f"compiled-{digest.hexdigest()[:16]}"
+    return Path(_CONFIG.CACHE_DIR or beside) / f"compiled-{digest_of(here.parent)[:16]}"
+
+
+def digest_of(package: Path) -> str:
+    """The digest of the text of all modules that compiled code may call."""
+    digest = sha256()
+    for room in ROOMS:
+        for source in sorted((package / room).glob("*.py")):
+            digest.update(f"{room}/{source.name}".encode() + b"\0" + source.read_bytes() + b"\0")
+    return digest.hexdigest()
 
 
 _FOLDER = _folder()

@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 
 pytest.importorskip("numba")
 
-from ptmcad.certified.affine import CENTER, ERROR, FIRST, LANES, frame_for, run_affine, set_frame
-from ptmcad.certified.arb_evaluation import run_arb
 from ptmcad.certified.contraction import contract_curve, survives, workspace
-from ptmcad.certified.evaluation import program, run
-from ptmcad.certified.formula import Formula, Graph, direction, inverse_length, length, meet
 from ptmcad.certified.linear import contract_linear, space_for
 from ptmcad.certified.solved import quotients
 from ptmcad.certified.system import System, system
-from ptmcad.certified.tape import Tape, record
+from ptmcad.formulas.affine import CENTER, ERROR, FIRST, LANES, frame_for, run_affine, set_frame
+from ptmcad.formulas.balls import run_arb
+from ptmcad.formulas.graph import Formula, Graph, direction, inverse_length, length, meet
+from ptmcad.formulas.intervals import program, run
+from ptmcad.formulas.tape import Tape, record
 
 Floats = NDArray[np.float64]
 
