@@ -20,7 +20,7 @@ from ptmcad.errors import ExpressionError
 from ptmcad.formulas.graph import Formula, Graph, length
 from ptmcad.model.closed import ClosedMechanism, mechanism_in
 from ptmcad.model.description import Mechanism, Model, System
-from ptmcad.model.evaluate import evaluate
+from ptmcad.model.evaluate import evaluate, evaluated
 from ptmcad.model.work import split_moments
 from ptmcad.model.xjoint import second_bar
 from ptmcad.text.tree import Tree
@@ -212,7 +212,7 @@ class _Ring:
         return self.variables[angle].sin()
 
     def of(self, trees: Iterable[Tree]) -> tuple[Formula, ...]:
-        return tuple(evaluate(tree, self) for tree in trees)
+        return evaluated(trees, self)
 
 
 def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) -> CompiledSystem:

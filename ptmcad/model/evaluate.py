@@ -7,7 +7,7 @@ Division is by constants only: a coordinate is a polynomial.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -68,8 +68,13 @@ def evaluate(tree: Tree, ring: Ring[E]) -> E:
         zero, an exponent that is no whole number from 0 to `MAX_EXPONENT`, an argument of a function that is no sum of
         whole multiples of angles.
     """
-    evaluation = _Evaluation(ring)
-    return evaluation.lifted(interpret(tree, evaluation))
+    return evaluated([tree], ring)[0]
+
+
+def evaluated(trees: Iterable[Tree], ring: Ring[E]) -> tuple[E, ...]:
+    """The values of several trees, of which parts that they share are evaluated once; errors as of `evaluate`."""
+    evaluation, known = _Evaluation(ring), dict[int, tuple[Tree, Fraction | E]]()
+    return tuple(evaluation.lifted(interpret(tree, evaluation, known)) for tree in trees)
 
 
 def value_at(tree: Tree, parameters: Mapping[str, Fraction]) -> Fraction:
@@ -112,6 +117,7 @@ class _Evaluation(Generic[E]):
 
     def __init__(self, ring: Ring[E]):
         self.ring = ring
+        self.calls: dict[tuple[str, Tree], Fraction | E] = {}
 
     def lifted(self, value: Fraction | E) -> E:
         return self.ring.constant(value) if isinstance(value, Fraction) else value
@@ -151,6 +157,12 @@ class _Evaluation(Generic[E]):
         return value  # type: ignore[no-any-return]
 
     def call(self, call: Call) -> Fraction | E:
+        known = call.function, call.argument
+        if known not in self.calls:
+            self.calls[known] = self._turned(call)
+        return self.calls[known]
+
+    def _turned(self, call: Call) -> Fraction | E:
         angles = _Angles()
         multiples = interpret(call.argument, angles)
         if multiples.pop("", 0):
