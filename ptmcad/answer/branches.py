@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import Enclosure
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Protocol
 
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.model import Mechanism, Model
 from ptmcad.question.slice import Count
 
 MorseIndex = tuple[int, ...]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from ptmcad.answer import with_methods
 from ptmcad.answer.widths import Maximum
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import Enclosure
 

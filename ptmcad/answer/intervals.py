@@ -15,7 +15,7 @@ from ptmcad.answer import with_methods
 from ptmcad.answer.counts import Counts, MorseIndex
 from ptmcad.answer.regionmap import Continuum, Kind
 from ptmcad.answer.words import kind_name
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.expressions import Expression

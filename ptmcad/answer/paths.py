@@ -8,7 +8,7 @@ from enum import Enum
 from fractions import Fraction
 
 from ptmcad.answer import with_methods
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 

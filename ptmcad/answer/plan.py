@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from ptmcad.answer.regionmap import PlanStep
-from ptmcad.mechanism.involutions import Involution
+from ptmcad.model.involutions import Involution
 from ptmcad.question.savings import BY_NAME, GENERAL_SAVING
 from ptmcad.question.slice import Slice
 

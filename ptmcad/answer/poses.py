@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from ptmcad.answer import with_methods
 from ptmcad.answer.regionmap import Status
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.text.enclosure import Enclosure
 
 Vector = tuple[Enclosure, Enclosure]

@@ -13,7 +13,7 @@ from fractions import Fraction
 
 from ptmcad.answer import with_methods
 from ptmcad.answer.intervals import End, OperationSpan
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import DIGITS, AlgebraicNumber, Enclosure
 

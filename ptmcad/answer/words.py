@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from fractions import Fraction
 
-from ptmcad.mechanism import Mechanism, Model, mechanism_in
-from ptmcad.mechanism.moments import acting, foreign, moments_at
-from ptmcad.mechanism.work import split_moments
+from ptmcad.model import Mechanism, Model, mechanism_in
+from ptmcad.model.moments import acting, foreign, moments_at
+from ptmcad.model.work import split_moments
 
 
 def noun(model: Model, number: int = 2) -> str:
     """Equilibrium or equilibria of a mechanism, solution or solutions of another system.
 
-    >>> from ptmcad.mechanism import ptm
+    >>> from ptmcad.model import ptm
     >>> noun(ptm()), noun(ptm(), 1)
     ('equilibria', 'equilibrium')
     """

@@ -16,7 +16,7 @@ from ptmcad.answer.intervals import CertifiedInterval
 from ptmcad.answer.widths import CertifiedRange, CertifiedRow, CertifiedWidths
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.errors import HypothesisError
-from ptmcad.mechanism import ClosedMechanism
+from ptmcad.model import ClosedMechanism
 from ptmcad.options import Progress
 from ptmcad.question.slice import Slice
 

@@ -28,8 +28,8 @@ from ptmcad.exact.sizes import sizes
 from ptmcad.exact.stages import SliceProblem, point_values, problem_of, prove_regular
 from ptmcad.exact.survey import Survey, survey
 from ptmcad.exact.witness import SHARES, points
-from ptmcad.mechanism import ClosedMechanism, Mechanism, ptm
-from ptmcad.mechanism.sizes import terms_of
+from ptmcad.model import ClosedMechanism, Mechanism, ptm
+from ptmcad.model.sizes import terms_of
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
 from ptmcad.text.flint_numbers import from_fraction

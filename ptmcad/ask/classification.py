@@ -21,7 +21,7 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.timings import with_compilation
 from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached, expect, quoted
-from ptmcad.mechanism import ClosedMechanism, ptm
+from ptmcad.model import ClosedMechanism, ptm
 from ptmcad.options import Options, Progress
 from ptmcad.process.memory import loading
 from ptmcad.question.config import slice_from
@@ -194,7 +194,7 @@ def load_certified(progress: Progress | None = None, options: Options | None = N
         Where numba is missing, or the memory limit leaves no room.
     """
     with loading("the certified engine"):
-        import_module("ptmcad.certified.compiled")  # first: where numba is missing, it says so
+        import_module("ptmcad.formulas.compiled")  # first: where numba is missing, it says so
         from ptmcad.certified.loading import load
     return load(progress, options)
 
@@ -249,7 +249,7 @@ def flat_loops(slice: Slice) -> str:
     """What to say of loops that leave parts of a certified map undecided; empty where nothing is known of any."""
     if not (isinstance(slice.model, ClosedMechanism) and slice.model.tangent):
         return ""
-    from ptmcad.mechanism.fourbars import may_be_flat
+    from ptmcad.model.fourbars import may_be_flat
 
     return may_be_flat(slice.model.mechanism, slice.parameters)
 

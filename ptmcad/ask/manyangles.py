@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.poses import Poses
 from ptmcad.errors import LimitReached
-from ptmcad.mechanism import Mechanism, Model, System
+from ptmcad.model import Mechanism, Model, System
 from ptmcad.process.memory import loading
 from ptmcad.question.slice import Count
 

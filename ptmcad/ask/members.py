@@ -17,7 +17,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.classification import region_map
 from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, DegenerateSliceError, ExpressionError, InfiniteSolutionsError
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.options import DEFAULTS, Options
 from ptmcad.question.config import member_like
 from ptmcad.question.slice import Axis, Slice

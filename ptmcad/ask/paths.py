@@ -33,7 +33,7 @@ from ptmcad.ask.fields.track import Track, followed
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.landing import landing, line_of, merger
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import ClosedMechanism, Mechanism
+from ptmcad.model import ClosedMechanism, Mechanism
 from ptmcad.options import Progress
 from ptmcad.question.doubles import within_doubles
 from ptmcad.question.line import varying_axis

@@ -12,8 +12,8 @@ from enum import Enum
 
 from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
-from ptmcad.mechanism.elements import UnknownKind
+from ptmcad.model import ClosedMechanism, Mechanism, Model
+from ptmcad.model.elements import UnknownKind
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.syntax import did_you_mean
@@ -104,7 +104,7 @@ def named(model: Model, text: str, key: str) -> Quantity | None:
 def quantities(model: Model) -> dict[str, Quantity]:
     """All numbers of a pose that change with it, by name.
 
-    >>> from ptmcad.mechanism import ptm
+    >>> from ptmcad.model import ptm
     >>> [name for name in quantities(ptm()) if not name.startswith(("x:", "y:"))]
     ['th1', 'th2', 'energy', 'stiffness', 'force:A1A4', 'force:A2A3', 'force:A3A4', 'force:k1', 'force:k2', \
 'force:k3', 'length:A1A4', 'length:A2A3', 'length:A3A4', 'length:k1', 'length:k2', 'length:k3']

@@ -12,7 +12,7 @@ from ptmcad.answer.poses import DIGITS, MAX_DIGITS, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.manyangles import poses_by_search, work_by_msolve, work_for
 from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
-from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, ptm
+from ptmcad.model import ClosedMechanism, Mechanism, Model, ptm
 from ptmcad.process.memory import loading
 from ptmcad.question.config import point_from, point_from_mapping, units_of
 from ptmcad.question.slice import Slice, have_free_lengths

@@ -21,7 +21,7 @@ from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import system_from
 from ptmcad.exact.slicevariety import slice_variety
 from ptmcad.exact.stages import problem_of, projection_of, stacks_of, variety_of
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.question.config import point_from_mapping, slice_from
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Point, Slice, without_free_lengths

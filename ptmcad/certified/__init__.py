@@ -2,7 +2,7 @@
 
 Guarantee: nothing here imports from `ptmcad.algebra` or `ptmcad.exact.cad`, so that the two engines check each other.
 
-Data flows one way: `formula` (expressions and their derivatives) -> `ptm.statics` (the equations of the mechanism with
-springs of any free length) -> `tape` (straight-line programs) -> `arithmetic`, `evaluation` (intervals rounded outward,
-compiled) -> `contraction`, `search` (branch and prune) -> the curves and counts built on them.
+Data flows one way: the compiled system (`ptmcad.model.compile`) -> `plain.problem` (equations as sums of harmonics) ->
+`ptmcad.formulas` (straight-line programs, run on boxes) -> `contraction`, `search` (branch and prune) -> the curves and
+counts built on them.
 """

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 from flint import arb, arb_mat, ctx, fmpq
 
-from ptmcad.certified.arb_evaluation import EmptyMeet, run_arb
 from ptmcad.certified.system import System
+from ptmcad.formulas.balls import EmptyMeet, run_arb
 
 Box = tuple[arb, ...]
 """The balls of all variables, by number; those that are not searched are the same in all boxes."""

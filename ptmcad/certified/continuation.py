@@ -14,9 +14,9 @@ from fractions import Fraction
 
 from flint import arb, arb_mat, ctx, fmpq
 
-from ptmcad.certified.arb_evaluation import ball, run_arb
-from ptmcad.certified.formula import Formula
-from ptmcad.certified.tape import Tape, record
+from ptmcad.formulas.balls import ball, run_arb
+from ptmcad.formulas.graph import Formula
+from ptmcad.formulas.tape import Tape, record
 from ptmcad.text.balls import ball_of
 from ptmcad.text.enclosure import Enclosure
 

@@ -14,11 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ptmcad.certified.arithmetic import down, magnitude, multiply, reciprocal, up
-from ptmcad.certified.compiled import ZERO, compiled, inlined
-from ptmcad.certified.evaluation import Floats, Indices, run
 from ptmcad.certified.linear import Linear, contract_linear
 from ptmcad.certified.system import Arguments
+from ptmcad.formulas.compiled import ZERO, compiled, inlined
+from ptmcad.formulas.intervals import Floats, Indices, run
+from ptmcad.formulas.rounding import down, magnitude, multiply, reciprocal, up
 
 MIN_PIVOT = 1e-200
 SWEEPS = 10

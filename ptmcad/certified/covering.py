@@ -17,13 +17,13 @@ import numpy as np
 from ptmcad.certified.refinement import Enclosure
 from ptmcad.certified.search import Boxes
 from ptmcad.certified.strips import NONE, Strips, areas_of_pieces, numbers_of_pieces, pieces, strips
-from ptmcad.certified.tape import enclosing_floats
 from ptmcad.cover import from_boxes, union_area
 from ptmcad.cover.rectangles import Cover, Window
 from ptmcad.cover.rounding import cover_of
 from ptmcad.cover.simplification import combined
 from ptmcad.cover.subdivision import Integers, rectangle_array
-from ptmcad.mechanism.involutions import Involution
+from ptmcad.formulas.tape import enclosing_floats
+from ptmcad.model.involutions import Involution
 
 START_TILES = 8
 """Tiles of the window along each axis, with which a search begins."""

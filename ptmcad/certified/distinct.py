@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.certified.compiled import compiled
 from ptmcad.certified.search import Boxes
+from ptmcad.formulas.compiled import compiled
 
 FULL_TURN = 6.283185307179586
 _TURN_ERROR = 1e-14

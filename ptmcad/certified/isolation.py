@@ -12,11 +12,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ptmcad.certified.arithmetic import down, magnitude, mignitude, up
-from ptmcad.certified.compiled import compiled, inlined
 from ptmcad.certified.contraction import Workspace, linearise, precondition, row_coefficient, row_constant
-from ptmcad.certified.evaluation import Floats
 from ptmcad.certified.system import Arguments
+from ptmcad.formulas.compiled import compiled, inlined
+from ptmcad.formulas.intervals import Floats
+from ptmcad.formulas.rounding import down, magnitude, mignitude, up
 
 INFLATION = 1e-5
 """The first attempt widens a box by this much on each side; each further one by 1/8 of the last."""

@@ -18,16 +18,16 @@ from typing import NamedTuple
 from flint import arb, arb_mat, ctx, fmpq
 
 from ptmcad.answer.paths import PathPoint, Target
-from ptmcad.certified.arb_evaluation import run_arb
 from ptmcad.certified.arb_isolation import Box, newton, refined
 from ptmcad.certified.continuation import Branches, Place, branches, carried, located, over
-from ptmcad.certified.formula import Graph
 from ptmcad.certified.parameters import parameter_formulas
 from ptmcad.certified.plain.chart import determinant
 from ptmcad.certified.potential import potential
 from ptmcad.certified.system import System, system
-from ptmcad.certified.tape import Tape, record
-from ptmcad.mechanism import Mechanism
+from ptmcad.formulas.balls import run_arb
+from ptmcad.formulas.graph import Graph
+from ptmcad.formulas.tape import Tape, record
+from ptmcad.model import Mechanism
 from ptmcad.question.slice import Slice
 from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import Enclosure

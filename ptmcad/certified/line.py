@@ -14,7 +14,6 @@ from itertools import chain, pairwise
 import numpy as np
 from flint import ctx
 
-from ptmcad.certified.arb_evaluation import ball, lower, upper
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.plain.curves import curves
@@ -22,7 +21,8 @@ from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.points import PointCount
 from ptmcad.certified.search import Boxes, isolate
 from ptmcad.certified.system import System
-from ptmcad.certified.tape import enclosing_floats
+from ptmcad.formulas.balls import ball, lower, upper
+from ptmcad.formulas.tape import enclosing_floats
 from ptmcad.question.slice import Count, Slice
 
 MIN_BOX_WIDTH = 1e-8

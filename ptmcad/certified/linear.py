@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ptmcad.certified.affine import (
+from ptmcad.certified.system import Arguments
+from ptmcad.formulas.affine import (
     CENTER,
     ERROR,
     FIRST,
@@ -25,10 +26,9 @@ from ptmcad.certified.affine import (
     run_affine,
     set_frame,
 )
-from ptmcad.certified.arithmetic import down, up
-from ptmcad.certified.compiled import compiled
-from ptmcad.certified.evaluation import Floats, Indices
-from ptmcad.certified.system import Arguments
+from ptmcad.formulas.compiled import compiled
+from ptmcad.formulas.intervals import Floats, Indices
+from ptmcad.formulas.rounding import down, up
 
 MIN_GAIN = 0.5
 """A row is solved for an unknown if its slope is at least this part of its error."""

@@ -16,14 +16,14 @@ from time import perf_counter
 import numpy as np
 from numba.core.event import Event, Listener, install_listener
 
-from ptmcad.certified.compiled import FUNCTIONS, in_turn
 from ptmcad.certified.distinct import distinct
-from ptmcad.certified.evaluation import program, run
-from ptmcad.certified.formula import Graph
 from ptmcad.certified.search import isolate
 from ptmcad.certified.strips import areas_of_pieces, numbers_of_pieces, pieces, strips
 from ptmcad.certified.system import System, equations_alone, system
 from ptmcad.certified.tubes import tubes
+from ptmcad.formulas.compiled import FUNCTIONS, in_turn
+from ptmcad.formulas.graph import Graph
+from ptmcad.formulas.intervals import program, run
 from ptmcad.options import Options
 
 STAGE = "compiling the certified engine, once on this machine:"

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from ptmcad.certified.formula import Formula, Graph
+from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, Term
 

@@ -10,10 +10,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from ptmcad.certified.formula import Formula, Graph, length
-from ptmcad.mechanism import Mechanism
-from ptmcad.mechanism.energy import points_in, with_springs
-from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.formulas.graph import Formula, Graph, length
+from ptmcad.model import Mechanism
+from ptmcad.model.energy import points_in, with_springs
+from ptmcad.model.evaluate import evaluate
 
 
 @dataclass(frozen=True, slots=True)

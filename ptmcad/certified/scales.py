@@ -12,9 +12,9 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.certified.evaluation import program, run
-from ptmcad.certified.formula import Formula
-from ptmcad.certified.tape import record
+from ptmcad.formulas.graph import Formula
+from ptmcad.formulas.intervals import program, run
+from ptmcad.formulas.tape import record
 from ptmcad.question.slice import Slice
 
 SAMPLES = 200

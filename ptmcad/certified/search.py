@@ -15,13 +15,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ptmcad.certified.affine import LANES
-from ptmcad.certified.compiled import ZERO, compiled, inlined
 from ptmcad.certified.contraction import Workspace, contract, contract_curve, determined, workspace
-from ptmcad.certified.evaluation import Floats
 from ptmcad.certified.isolation import inflated
 from ptmcad.certified.linear import space_for
 from ptmcad.certified.system import Arguments
+from ptmcad.formulas.affine import LANES
+from ptmcad.formulas.compiled import ZERO, compiled, inlined
+from ptmcad.formulas.intervals import Floats
 
 Boxes = Floats
 """Shape (k, 2v): low ends of the v variables, then high ends."""

@@ -22,15 +22,15 @@ from flint import fmpq
 
 from ptmcad.certified.controls import controls
 from ptmcad.certified.covering import Lattice
-from ptmcad.certified.evaluation import Floats
 from ptmcad.certified.refinement import Enclosure
 from ptmcad.certified.search import Boxes, search_curve
 from ptmcad.certified.system import Arguments, equations_alone
-from ptmcad.certified.tape import enclosing_floats
 from ptmcad.certified.tubes import Tubes, tubes
 from ptmcad.cover import tubes as exact
 from ptmcad.cover.rectangles import Cover, Patch, Rectangle, Tube
 from ptmcad.cover.rounding import from_boxes
+from ptmcad.formulas.intervals import Floats
+from ptmcad.formulas.tape import enclosing_floats
 from ptmcad.text.flint_numbers import from_fraction
 
 FINER = 64

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from ptmcad.certified.formula import Formula, Operation
+from ptmcad.formulas.graph import Formula, Operation
 
 
 class Quotient(NamedTuple):

@@ -13,10 +13,10 @@ from ptmcad.answer.plan import half_step
 from ptmcad.answer.regionmap import PlanStep, System
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.plan import beforehand
-from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
-from ptmcad.mechanism import System as ParametricSystem
-from ptmcad.mechanism.involutions import Involution
-from ptmcad.mechanism.work import split_moments
+from ptmcad.model import ClosedMechanism, Mechanism, Model
+from ptmcad.model import System as ParametricSystem
+from ptmcad.model.involutions import Involution
+from ptmcad.model.work import split_moments
 from ptmcad.question.slice import Slice
 from ptmcad.text.tree import Chain, Negative, Number, Step, Tree, to_text
 

@@ -15,8 +15,6 @@ from math import ceil, inf, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.certified.arithmetic import down, multiply, reciprocal, up
-from ptmcad.certified.compiled import compiled, inlined
 from ptmcad.certified.contraction import (
     Workspace,
     linearise,
@@ -25,9 +23,11 @@ from ptmcad.certified.contraction import (
     row_constant,
     workspace,
 )
-from ptmcad.certified.evaluation import Floats
 from ptmcad.certified.search import Boxes
 from ptmcad.certified.system import Arguments
+from ptmcad.formulas.compiled import compiled, inlined
+from ptmcad.formulas.intervals import Floats
+from ptmcad.formulas.rounding import down, multiply, reciprocal, up
 
 Strips = NDArray[np.float64]
 """Shape (k, 11): left, bottom, right, top of a box's projection; v, the coordinate (0 or 1) that is enclosed when

@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.certified.evaluation import Indices, Program, program
-from ptmcad.certified.formula import Formula, Operation
 from ptmcad.certified.solved import Quotient
-from ptmcad.certified.tape import Tape, record
+from ptmcad.formulas.graph import Formula, Operation
+from ptmcad.formulas.intervals import Indices, Program, program
+from ptmcad.formulas.tape import Tape, record
 
 
 @dataclass(frozen=True, slots=True, eq=False)

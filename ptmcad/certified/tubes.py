@@ -15,13 +15,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ptmcad.certified.arithmetic import down, magnitude, multiply, up
-from ptmcad.certified.compiled import ZERO, compiled, inlined
 from ptmcad.certified.contraction import contract, precondition, workspace
-from ptmcad.certified.evaluation import Floats, Indices, run
 from ptmcad.certified.search import Boxes
-from ptmcad.certified.series import extend, series
 from ptmcad.certified.system import Arguments
+from ptmcad.formulas.compiled import ZERO, compiled, inlined
+from ptmcad.formulas.intervals import Floats, Indices, run
+from ptmcad.formulas.rounding import down, magnitude, multiply, up
+from ptmcad.formulas.taylor import extend, series
 
 NEWTON_STEPS = 12
 MAX_STEP = 1.0

@@ -23,7 +23,7 @@ from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.cli.stored import stored_in
 from ptmcad.errors import ConfigError
 from ptmcad.extras import require_ffmpeg
-from ptmcad.mechanism import Mechanism
+from ptmcad.model import Mechanism
 from ptmcad.options import Options
 from ptmcad.process.output import check_writable, write_files
 from ptmcad.question.config import file_name

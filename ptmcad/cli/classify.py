@@ -23,7 +23,7 @@ from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_in, question_of
 from ptmcad.cli.slices import Asked, Third, slice_options
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.mechanism import ptm
+from ptmcad.model import ptm
 from ptmcad.options import Options
 from ptmcad.process.handover import Topic, send, watched
 from ptmcad.process.output import check_writable, how_to_go_on, save_stopped, text_writer, write_files

@@ -8,7 +8,7 @@ import click
 
 from ptmcad.cli.values import mechanisms as known_mechanisms
 from ptmcad.errors import ConfigError, quoted
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.model import Mechanism, Model
 from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config.model import model_of
 from ptmcad.question.config.starters import NAMES, starter_text
@@ -46,7 +46,7 @@ def description(model: Model) -> str:
         window = f", usually from {parameter.window[0]} to {parameter.window[1]}" if parameter.window else ""
         lines.append(f"  {'' if n else 'parameters':<12}{name}{default}, {parameter.kind.noun}{window}")
     if isinstance(model, Mechanism):
-        from ptmcad.mechanism.joints import joints_of
+        from ptmcad.model.joints import joints_of
         from ptmcad.show.linedrawing import approximate_text
 
         lines += ["", *(f"      {line}" for line in approximate_text(model).splitlines())]

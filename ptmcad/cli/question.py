@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from textwrap import fill
 
 from ptmcad.errors import shown
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.question.config.record import Record
 from ptmcad.question.slice import Slice, merged
 from ptmcad.text.numerals import shortest_text

@@ -22,7 +22,7 @@ from ptmcad.cli.range_answers import Answer, Request, answer, is_enclosed, reque
 from ptmcad.cli.slices import range_option, set_option
 from ptmcad.cli.values import names, pair_of_names, point, quantity_names
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.mechanism import ptm
+from ptmcad.model import ptm
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import file_name, names_in_record, slice_from_options
 from ptmcad.question.examples import FIRST, SECOND

@@ -20,7 +20,7 @@ from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import set_option
 from ptmcad.cli.values import point
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Model, mechanism_in
+from ptmcad.model import Model, mechanism_in
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import file_name, point_from_options, units_of
 from ptmcad.question.examples import POINT

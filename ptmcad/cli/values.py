@@ -22,7 +22,7 @@ from ptmcad.question.shipped import shipped_records
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
-    from ptmcad.mechanism import Model
+    from ptmcad.model import Model
 
 Complete = Callable[[click.Context, click.Parameter, str], "list[CompletionItem]"]
 MAX_BYTES = 20_000_000
@@ -119,7 +119,7 @@ def point(context: click.Context, _parameter: click.Parameter, typed: str) -> li
 def quantity_names(context: click.Context, parameter: click.Parameter, typed: str) -> list[CompletionItem]:
     """What a pose of the record's model, or of the default one, can be asked for; barriers by ``--value`` alone."""
     from ptmcad.ask.quantities import quantities
-    from ptmcad.mechanism import ptm
+    from ptmcad.model import ptm
     from ptmcad.question.config import load
 
     try:
@@ -177,7 +177,7 @@ def _axes_of_result(path: Path) -> tuple[str, ...]:
 
 
 def _names_of_question(config: Path | None, mechanism: str | None) -> tuple[str, ...]:
-    from ptmcad.mechanism import ptm
+    from ptmcad.model import ptm
     from ptmcad.question.config import load
     from ptmcad.question.config.model import model_of
     from ptmcad.question.config.starters import NAMES, starter_text

@@ -15,7 +15,7 @@ from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.halves import before, below
 from ptmcad.exact.regions import members
 from ptmcad.exact.stages import Areas, Cells, SliceProblem, Variety, cell_at
-from ptmcad.mechanism.involutions import Involution
+from ptmcad.model.involutions import Involution
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import decimal, fraction_of
 

@@ -17,8 +17,8 @@ from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
 from ptmcad.exact.models.potential import elements_of
 from ptmcad.exact.models.system import ParametricSystem, at_point, polynomial_at
 from ptmcad.exact.witness import Point
-from ptmcad.mechanism import ClosedMechanism, Model
-from ptmcad.mechanism.fourbars import IN_TWO_WAYS, closed_by, four_bars
+from ptmcad.model import ClosedMechanism, Model
+from ptmcad.model.fourbars import IN_TWO_WAYS, closed_by, four_bars
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.flint_numbers import to_fraction
 

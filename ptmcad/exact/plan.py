@@ -11,7 +11,7 @@ from math import gcd
 
 from ptmcad.answer.plan import saving_step, zero_parameters, zero_terms
 from ptmcad.answer.regionmap import HARMLESS, Component, PlanStep
-from ptmcad.mechanism import Model, System
+from ptmcad.model import Model, System
 from ptmcad.question.savings import BY_NAME
 from ptmcad.question.slice import Slice
 

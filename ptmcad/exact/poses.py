@@ -28,9 +28,9 @@ from ptmcad.exact.models.potential import potential as potential_of
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, polynomial_at, specialised
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
 from ptmcad.exact.statics import PointModel, State, is_positive, pose_of, state_at
-from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, mechanism_in
-from ptmcad.mechanism.description import System
-from ptmcad.mechanism.evaluate import value_at
+from ptmcad.model import ClosedMechanism, Mechanism, Model, mechanism_in
+from ptmcad.model.description import System
+from ptmcad.model.evaluate import value_at
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.tree import to_text as text_of

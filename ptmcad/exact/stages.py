@@ -28,7 +28,7 @@ from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.exact.regions import Link, merge
 from ptmcad.exact.variety import Known, check_hypotheses, discriminant_variety
-from ptmcad.mechanism.involutions import Involution, involutions
+from ptmcad.model.involutions import Involution, involutions
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import short_text

@@ -12,7 +12,7 @@ from string import Template
 from typing import Any
 
 from ptmcad.explore.panel import Panel
-from ptmcad.mechanism import Mechanism
+from ptmcad.model import Mechanism
 from ptmcad.question.config.scalars import number_of
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.report.chart import CORE_WIDTH, RIM_WIDTH

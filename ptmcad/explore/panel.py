@@ -13,7 +13,7 @@ from fractions import Fraction
 
 from ptmcad.ask.members import Common, in_common
 from ptmcad.errors import ConfigError, ExpressionError, shown
-from ptmcad.mechanism import Kind, Model
+from ptmcad.model import Kind, Model
 from ptmcad.options import Options
 from ptmcad.question.config.binding import bound, member_name
 from ptmcad.question.config.family import family_of

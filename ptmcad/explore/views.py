@@ -13,8 +13,8 @@ from typing import Any
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.words import counted
-from ptmcad.mechanism import Mechanism, Model
-from ptmcad.mechanism.evaluate import value_at
+from ptmcad.model import Mechanism, Model
+from ptmcad.model.evaluate import value_at
 from ptmcad.show.posetable import kind_of
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import fill_of

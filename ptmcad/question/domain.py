@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ptmcad.errors import ExpressionError, GeometryError
-from ptmcad.mechanism import Kind, Model
-from ptmcad.mechanism.parts import Part, fault_of_number, parts
+from ptmcad.model import Kind, Model
+from ptmcad.model.parts import Part, fault_of_number, parts
 from ptmcad.question.positivity import Axes, Need, Undecided, Witness, decide, named, number, place
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, constant

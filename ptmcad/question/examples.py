@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ptmcad.mechanism import ptm
+from ptmcad.model import ptm
 
 FIRST, SECOND, THIRD, *_ = ptm().parameters
 FORCE, *_ = ptm().forces

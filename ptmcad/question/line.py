@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.errors import A_SLICE, ConfigError, ExpressionError, expect
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.question.slice import Axis, Slice, have_free_lengths, without_free_lengths
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.numerals import shortest_text

@@ -13,9 +13,9 @@ from fractions import Fraction
 from typing import Any, TypeVar
 
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.mechanism import Mechanism, Model, mechanism_in
-from ptmcad.mechanism.evaluate import evaluate
-from ptmcad.mechanism.work import split_moments
+from ptmcad.model import Mechanism, Model, mechanism_in
+from ptmcad.model.evaluate import evaluate
+from ptmcad.model.work import split_moments
 from ptmcad.text.expressions import Expression, constant
 
 NOTHING_ADMISSIBLE = "admissible asks that every spring is longer than its free length, and none has a free length here"

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, System
-from ptmcad.mechanism.moments import foreign
+from ptmcad.model import ClosedMechanism, Mechanism, Model, System
+from ptmcad.model.moments import foreign
 
 
 def no_drawing(model: Model) -> str:

@@ -1,6 +1,6 @@
 """A mechanism as a line drawing, in characters or as SVG: bars, springs, supports and the points' names.
 
-Torsion springs are drawn where their joints are known (`ptmcad.mechanism.joints`).
+Torsion springs are drawn where their joints are known (`ptmcad.model.joints`).
 
 Floating point throughout: a drawing decides nothing. The pose is any, not an equilibrium.
 """
@@ -13,9 +13,9 @@ from html import escape
 from math import cos, sin
 
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.mechanism import Mechanism, Support
-from ptmcad.mechanism.evaluate import evaluate
-from ptmcad.mechanism.joints import joints_of
+from ptmcad.model import Mechanism, Support
+from ptmcad.model.evaluate import evaluate
+from ptmcad.model.joints import joints_of
 from ptmcad.show.spiral import spirals
 from ptmcad.text.parsing import rational
 

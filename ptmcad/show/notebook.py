@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from ptmcad.answer.motion import Motion
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.mechanism import Mechanism
+from ptmcad.model import Mechanism
 from ptmcad.show.style import DEFAULT
 from ptmcad.show.table import NOT_COMPUTED, area_digits, areas_are_known, count_text, index_heading
 from ptmcad.text.enclosure import Enclosure

@@ -12,7 +12,7 @@ from itertools import pairwise
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.answer.words import counted, noun, of_what, untold
-from ptmcad.mechanism import Mechanism, Model, built_in, mechanism_in
+from ptmcad.model import Mechanism, Model, built_in, mechanism_in
 from ptmcad.question.slice import merged
 from ptmcad.show.units import energy_unit
 from ptmcad.text.enclosure import Enclosure, exact_text

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import atan2, cos, hypot, pi, sin
 
-from ptmcad.mechanism.joints import Joint
+from ptmcad.model.joints import Joint
 
 Place = tuple[float, float]
 

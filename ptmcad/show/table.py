@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.timings import COMPILATION
 from ptmcad.answer.words import index_words, noun
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.model import Mechanism, Model
 from ptmcad.question.slice import Count
 from ptmcad.show.units import area_unit
 from ptmcad.text.bounds import certified_digits, interval_text, percent

@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ptmcad.errors import ExpressionError
-from ptmcad.mechanism import Kind, Mechanism, Model, Parameter
-from ptmcad.mechanism.elements import UnknownKind
-from ptmcad.mechanism.evaluate import multiples
+from ptmcad.model import Kind, Mechanism, Model, Parameter
+from ptmcad.model.elements import UnknownKind
+from ptmcad.model.evaluate import multiples
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.parsing import parse

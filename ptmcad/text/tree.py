@@ -3,7 +3,7 @@
 Guarantee: `to_text` writes a tree that was read in a form that is read as the same tree.
 
 What a tree means is said by an `Interpretation`: rational functions of two axes in `ptmcad.text.parsing`, the elements
-of any ring in `ptmcad.mechanism.evaluate`.
+of any ring in `ptmcad.model.evaluate`.
 """
 
 from __future__ import annotations
@@ -107,24 +107,43 @@ class Interpretation(Protocol[Value]):
     def power(self, base: Value, power: Power, exponent: Value) -> Value: ...
 
 
-def interpret(tree: Tree, interpretation: Interpretation[Value]) -> Value:
-    """The value of a tree."""
+def interpret(
+    tree: Tree, interpretation: Interpretation[Value], known: dict[int, tuple[Tree, Value]] | None = None
+) -> Value:
+    """The value of a tree.
+
+    Parameters
+    ----------
+    known : keeps the values of parts, by their identity, for other trees in the same interpretation that share them.
+    """
+    if known is not None and id(tree) in known:
+        return known[id(tree)][1]
+    value = _interpreted(tree, interpretation, known)
+    if known is not None:
+        known[id(tree)] = tree, value  # with the tree, whose identity nothing else has while it is kept
+    return value
+
+
+def _interpreted(
+    tree: Tree, interpretation: Interpretation[Value], known: dict[int, tuple[Tree, Value]] | None
+) -> Value:
     match tree:
         case Name():
             return interpretation.name(tree)
         case Number():
             return interpretation.number(tree)
         case Chain(first, steps):
-            value = interpret(first, interpretation)
+            value = interpret(first, interpretation, known)
             for step in steps:
-                value = interpretation.joined(value, step, interpret(step.operand, interpretation))
+                value = interpretation.joined(value, step, interpret(step.operand, interpretation, known))
             return value
         case Power(base, exponent):
-            return interpretation.power(interpret(base, interpretation), tree, interpret(exponent, interpretation))
+            of_base, of_exponent = (interpret(part, interpretation, known) for part in (base, exponent))
+            return interpretation.power(of_base, tree, of_exponent)
         case Call():
             return interpretation.call(tree)
         case Negative(operand):
-            return interpretation.negative(interpret(operand, interpretation))
+            return interpretation.negative(interpret(operand, interpretation, known))
 
 
 def names_of(tree: Tree) -> tuple[str, ...]:

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
-from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, Model, System
+from ptmcad.model import ClosedMechanism, Kind, Mechanism, Model, System
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Tree, names_of
 from ptmcad.verification import loops, xjoints

@@ -14,7 +14,7 @@ from typing import Any
 
 from flint import Ordering, arb, fmpq_mpoly, fmpq_mpoly_ctx
 
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.derivation import Configuration, coordinates_of, formulas, has_index, parameters_of
 

@@ -22,7 +22,7 @@ from math import prod
 
 from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpq_mpoly_ctx
 
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.algebra import Monomial, NotFinite, algebra
 from ptmcad.verification.equations import Polynomials, equations_at

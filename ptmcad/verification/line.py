@@ -22,7 +22,7 @@ from flint import fmpq, fmpz, fmpz_poly
 
 from ptmcad.answer.intervals import End, Span, lower, upper
 from ptmcad.errors import PoleError
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.expressions import Expression
 from ptmcad.text.flint_numbers import from_fraction, to_fraction

@@ -1,6 +1,6 @@
 """What equilibria of a mechanism with closed loops satisfy, derived from its description by automatic differentiation.
 
-Guarantee: nothing is taken from `ptmcad.mechanism.loops`, which writes the same formulas as trees. With g the squared
+Guarantee: nothing is taken from `ptmcad.model.loops`, which writes the same formulas as trees. With g the squared
 distances that closing bars keep, less the squares of these, and U the energy, both with their derivatives up to the
 second order, an equilibrium is a zero of g and of E, the determinant of the gradients of g and U; it is stable where
 the determinant of the gradients of g and E is positive.
@@ -13,7 +13,7 @@ from typing import Any
 
 from flint import fmpq
 
-from ptmcad.mechanism import Mechanism
+from ptmcad.model import Mechanism
 from ptmcad.verification.inertia import determinant
 
 

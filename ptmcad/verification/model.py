@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz, fmpz_mpoly
 
 from ptmcad.answer.regionmap import System
-from ptmcad.mechanism import ClosedMechanism, Mechanism
+from ptmcad.model import ClosedMechanism, Mechanism
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import fraction_of
 from ptmcad.verification.claims import PLANE, Claims

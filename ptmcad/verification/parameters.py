@@ -16,7 +16,7 @@ from flint import fmpz_mpoly
 
 from ptmcad.answer.regionmap import Continuum, Kind
 from ptmcad.errors import ExpressionError
-from ptmcad.mechanism import Mechanism, Model, System
+from ptmcad.model import Mechanism, Model, System
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.parsing import parse

@@ -16,7 +16,7 @@ from math import gcd
 
 from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, Kind, PlanStep, RegionMap
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Model, System
+from ptmcad.model import Model, System
 from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.derivation import has_index
 from ptmcad.verification.report import Violation

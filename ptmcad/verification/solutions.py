@@ -21,7 +21,7 @@ from itertools import combinations, islice, product
 from flint import arb, arb_mat, ctx, fmpq_mpoly
 
 from ptmcad.answer.regionmap import Cell, Solution
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import approximate_text

@@ -34,7 +34,7 @@ from math import gcd, lcm, prod
 from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpz_poly
 
 from ptmcad.answer.regionmap import HARMLESS, Kind
-from ptmcad.mechanism import ClosedMechanism, System
+from ptmcad.model import ClosedMechanism, System
 from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import Claims, PlaneCurve

@@ -1,6 +1,6 @@
 """What equilibria of a mechanism with X-joints satisfy, derived from its description by complex numbers.
 
-Guarantee: nothing is taken from `ptmcad.mechanism.crossed`, which replaces cosines and sines by quotients. Here the
+Guarantee: nothing is taken from `ptmcad.model.crossed`, which replaces cosines and sines by quotients. Here the
 energy is a Laurent polynomial in the units w = exp(i psi) of the second bars, whose coefficients have values, gradients
 and Hessians. The crossed branch of a joint is w (L - b z) = L z - b with z = exp(i th): so w is e/D with
 e = (L z - b)(L - b/z) and D = (L - b z)(L - b/z), and 1/w is the conjugate of that.

@@ -12,7 +12,7 @@ import ptmcad
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask import manyangles
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 
 pytest.importorskip("numba")
 

@@ -15,7 +15,7 @@ import sympy
 import ptmcad
 from ptmcad.errors import ConfigError
 from ptmcad.exact.point_system import DegeneratePoint
-from ptmcad.mechanism import described
+from ptmcad.model import described
 
 PENDULUM: dict[str, Any] = {
     "name": "pendulum",

@@ -15,17 +15,17 @@ from support.pages import data_of
 
 import ptmcad
 from ptmcad.answer.regionmap import Status
-from ptmcad.certified.evaluation import program, run
-from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.bounds import ranges, scaled_together
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.points import plain_counter as point_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.trigonometric import Harmonics
 from ptmcad.certified.points import PointCount
-from ptmcad.certified.tape import record
 from ptmcad.cli import run as run_command
 from ptmcad.errors import ConfigError, DegenerateSliceError
+from ptmcad.formulas.graph import Graph
+from ptmcad.formulas.intervals import program, run
+from ptmcad.formulas.tape import record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 from ptmcad.show.report import page

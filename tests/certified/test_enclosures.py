@@ -17,17 +17,17 @@ from ptmcad.text.balls import ball_of
 
 pytest.importorskip("numba")
 
-from ptmcad.certified.arb_evaluation import run_arb
 from ptmcad.certified.contraction import contract, workspace
 from ptmcad.certified.curve import Curve
-from ptmcad.certified.evaluation import program, run
-from ptmcad.certified.formula import Formula
 from ptmcad.certified.plain.chart import Chart, chart
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.search import search_curve
-from ptmcad.certified.tape import Tape, record
+from ptmcad.formulas.balls import run_arb
+from ptmcad.formulas.graph import Formula
+from ptmcad.formulas.intervals import program, run
+from ptmcad.formulas.tape import Tape, record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 

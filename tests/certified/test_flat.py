@@ -23,7 +23,7 @@ from ptmcad.certified.plain.involution import mirrors
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plan import beforehand
 from ptmcad.certified.search import search_curve
-from ptmcad.mechanism.involutions import Involution
+from ptmcad.model.involutions import Involution
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 

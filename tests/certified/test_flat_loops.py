@@ -17,8 +17,8 @@ from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.errors import DegenerateSliceError, LimitReached
-from ptmcad.mechanism import ClosedMechanism
-from ptmcad.mechanism.fourbars import Fold, flat_everywhere, four_bars
+from ptmcad.model import ClosedMechanism
+from ptmcad.model.fourbars import Fold, flat_everywhere, four_bars
 from ptmcad.question.slice import Count
 from ptmcad.text.expressions import constant
 

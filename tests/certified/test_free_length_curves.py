@@ -12,14 +12,14 @@ import pytest
 from numpy.typing import NDArray
 
 from ptmcad.certified.curve import Curve
-from ptmcad.certified.evaluation import program, run
 from ptmcad.certified.plain.chart import chart
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.search import search_curve
-from ptmcad.certified.tape import record
-from ptmcad.mechanism import ptm
+from ptmcad.formulas.intervals import program, run
+from ptmcad.formulas.tape import record
+from ptmcad.model import ptm
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import axis, constant
 

@@ -24,12 +24,12 @@ from ptmcad.ask.fields.field import field_of, request_of
 from ptmcad.certified import engine
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.engine import certified_map
-from ptmcad.certified.formula import Formula
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain import curves as plain_curves
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.errors import ConfigError
+from ptmcad.formulas.graph import Formula
 from ptmcad.options import Options
 from ptmcad.question.slice import Count
 from ptmcad.show.report.tape import tape
@@ -428,7 +428,7 @@ def test_the_equations_are_the_energy_s_slope_along_the_loop() -> None:
 
 
 def value_of(counter: Any, equation: int, t: Numbers) -> float:
-    from ptmcad.certified.arb_evaluation import ball, run_arb
+    from ptmcad.formulas.balls import ball, run_arb
 
     box = [ball(Fraction(x), Fraction(x)) for x in (1.0, 1.5, *t)]
     values = run_arb(counter.equations.tape, box, 90)

@@ -12,12 +12,12 @@ from support.dense_search import dense_search
 from support.examples import examples
 
 import ptmcad
-from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.parameters import values_at
 from ptmcad.certified.peaks import peaks
 from ptmcad.certified.plain.points import BranchCounter, plain_counter
 from ptmcad.certified.points import PointCount
-from ptmcad.mechanism import ptm
+from ptmcad.formulas.balls import ball, run_arb
+from ptmcad.model import ptm
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import axis
 

@@ -25,7 +25,7 @@ from ptmcad.certified.plain.opening import QUARTER
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.search import search_curve
-from ptmcad.mechanism.involutions import Involution
+from ptmcad.model.involutions import Involution
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 

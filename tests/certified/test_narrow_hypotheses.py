@@ -26,7 +26,7 @@ from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.points import PointCount
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.mechanism import ptm
+from ptmcad.model import ptm
 from ptmcad.options import Options
 from ptmcad.question.slice import Count, Slice
 

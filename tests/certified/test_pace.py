@@ -18,10 +18,10 @@ from numba.core.event import install_listener
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified import engine, loading, refinement, slanted
-from ptmcad.certified.compiled import FUNCTIONS
 from ptmcad.certified.headway import PARTS, Headway
 from ptmcad.certified.pace import ALLOWANCE, MAP_TIME_SHARE, MIN_RESERVE, SAFETY, Pace
 from ptmcad.errors import LimitReached
+from ptmcad.formulas.compiled import FUNCTIONS
 from ptmcad.options import Options
 
 

@@ -20,7 +20,7 @@ from ptmcad.certified.engine import certified_map
 from ptmcad.certified.plain import problem as plain_problem
 from ptmcad.certified.plain.poses import plain_poses
 from ptmcad.certified.plain.problem import problem_of
-from ptmcad.mechanism import Mechanism
+from ptmcad.model import Mechanism
 from ptmcad.options import Options
 from ptmcad.verification import verify
 from ptmcad.verification.certified.waves import form_of

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from test_plain_formulas import PLAIN_PTM
 
 import ptmcad
-from ptmcad.certified.evaluation import program, run
-from ptmcad.certified.formula import Formula, Operation
 from ptmcad.certified.plain.chart import Chart, chart, principal_minors
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import Problem, problem_of
 from ptmcad.certified.plain.scaling import common_factor, common_factors
-from ptmcad.certified.tape import record
+from ptmcad.formulas.graph import Formula, Operation
+from ptmcad.formulas.intervals import program, run
+from ptmcad.formulas.tape import record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import axis, constant

@@ -20,8 +20,6 @@ pytest.importorskip("numba")
 
 import ptmcad
 from ptmcad.certified import line
-from ptmcad.certified.arb_evaluation import run_arb
-from ptmcad.certified.formula import Formula
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain.bounds import ranges
 from ptmcad.certified.plain.chart import chart
@@ -32,8 +30,10 @@ from ptmcad.certified.plain.involution import halving, mirrors
 from ptmcad.certified.plain.opening import Coordinates, coordinates, opening, stiffness
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.plain.problem import problem_of
-from ptmcad.certified.tape import record
-from ptmcad.mechanism.involutions import Involution
+from ptmcad.formulas.balls import run_arb
+from ptmcad.formulas.graph import Formula
+from ptmcad.formulas.tape import record
+from ptmcad.model.involutions import Involution
 from ptmcad.question.config import load, slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 

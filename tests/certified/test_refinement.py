@@ -16,9 +16,9 @@ pytest.importorskip("numba")
 import ptmcad
 from ptmcad.certified import refinement
 from ptmcad.certified.curve import Curve
-from ptmcad.certified.formula import Graph
 from ptmcad.certified.refinement import Enclosure, begin, refine
 from ptmcad.certified.system import system
+from ptmcad.formulas.graph import Graph
 
 ANGLES = np.linspace(0.1, 3.1, 97)
 ON_THE_CIRCLE = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)

@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 pytest.importorskip("numba")
 
 from ptmcad.certified.contraction import contract, workspace
-from ptmcad.certified.evaluation import program, run
-from ptmcad.certified.formula import Formula, Graph
 from ptmcad.certified.line import on_line
 from ptmcad.certified.plain.chart import Chart, chart
 from ptmcad.certified.plain.curves import curves
@@ -21,7 +19,9 @@ from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.search import search_curve
 from ptmcad.certified.solved import quotients
 from ptmcad.certified.system import System, system
-from ptmcad.certified.tape import record
+from ptmcad.formulas.graph import Formula, Graph
+from ptmcad.formulas.intervals import program, run
+from ptmcad.formulas.tape import record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 

@@ -14,13 +14,13 @@ pytest.importorskip("numba")
 from ptmcad.certified import specks
 from ptmcad.certified.covering import Lattice, box_rectangles, thinning
 from ptmcad.certified.curve import Curve
-from ptmcad.certified.formula import Graph
 from ptmcad.certified.refinement import Enclosure, begin, refine
 from ptmcad.certified.search import Boxes
 from ptmcad.certified.specks import without_specks
 from ptmcad.certified.system import system
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
+from ptmcad.formulas.graph import Graph
 
 LATTICE = Lattice(((Fraction(-2), Fraction(2)), (Fraction(-2), Fraction(2))), 2**20)
 AREA = 16 * 4.0**-9

@@ -15,9 +15,9 @@ from support.few import few
 pytest.importorskip("numba")
 
 from ptmcad.certified.covering import Lattice, Thinning
-from ptmcad.certified.formula import Graph
 from ptmcad.certified.strips import NONE, areas_of_pieces, numbers_of_pieces, pieces, strips
 from ptmcad.certified.system import System, system
+from ptmcad.formulas.graph import Graph
 
 COEFFICIENTS = st.fractions(-3, 3, max_denominator=8)
 

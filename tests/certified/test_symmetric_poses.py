@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import ptmcad
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.text.enclosure import Enclosure
 
 PENDULUM: dict[str, Any] = {

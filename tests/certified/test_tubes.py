@@ -11,12 +11,12 @@ from flint import arb, arb_series, ctx
 
 pytest.importorskip("numba")
 
-from ptmcad.certified.evaluation import program
-from ptmcad.certified.formula import Formula, Graph, direction, length
-from ptmcad.certified.series import extend, series
 from ptmcad.certified.system import equations_alone, system
-from ptmcad.certified.tape import record
 from ptmcad.certified.tubes import Tubes, tubes
+from ptmcad.formulas.graph import Formula, Graph, direction, length
+from ptmcad.formulas.intervals import program
+from ptmcad.formulas.tape import record
+from ptmcad.formulas.taylor import extend, series
 
 ORDER = 6
 

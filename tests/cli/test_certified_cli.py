@@ -53,9 +53,9 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
             raise LimitReached("the time limit was reached", partial=certified_map(slice.count, Status.PARTIAL))
         return replace(certified_map(slice.count), slice=slice, timings={"curves": 1.0})
 
-    compiled, module = ModuleType("ptmcad.certified.compiled"), ModuleType("ptmcad.certified.engine")
+    compiled, module = ModuleType("ptmcad.formulas.compiled"), ModuleType("ptmcad.certified.engine")
     module.certified_map = stand_in  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "ptmcad.certified.compiled", compiled)
+    monkeypatch.setitem(sys.modules, "ptmcad.formulas.compiled", compiled)
     monkeypatch.setitem(sys.modules, "ptmcad.certified.engine", module)
     loading = ModuleType("ptmcad.certified.loading")
     loading.load = lambda progress, options: 0.0  # type: ignore[attr-defined]
@@ -376,7 +376,7 @@ def _resumed_and_stopped(earlier: RegionMap, found: RegionMap) -> None:
     loading.load = lambda progress, options: 0.0  # type: ignore[attr-defined]
     module.certified_map = stand_in  # type: ignore[attr-defined]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(sys.modules, "ptmcad.certified.compiled", ModuleType("ptmcad.certified.compiled"))
+        patch.setitem(sys.modules, "ptmcad.formulas.compiled", ModuleType("ptmcad.formulas.compiled"))
         patch.setitem(sys.modules, "ptmcad.certified.loading", loading)
         patch.setitem(sys.modules, "ptmcad.certified.engine", module)
         ptmcad.classify(earlier.slice, resume=earlier, partial=handed.append)

@@ -11,7 +11,7 @@ import pytest
 from ptmcad import RegionMap, classify, load, slice_from_mapping
 from ptmcad.cli import run
 from ptmcad.cli.mechanisms import starter_model
-from ptmcad.mechanism import Mechanism, ptm
+from ptmcad.model import Mechanism, ptm
 from ptmcad.question.config.starters import NAMES
 
 # known by construction, see `pendulum` below; of a cubic 4 a^3 = 27 b^2: 2 * integral of sqrt(4 a^3/27) from 0 to 2

@@ -24,7 +24,7 @@ from ptmcad.exact.ranges.line import system_on
 from ptmcad.exact.ranges.matrices import plus, times
 from ptmcad.exact.ranges.mirror import Mirror, mirror_of
 from ptmcad.exact.ranges.tracking import BITS, Reached, at_value, bridge, enclose, follow
-from ptmcad.mechanism import ptm
+from ptmcad.model import ptm
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.document import document, part

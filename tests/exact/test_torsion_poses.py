@@ -16,8 +16,8 @@ from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import Status
 from ptmcad.certified.plain.poses import plain_poses
 from ptmcad.exact.poses import exact_poses
-from ptmcad.mechanism import Mechanism, described
-from ptmcad.mechanism.evaluate import multiples
+from ptmcad.model import Mechanism, described
+from ptmcad.model.evaluate import multiples
 from ptmcad.text.balls import ball_of
 
 SCHEMA = json.loads((Path(__file__).resolve().parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8"))

@@ -11,7 +11,7 @@ import pytest
 
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import ptm
+from ptmcad.model import ptm
 from ptmcad.question.config import load, point_from_mapping, slice_from_mapping, slice_from_options
 from ptmcad.question.slice import Count
 from ptmcad.text.expressions import axis, constant

@@ -18,7 +18,7 @@ from ptmcad.certified.intervals import certified_intervals
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError, GeometryError, PtmcadError
 from ptmcad.exact.engine import exact_map
-from ptmcad.mechanism import Kind
+from ptmcad.model import Kind
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.domain import prove, prove_slice, unproved
 from ptmcad.question.positivity import READING_WORK, decide

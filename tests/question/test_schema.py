@@ -18,8 +18,8 @@ from support.shipped_records import EXACT
 
 from ptmcad import RegionMap, classify, load, slice_variety
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.mechanism import ptm
-from ptmcad.mechanism.reading import MAX_BODIES, MAX_UNKNOWNS
+from ptmcad.model import ptm
+from ptmcad.model.reading import MAX_BODIES, MAX_UNKNOWNS
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.config.schema import record_schema
 from ptmcad.question.config.starters import NAMES, starter_mechanism, starter_text

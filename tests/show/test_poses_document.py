@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from support.document_keys import changed_keys
 
 from ptmcad import AlgebraicNumber, Enclosure, Poses, solve
-from ptmcad.mechanism import ptm
+from ptmcad.model import ptm
 from ptmcad.show.document.poses import FORMAT
 from ptmcad.show.posetable import WIDTH
 from ptmcad.text.enclosure import exact_text

@@ -10,7 +10,7 @@ import pytest
 
 import ptmcad
 from ptmcad.answer.poses import Poses
-from ptmcad.mechanism import mechanism_in
+from ptmcad.model import mechanism_in
 from ptmcad.show.document.poses import read_poses
 
 MECHANISMS = Path(__file__).resolve().parents[2] / "configs" / "mechanisms"

@@ -22,7 +22,7 @@ from support.maps import shipped
 
 import ptmcad
 from ptmcad.answer.regionmap import Cell, Component, Kind, Region, RegionMap, Stack, Status, System, Wall
-from ptmcad.mechanism import known_of
+from ptmcad.model import known_of
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.show.render import draw
 from ptmcad.show.render.axes import heading_of, scale_of, symbol

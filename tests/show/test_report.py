@@ -26,7 +26,7 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Solution, Status
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import known_of
+from ptmcad.model import known_of
 from ptmcad.question.config import load, slice_from_mapping, slice_from_options
 from ptmcad.question.slice import Point
 from ptmcad.show.render.axes import scale_of

@@ -7,7 +7,7 @@ import pytest
 import ptmcad
 from ptmcad.ask.checking import _complex
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Mechanism, ptm
+from ptmcad.model import Mechanism, ptm
 from ptmcad.show.ranges.table import _heights
 from ptmcad.show.table import table
 

@@ -6,8 +6,8 @@ import numpy as np
 from mpmath import diff, mpf
 from support.mechanisms_energy import energy
 
-from ptmcad.mechanism import ptm
-from ptmcad.mechanism.ptm import RECORD
+from ptmcad.model import ptm
+from ptmcad.model.ptm import RECORD
 from ptmcad.studies import byhand
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from ptmcad.mechanism import Model, known_of
+from ptmcad.model import Model, known_of
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.text.expressions import constant
 from ptmcad.verification.certified.counted import Counted

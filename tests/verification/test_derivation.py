@@ -7,7 +7,7 @@ from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from support.jets import circle
 
 from ptmcad.exact.models.potential import potential as energy_of_the_engine
-from ptmcad.mechanism import Mechanism, described, ptm
+from ptmcad.model import Mechanism, described, ptm
 from ptmcad.verification.derivation import Configuration, potential
 from ptmcad.verification.equations import equations_of
 

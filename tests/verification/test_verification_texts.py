@@ -14,7 +14,7 @@ from support.examples import examples
 
 from ptmcad.answer.regionmap import RegionMap, Status, System
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import ptm
+from ptmcad.model import ptm
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.report.reproduction import reproduction
@@ -193,7 +193,7 @@ def test_an_undecided_sign_of_what_is_only_named_is_refused() -> None:
 def energy() -> str:
     pytest.importorskip("numba")
     from ptmcad.certified.statement import system_text
-    from ptmcad.mechanism import ptm
+    from ptmcad.model import ptm
 
     return system_text(ptm()).potential
 

@@ -26,7 +26,7 @@ from support.records import TRUSS
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Solution, Status
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.options import Options
 from ptmcad.question.slice import Count, Point
 from ptmcad.text.balls import ball_of

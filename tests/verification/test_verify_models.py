@@ -16,7 +16,7 @@ from support.random_models import random_mechanism, random_system
 
 import ptmcad
 from ptmcad.answer.regionmap import HARMLESS, Cell, Component, Kind, RegionMap
-from ptmcad.mechanism import described
+from ptmcad.model import described
 from ptmcad.question.slice import Count
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import Claims

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from ptmcad.ask.fields.jets import Floats, Jet, cos_sin, unknowns
-from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, System
-from ptmcad.mechanism.energy import points_in, with_springs
-from ptmcad.mechanism.evaluate import evaluate
-from ptmcad.mechanism.work import split_moments
+from ptmcad.model import ClosedMechanism, Mechanism, Model, System
+from ptmcad.model.energy import points_in, with_springs
+from ptmcad.model.evaluate import evaluate
+from ptmcad.model.work import split_moments
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,9 +24,9 @@ from ptmcad.ask.fields.quantities import OPTION, Valued, quantity_of
 from ptmcad.ask.pixels import grid as grid_of
 from ptmcad.ask.solving import poses_at
 from ptmcad.errors import ConfigError, expect
-from ptmcad.mechanism import Mechanism, Model
-from ptmcad.mechanism.moments import acting
-from ptmcad.mechanism.work import split_moments
+from ptmcad.model import Mechanism, Model
+from ptmcad.model.moments import acting
+from ptmcad.model.work import split_moments
 from ptmcad.options import Progress
 from ptmcad.question.slice import Slice
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ptmcad.certified.formula import Formula, Graph, direction
+from ptmcad.formulas.graph import Formula, Graph, direction
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,15 +13,15 @@ from math import gcd, inf, isfinite
 
 import numpy as np
 
-from ptmcad.certified.evaluation import Floats, program, run
-from ptmcad.certified.formula import Formula, Graph, Operation, length
 from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.chart import chart
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import FIRST, Problem
 from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial
-from ptmcad.certified.tape import Tape, enclosing_floats, record
 from ptmcad.errors import ConfigError
+from ptmcad.formulas.graph import Formula, Graph, Operation, length
+from ptmcad.formulas.intervals import Floats, program, run
+from ptmcad.formulas.tape import Tape, enclosing_floats, record
 from ptmcad.question.slice import Axis
 
 TURN = (-3.0, -3.0 + 6.2832)

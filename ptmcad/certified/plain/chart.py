@@ -19,7 +19,6 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
 
-from ptmcad.certified.formula import Formula, Graph, length
 from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Unknown
 from ptmcad.certified.plain.geometry import Geometry
@@ -27,6 +26,7 @@ from ptmcad.certified.plain.minors import Bent, bent, determinant
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.plain.springs import Matrix, Spring
 from ptmcad.certified.plain.turning import Turn
+from ptmcad.formulas.graph import Formula, Graph, length
 
 
 class Turned(NamedTuple):

@@ -14,7 +14,6 @@ from fractions import Fraction
 from flint import arb, ctx, fmpq_mat, fmpz_mat
 
 from ptmcad.answer.regionmap import Solution
-from ptmcad.certified.arb_evaluation import ball
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.distinct import FULL_TURN
 from ptmcad.certified.plain.ends import Vector
@@ -22,6 +21,7 @@ from ptmcad.certified.plain.problem import FIRST, Condition, Problem
 from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial
 from ptmcad.certified.points import PRECISIONS, PointCount, radius_between
 from ptmcad.certified.system import System
+from ptmcad.formulas.balls import ball
 from ptmcad.text.balls import ball_of, exact
 from ptmcad.text.flint_numbers import to_fraction
 

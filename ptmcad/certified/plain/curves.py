@@ -14,7 +14,6 @@ from fractions import Fraction
 import numpy as np
 
 from ptmcad.certified.curve import Curve
-from ptmcad.certified.formula import Formula, Graph
 from ptmcad.certified.plain.angle import Angle
 from ptmcad.certified.plain.bounds import TURN, Range, ranges
 from ptmcad.certified.plain.chart import Chart, chart, determinant, principal_minors
@@ -27,7 +26,8 @@ from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.scales import TURNING_WEIGHT, short_lengths, variable_weights
 from ptmcad.certified.solved import Quotient, quotients
 from ptmcad.certified.system import system
-from ptmcad.mechanism.involutions import Involution
+from ptmcad.formulas.graph import Formula, Graph
+from ptmcad.model.involutions import Involution
 from ptmcad.question.slice import Count, Slice
 
 SHORT_RATIO = 4

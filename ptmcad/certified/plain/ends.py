@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
-from ptmcad.mechanism import Mechanism, ptm
-from ptmcad.mechanism.elements import Spring
-from ptmcad.mechanism.energy import points_in
+from ptmcad.model import Mechanism, ptm
+from ptmcad.model.elements import Spring
+from ptmcad.model.energy import points_in
 
 Vector = tuple[TrigonometricPolynomial, TrigonometricPolynomial]
 

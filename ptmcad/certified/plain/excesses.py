@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 from ptmcad.certified.plain.ends import springs_of
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
-from ptmcad.mechanism import Mechanism
-from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.model import Mechanism
+from ptmcad.model.evaluate import evaluate
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,14 +11,14 @@ from fractions import Fraction
 from itertools import product
 from typing import NamedTuple
 
-from ptmcad.certified.formula import Formula, Graph
 from ptmcad.certified.plain.angle import Angle, Unknown
 from ptmcad.certified.plain.bounds import TURN, Range
 from ptmcad.certified.plain.involution import square_of
 from ptmcad.certified.plain.problem import Problem
 from ptmcad.certified.plain.springs import Matrix
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
-from ptmcad.mechanism.involutions import Involution
+from ptmcad.formulas.graph import Formula, Graph
+from ptmcad.model.involutions import Involution
 
 
 class Place(NamedTuple):

@@ -1,6 +1,6 @@
 """The involutions by which the certified engine searches less: some keep each point of a slice, one moves its window.
 
-Guarantee: that of `ptmcad.mechanism.involutions`; a problem's springs, too, are kept up to their order.
+Guarantee: that of `ptmcad.model.involutions`; a problem's springs, too, are kept up to their order.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from collections import Counter
 
 from ptmcad.certified.plain.problem import Problem, problem_of
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
-from ptmcad.mechanism.involutions import Involution, involutions
+from ptmcad.model.involutions import Involution, involutions
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression
 

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from itertools import combinations
 from typing import NamedTuple
 
-from ptmcad.certified.formula import Formula
 from ptmcad.certified.plain.springs import Matrix, Spring
+from ptmcad.formulas.graph import Formula
 
 
 class Bent(NamedTuple):

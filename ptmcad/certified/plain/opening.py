@@ -16,7 +16,6 @@ from fractions import Fraction
 from math import comb
 from typing import NamedTuple
 
-from ptmcad.certified.formula import Formula, Graph, inverse_length, length
 from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Angle, Unknown
 from ptmcad.certified.plain.bounds import Range
@@ -25,6 +24,7 @@ from ptmcad.certified.plain.involution import image_of
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial
 from ptmcad.certified.solved import with_formula
+from ptmcad.formulas.graph import Formula, Graph, inverse_length, length
 from ptmcad.text.expressions import Expression, constant
 
 QUARTER = (0.0, 1.5708)

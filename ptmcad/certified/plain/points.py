@@ -16,11 +16,8 @@ import numpy as np
 from flint import arb_mat, ctx
 
 from ptmcad.answer.regionmap import Solution
-from ptmcad.certified.arb_evaluation import ball, lower, run_arb, upper
 from ptmcad.certified.arb_isolation import Box, Isolated, isolate_arb, refined
 from ptmcad.certified.distinct import FULL_TURN, distinct
-from ptmcad.certified.evaluation import Indices, program, run
-from ptmcad.certified.formula import Formula
 from ptmcad.certified.parameters import values_at
 from ptmcad.certified.peaks import peaks
 from ptmcad.certified.plain.bounds import Range, ranges
@@ -33,9 +30,12 @@ from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.points import BUDGET, MIN_BOX_WIDTHS, PRECISIONS, QUICK_BUDGET, PointCount, boxed
 from ptmcad.certified.search import Boxes, Found, isolate
 from ptmcad.certified.system import Arguments, System, system
-from ptmcad.certified.tape import Tape, enclosing_floats, record
 from ptmcad.errors import DegenerateSliceError
-from ptmcad.mechanism import ptm
+from ptmcad.formulas.balls import ball, lower, run_arb, upper
+from ptmcad.formulas.graph import Formula
+from ptmcad.formulas.intervals import Indices, program, run
+from ptmcad.formulas.tape import Tape, enclosing_floats, record
+from ptmcad.model import ptm
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import text_of
 

@@ -18,9 +18,7 @@ from flint import arb, arb_mat, ctx
 
 from ptmcad.answer.poses import Pose, Poses, Spring, TorsionSpring
 from ptmcad.answer.regionmap import Solution, Status
-from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box
-from ptmcad.certified.formula import Graph
 from ptmcad.certified.peaks import peaks
 from ptmcad.certified.plain.covering import located
 from ptmcad.certified.plain.points import BranchCounter, PlainCounter, plain_counter
@@ -28,10 +26,12 @@ from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS_AT_POINTS
 from ptmcad.certified.plain.rational import Point, exact_eigenvalues, exact_values, rational_point
 from ptmcad.certified.plain.spectrum import ordered_eigenvalues
 from ptmcad.certified.potential import potential
-from ptmcad.certified.tape import Tape, record
-from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, ptm
-from ptmcad.mechanism.evaluate import value_at
-from ptmcad.mechanism.fourbars import flat_everywhere
+from ptmcad.formulas.balls import ball, run_arb
+from ptmcad.formulas.graph import Graph
+from ptmcad.formulas.tape import Tape, record
+from ptmcad.model import ClosedMechanism, Mechanism, Model, ptm
+from ptmcad.model.evaluate import value_at
+from ptmcad.model.fourbars import flat_everywhere
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.balls import bounded, enclosed

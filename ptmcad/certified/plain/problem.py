@@ -14,18 +14,18 @@ from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from itertools import combinations
 
-from ptmcad.certified.formula import Formula, Graph, length
 from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.ends import Vector, springs_of
 from ptmcad.certified.plain.excesses import Excess, excesses
 from ptmcad.certified.plain.parallel import shares
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError
-from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, System
-from ptmcad.mechanism.energy import points_in, with_springs
-from ptmcad.mechanism.evaluate import evaluate
-from ptmcad.mechanism.fourbars import closed_by, flat_everywhere
-from ptmcad.mechanism.work import split_moments
+from ptmcad.formulas.graph import Formula, Graph, length
+from ptmcad.model import ClosedMechanism, Kind, Mechanism, System
+from ptmcad.model.energy import points_in, with_springs
+from ptmcad.model.evaluate import evaluate
+from ptmcad.model.fourbars import closed_by, flat_everywhere
+from ptmcad.model.work import split_moments
 from ptmcad.question.domain import fault, unproved
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import Expression, constant

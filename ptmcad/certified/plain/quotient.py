@@ -21,13 +21,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from ptmcad.certified.formula import Formula
 from ptmcad.certified.plain.bounds import Range
 from ptmcad.certified.plain.chart import Chart, chart, determinant, principal_minors
 from ptmcad.certified.plain.frame import Frame
 from ptmcad.certified.plain.geometry import Geometry
 from ptmcad.certified.plain.opening import Coordinates, Opening, coordinates, opening, stiffness
 from ptmcad.certified.plain.springs import Matrix
+from ptmcad.formulas.graph import Formula
 
 NEAR = Fraction(1, 1024)
 """The distance from their images below which configurations are searched about the fixed points."""

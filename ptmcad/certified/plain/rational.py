@@ -13,11 +13,11 @@ from math import isqrt
 
 from flint import arb, ctx
 
-from ptmcad.certified.formula import Operation
 from ptmcad.certified.plain.problem import FIRST
-from ptmcad.certified.tape import Tape
-from ptmcad.mechanism import Mechanism
-from ptmcad.mechanism.proofs import energy_is_kept
+from ptmcad.formulas.graph import Operation
+from ptmcad.formulas.tape import Tape
+from ptmcad.model import Mechanism
+from ptmcad.model.proofs import energy_is_kept
 from ptmcad.text.balls import ball_of, exact
 
 Point = dict[int, tuple[Fraction, ...]]

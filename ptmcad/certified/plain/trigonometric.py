@@ -16,10 +16,10 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.certified.formula import Formula, Graph
 from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Unknown
 from ptmcad.errors import ExpressionError
+from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.text.expressions import Expression, constant
 
 Multi = tuple[int, ...]
@@ -166,7 +166,7 @@ def waves(multiples: Multi) -> tuple[TrigonometricPolynomial, TrigonometricPolyn
 
 @dataclass(frozen=True, slots=True)
 class Harmonics:
-    """The ring of these polynomials, for `ptmcad.mechanism.evaluate`.
+    """The ring of these polynomials, for `ptmcad.model.evaluate`.
 
     Attributes
     ----------

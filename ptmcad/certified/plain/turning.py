@@ -17,13 +17,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
-from ptmcad.certified.formula import Formula
 from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Unknown
 from ptmcad.certified.plain.problem import Cone, Problem
 from ptmcad.certified.plain.scaling import common_factor, divided, largest_factor, over
 from ptmcad.certified.plain.springs import Pair, Spring
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
+from ptmcad.formulas.graph import Formula
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ptmcad.exact.models.potential import system_from
 from ptmcad.exact.models.system import ParametricSystem
-from ptmcad.mechanism import mechanism_of
+from ptmcad.model import mechanism_of
 
 __all__ = ["ParametricSystem", "system_from", "system_of"]
 

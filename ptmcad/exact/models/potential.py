@@ -16,9 +16,9 @@ from flint import fmpq
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
 from ptmcad.exact.models.system import ParametricSystem, from_equations, from_potential
 from ptmcad.exact.models.turns import with_turns
-from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, System
-from ptmcad.mechanism.evaluate import evaluate
-from ptmcad.mechanism.work import split_moments
+from ptmcad.model import ClosedMechanism, Mechanism, Model, System
+from ptmcad.model.evaluate import evaluate
+from ptmcad.model.work import split_moments
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.tree import Tree
 

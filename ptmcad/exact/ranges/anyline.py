@@ -44,7 +44,7 @@ from ptmcad.exact.point_system import DegeneratePoint, point_system
 from ptmcad.exact.ranges.line import END_WIDTH, intervals
 from ptmcad.exact.statics import is_positive
 from ptmcad.exact.variety import algebra_of, lifted
-from ptmcad.mechanism import mechanism_in
+from ptmcad.model import mechanism_in
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber

@@ -11,7 +11,7 @@ from flint import arb
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.exact.models.system import ParametricSystem, Terms, terms_of
 from ptmcad.exact.ranges.matrices import Matrix, Vector, plus, scaled, times
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import Expression, Term
 

@@ -26,7 +26,7 @@ from ptmcad.exact.ranges.line import system_on
 from ptmcad.exact.ranges.matrices import Vector
 from ptmcad.exact.ranges.mirror import Mirror, mirror_of
 from ptmcad.exact.ranges.tracking import BITS, Reached, at_value, bridge
-from ptmcad.mechanism.involutions import involutions
+from ptmcad.model.involutions import involutions
 from ptmcad.question.line import Line
 from ptmcad.text.flint_numbers import from_fraction
 

@@ -37,8 +37,8 @@ from ptmcad.exact.ranges.tracking import (
     bridge,
     follow,
 )
-from ptmcad.mechanism import Mechanism
-from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.model import Mechanism
+from ptmcad.model.evaluate import evaluate
 from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Slice, moved
 from ptmcad.text.balls import ball_of, enclosure_of

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, Faults, expect
-from ptmcad.mechanism import Kind, Parameter, ptm
+from ptmcad.model import Kind, Parameter, ptm
 from ptmcad.question.config.binding import released_names, settled
 from ptmcad.question.config.family import Family, checked_family, family_of, fault_of_member, member_like
 from ptmcad.question.config.model import named_model

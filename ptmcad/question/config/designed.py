@@ -11,7 +11,7 @@ from enum import Enum
 from fractions import Fraction
 
 from ptmcad.errors import ExpressionError
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.family import Family, family_of
 from ptmcad.question.config.record import Record, Window

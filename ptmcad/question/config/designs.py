@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.mechanism import Mechanism
-from ptmcad.mechanism.reading import NUMBER, two
+from ptmcad.model import Mechanism
+from ptmcad.model.reading import NUMBER, two
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.objects import plain, tree_of
 from ptmcad.question.config.options import ranges_of

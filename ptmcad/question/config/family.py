@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.question.config.binding import bound, member_name
 from ptmcad.question.config.record import MAX_MEMBERS, Record, Window, check_members
 from ptmcad.question.config.resolution import axis_of, described_record, note_values, slice_of, written_in

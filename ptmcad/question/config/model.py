@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
-from ptmcad.mechanism import (
+from ptmcad.model import (
     Mechanism,
     Model,
     System,
@@ -23,7 +23,7 @@ from ptmcad.mechanism import (
     recognised,
     without_loops,
 )
-from ptmcad.mechanism.parts import check_numbers
+from ptmcad.model.parts import check_numbers
 from ptmcad.question.config.starters import mechanism_names, starter_mechanism
 from ptmcad.text.entry import Place, Scalar, Tree, place_at, plain_data, scalars
 from ptmcad.text.syntax import NAME, did_you_mean, names_in

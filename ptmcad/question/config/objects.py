@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ptmcad.errors import A_RECORD, ConfigError, expect
-from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, System, built_in
+from ptmcad.model import ClosedMechanism, Mechanism, Model, System, built_in
 from ptmcad.question.config.model import model_of
 from ptmcad.question.shipped import record_tree
 from ptmcad.text.entry import Place, Tree, from_python

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.question.config.record import Record, Window, check_axis_name, unknown_parameter
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Count

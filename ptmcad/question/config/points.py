@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ptmcad.errors import A_RECORD, A_SLICE, ConfigError
-from ptmcad.mechanism import Model, ptm
+from ptmcad.model import Model, ptm
 from ptmcad.question.config.binding import released_names, settled
 from ptmcad.question.config.objects import plain, tree_of
 from ptmcad.question.config.options import settings_of

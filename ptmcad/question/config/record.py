@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from ptmcad.errors import ConfigError, Faults, HypothesisError, PtmcadError, shown
-from ptmcad.mechanism import Model, ptm
-from ptmcad.mechanism.reading import MAX_NAME as MAX_AXIS_NAME
-from ptmcad.mechanism.reading import MAX_TITLE, NUMBER, VALUE, two
+from ptmcad.model import Model, ptm
+from ptmcad.model.reading import MAX_NAME as MAX_AXIS_NAME
+from ptmcad.model.reading import MAX_TITLE, NUMBER, VALUE, two
 from ptmcad.question.config.model import Described, described_in
 from ptmcad.question.config.scalars import (
     MAX_NAME,

@@ -11,10 +11,10 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
 from ptmcad.errors import ExpressionError, Faults
-from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism, Model, System
-from ptmcad.mechanism.evaluate import value_at
-from ptmcad.mechanism.moments import foreign
-from ptmcad.mechanism.parts import fault_of_number, parts
+from ptmcad.model import ClosedMechanism, Kind, Mechanism, Model, System
+from ptmcad.model.evaluate import value_at
+from ptmcad.model.moments import foreign
+from ptmcad.model.parts import fault_of_number, parts
 from ptmcad.question.config.names import Resolution
 from ptmcad.question.config.record import Record, Window, read_record, swept_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of

@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
-from ptmcad.mechanism.reading import MAX_TITLE, title_of
+from ptmcad.model.reading import MAX_TITLE, title_of
 from ptmcad.text.entry import Place, Scalar, Written
 from ptmcad.text.expressions import Expression
 from ptmcad.text.node import Node

@@ -8,11 +8,11 @@ from __future__ import annotations
 from typing import Any
 
 from ptmcad.errors import Faults
-from ptmcad.mechanism import ptm
-from ptmcad.mechanism.ptm import MEANINGS
-from ptmcad.mechanism.reading import DEFINITIONS, MAX_NAME, VALUE, Context
-from ptmcad.mechanism.record import mechanism_codec
-from ptmcad.mechanism.systems import system_codec
+from ptmcad.model import ptm
+from ptmcad.model.ptm import MEANINGS
+from ptmcad.model.reading import DEFINITIONS, MAX_NAME, VALUE, Context
+from ptmcad.model.record import mechanism_codec
+from ptmcad.model.systems import system_codec
 from ptmcad.question.config.designs import DESIGN
 from ptmcad.question.config.record import record_codec
 from ptmcad.question.config.starters import mechanism_names

@@ -12,8 +12,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ptmcad.mechanism import Model
-from ptmcad.mechanism.reading import NUMBER
+from ptmcad.model import Model
+from ptmcad.model.reading import NUMBER
 from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.objects import tree_of
 from ptmcad.question.config.record import AXIS_NAME, Record, check_axis_name, swept_names

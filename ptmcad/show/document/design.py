@@ -10,7 +10,7 @@ from typing import Any
 
 from ptmcad.answer.design import BestDesign
 from ptmcad.answer.widths import Maximum
-from ptmcad.mechanism import Model, built_in, known_of
+from ptmcad.model import Model, built_in, known_of
 from ptmcad.question.slice import Axis
 from ptmcad.show.document.numbers import AXIS, INTERVAL, LINE, maximum
 from ptmcad.show.document.slice import model_from, stored_model

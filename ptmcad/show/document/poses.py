@@ -14,7 +14,7 @@ from typing import Any
 
 from ptmcad.answer.poses import MAX_DIGITS, Pose, Poses, Spring, TorsionSpring
 from ptmcad.answer.regionmap import Status
-from ptmcad.mechanism import mechanism_in
+from ptmcad.model import mechanism_in
 from ptmcad.question.slice import check_names
 from ptmcad.show.document.numbers import merged
 from ptmcad.show.document.slice import MODEL, UNITS

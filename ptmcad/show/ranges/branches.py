@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from ptmcad.answer.branches import Branch, Branches, BranchPoint
 from ptmcad.answer.words import kind_name, noun
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.show.ranges.numbers import known
 from ptmcad.show.ranges.table import aligned
 from ptmcad.show.units import with_unit

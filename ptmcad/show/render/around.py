@@ -19,7 +19,7 @@ from matplotlib.text import Text
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import mechanism_in
+from ptmcad.model import mechanism_in
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.blocks import GAP, Block, Point, Side, Slot, arranged, sized
 from ptmcad.show.render.clearance import Box, Position

@@ -19,9 +19,9 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import moments_work
 from ptmcad.exact.models.potential import squared_lengths, system_from
 from ptmcad.exact.models.system import polynomial_at
-from ptmcad.mechanism import Mechanism, Model
-from ptmcad.mechanism.evaluate import value_at
-from ptmcad.mechanism.moments import moments_at
+from ptmcad.model import Mechanism, Model
+from ptmcad.model.evaluate import value_at
+from ptmcad.model.moments import moments_at
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import magnitude
 

@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.mechanism import mechanism_in
+from ptmcad.model import mechanism_in
 from ptmcad.question.slice import Slice
 from ptmcad.show.render import regionmap
 from ptmcad.show.render.axes import heading_of

@@ -30,9 +30,9 @@ from matplotlib.lines import Line2D
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import noun
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Mechanism, Model
-from ptmcad.mechanism.elements import UnknownKind
-from ptmcad.mechanism.moments import moments_at
+from ptmcad.model import Mechanism, Model
+from ptmcad.model.elements import UnknownKind
+from ptmcad.model.moments import moments_at
 from ptmcad.show.drawable import no_landscape
 from ptmcad.show.render.axes import Scale, scale_of, symbol
 from ptmcad.show.render.clearance import Box, Label, Stroke, place

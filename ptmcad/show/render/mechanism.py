@@ -13,7 +13,7 @@ from typing import Any
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle
 
-from ptmcad.mechanism import Support
+from ptmcad.model import Support
 from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.legend import INK, SWATCH, Mark
 from ptmcad.show.render.sketch import (

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePaths, Target
-from ptmcad.mechanism import Mechanism
+from ptmcad.model import Mechanism
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import heading_of, scale_of, symbol
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height, width

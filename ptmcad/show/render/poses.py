@@ -19,8 +19,8 @@ from matplotlib.lines import Line2D
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import counted, kind_name, noun, of_what, untold
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Mechanism, Model, Support, mechanism_in
-from ptmcad.mechanism.joints import joints_of
+from ptmcad.model import Mechanism, Model, Support, mechanism_in
+from ptmcad.model.joints import joints_of
 from ptmcad.question.slice import merged
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import symbol, with_symbols

@@ -21,7 +21,7 @@ from ptmcad.answer.counts import Counts, MorseIndex
 from ptmcad.answer.intervals import CountIntervals, End, OperationSpan
 from ptmcad.answer.widths import CertifiedRange, CertifiedWidths, OperationWidths
 from ptmcad.answer.words import counted, noun
-from ptmcad.mechanism import Mechanism
+from ptmcad.model import Mechanism
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.ranges.certified import widest_text
 from ptmcad.show.ranges.numbers import end_text, width_text

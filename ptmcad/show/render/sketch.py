@@ -1,6 +1,6 @@
 """The sketch of a pose: bars, zigzag springs, spirals, supports, load arrows and labels as lines on paper, in points.
 
-Spirals are torsion springs, where their joints are known (`ptmcad.mechanism.joints`).
+Spirals are torsion springs, where their joints are known (`ptmcad.model.joints`).
 
 Guarantee: nodes are where the pose has them, at one scale for all poses. A spring that would lie on a bar or on another
 spring, or is too short for its turns, is drawn aside and led back to its nodes. Labels keep clear of all that is drawn
@@ -15,10 +15,10 @@ from fractions import Fraction
 from math import hypot
 
 from ptmcad.answer.poses import Pose, Poses
-from ptmcad.mechanism import Mechanism, Support, mechanism_in
-from ptmcad.mechanism.elements import Load
-from ptmcad.mechanism.evaluate import value_at
-from ptmcad.mechanism.joints import joints_of
+from ptmcad.model import Mechanism, Support, mechanism_in
+from ptmcad.model.elements import Load
+from ptmcad.model.evaluate import value_at
+from ptmcad.model.joints import joints_of
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.clearance import Box, Label, Placed, Position, Stroke, distance, place, polyline
 from ptmcad.show.spiral import spirals

@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 from ptmcad.answer.motion import Motion, Step
 from ptmcad.answer.words import counted, noun
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Mechanism
-from ptmcad.mechanism.evaluate import value_at
+from ptmcad.model import Mechanism
+from ptmcad.model.evaluate import value_at
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.clearance import Placed

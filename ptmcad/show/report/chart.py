@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import Cell, Region
 from ptmcad.answer.words import counted
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.question.slice import Count
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.slivers import innermost, thin_regions, zooms

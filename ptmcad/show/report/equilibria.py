@@ -14,10 +14,10 @@ from typing import Any, TypeVar
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution
 from ptmcad.answer.words import kind_name
 from ptmcad.errors import ConfigError, PoleError
-from ptmcad.mechanism import Mechanism, Model, System
-from ptmcad.mechanism.energy import points_in, with_springs
-from ptmcad.mechanism.evaluate import evaluate, value_at
-from ptmcad.mechanism.moments import moments_at
+from ptmcad.model import Mechanism, Model, System
+from ptmcad.model.energy import points_in, with_springs
+from ptmcad.model.evaluate import evaluate, value_at
+from ptmcad.model.moments import moments_at
 from ptmcad.question.slice import merged
 from ptmcad.show.report.bounds import (
     Bounds,

@@ -18,10 +18,10 @@ from ptmcad.answer.consistency import check_numbers
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import index_words, moments_work, untold
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Mechanism, Model, Support
-from ptmcad.mechanism.elements import UnknownKind
-from ptmcad.mechanism.joints import joints_of
-from ptmcad.mechanism.work import split_moments
+from ptmcad.model import Mechanism, Model, Support
+from ptmcad.model.elements import UnknownKind
+from ptmcad.model.joints import joints_of
+from ptmcad.model.work import split_moments
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import heading_of, symbol, with_symbols
 from ptmcad.show.render.colours import fill_of

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Kind, built_in, mechanism_of
+from ptmcad.model import Kind, built_in, mechanism_of
 from ptmcad.question.config import slice_from_mapping, slice_from_options
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.entry import plain_data

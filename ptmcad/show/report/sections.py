@@ -11,7 +11,7 @@ from html import escape
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.words import index_words, noun
-from ptmcad.mechanism import Mechanism
+from ptmcad.model import Mechanism
 from ptmcad.question.slice import Count
 from ptmcad.show.render.axes import named, symbol
 from ptmcad.show.render.colours import Fill, fill_of

@@ -14,10 +14,10 @@ from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import kind_name
-from ptmcad.mechanism import ClosedMechanism, Mechanism, Model, System
-from ptmcad.mechanism.energy import points_in, with_springs
-from ptmcad.mechanism.evaluate import evaluate
-from ptmcad.mechanism.work import split_moments
+from ptmcad.model import ClosedMechanism, Mechanism, Model, System
+from ptmcad.model.energy import points_in, with_springs
+from ptmcad.model.evaluate import evaluate
+from ptmcad.model.work import split_moments
 from ptmcad.question.slice import Slice, have_free_lengths
 from ptmcad.text.tree import Tree
 

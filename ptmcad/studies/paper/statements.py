@@ -29,8 +29,8 @@ import yaml
 
 from ptmcad.answer.poses import Poses
 from ptmcad.ask.solving import solve
-from ptmcad.mechanism import ptm
-from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.model import ptm
+from ptmcad.model.evaluate import evaluate
 
 Expr = Any
 """A SymPy expression; SymPy has no types of its own for a type checker."""

@@ -25,8 +25,8 @@ from typing import Any
 
 from ptmcad.answer.poses import DIGITS
 from ptmcad.extras import Extra, require
-from ptmcad.mechanism import ptm
-from ptmcad.mechanism.evaluate import value_at
+from ptmcad.model import ptm
+from ptmcad.model.evaluate import value_at
 from ptmcad.show.ranges.table import aligned
 from ptmcad.studies.stress.case import FEW, Case, Degenerate, Question, degenerate, free_lengths
 from ptmcad.studies.stress.judgement import Row, judge

@@ -40,7 +40,7 @@ from typing import Any
 import yaml
 
 from ptmcad.errors import ConfigError, shown
-from ptmcad.mechanism import ptm
+from ptmcad.model import ptm
 from ptmcad.text.expressions import constant
 from ptmcad.text.parsing import parse
 from ptmcad.text.syntax import did_you_mean

@@ -15,7 +15,7 @@ from typing import Any
 from flint import arb, ctx
 
 from ptmcad.answer.regionmap import Solution
-from ptmcad.mechanism import Model
+from ptmcad.model import Model
 from ptmcad.question.slice import Count, Point, Slice
 from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import MIN_HALF_WIDTH, Box, Floats, Unproved, Zero, is_same

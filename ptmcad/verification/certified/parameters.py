@@ -11,7 +11,7 @@ from fractions import Fraction
 from flint import arb
 
 from ptmcad.errors import ExpressionError
-from ptmcad.mechanism import ClosedMechanism, Kind, Mechanism
+from ptmcad.model import ClosedMechanism, Kind, Mechanism
 from ptmcad.question.slice import Slice
 from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import Expression, axis

@@ -11,7 +11,7 @@ from functools import cached_property
 from itertools import pairwise
 
 from ptmcad.answer.regionmap import Status
-from ptmcad.mechanism import ClosedMechanism, Mechanism, System
+from ptmcad.model import ClosedMechanism, Mechanism, System
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.verification.certified.sweep import Sweep, sweep

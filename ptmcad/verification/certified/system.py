@@ -19,7 +19,7 @@ from typing import Any
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz
 
 from ptmcad.answer.regionmap import System
-from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
+from ptmcad.model import ClosedMechanism, Mechanism, Model
 from ptmcad.text.tree import names_of
 from ptmcad.verification.certified.decimals import in_quotients
 from ptmcad.verification.certified.waves import form_of

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from ptmcad.mechanism import ClosedMechanism, Mechanism, Model
+from ptmcad.model import ClosedMechanism, Mechanism, Model
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.expressions import Expression
 from ptmcad.verification.certified.lines import Line, line_of

@@ -19,7 +19,7 @@ from typing import Any
 from forger.consistency import Alteration, drop, put, swapped, window_area
 from ptmcad.answer.regionmap import Cell, RegionMap, Status
 from ptmcad.cover.rectangles import Cover, Rectangle
-from ptmcad.mechanism import known_of
+from ptmcad.model import known_of
 from ptmcad.question.slice import Point
 from ptmcad.text.expressions import constant
 from ptmcad.verification.certified.structure import CertifiedClaims

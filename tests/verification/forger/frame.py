@@ -21,7 +21,7 @@ from forger.consistency import (
     with_plan,
 )
 from ptmcad.answer.regionmap import PlanStep, RegionMap, Status
-from ptmcad.mechanism import known_of
+from ptmcad.model import known_of
 from ptmcad.question.slice import Count
 from ptmcad.text.expressions import Expression, constant
 

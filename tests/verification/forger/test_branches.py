@@ -30,7 +30,7 @@ from ptmcad.answer.regionmap import (
     Status,
     Wall,
 )
-from ptmcad.mechanism import known_of
+from ptmcad.model import known_of
 from ptmcad.question.slice import Axis, Count, Point
 from ptmcad.text.expressions import axis, constant
 from ptmcad.text.flint_numbers import from_fraction

@@ -37,7 +37,7 @@ from ptmcad.answer.regionmap import (
     System,
 )
 from ptmcad.cover.rectangles import Cover, Rectangle
-from ptmcad.mechanism import known_of
+from ptmcad.model import known_of
 from ptmcad.question.slice import Count, Point
 from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import axis

@@ -1,0 +1,9 @@
+"""Formulas: one graph of expressions with exact derivatives, and an evaluator for each arithmetic.
+
+Guarantee: the graph (`graph`) is exact; each evaluator says what its values enclose. Both engines, pictures and pages
+use it; the checker has formulas of its own.
+
+`values` evaluates formulas in any numbers that can be added and multiplied: rationals, polynomials over Q(x, y), arrays
+of doubles. A `tape` is formulas written out as data, which the evaluators that are `compiled` once for all run on
+boxes: in `intervals`, in `affine` forms, on `taylor` series; and `balls` at any precision.
+"""

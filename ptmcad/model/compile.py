@@ -1,0 +1,279 @@
+"""A description compiled: unknowns, points, springs, energy, equations and conditions as formulas of one graph.
+
+It is made once for a description, whatever the slice, and both engines, fields, pictures and pages read it; the checker
+does not.
+
+Guarantee: exact, and nothing is known by name: each formula follows from the description's expressions. All are
+polynomials in the parameters, the unknowns on the line, and the cosines and sines of angles; what a spring with a free
+length takes off the energy is kept beside them, as that has a root.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import lru_cache
+from typing import NamedTuple
+
+from ptmcad.errors import ExpressionError
+from ptmcad.formulas.graph import Formula, Graph, length
+from ptmcad.model.closed import ClosedMechanism, mechanism_in
+from ptmcad.model.description import Mechanism, Model, System
+from ptmcad.model.evaluate import evaluate, evaluated
+from ptmcad.model.work import split_moments
+from ptmcad.model.xjoint import second_bar
+from ptmcad.text.tree import Tree
+
+Vector = tuple[Formula, Formula]
+
+
+class LinearSpring(NamedTuple):
+    """A spring between two points: its energy is stiffness (|difference| - free)^2/2.
+
+    Attributes
+    ----------
+    key : where it stands in the description, for messages.
+    difference : from its start to its end.
+    """
+
+    name: str
+    key: str
+    start: str
+    end: str
+    stiffness: Formula
+    free: Formula
+    difference: Vector
+
+    @property
+    def pull(self) -> Formula:
+        """What the energy lacks for each unit of length: stiffness times free length."""
+        return self.stiffness * self.free
+
+    @property
+    def square(self) -> Formula:
+        """Of its length."""
+        x, y = self.difference
+        return x.squared() + y.squared()
+
+    @property
+    def length(self) -> Formula:
+        return length(*self.difference)
+
+    @property
+    def force(self) -> Formula:
+        """Positive where it pulls."""
+        return self.stiffness * (self.length - self.free)
+
+
+class AngularSpring(NamedTuple):
+    """A torsion spring: its energy is stiffness (1 - cos deflection), its moment stiffness sin deflection.
+
+    Attributes
+    ----------
+    cosine, sine : of its deflection, the angle less the one at rest.
+    """
+
+    name: str
+    stiffness: Formula
+    cosine: Formula
+    sine: Formula
+
+    @property
+    def moment(self) -> Formula:
+        return self.stiffness * self.sine
+
+
+class Follower(NamedTuple):
+    """An angle that follows from an unknown one: that of an X-joint's second bar.
+
+    Attributes
+    ----------
+    variable : its number.
+    cosine, sine, below : numerators and the common denominator, positive, in parameters and the unknown angle.
+    """
+
+    variable: int
+    cosine: Formula
+    sine: Formula
+    below: Formula
+
+
+@dataclass(frozen=True, eq=False)
+class CompiledSystem:
+    """A description's formulas, in variables: the parameters, the unknown angles, those on the line, then followers.
+
+    Attributes
+    ----------
+    names : of the variables; a variable's number is its place.
+    angles, reals : numbers of the unknowns.
+    followers : with their relations to the unknowns; points and what is made of them may depend on them.
+    points : coordinates by name; empty of a system.
+    springs, torsion : in the description's order.
+    loads : the point and the force's components.
+    smooth : the energy of springs and loads, or the potential, as if no spring had a free length; None of equations.
+    moments : for each unknown, what its equation lacks of the energy's slope: constant moments; without a potential
+        all moments.
+    equations : one for each unknown, zero at solutions as if no spring had a free length; with closed loops those that
+        close them, and then the energy's slope along them.
+    inequalities, stability : a solution counts, and is stable, where all are positive.
+    tangent : along closed loops with one degree of freedom, the direction in which unknowns move.
+    has_energy : whether that is an energy, and not only a part of what acts, as beside moments without a potential.
+    has_index : whether solutions are critical points of the energy, less the work of constant moments.
+    """
+
+    graph: Graph = field(repr=False)
+    names: tuple[str, ...]
+    angles: tuple[int, ...]
+    reals: tuple[int, ...]
+    followers: tuple[Follower, ...] = ()
+    points: Mapping[str, Vector] = field(default_factory=dict, repr=False)
+    springs: tuple[LinearSpring, ...] = ()
+    torsion: tuple[AngularSpring, ...] = ()
+    loads: tuple[tuple[str, Vector], ...] = ()
+    smooth: Formula | None = None
+    moments: tuple[Formula, ...] = ()
+    equations: tuple[Formula, ...] = ()
+    inequalities: tuple[Formula, ...] = ()
+    stability: tuple[Formula, ...] = ()
+    tangent: tuple[Formula, ...] = ()
+    has_energy: bool = False
+    has_index: bool = False
+
+    @property
+    def unknowns(self) -> tuple[int, ...]:
+        """Their numbers, angles first."""
+        return self.angles + self.reals
+
+    def energy(self, relaxed: Iterable[int] | None = None) -> Formula | None:
+        """With the springs' free lengths; None where there is none.
+
+        Parameters
+        ----------
+        relaxed : numbers of the springs whose free length counts, others being zero; all where nothing is said.
+        """
+        if self.smooth is None or not self.has_energy:
+            return None
+        total = self.smooth
+        for k in range(len(self.springs)) if relaxed is None else relaxed:
+            spring = self.springs[k]
+            if spring.free.value != 0:
+                total = total + spring.stiffness * spring.free * (spring.free / 2 - spring.length)
+        return total
+
+
+@lru_cache(maxsize=8)
+def compiled(model: Model) -> CompiledSystem:
+    """The formulas of a description.
+
+    Raises
+    ------
+    ExpressionError
+        When a moment that depends on its unknown is too large to be multiplied out.
+    """
+    angles, reals = model.angles, model.reals
+    mechanism = mechanism_in(model)
+    followers = () if mechanism is None else tuple(mechanism.followers)
+    names = (*model.variables, *angles, *reals, *followers)
+    graph = Graph()
+    ring = _Ring(graph, {name: graph.variable(k) for k, name in enumerate(names)}, {*angles, *followers})
+    first = len(model.variables)
+    known = CompiledSystem(
+        graph,
+        names,
+        tuple(range(first, first + len(angles))),
+        tuple(range(first + len(angles), first + len(angles) + len(reals))),
+    )
+    if mechanism is not None:
+        known = _with_mechanism(known, mechanism, ring)
+    return _with_equations(known, model, ring)
+
+
+@dataclass(frozen=True, slots=True)
+class _Ring:
+    """Formulas as the values of trees."""
+
+    graph: Graph
+    variables: Mapping[str, Formula]
+    turned: set[str]
+
+    def constant(self, value: Fraction) -> Formula:
+        return self.graph.constant(value)
+
+    def parameter(self, name: str) -> Formula:
+        if name in self.turned:
+            raise ExpressionError(f"{name} is an angle: it stands inside of cos or sin")
+        return self.variables[name]
+
+    def cos(self, angle: str) -> Formula:
+        return self.variables[angle].cos()
+
+    def sin(self, angle: str) -> Formula:
+        return self.variables[angle].sin()
+
+    def of(self, trees: Iterable[Tree]) -> tuple[Formula, ...]:
+        return evaluated(trees, self)
+
+
+def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) -> CompiledSystem:
+    """Points, springs, loads, the smooth energy, moments."""
+    points = {name: (evaluate(x, ring), evaluate(y, ring)) for name, (x, y) in mechanism.points.items()}
+    springs = []
+    for n, spring in enumerate(mechanism.springs, 1):
+        (x0, y0), (x1, y1) = points[spring.start], points[spring.end]
+        stiffness, free = ring.of((spring.stiffness, spring.free))
+        springs.append(
+            LinearSpring(spring.name, f"springs.{n}", spring.start, spring.end, stiffness, free, (x1 - x0, y1 - y0))
+        )
+    torsion = [AngularSpring(t.name, *ring.of((t.stiffness, *t.deflection))) for t in mechanism.torsion]
+    loads = [(load.point, (evaluate(load.x, ring), evaluate(load.y, ring))) for load in mechanism.loads]
+    split = split_moments(mechanism)
+    energy = ring.constant(Fraction(0))
+    for pulled in springs:
+        energy = energy + pulled.stiffness * pulled.square / 2
+    for turned in torsion:
+        energy = energy + turned.stiffness * (1 - turned.cosine)
+    for point, (across, up) in loads:
+        x, y = points[point]
+        energy = energy - (across * x + up * y)
+    for tree in split.energies:
+        energy = energy + evaluate(tree, ring)
+    steady = dict.fromkeys(mechanism.unknowns, ring.constant(Fraction(0)))
+    steady |= {moment.unknown: evaluate(moment.value, ring) for moment in split.steady}
+    followers = []
+    for joint in mechanism.xjoints:
+        bars, base = ring.of((joint.bars, joint.length))
+        turned_by = second_bar(bars, base, ring.cos(joint.angle), ring.sin(joint.angle))
+        followers.append(Follower(known.names.index(joint.other), *turned_by))
+    return replace(
+        known,
+        followers=tuple(followers),
+        points=points,
+        springs=tuple(springs),
+        torsion=tuple(torsion),
+        loads=tuple(loads),
+        smooth=energy,
+        moments=tuple(steady[known.names[k]] for k in known.unknowns),
+        has_energy=mechanism.has_potential,
+    )
+
+
+def _with_equations(known: CompiledSystem, model: Model, ring: _Ring) -> CompiledSystem:
+    """What is zero, and what is positive, at solutions."""
+    if isinstance(model, System):
+        known = replace(
+            known,
+            equations=ring.of(model.equations),
+            inequalities=ring.of(model.inequalities),
+            stability=ring.of(model.stability),
+            tangent=ring.of(model.tangent) if isinstance(model, ClosedMechanism) else (),
+        )
+        if model.potential is not None:
+            moments = (ring.constant(Fraction(0)),) * len(known.unknowns)
+            known = replace(known, smooth=evaluate(model.potential, ring), moments=moments, has_energy=True)
+    known = replace(known, has_index=model.has_potential)
+    if known.equations:
+        return known
+    assert known.smooth is not None
+    slopes = [known.graph.derivative(known.smooth, k) for k in known.unknowns]
+    return replace(known, equations=tuple(s - m for s, m in zip(slopes, known.moments, strict=True)))

@@ -1,0 +1,327 @@
+"""Involutions of a model over a window of two axes, as data that both engines read: what becomes of unknowns and axes.
+
+Guarantee: each `Involution` that is found takes the window to itself, and at every point of it solutions to solutions
+at the point's image, those that count to such, stable ones to stable ones of the same index. That is proved by
+identities of polynomials over Q, decided exactly. All are found that exchange and reflect unknowns and axes, turn
+angles by half a turn, and keep the energy but for what no unknown is in, the springs with a free length, the moments,
+the equations up to their order and signs, and the conditions up to their order; so those that a record's `symmetries`
+list are found again where they are of this kind. None is found where expressions are too large to be multiplied out,
+nor with free lengths in closed loops; none that moves axes where parameters have denominators.
+
+In cosines and sines such a change only permutes monomials and gives them signs. For each permutation of unknowns and
+axes the signs with which all polynomials are kept are the solutions of linear equations over the field of two elements.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import permutations
+from typing import NamedTuple
+
+from ptmcad.errors import ExpressionError
+from ptmcad.model.closed import mechanism_in
+from ptmcad.model.description import Model, System
+from ptmcad.model.elements import UnknownKind
+from ptmcad.model.evaluate import evaluate
+from ptmcad.model.proofs import Image, Monomial, Polynomial, Ring, felt
+from ptmcad.text.expressions import Expression, constant
+from ptmcad.text.tree import Tree
+
+MAX_WORK = 100_000
+"""Products of terms, about half a second; the bars and springs of shipped mechanisms take some hundred."""
+MAX_UNKNOWNS = 6
+"""Of six unknowns there are 76 involutions without signs, and of seven three times as many."""
+
+Window = tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]
+_AXES = ("axis 0", "axis 1")
+_Two = tuple[int, int]
+_Terms = Mapping[Monomial, Fraction]
+_Bits = Mapping[int, int]
+"""Linear equations over the field of two elements, by the length of their numbers; bit 0 is the constant."""
+
+
+class _Part(NamedTuple):
+    """A polynomial that an involution takes to one of some polynomials, or to the negative of one if it may."""
+
+    polynomial: _Terms
+    images: Sequence[_Terms]
+    may_be_negated: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Involution:
+    """What becomes of unknowns and axes, by number: q'_k = signs_k q_images(k) + halves_k pi.
+
+    Attributes
+    ----------
+    images : which of the model's unknowns comes to each one's place.
+    signs : 1 or -1.
+    halves : half turns that are added, 0 or 1; none to unknowns on the line.
+    axes, axis_signs, shifts : the same of the two axes, x'_k = axis_signs_k x_axes(k) + shifts_k.
+    """
+
+    images: tuple[int, ...]
+    signs: tuple[int, ...]
+    halves: tuple[int, ...]
+    axes: tuple[int, int] = (0, 1)
+    axis_signs: tuple[int, int] = (1, 1)
+    shifts: tuple[Fraction, Fraction] = (Fraction(0), Fraction(0))
+
+    @property
+    def odd(self) -> int:
+        """How many unknowns are odd, in coordinates of which the others are kept."""
+        return sum(j > k or (j == k and s < 0) for k, (j, s) in enumerate(zip(self.images, self.signs, strict=True)))
+
+    @property
+    def has_fixed_unknowns(self) -> bool:
+        """Whether it fixes some values of the unknowns: no angle turns by half a turn alone."""
+        places = zip(self.images, self.signs, self.halves, strict=True)
+        return not any(j == k and s > 0 and h for k, (j, s, h) in enumerate(places))
+
+    @property
+    def keeps_points(self) -> bool:
+        """Whether each point of the slice is its own image."""
+        return self.axes == (0, 1) and self.axis_signs == (1, 1)
+
+    def coordinates(self, kinds: Sequence[UnknownKind]) -> list[tuple[int, int]]:
+        """Which coordinate comes to each one's place, and its sign.
+
+        Coordinates are cosine and sine of each angle, one angle after the other, and then the unknowns on the line.
+
+        Parameters
+        ----------
+        kinds : of the model's unknowns.
+        """
+        angles = [k for k, kind in enumerate(kinds) if kind is UnknownKind.ANGLE]
+        reals = [k for k in range(len(kinds)) if k not in angles]
+        found = []
+        for k in angles:
+            place, sign = 2 * angles.index(self.images[k]), 1 - 2 * self.halves[k]
+            found += [(place, sign), (place + 1, sign * self.signs[k])]
+        return found + [(2 * len(angles) + reals.index(self.images[k]), self.signs[k]) for k in reals]
+
+    def at(self, point: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
+        """The image of a point of the slice."""
+        x, y = (s * point[k] + c for k, s, c in zip(self.axes, self.axis_signs, self.shifts, strict=True))
+        return x, y
+
+    def text(self, unknowns: Sequence[str], axes: Sequence[str]) -> str:
+        """What is moved, such as ``a -> -a + 3, x -> y + pi``."""
+        names, images = (*axes, *unknowns), (*self.axes, *(k + 2 for k in self.images))
+        signs = (*self.axis_signs, *self.signs)
+        shifts = (*map(str, self.shifts), *("pi" if half else "0" for half in self.halves))
+        moves = {
+            name: f"{'-' * (sign < 0)}{names[k]} + {shift}".removesuffix(" + 0").replace("+ -", "- ")
+            for name, k, sign, shift in zip(names, images, signs, shifts, strict=True)
+        }
+        return ", ".join(f"{name} -> {image}" for name, image in moves.items() if image != name)
+
+
+def involutions(model: Model, parameters: Mapping[str, Expression], window: Window | None = None) -> list[Involution]:
+    """The involutions of a model over a window, but for the identity.
+
+    Parameters
+    ----------
+    parameters : of the model, as functions of the two axes; one that is missing is zero.
+    window : of the axes; without it only those are looked for that keep each point of the slice.
+    """
+    if len(model.unknowns) > MAX_UNKNOWNS:
+        return []
+    ring = _Slice(model.unknowns, parameters, window)
+    try:
+        parts = list(_parts(model, ring))
+    except ExpressionError:
+        return []
+    kinds = tuple(model.unknowns.values())
+    size = range(len(kinds))
+    found = []
+    for axes, signs, shifts in _axis_changes(None if ring.has_denominators else window):
+        for images in permutations(size):
+            if any(images[images[k]] != k or kinds[images[k]] is not kinds[k] for k in size):
+                continue
+            change = _Change(tuple(model.unknowns), images, axes, signs)
+            for system in _kept(change, parts, change.known(kinds)):
+                found += [
+                    Involution(images, *change.read(bits), axes, signs, shifts)
+                    for bits in _solutions(system, len(kinds))
+                ]
+    return list(dict.fromkeys(found))[1:]  # the identity comes first
+
+
+def _axis_changes(window: Window | None) -> Iterator[tuple[_Two, _Two, tuple[Fraction, Fraction]]]:
+    """The involutions of the window, reflections and exchanges of axes, with their shifts; the identity first."""
+    if window is None:
+        yield (0, 1), (1, 1), (Fraction(0), Fraction(0))
+        return
+    middle = [(low + high) / 2 for low, high in window]
+    wide, high = (high - low for low, high in window)
+    for axes in ((0, 1), (1, 0)) if wide == high else ((0, 1),):
+        for signs in ((1, 1), (-1, -1), (1, -1), (-1, 1)):
+            if axes == (0, 1) or signs[0] == signs[1]:
+                x, y = (middle[k] - s * middle[j] for k, (j, s) in enumerate(zip(axes, signs, strict=True)))
+                yield axes, signs, (x, y)
+
+
+class _Slice(Ring):
+    """The ring with the slice's parameters in it, as polynomials in the axes, measured from the window's middle.
+
+    A denominator's inverse is a variable. What becomes of it where the axes change is not known.
+    """
+
+    def __init__(self, unknowns: Collection[str], parameters: Mapping[str, Expression], window: Window | None) -> None:
+        super().__init__(MAX_WORK)
+        self.unknowns, self.parameters = unknowns, parameters
+        self.has_denominators = False
+        middle = [Fraction(0)] * 2 if window is None else [(low + high) / 2 for low, high in window]
+        self.axes = [self.variable(name) + self.constant(m) for name, m in zip(_AXES, middle, strict=True)]
+
+    def parameter(self, name: str) -> Polynomial:
+        if name in self.unknowns:
+            return self.variable(name)
+        given = self.parameters.get(name, constant(0))
+        total = self.constant(Fraction(0))
+        for i, j, c in given.numerator:
+            term = self.constant(c)
+            for factor in (self.axes[0],) * i + (self.axes[1],) * j:
+                term = term * factor
+            total += term
+        if given.is_polynomial:
+            return total
+        self.has_denominators = True
+        return total * self.variable(f"over {given.denominator}")
+
+
+def _parts(model: Model, ring: _Slice) -> Iterator[_Part]:
+    """What an involution has to keep, but for the order."""
+    unknowns = {name for u in model.unknowns for name in (u, f"cos {u}", f"sin {u}")}
+
+    def felt_by_unknowns(p: Polynomial) -> list[_Terms]:
+        return [{m: c for m, c in p.terms.items() if any(v in unknowns for v, _ in m)}]
+
+    def marked(parts: Mapping[str, Iterable[tuple[Monomial, Fraction]]]) -> _Terms:
+        return {tuple(sorted(((mark, 1), *m))): c for mark, terms in parts.items() for m, c in terms}
+
+    def values(trees: Iterable[Tree]) -> list[_Terms]:
+        return [evaluate(tree, ring).terms for tree in trees]
+
+    mechanism = mechanism_in(model)
+    if mechanism is model:
+        energy, springs, work = felt(mechanism, Image(ring, {}))
+        # how many are the same is said in their polynomial
+        lengths = [
+            marked({f"spring {n}": part for n, part in enumerate((*spring, (((), Fraction(number)),)))})
+            for spring, number in springs.items()
+        ]
+        kept = [felt_by_unknowns(energy), [marked({f"d {u}": terms for u, terms in work.items()})], lengths]
+    else:
+        assert isinstance(model, System)
+        if mechanism is not None and any(evaluate(s.free, ring).terms for s in mechanism.springs):
+            raise ExpressionError("free lengths are in none of a closed loop's equations")
+        kept = [values(model.inequalities), values(model.stability)]
+        if model.potential is not None:
+            kept.append(felt_by_unknowns(evaluate(model.potential, ring)))
+        equations = values(model.equations)
+        yield from (_Part(f, equations, True) for f in equations)
+    yield from (_Part(f, images) for images in kept for f in images)
+
+
+class _Change(NamedTuple):
+    """A permutation of unknowns, and a change of the axes, the signs of unknowns being open.
+
+    Those of an unknown's cosine and sine are two bits, of two that are exchanged those of the first one; of one on the
+    line the second bit is its sign.
+    """
+
+    unknowns: tuple[str, ...]
+    images: tuple[int, ...]
+    axes: _Two
+    axis_signs: _Two
+
+    def bits(self, k: int) -> tuple[int, int]:
+        """Those of an unknown's cosine and sine."""
+        first = min(k, self.images[k])
+        return 2 << 2 * first, 4 << 2 * first
+
+    def known(self, kinds: Sequence[UnknownKind]) -> _Bits:
+        """The equations for bits that nothing stands for."""
+        found: _Bits = {}
+        for k, (kind, j) in enumerate(zip(kinds, self.images, strict=True)):
+            for bit in (2 << 2 * k, 4 << 2 * k) if j < k else (2 << 2 * k,) if kind is not UnknownKind.ANGLE else ():
+                found = {**found, bit.bit_length(): bit}
+        return found
+
+    def read(self, bits: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Signs and half turns of the unknowns."""
+        halves = [bool(bits & self.bits(k)[0]) for k in range(len(self.images))]
+        signs = [-1 if h != bool(bits & self.bits(k)[1]) else 1 for k, h in enumerate(halves)]
+        return tuple(signs), tuple(map(int, halves))
+
+    def variable(self, name: str) -> tuple[str, int, int]:
+        """What becomes of a variable: another one, its sign, and the bits that may change that."""
+        if name in _AXES:
+            k = _AXES.index(name)
+            return _AXES[self.axes[k]], self.axis_signs[k], 0
+        mark, _, own = name.rpartition(" ")
+        if own not in self.unknowns:
+            return name, 1, 0
+        k = self.unknowns.index(own)
+        cosine, sine = self.bits(k)
+        image = self.unknowns[self.images[k]]
+        return f"{mark} {image}".strip(), 1, {"cos": cosine, "d": cosine | sine}.get(mark, sine)
+
+    def monomial(self, m: Monomial, c: Fraction) -> tuple[Monomial, Fraction, int]:
+        """What becomes of a term, and the bits that may change its sign."""
+        powers, mask = [], 0
+        for name, e in m:
+            image, sign, bits = self.variable(name)
+            powers.append((image, e))
+            c *= sign**e
+            mask ^= bits * (e % 2)
+        return tuple(sorted(powers)), c, mask
+
+
+def _kept(change: _Change, parts: Sequence[_Part], known: _Bits) -> list[_Bits]:
+    """The equations for the bits with which all polynomials are kept, for each choice of what they become."""
+    systems = [known]
+    for n, part in enumerate(parts):
+        moved = {m: (c, mask) for m, c, mask in (change.monomial(*term) for term in part.polynomial.items())}
+        own = 2 << 2 * len(change.unknowns) + n if part.may_be_negated else 0
+        found = (_same(moved, image, own, system) for system in systems for image in part.images)
+        systems = [system for system in found if system is not None]
+        if not systems:
+            break
+    return systems
+
+
+def _same(moved: Mapping[Monomial, tuple[Fraction, int]], image: _Terms, own: int, known: _Bits) -> _Bits | None:
+    """The equations for the bits with which a polynomial becomes another one, or its negative if its own bit is 1."""
+    if moved.keys() != image.keys():
+        return None
+    system: _Bits | None = known
+    for m, (c, mask) in moved.items():
+        if abs(c) != abs(image[m]) or system is None:
+            return None
+        system = _with(system, mask ^ own ^ int(c != image[m]))
+    return system
+
+
+def _with(system: _Bits, row: int) -> _Bits | None:
+    """The equations with one more; None where they contradict each other."""
+    while row > 1:
+        top = row.bit_length()
+        if top not in system:
+            return {**system, top: row}
+        row ^= system[top]
+    return None if row else system
+
+
+def _solutions(system: _Bits, unknowns: int) -> list[int]:
+    """The values of the unknowns' bits; bit 0 is the constant."""
+    found = [1]
+    for bit in range(1, 2 * unknowns + 1):
+        row = system.get(bit + 1)
+        choices = ((v, (0, 1) if row is None else ((v & row).bit_count() % 2,)) for v in found)
+        found = [v | b << bit for v, values in choices for b in values]
+    return found

@@ -1,0 +1,109 @@
+"""The joints of torsion springs: the points at which the parts meet whose directions a spring's angle is between.
+
+A part is a bar, a body, or the frame: the points that no unknown moves, and those that slide and do not turn. As
+complex numbers, the way from one point of a rigid part to another is C exp(i n.u), where n are whole numbers and u the
+angles: n is the part's direction. A spring on the angle m.u belongs to a point at which parts meet whose directions
+differ by m or by -m.
+
+Guarantee: exact; the direction is read off the derivatives by the unknowns. A joint is told only where there is one
+such point, else none: the sides of a parallelogram have the same angle at two points, and a description may show
+neither part. What is told is for drawings alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from itertools import combinations
+from typing import NamedTuple
+
+from ptmcad.errors import ExpressionError
+from ptmcad.model.description import Mechanism
+from ptmcad.model.elements import Support, TorsionSpring
+from ptmcad.model.evaluate import multiples
+from ptmcad.model.proofs import Points, Ring
+
+MAX_WORK = 20_000
+"""Products of terms for all the points' coordinates; larger ones have no derived joints."""
+Direction = frozenset[tuple[str, int]]
+"""The angles with their multiples, none of them zero."""
+_FRAME: Direction = frozenset()
+
+
+class Joint(NamedTuple):
+    """Where a torsion spring is drawn: at a point, its outer end towards another one, where there is one."""
+
+    point: str
+    towards: str = ""
+
+
+class _Part(NamedTuple):
+    points: tuple[str, ...]
+    direction: Direction
+
+
+@lru_cache(maxsize=8)
+def joints_of(mechanism: Mechanism) -> tuple[Joint | None, ...]:
+    """The joint of each torsion spring, in their order: where it says, else where it can be derived; else None."""
+    if not mechanism.torsion:
+        return ()
+    meeting: dict[str, dict[Direction, _Part]] = {}
+    try:
+        for part in _parts(mechanism):
+            for point in part.points:
+                meeting.setdefault(point, {}).setdefault(part.direction, part)
+    except ExpressionError:  # too large to be multiplied out
+        meeting = {}
+    return tuple(
+        _joint_at(mechanism, spring.at) if spring.at else _derived(mechanism, meeting, spring)
+        for spring in mechanism.torsion
+    )
+
+
+def _joint_at(mechanism: Mechanism, point: str) -> Joint:
+    """At a point, towards the other end of the first bar there, or the next point of the first body."""
+    for part in (*mechanism.bars, *mechanism.bodies.values()):
+        others = [name for name in part if name != point]
+        if point in part and others:
+            return Joint(point, others[0])
+    return Joint(point)
+
+
+def _derived(
+    mechanism: Mechanism, meeting: Mapping[str, Mapping[Direction, _Part]], spring: TorsionSpring
+) -> Joint | None:
+    """The joint by the parts that meet at each point."""
+    angle = frozenset((name, int(m)) for name, m in multiples(spring.angle).items() if m)
+    if not angle:
+        return None
+    found: dict[str, _Part] = {}
+    for point, parts in meeting.items():
+        for direction in parts:
+            other = _difference(direction, angle)
+            if other in parts:
+                # the later one: the frame, which is no arm, is the first of all
+                found[point] = parts[max(direction, other, key=list(parts).index)]
+    if len({mechanism.points[point] for point in found}) != 1:
+        return None
+    point, arm = next(iter(found.items()))
+    return Joint(point, next(name for name in arm.points if name != point))
+
+
+def _difference(one: Direction, other: Direction) -> Direction:
+    total = dict(one)
+    for name, m in other:
+        total[name] = total.get(name, 0) - m
+    return frozenset((name, m) for name, m in total.items() if m)
+
+
+def _parts(mechanism: Mechanism) -> Iterator[_Part]:
+    """The frame, then bars and bodies, as far as they have a direction."""
+    sliding = [name for name, kind in mechanism.supports.items() if kind is not Support.PIN]
+    yield _Part(tuple(n for n in mechanism.points if n not in mechanism.moving or n in sliding), _FRAME)
+    places = Points(mechanism, Ring(MAX_WORK))
+    for points in (*mechanism.bars, *mechanism.bodies.values()):
+        for pair in combinations(points, 2):
+            turns = places.turning(*pair)
+            if turns is not None and not any(turns[name] for name in mechanism.reals):
+                yield _Part(points, frozenset((name, int(n)) for name, n in turns.items() if n))
+                break

@@ -1,0 +1,136 @@
+"""Moments that depend on their own unknown alone, split into a constant part and the slope of an energy.
+
+Guarantee: exact. With M = m + w', where m is free of unknowns and w is a polynomial in the unknown's cosine and sine,
+or in an unknown on the line, that is zero where the unknown is, equilibria are those of the energy less w under the
+moment m. On the circle m is the mean of M, whose work is another one after each turn; w has one value for each pose.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from functools import lru_cache
+from typing import NamedTuple
+
+from ptmcad.model.description import Mechanism
+from ptmcad.model.elements import Moment
+from ptmcad.model.evaluate import evaluate
+from ptmcad.model.proofs import Monomial, Polynomial, Ring
+from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree, names_of
+
+MAX_WORK = 200_000
+"""Products of terms for one moment."""
+_Factors = dict[str, int]
+
+
+class Split(NamedTuple):
+    """The moments of a mechanism.
+
+    Attributes
+    ----------
+    steady : without unknowns where the mechanism has a potential; as they are written where it has none.
+    energies : less what the other parts of the moments do, to be added to the energy of springs and loads.
+    """
+
+    steady: tuple[Moment, ...]
+    energies: tuple[Tree, ...]
+
+
+@lru_cache(maxsize=8)
+def split_moments(mechanism: Mechanism) -> Split:
+    """The constant parts of the moments, and the energies of which the rest are slopes.
+
+    Raises
+    ------
+    ExpressionError
+        When a moment that depends on its unknown is too large to be multiplied out.
+    """
+    if not mechanism.has_potential:
+        return Split(mechanism.moments, ())
+    steady, energies = [], []
+    for moment in mechanism.moments:
+        if moment.unknown not in names_of(moment.value):
+            steady.append(moment)
+            continue
+        constant, work = _integrated(evaluate(moment.value, Ring(MAX_WORK)), moment.unknown)
+        if constant:
+            steady.append(Moment(moment.unknown, _tree(constant, mechanism.angles)))
+        if work:
+            energies.append(_tree([(factors, -c) for factors, c in work], mechanism.angles))
+    return Split(tuple(steady), tuple(energies))
+
+
+_Terms = list[tuple[_Factors, Fraction]]
+
+
+def _integrated(moment: Polynomial, unknown: str) -> tuple[_Terms, _Terms]:
+    """The constant part, and the antiderivative of the rest that is zero where the unknown is."""
+    constant: _Terms = []
+    total = Polynomial(moment.ring, {})
+    for monomial, c in moment.terms.items():
+        own = {unknown, f"cos {unknown}", f"sin {unknown}"}
+        rest = {v: e for v, e in monomial if v not in own}
+        parts = list(_antiderivative({v: e for v, e in monomial if v in own}, unknown))
+        for factors, part in parts:
+            if factors == {"": 1}:
+                constant.append((rest, c * part))
+            else:
+                total += Polynomial(moment.ring, {_monomial(rest | factors): c * part})
+    collected = Polynomial(moment.ring, {})
+    for factors, c in constant:
+        collected += Polynomial(moment.ring, {_monomial(factors): c})
+    return _listed(collected), _listed(total)
+
+
+def _antiderivative(own: _Factors, unknown: str) -> Iterator[tuple[_Factors, Fraction]]:
+    """That of a power of an unknown on the line, or of sin^n or sin^n cos; the unknown itself as the empty name."""
+    cosine, sine = f"cos {unknown}", f"sin {unknown}"
+    if not own:
+        yield {"": 1}, Fraction(1)
+    elif unknown in own:
+        yield {unknown: own[unknown] + 1}, Fraction(1, own[unknown] + 1)
+    elif cosine in own:
+        n = own.get(sine, 0) + 1
+        yield {sine: n}, Fraction(1, n)
+    elif own[sine] == 1:
+        yield {}, Fraction(1)
+        yield {cosine: 1}, Fraction(-1)
+    else:
+        n = own[sine]
+        yield {cosine: 1, sine: n - 1}, Fraction(-1, n)
+        lower = {sine: n - 2} if n > 2 else {}
+        for factors, part in _antiderivative(lower, unknown):
+            yield factors, part * Fraction(n - 1, n)
+
+
+def _monomial(factors: _Factors) -> Monomial:
+    return tuple(sorted(factors.items()))
+
+
+def _listed(p: Polynomial) -> _Terms:
+    return [(dict(monomial), c) for monomial, c in sorted(p.terms.items())]
+
+
+def tree_of(p: Polynomial, angles: Sequence[str]) -> Tree:
+    """A polynomial as a sum of products."""
+    return _tree(_listed(p), angles) if p.terms else Number(Fraction(0))
+
+
+def _tree(terms: Sequence[tuple[_Factors, Fraction]], angles: Sequence[str]) -> Tree:
+    """A sum of products."""
+    (first, c), *rest = terms
+    start = _product(first, abs(c), angles)
+    steps = tuple(Step("+" if c > 0 else "-", _product(factors, abs(c), angles)) for factors, c in rest)
+    start = start if c > 0 else Negative(start)
+    return Chain(start, steps) if steps else start
+
+
+def _product(factors: _Factors, c: Fraction, angles: Sequence[str]) -> Tree:
+    parts: list[Tree] = [Number(Fraction(c.numerator))] if c.numerator != 1 or not factors else []
+    for variable, e in factors.items():
+        function, _, angle = variable.partition(" ")
+        base: Tree = Call(function, Name(angle)) if angle in angles else Name(variable)
+        parts.append(base if e == 1 else Power(base, Number(Fraction(e))))
+    steps = [Step("*", part) for part in parts[1:]]
+    steps += [Step("/", Number(Fraction(c.denominator)))] if c.denominator != 1 else []
+    return Chain(parts[0], tuple(steps)) if steps else parts[0]

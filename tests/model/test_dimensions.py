@@ -1,0 +1,128 @@
+"""Systems of one, three and four angles: indices are right, and what has two angles' formulas inside refuses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from itertools import pairwise
+from math import comb
+from typing import Any
+
+import pytest
+from flint import fmpq
+from support.signatures import count_by_signature
+
+from ptmcad.algebra.polynomials import ONE, PLANE, Ratio
+from ptmcad.algebra.trigonometric import TrigonometricRing
+from ptmcad.answer.counts import Counts
+from ptmcad.answer.regionmap import Kind
+from ptmcad.exact.counting import count_by_isolation
+from ptmcad.exact.models import ParametricSystem, system_from, system_of
+from ptmcad.exact.models.system import from_potential
+from ptmcad.exact.point_system import solutions_at
+from ptmcad.exact.poses import exact_poses
+from ptmcad.exact.variety import discriminant_variety
+from ptmcad.model import described
+
+VALUES = {"k": fmpq(1, 100), "F": fmpq(1)}
+
+
+def chain(angles: int) -> ParametricSystem:
+    """Pendulums, neighbours joined by springs between their ends: U = sum of F cos th_i - k cos(th_i - th_i+1).
+
+    Where k is small against F, the equilibria are the 2^n with all sines zero, one for each choice of signs, and a
+    cosine of -1 (up) adds one to the index: binomial numbers of each index.
+    """
+    names = tuple(f"th{i}" for i in range(1, angles + 1))
+    ring = TrigonometricRing(("k", "F"), names)
+    energy = ring.context.constant(0)
+    for name in names:
+        energy -= ring.parameter("F") * ring.cos(name)
+    for one, two in pairwise(names):
+        energy -= ring.parameter("k") * (ring.cos(one) * ring.cos(two) + ring.sin(one) * ring.sin(two))
+    return from_potential(ring, ring.reduce(energy), positive=("k",), nonnegative=())
+
+
+@pytest.mark.parametrize("angles", [1, 2, 3, pytest.param(4, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [count_by_isolation, count_by_signature], ids=lambda f: f.__name__)
+def test_indices_are_binomial_numbers(count: Callable[..., Counts], angles: int) -> None:
+    """Of three angles (1, 3, 3, 1), where formulas for two would say (2, 4, 2)."""
+    found = count(chain(angles), VALUES)
+    assert found.index == tuple(comb(angles, k) for k in range(angles + 1))
+    assert (found.total, found.stable) == (2**angles, 1)
+
+
+def ratios() -> dict[str, Ratio]:
+    """k = x and F = y."""
+    x, y = PLANE.gens()
+    return {"k": (x, ONE), "F": (y, ONE)}
+
+
+def test_numbers_of_complex_solutions_are_general() -> None:
+    different, multiplicity = solutions_at(chain(3), VALUES)
+    assert different == multiplicity
+    assert multiplicity >= 8
+    assert solutions_at(chain(1), VALUES) == (2, 2)
+
+
+def test_the_variety_is_general() -> None:
+    """For one pendulum det H is F cos, and vanishes at the solutions where F does."""
+    window = ((fmpq(1), fmpq(2)), (fmpq(-1), fmpq(1)))
+    found = discriminant_variety(chain(1), ratios(), window)
+    assert found.complex_solutions == 2
+    assert {c.polynomial.text(("k", "F")) for c in found.components} == {"F"}
+    assert {c.kind for c in found.components} == {Kind.BOUNDARY}  # there the equation vanishes identically
+    assert discriminant_variety(chain(1), ratios(), window, without=frozenset({"sign-curve"})) == found
+
+
+def test_the_variety_of_three_angles() -> None:
+    """Of the Hessian at each choice of signs: F times the signs, and k times a path's signed Laplacian.
+
+    Its determinant is 0 only on lines through the origin, F = m k; by F to -F (all angles turned by pi) with each line
+    comes its mirror image.
+    """
+    found = discriminant_variety(chain(3), ratios(), ((fmpq(1), fmpq(2)), (fmpq(-1), fmpq(1))))
+    critical = {c.polynomial.text(("k", "F")) for c in found.components if c.kind is Kind.CRITICAL}
+    assert critical == {"F", "k - F", "k + F", "3*k - F", "3*k + F"}
+    assert found.complex_solutions == 10
+
+
+def test_the_mechanism_has_two_angles() -> None:
+    assert system_of("ptm").dimension == 2
+
+
+def bars(first: str, second: str, third: str) -> dict[str, Any]:
+    """Three bars in a chain on springs from their ends to one point, with these directions."""
+    x, y = "cos({})", "sin({})"
+    points: dict[str, list[str]] = {"O": ["0", "0"], "A": ["2", "1/2"]}
+    for k, sums in enumerate(([first], [first, second], [first, second, third]), 1):
+        points[f"P{k}"] = [" + ".join(f.format(angle) for angle in sums) for f in (x, y)]
+    return {
+        "name": "chain",
+        "parameters": {"k": {"kind": "stiffness", "default": 1}, "W": {"kind": "force"}},
+        "unknowns": dict.fromkeys(("a", "b", "c"), "angle"),
+        "points": points,
+        "springs": [{"between": ["A", f"P{k}"], "k": "k"} for k in (1, 2, 3)],
+        "loads": {"P3": ["1/3", "W"]},
+    }
+
+
+def test_angles_against_the_bar_before_are_counted_as_directions_are() -> None:
+    """The basis in the former angles takes minutes; that of the same equations in the latter does not."""
+    values = {"k": fmpq(1), "W": fmpq(2, 3)}
+    relative = system_from(described(bars("a", "a + b", "a + b + c")))
+    assert relative.turns is not None
+    absolute = system_from(described(bars("a", "b", "c")))
+    assert absolute.turns is None
+    found = count_by_isolation(relative, values)
+    assert found == count_by_isolation(absolute, values)
+    assert found.index is not None
+    assert sum(found.index[::2]) == sum(found.index[1::2])
+    poses = [
+        exact_poses(described(record), {"k": Fraction(1), "W": Fraction(2, 3)}, 8)
+        for record in (bars("a", "a + b", "a + b + c"), bars("a", "b", "c"))
+    ]
+    ends = [
+        [[p.nodes["P3"][i].text(8) for i in (0, 1)] + [p.known_energy.text(8)] for p in q.equilibria] for q in poses
+    ]
+    assert ends[0] == ends[1]

@@ -1,0 +1,329 @@
+"""Descriptions of mechanisms: what is derived from one, what is refused, and the paper's."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from copy import deepcopy
+from fractions import Fraction
+from typing import Any, ClassVar
+
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.exact.models.potential import geometry_of, squared_lengths, system_from
+from ptmcad.model import Kind, Mechanism, described, mechanism_of, ptm
+from ptmcad.model.evaluate import evaluate, value_at
+from ptmcad.model.ptm import RECORD
+from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.text.syntax import parse
+from ptmcad.text.tree import Tree, to_text
+
+PAPER = """
+name: ptm
+parameters:
+  L1: {kind: length, default: 1, range: [0, 4]}
+  L2: {kind: length, default: 1, range: [0, 4]}
+  rho: {kind: base, default: 1, range: [0, 4]}          # may be zero, not negative
+  k: {kind: stiffness, default: 100, range: [0, 200], alias: [k1, k2, k3]}
+  l0: {kind: free length, default: 0, range: [0, 1], alias: [l0_1, l0_2, l0_3]}
+  F3: {kind: force, range: [-30, 0]}
+  F4: {kind: force, range: [-30, 0]}
+  F3x: {kind: force, range: [-30, 30]}
+  F4x: {kind: force, range: [-30, 30]}
+unknowns: {th1: angle, th2: angle}                      # angle: on the circle; length: on the line
+points:
+  A1: [0, 0]
+  A2: [rho, 0]
+  A3: [L1*cos(th1), L1*sin(th1)]
+  A4: [rho - L2*cos(th2), L2*sin(th2)]
+bars: [[A1, A3], [A2, A4]]
+supports: {A1: pin, A2: slider x}
+springs:
+  - {between: [A1, A4], k: k1, free: l0_1}
+  - {between: [A2, A3], k: k2, free: l0_2}
+  - {between: [A3, A4], k: k3, free: l0_3}
+loads: {A3: [F3x, F3], A4: [F4x, F4]}
+"""
+
+
+def test_the_built_in_record_is_the_one_of_the_design() -> None:
+    """Written in YAML as a user would, the symmetries apart."""
+    mine = described(yaml.safe_load(PAPER))
+    assert mine == described({key: value for key, value in RECORD.items() if key != "symmetries"})
+    assert mechanism_of("ptm") is ptm()
+
+
+def test_what_follows_from_the_description() -> None:
+    m = ptm()
+    assert m.angles == ("th1", "th2")
+    assert m.without_free_lengths == ("L1", "L2", "rho", "k1", "k2", "k3", "F3", "F4", "F3x", "F4x")
+    assert m.free_lengths == ("l0_1", "l0_2", "l0_3")
+    assert m.variables == m.without_free_lengths + m.free_lengths
+    assert m.positive == ("L1", "L2", "k1", "k2", "k3")
+    assert m.nonnegative == ("rho", "l0_1", "l0_2", "l0_3")
+    assert m.stiffnesses == ("k1", "k2", "k3")
+    assert m.forces == ("F3", "F4", "F3x", "F4x")
+    assert m.shorthands == {"k": ("k1", "k2", "k3"), "l0": ("l0_1", "l0_2", "l0_3")}
+    assert m.moving == ("A3", "A4")
+    assert [spring.name for spring in m.springs] == ["k1", "k2", "k3"]
+    assert tuple(m.parameters)[-4:] == ("l0", *m.free_lengths)
+    assert (m.parameters["k2"].default, m.parameters["F3"].default) == ("k", "0")
+
+
+# Wenger & Chablat, "Kinetostatic analysis and solution classification of a planar tensegrity mechanism", equation (1):
+# half of k times the squared lengths of the springs, and the work of the loads, with each written out in the angles.
+EQUATION_1 = """
+  k1/2*(rho^2 + L2^2 - 2*rho*L2*cos(th2)) + k2/2*(rho^2 + L1^2 - 2*rho*L1*cos(th1))
++ k3/2*((rho - L2*cos(th2) - L1*cos(th1))^2 + (L2*sin(th2) - L1*sin(th1))^2)
+- F3*L1*sin(th1) - F4*L2*sin(th2) - F3x*L1*cos(th1) - F4x*(rho - L2*cos(th2))
+"""
+LENGTHS = """
+rho^2 + L2^2 - 2*rho*L2*cos(th2)
+rho^2 + L1^2 - 2*rho*L1*cos(th1)
+rho^2 + L1^2 + L2^2 - 2*rho*L1*cos(th1) - 2*rho*L2*cos(th2) + 2*L1*L2*cos(th1 + th2)
+"""
+
+
+class InRing:
+    """Trees in the ring of the paper's system."""
+
+    ring = system_from(ptm()).ring
+
+    def constant(self, value: Fraction) -> Any:
+        return self.ring.context.constant(from_fraction(value))
+
+    def parameter(self, name: str) -> Any:
+        return self.ring.parameter(name)
+
+    def cos(self, angle: str) -> Any:
+        return self.ring.cos(angle)
+
+    def sin(self, angle: str) -> Any:
+        return self.ring.sin(angle)
+
+    def value(self, text: str) -> Any:
+        return self.ring.reduce(evaluate(parse(text.replace("\n", " ")), self))
+
+
+@pytest.mark.parametrize("text", [EQUATION_1], ids=["Wenger & Chablat (1), springs and horizontal loads of their own"])
+def test_the_potential_is_the_published_one(text: str) -> None:
+    assert system_from(ptm()).potential == InRing().value(text)
+
+
+def test_squared_lengths_are_the_law_of_cosines() -> None:
+    expected = tuple(InRing().value(line) for line in LENGTHS.strip().splitlines())
+    assert squared_lengths(ptm()) == expected
+
+
+def test_bars_have_the_lengths_of_their_parameters() -> None:
+    geometry = geometry_of(ptm())
+    for (start, end), length in zip(ptm().bars, ("L1", "L2"), strict=True):
+        (x0, y0), (x1, y1) = geometry.nodes[start], geometry.nodes[end]
+        assert geometry.ring.reduce((x1 - x0) ** 2 + (y1 - y0) ** 2) == geometry.ring.parameter(length) ** 2
+
+
+@pytest.mark.parametrize("symmetry", ptm().symmetries, ids=["across", "along"])
+def test_the_gradient_has_the_symmetries(symmetry: dict[str, Tree]) -> None:
+    """Substituted, the energy differs from itself by what no angle is in."""
+    m = ptm()
+    text = EQUATION_1.replace("\n", " ")
+    substituted = InRing().ring.reduce(evaluate(_substituted(parse(text), symmetry), InRing()))
+    difference = substituted - InRing().value(text)
+    count = len(m.without_free_lengths)
+    assert all(not any(exponents[count:]) for exponents, _ in difference.terms())
+
+
+def _substituted(tree: Tree, images: dict[str, Tree]) -> Tree:
+    text = to_text(tree)
+    marked = "".join(f"<{part}>" if part in images else part for part in _words(text))
+    for name, image in images.items():
+        marked = marked.replace(f"<{name}>", f"({to_text(image)})")
+    return parse(marked)
+
+
+def _words(text: str) -> list[str]:
+    words, word = [], ""
+    for character in f"{text} ":
+        if character.isalnum() or character == "_":
+            word += character
+        else:
+            words += [word, character]
+            word = ""
+    return words
+
+
+# ------------------------------------------------------------------------------------------------------- other ones
+
+
+PENDULUM: dict[str, Any] = {
+    "name": "pendulum",
+    "parameters": {
+        "m": {"kind": "force", "default": 1},
+        "c": {"kind": "stiffness", "default": 1, "alias": ["c1"]},
+        "a": {"default": "1/2"},
+    },
+    "unknowns": {"phi": "angle", "x": "length"},
+    "points": {"O": [0, 0], "P": ["x + cos(2*phi)", "a*sin(phi - 3*phi)"]},
+    "springs": [{"between": ["O", "P"], "k": "2*c"}, {"between": ["O", "P"], "k": "c1"},
+                {"between": ["P", "O"], "k": "c1", "free": 1}],
+    "loads": {"P": [0, "-m"]},
+}  # fmt: skip
+
+
+def test_another_mechanism() -> None:
+    m = described(PENDULUM)
+    assert m.variables == ("m", "c", "c1", "a")
+    assert m.shorthands == {}  # c is used itself
+    assert m.kind("a") is Kind.NUMBER
+    assert (m.angles, m.moving) == (("phi",), ("P",))
+    assert [spring.name for spring in m.springs] == ["OP", "c1", "PO"]
+    assert m.parameters["a"].window is None
+    assert value_at(m.springs[0].stiffness, {"c": Fraction(1, 3)}) == Fraction(2, 3)
+
+
+class Angle:
+    """The ring of rational functions at a rational point of each circle."""
+
+    points: ClassVar = {"a": (Fraction(3, 5), Fraction(4, 5)), "b": (Fraction(-5, 13), Fraction(12, 13))}
+
+    def constant(self, value: Fraction) -> Fraction:
+        return value
+
+    def parameter(self, name: str) -> Fraction:
+        raise ExpressionError(f"unknown name '{name}'")
+
+    def cos(self, angle: str) -> Fraction:
+        return self.points[angle][0]
+
+    def sin(self, angle: str) -> Fraction:
+        return self.points[angle][1]
+
+
+@given(st.integers(-6, 6), st.integers(-6, 6))
+def test_addition_theorems(m: int, n: int) -> None:
+    """A multiple of an angle is a power on the unit circle."""
+    expected = _power("a", m)
+    c, s = _power("b", n)
+    expected = (expected[0] * c - expected[1] * s, expected[1] * c + expected[0] * s)
+    found = tuple(evaluate(parse(f"{f}({m}*a + b*2*({n})/2)"), Angle()) for f in ("cos", "sin"))
+    assert found == expected
+
+
+def _power(angle: str, n: int) -> tuple[Fraction, Fraction]:
+    c, s = Fraction(1), Fraction(0)
+    x, y = Angle.points[angle]
+    for _ in range(abs(n)):
+        c, s = c * x - s * (y if n > 0 else -y), s * x + c * (y if n > 0 else -y)
+    return c, s
+
+
+Change = Callable[[dict[str, Any]], object]
+
+
+def change(*path: str | int) -> Callable[[Any], Change]:
+    """The record with something else at a place."""
+
+    def to(value: Any) -> Change:
+        def work(record: dict[str, Any]) -> None:
+            place: Any = record
+            for key in path[:-1]:
+                place = place[key]
+            place[path[-1]] = value
+
+        return work
+
+    return to
+
+
+@pytest.mark.parametrize(
+    ("altered", "key", "part"),
+    [
+        (change("springs", 0, "between")(["A1", "A5"]), "springs.1.between", "there is no point 'A5'; the points"),
+        (change("springs", 1, "between")(["A2", "A2"]), "springs.2.between", "both ends are A2"),
+        (change("springs", 1, "between")(["A2"]), "springs.2.between", "expected two points"),
+        (change("springs", 2)({"between": ["A3", "A4"]}), "springs.3.k", "is missing"),
+        (change("springs", 0, "k")("k4"), "springs.1.k", "unknown name 'k4'; did you mean 'k'?"),
+        (change("springs", 0, "k")("L1*th1"), "springs.1.k", "only points may depend"),
+        (change("springs", 0, "free")("1/(L1)"), "springs.1.free", "division by what is not a number"),
+        (change("points", "A4", 0)("rho - L3*cos(th2)"), "points.A4.1", "'rho - L3*cos(th2)'"),
+        (change("points", "A4", 0)("rho - L2*cos(th3)"), "points.A4.1", "'th3'; did you mean 'th2'? (character 14"),
+        (change("points", "A4", 0)("rho - L2*th2"), "points.A4.1", "stands inside of cos or sin"),
+        (change("points", "A4", 0)("cos(rho)"), "points.A4.1", "rho is not an unknown angle"),
+        (change("points", "A4", 0)("cos(th1/2)"), "points.A4.1", "whole multiples"),
+        (change("points", "A4", 0)("cos(th1*th2)"), "points.A4.1", "numbers only"),
+        (change("points", "A4", 0)("cos(1)"), "points.A4.1", "only multiples of pi/2"),
+        (change("points", "A4", 0)("cos(cos(th1))"), "points.A4.1", "no angle"),
+        (change("points", "A4", 0)("L1^65"), "points.A4.1", "from 0 to 64"),
+        (change("points", "A4", 0)("(L1^64)^2"), "points.A4.1", "degree"),
+        (change("points", "A4", 0)("2^2^2^2^2"), "points.A4.1", "bits"),
+        (change("points", "A4", 0)("L1^-1"), "points.A4.1", "only polynomials can be evaluated"),
+        (change("points", "A4", 0)("(rho"), "points.A4.1", "never closed"),
+        (change("points", "A4", 0)(True), "points.A4.1", "neither an exact number nor"),
+        (change("points", "A4")([0]), "points.A4", "two coordinates"),
+        (change("points", "cos")([0, 0]), "points.cos", "a meaning of its own"),
+        (change("points")([]), "points", "expected a mapping"),
+        (change("parameters", "k", "alias")(["k1", "L1"]), "parameters.k.alias.2", "'L1' is a parameter of its own"),
+        (change("parameters", "l0", "alias")(["k1"]), "parameters.l0.alias.1", "'k1' is given twice"),
+        (change("parameters", "k", "alias")(["k1", "k1"]), "parameters.k.alias.2", "'k1' is given twice"),
+        (change("parameters", "L1", "kind")("lenght"), "parameters.L1.kind", "did you mean 'length'?"),
+        (change("parameters", "L1", "min")(0), "parameters.L1.min", "unknown key"),
+        (change("parameters", "L1", "range")([0]), "parameters.L1.range", "a range, such as"),
+        (change("parameters", "L1", "default")("rho"), "parameters.L1.default", "expected a number"),
+        (change("parameters", "1a")({}), "parameters.1a", "is no name"),
+        (change("unknowns", "rho")("angle"), "unknowns.rho", "given twice"),
+        (change("unknowns", "th1")("turn"), "unknowns.th1", "none of angle, length"),
+        (change("supports", "A9")("pin"), "supports.A9", "there is no point"),
+        (change("supports", "A1")("glue"), "supports.A1", "none of pin, slider x, slider y"),
+        (change("bars", 1)(["A2", "B"]), "bars.2", "there is no point 'B'"),
+        (change("loads", "A3")(["F3x", "F3*cos(th1)"]), "loads.A3.2", "only points may depend"),
+        (change("loads", "B")([0, 0]), "loads.B", "there is no point"),
+        (change("symmetries", 0, "L1")("L9"), "symmetries.1.L1", "unknown name 'L9'"),
+        (change("spring")([]), "spring", "did you mean 'springs'?"),
+        (change("name")("two words"), "name", "is no name"),
+        (lambda record: record.pop("points"), "points", "is missing"),
+    ],
+    ids=lambda value: value if isinstance(value, str) and " " not in value else "",
+)  # fmt: skip
+def test_what_is_wrong_is_named_with_its_key(altered: Change, key: str, part: str) -> None:
+    record = deepcopy(RECORD)
+    altered(record)
+    start = time.perf_counter()
+    with pytest.raises(ConfigError) as caught:
+        described(record)
+    assert time.perf_counter() - start < 1
+    assert caught.value.key == key
+    assert part in caught.value.message
+
+
+def test_a_description_is_known_by_its_contents() -> None:
+    other = {key: entry for key, entry in deepcopy(RECORD).items() if key != "symmetries"}
+    other["springs"][0]["k"] = "2*k1"  # type: ignore[index]
+    changed: Mechanism = described(other)
+    assert changed != ptm()
+    assert described(deepcopy(RECORD)) == ptm()
+    assert system_from(changed).potential != system_from(ptm()).potential
+
+
+@pytest.mark.parametrize("size", [400, 10_000])
+def test_large_descriptions_take_less_than_a_second(size: int) -> None:
+    """What cannot be computed with is refused at once."""
+    number = range(size)
+    record = {
+        "name": "mat",
+        "parameters": {"k": {"kind": "stiffness", "default": 1}},
+        "unknowns": {"t": "angle"},
+        "points": {"O": [0, 1], **{f"P{n}": ["cos(t)", "sin(t)"] for n in number[:-1]}},
+        "springs": [{"between": ["O", f"P{n}"], "k": "k"} for n in number[:-1]],
+        "bars": [["P0", f"P{n}"] for n in number[1:-1]],
+    }
+    start = time.process_time()
+    if size > 400:
+        with pytest.raises(ConfigError, match="10000 entries, more than the 400"):
+            described(record)
+    else:
+        assert len(described(record).springs) == 399
+    assert time.process_time() - start < 1

@@ -1,0 +1,262 @@
+"""X-joints: their geometry, two derivations, counts by other ways, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import math
+from fractions import Fraction
+from itertools import product
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+from flint import fmpq
+from support.programs import needs_msolve, real_solutions
+
+import ptmcad
+from ptmcad.errors import ConfigError
+from ptmcad.exact.models.potential import system_from
+from ptmcad.exact.models.system import at_point, polynomial_at
+from ptmcad.exact.point_system import solutions_at
+from ptmcad.exact.stages import point_values, problem_of
+from ptmcad.model import ClosedMechanism
+from ptmcad.model.xjoint import second_bar
+from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.verification.equations import equations_at
+
+CONFIGS = Path(__file__).resolve().parents[2] / "configs" / "mechanisms"
+
+
+def description(name: str) -> dict[str, Any]:
+    return dict(yaml.safe_load((CONFIGS / f"{name}.yaml").read_text(encoding="utf-8"))["mechanism"])
+
+
+ONE = description("x-joint")
+TWO = description("two-x-joints")
+
+
+def rational_circle(t: Fraction) -> tuple[Fraction, Fraction]:
+    return (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
+
+
+def test_the_second_bar_is_the_first_one_reflected() -> None:
+    """In the bisector of A1 B1, which takes A0 to B0: so the bars stay crossed, and the top is as long as the base."""
+    random = Random(3)
+    for _ in range(20):
+        b = Fraction(random.randrange(1, 20), 7)
+        far = b + Fraction(random.randrange(1, 20), 5)
+        c, s = rational_circle(Fraction(random.randrange(-30, 30), 11))
+        cosine, sine, below = second_bar(far, b, c, s)
+        cosine, sine = cosine / below, sine / below
+        end = (far * c, far * s)  # B1, with A0 = 0 and A1 = (b, 0)
+        across = (end[0] - b, end[1])
+        step = (far * far - b * b) / (across[0] ** 2 + across[1] ** 2)
+        assert (b + far * cosine, far * sine) == (step * across[0], step * across[1])
+        assert (end[0] - b - far * cosine) ** 2 + (end[1] - far * sine) ** 2 == b * b
+        assert cosine**2 + sine**2 == 1
+
+
+PLATE: dict[str, Any] = {
+    "parameters": {"k": {"kind": "stiffness", "default": 1},
+                   "W": {"kind": "force"}, "c": {"kind": "stiffness", "default": 1}, "T": {}},
+    "unknowns": {"u": "angle", "x": "length", "v": "angle"},
+    "points": {"A": [0, 0], "B": ["1/2", 0], "S": ["x", 2]},
+    "x-joint": {"X": {"base": ["A", "B"], "bars": 2, "angles": ["u", "p"], "top": ["C", "D"]},
+                "Y": {"base": ["C", "D"], "bars": "5/3", "angles": ["v", "q"], "top": ["P", "Q"]}},
+    "bodies": {"plate": {"at": "P", "angle": "u + p + v + q", "points": {"R": ["1/4", 1]}}},
+    "springs": [{"between": ["A", "C"], "k": "k"}, {"between": ["S", "R"], "k": "2*k"}],
+    "torsion": [{"angle": "q - v", "k": "c"}],
+    "loads": {"Q": [0, "-W"]},
+    "moments": {"u": "T"},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("mechanism", [ONE, PLATE], ids=["one", "two with a slider"])
+@pytest.mark.slow_cases("two with a slider")
+def test_two_derivations_agree(mechanism: dict[str, Any]) -> None:
+    """The engine's, by quotients of cosines and sines, and the checker's, by complex units."""
+    model = ptmcad.Mechanism(mechanism)
+    assert isinstance(model, ClosedMechanism)
+    values = {n: Fraction(30 + 7 * k, 5 + 2 * k) for k, n in enumerate(model.variables)}
+    theirs, system = equations_at(model, values), system_from(model)
+    numbers = {n: from_fraction(v) for n, v in values.items()}
+    ours = [*at_point(system, numbers)[0]]
+    ours += [polynomial_at(system, p, numbers) for p in (*system.inequalities, *system.stability[:2])]
+    for t in ((2, 7, 5), (-3, 4, -1)):
+        place: dict[str, fmpq] = {}
+        for k, angle in enumerate(model.angles):
+            c, s = rational_circle(Fraction(t[k], t[2]))
+            place[f"cos_{angle}"], place[f"sin_{angle}"] = (from_fraction(v) for v in (c, s))
+        place |= {name: fmpq(t[1], 3) for name in model.reals}
+        mine = []
+        for p in ours:
+            total = fmpq(0)
+            for powers, coefficient in p.items():
+                term = coefficient
+                for x, e in zip(place.values(), powers, strict=True):
+                    term *= x**e
+                total += term
+            mine.append(total)
+        given = (*theirs.equations, *theirs.inequalities, *theirs.stability[:2])
+        assert [p(*(place[name] for name in theirs.names)) for p in given] == mine
+
+
+def energy(unknowns: tuple[np.ndarray, ...], F: float, G: float) -> np.ndarray:
+    """Of a stack of joints with L = 2 and b = 1, with the second bars by reflections."""
+    far, b = 2.0, 1.0
+    base = [np.zeros_like(unknowns[0] + 0j), np.ones_like(unknowns[0] + 0j)]
+    springs = np.zeros_like(unknowns[0])
+    for th in unknowns:
+        ahead = (base[1] - base[0]) / b
+        right = base[0] + far * np.exp(1j * th) * ahead
+        across = right - base[1]
+        left = base[0] + across * (far * far - b * b) / np.abs(across) ** 2
+        springs = springs + (np.abs(left - base[0]) ** 2 + np.abs(right - base[1]) ** 2) / 2
+        base = [left, right]
+    force = F - 1j * G
+    return np.asarray(springs - sum((np.conj(force) * p).real for p in base))
+
+
+def test_one_joint_has_the_minima_along_its_angle() -> None:
+    random = Random(5)
+    th = 2 * math.pi * (np.arange(20001) + 0.37) / 20001
+    seen = set()
+    for _ in range(12):
+        F, G = (Fraction(random.randrange(-100, 100), 97) for _ in range(2))
+        u = energy((th,), float(F), float(G))
+        minima = int(((u < np.roll(u, 1)) & (u < np.roll(u, -1))).sum())
+        found = ptmcad.solve({"mechanism": ONE, "axes": {"F": [-2, 2], "G": [-2, 2]}}, F=F, G=G)
+        assert sum(bool(e.stable) for e in found.equilibria) == minima, (F, G)
+        seen.add(minima)
+    assert seen == {1, 2}
+
+
+@pytest.mark.slow
+def test_two_joints_have_44_complex_solutions() -> None:
+    problem = problem_of(ptmcad.load(CONFIGS / "two-x-joints.yaml"))
+    values = point_values(problem.parameters, (fmpq(29, 97), fmpq(-31, 89)))
+    assert solutions_at(problem.system, values, saturated=True) == (44, 44)
+
+
+def test_a_map_is_stored_with_its_joint_and_verified() -> None:
+    found = ptmcad.classify({"mechanism": ONE, "axes": {"F": [-1, 1], "b": ["1/2", 1]}, "parameters": {"G": "1/3"}})
+    document = json.loads(found.to_json())
+    assert document["slice"]["mechanism"]["x-joint"] == ONE["x-joint"]
+    again = ptmcad.RegionMap.from_json(found.to_json())
+    assert again == found
+    assert ptmcad.verify(again).ok
+
+
+@pytest.mark.parametrize(
+    ("change", "key", "said"),
+    [
+        ({"x-joint": []}, "x-joint", "expected a mapping"),
+        ({"x-joint": {"X": {"base": ["A", "B"], "bars": "L"}}}, "x-joint.X.top", "is missing"),
+        ({"base": ["A", "Z"]}, "X.base", "no point 'Z'"),
+        ({"base": ["B", "A"]}, "X.base", "a length is positive"),
+        ({"bars": 1}, "X.bars", "longer or shorter than its base"),
+        ({"bars": 0}, "X.bars", "a length is positive, but this is 0"),
+        ({"bars": -2}, "X.bars", "a length is positive, but this is -2"),
+        ({"angles": ["th", "th"]}, "X.angles.2", "is given twice"),
+        ({"angles": ["F", "psi"]}, "X.angles.1", "no unknown angle"),
+        ({"angles": "th"}, "X.angles", "two names"),
+        ({"top": ["C", "A"]}, "X.top.2", "is given twice"),
+        ({"top": ["C", "C"]}, "X.top.2", "is given twice"),
+        ({"mechanism": {"points": {"A": [0, 0], "B": [1, 1]}}}, "X.base", "on one level"),
+        ({"mechanism": {"points": {"A": [0, 0], "B": ["cos(th)", 0]}}}, "X.base", "on one level"),
+        ({"mechanism": {"springs": [{"between": ["A", "C"], "k": 1, "free": 1}]}}, "springs.1.free", "free lengths"),
+        ({"mechanism": {"closing": [{"between": ["A", "C"], "length": 1}]}}, "closing", "not computed yet"),
+        ({"mechanism": {"symmetries": [{"th": "-th", "F": "-F"}]}}, "symmetries", "leave them out"),
+    ],
+    ids=str,
+)
+def test_what_is_wrong_is_told_by_its_key(change: dict[str, Any], key: str, said: str) -> None:
+    joint = {**ONE["x-joint"]["X"], **{k: v for k, v in change.items() if k not in ("mechanism", "x-joint")}}
+    numbers = {"parameters": {**ONE["parameters"], "b": {"default": 1}}} if "base" in change or "bars" in change else {}
+    points = {"points": {"A": [0, 0], "B": [1, 0]}} if numbers else {}
+    record = {**ONE, **numbers, **points, "x-joint": {"X": joint}, **change.get("mechanism", {})}
+    if "x-joint" in change:
+        record["x-joint"] = change["x-joint"]
+    with pytest.raises(ConfigError) as caught:
+        ptmcad.Mechanism(record)
+    wrong = [fault for fault in caught.value.faults if (fault.key or "").endswith(key)]
+    assert any(said in fault.message for fault in wrong), [(f.key, f.message) for f in caught.value.faults]
+
+
+@pytest.mark.parametrize(
+    ("change", "key"),
+    [
+        ({"bars": None}, "bars"),
+        ({"base": ["A", "Z"]}, "base"),
+        ({"angles": ["th"]}, "angles"),
+        ({"angles": ["th", "psi", "chi"]}, "angles"),
+        ({"top": ["C", "D", "C"]}, "top"),
+    ],
+    ids=str,
+)
+def test_one_fault_of_a_joint_is_told_alone(change: dict[str, Any], key: str) -> None:
+    """Springs and loads that name the points of its top are not to blame."""
+    joint = {k: v for k, v in {**ONE["x-joint"]["X"], **change}.items() if v is not None}
+    with pytest.raises(ConfigError) as caught:
+        ptmcad.Mechanism({**ONE, "x-joint": {"X": joint}})
+    assert [fault.key for fault in caught.value.faults] == [f"mechanism.x-joint.X.{key}"]
+
+
+def test_bars_are_not_as_long_as_the_base_all_over_the_window() -> None:
+    with pytest.raises(ConfigError, match=r"x-joint.X.bars: a length must be positive in the whole window"):
+        ptmcad.classify({"mechanism": ONE, "axes": {"F": [-1, 1], "b": [1, 3]}})
+
+
+UNITS = ("x1", "y1", "u1", "v1", "x2", "y2", "u2", "v2")
+"""Cosine and sine of both bars of the two joints."""
+
+
+def written_out(F: Fraction, G: Fraction) -> list[str]:
+    """Equations of the stack for msolve, with the second bars as further unknowns, and their rates of turning."""
+    import sympy
+
+    x1, y1, u1, v1, x2, y2, u2, v2 = (sympy.Symbol(n) for n in UNITS)
+    far, b = sympy.Integer(2), sympy.Integer(1)
+    joints = ((x1, y1, u1, v1), (x2, y2, u2, v2))
+    middle = [sympy.Matrix([far * (x + u) / 2, far * (y + v) / 2]) for x, y, u, v in joints]
+    c, s = -(x1 * u1 - y1 * v1), -(y1 * u1 + x1 * v1)
+    top = middle[0] + sympy.Matrix([[c, -s], [s, c]]) * middle[1]
+    across, down = (sympy.Rational(v.numerator, v.denominator) for v in (F, G))
+    work = 2 * (across * top[0] - down * top[1])
+    total = far * b * (u1 - x1 + u2 - x2) - work
+    equations = []
+    for x, y, u, v in joints:
+        rate = (far**2 + b**2 + 2 * far * b * u) / (far**2 - b**2)
+        slope = x * sympy.diff(total, y) - y * sympy.diff(total, x)
+        equations.append(slope + rate * (u * sympy.diff(total, v) - v * sympy.diff(total, u)))
+        equations += [x**2 + y**2 - 1, u**2 + v**2 - 1]
+        equations += [far * u - b * (x * u - y * v) - far * x + b, far * v - b * (y * u + x * v) - far * y]
+    gens = [sympy.Symbol(n) for n in UNITS]
+    return [str(sympy.Poly(e, *gens).clear_denoms()[1].as_expr()).replace("**", "^") for e in equations]
+
+
+@pytest.mark.slow
+@needs_msolve
+def test_two_joints_have_as_many_equilibria_as_msolve_finds() -> None:
+    random = Random(11)
+    for _ in range(12):
+        F, G = (Fraction(random.randrange(-300, 300), 101) for _ in range(2))
+        found = ptmcad.solve({"mechanism": TWO, "axes": {"F": [-4, 4], "G": [-4, 4]}}, F=F, G=G)
+        assert len(found.equilibria) == real_solutions(list(UNITS), written_out(F, G)), (F, G)
+
+
+@pytest.mark.slow
+def test_two_joints_have_the_minima_over_their_angles() -> None:
+    random = Random(13)
+    n = 500
+    th = 2 * math.pi * (np.arange(n) + 0.37) / n
+    for _ in range(4):
+        F, G = (Fraction(random.randrange(-300, 300), 101) for _ in range(2))
+        u = energy(tuple(np.meshgrid(th, th)), float(F), float(G))
+        steps = [step for step in product((-1, 0, 1), repeat=2) if step != (0, 0)]
+        minima = int(np.all([u < np.roll(u, step, (0, 1)) for step in steps], axis=0).sum())
+        found = ptmcad.solve({"mechanism": TWO, "axes": {"F": [-4, 4], "G": [-4, 4]}}, F=F, G=G)
+        assert sum(bool(e.stable) for e in found.equilibria) == minima, (F, G)
