@@ -112,10 +112,10 @@ def check(slice: Slice, sized: bool = True) -> Check:
     at = (sample[0], sample[1])
     if is_certified(slice, "auto"):
         cost, flat = _CERTIFIED, flat_loops(slice)
-        if isinstance(slice.model, ClosedMechanism) and slice.model.tangent:
+        if isinstance(slice.model, ClosedMechanism):
             from ptmcad.certified.plain.problem import check_loops
 
-            check_loops(slice.model, slice)  # however long the rest would take
+            check_loops(slice)  # however long the rest would take
         try:
             if not _is_large(slice):
                 _check_certified(slice)

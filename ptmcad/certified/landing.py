@@ -22,12 +22,12 @@ from ptmcad.certified.arb_isolation import Box, newton, refined
 from ptmcad.certified.continuation import Branches, Place, branches, carried, located, over
 from ptmcad.certified.parameters import parameter_formulas
 from ptmcad.certified.plain.chart import determinant
-from ptmcad.certified.potential import potential
 from ptmcad.certified.system import System, system
 from ptmcad.formulas.balls import run_arb
 from ptmcad.formulas.graph import Graph
 from ptmcad.formulas.tape import Tape, record
 from ptmcad.model import Mechanism
+from ptmcad.model.compile import compiled_with
 from ptmcad.question.slice import Slice
 from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import Enclosure
@@ -69,10 +69,12 @@ def line_of(slice: Slice, mechanism: Mechanism, varying: int, fixed: Fraction) -
     """The formulas of a slice of a mechanism, along the axis number ``varying`` at a value of the other one."""
     graph = Graph()
     unknowns = {name: graph.variable(number) for number, name in enumerate(mechanism.unknowns, _FIRST)}
-    at = potential(mechanism, parameter_formulas(graph, slice), unknowns)
-    slopes = [graph.derivative(at.energy, v.variable) for v in unknowns.values()]
+    at = compiled_with(mechanism, parameter_formulas(graph, slice) | unknowns)
+    energy = at.energy()
+    assert energy is not None
+    slopes = [graph.derivative(energy, v.variable) for v in unknowns.values()]
     heights = [at.points[name][1] for name in mechanism.rising]
-    numbers = record([[at.energy, graph.derivative(at.energy, varying), *heights]])
+    numbers = record([[energy, graph.derivative(energy, varying), *heights]])
     variables = [v.variable for v in unknowns.values()]
     hessian = tuple(tuple(graph.derivative(f, k) for k in variables) for f in slopes)
     folds = system([*slopes, determinant(hessian)], [varying, *variables])

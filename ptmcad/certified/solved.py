@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from ptmcad.formulas.graph import Formula, Operation
+from ptmcad.formulas.values import nodes_of, substituted
 
 
 class Quotient(NamedTuple):
@@ -35,7 +36,7 @@ def quotients(vanishing: Iterable[Formula], axes: Iterable[int]) -> tuple[Quotie
 
 def occurs(variable: int, formula: Formula) -> bool:
     """Whether the formula has the variable in it."""
-    return any(n.operation is Operation.VARIABLE and n.variable == variable for n in _nodes(formula))
+    return any(n.operation is Operation.VARIABLE and n.variable == variable for n in nodes_of([formula]))
 
 
 def _quotient(formula: Formula, axis: int) -> Iterator[Quotient]:
@@ -51,58 +52,6 @@ def _quotient(formula: Formula, axis: int) -> Iterator[Quotient]:
 def _without(variable: int, formula: Formula) -> Formula | None:
     """The formula with zero in place of the variable; None where that would be a division by zero."""
     try:
-        return with_formula(variable, formula.graph.constant(0), formula)
+        return substituted(formula, {variable: formula.graph.constant(0)})
     except ZeroDivisionError:
         return None
-
-
-def with_formula(variable: int, value: Formula, formula: Formula) -> Formula:
-    """The formula with another one in place of a variable.
-
-    Raises
-    ------
-    ZeroDivisionError
-        Where something would be divided by the constant zero.
-    """
-    made: dict[int, Formula] = {}
-    for node in _nodes(formula):
-        a, b = (None if operand is None else made[operand.number] for operand in (node.a, node.b))
-        if node.operation is Operation.VARIABLE and node.variable == variable:
-            made[node.number] = value
-        elif (a, b) == (node.a, node.b):
-            made[node.number] = node
-        elif node.operation is Operation.DIVIDE and b is not None and b.value == 0:
-            raise ZeroDivisionError
-        else:
-            made[node.number] = _again(node, a, b)
-    return made[formula.number]
-
-
-def _again(node: Formula, a: Formula | None, b: Formula | None) -> Formula:
-    """The node's operation on other operands, with constants folded."""
-    assert a is not None
-    operation = node.operation
-    if b is None:
-        simple = {Operation.NEGATE: a.__neg__, Operation.SQUARE: a.squared, Operation.SINE: a.sin}
-        return simple.get(operation, a.cos)()
-    if operation is Operation.ADD:
-        return a + b
-    if operation is Operation.SUBTRACT:
-        return a - b
-    if operation is Operation.MULTIPLY:
-        return a * b
-    if operation is Operation.DIVIDE:
-        return a / b
-    return node.graph.node(operation, a, b)
-
-
-def _nodes(formula: Formula) -> list[Formula]:
-    """All nodes that the formula needs; operands have smaller numbers and come first."""
-    found: dict[int, Formula] = {}
-    waiting = [formula]
-    while waiting:
-        node = waiting.pop()
-        if node.number not in found:
-            found[node.number] = node
-            waiting += [operand for operand in (node.a, node.b) if operand is not None]
-    return [found[number] for number in sorted(found)]

@@ -54,3 +54,8 @@ def mechanism_in(model: Model) -> Mechanism | None:
     if isinstance(model, ClosedMechanism):
         return model.whole
     return model if isinstance(model, Mechanism) else None
+
+
+def equations_in(model: Model) -> System | None:
+    """The system that a model is, also in the place of closed loops; None of another mechanism."""
+    return model if isinstance(model, System) else None

@@ -16,9 +16,8 @@ from flint import arb, ctx, fmpq_mat, fmpz_mat
 from ptmcad.answer.regionmap import Solution
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.distinct import FULL_TURN
-from ptmcad.certified.plain.ends import Vector
 from ptmcad.certified.plain.problem import FIRST, Condition, Problem
-from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial
+from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial, Vector
 from ptmcad.certified.points import PRECISIONS, PointCount, radius_between
 from ptmcad.certified.system import System
 from ptmcad.formulas.balls import ball

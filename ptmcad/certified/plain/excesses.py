@@ -8,10 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ptmcad.certified.plain.ends import springs_of
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
-from ptmcad.model import Mechanism
-from ptmcad.model.evaluate import evaluate
+from ptmcad.model import Model, ptm
+from ptmcad.model.compile import CompiledSystem, LinearSpring
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,9 +35,14 @@ class Excess:
         return f"the length of spring {self.spring} less its free length"
 
 
-def excesses(mechanism: Mechanism, ring: Harmonics) -> Iterator[Excess]:
+def name_of(spring: LinearSpring, model: Model) -> str:
+    """The paper's springs are named by their ends there, as in all answers."""
+    return f"{spring.start}{spring.end}" if model == ptm() else spring.name
+
+
+def excesses(model: Model, system: CompiledSystem, ring: Harmonics) -> Iterator[Excess]:
     """One for each spring; lengths that are constant are in no description."""
-    for spring, (dx, dy) in springs_of(mechanism, ring):
-        free = evaluate(spring.free, ring)
+    for spring in system.springs:
+        dx, dy, free = system.values((*spring.difference, spring.free), ring)
         value = dx * dx + dy * dy - free * free
-        yield Excess(spring.name, value, (value,) if free.terms else tuple(d for d in (dx, dy) if d.terms))
+        yield Excess(name_of(spring, model), value, (value,) if free.terms else tuple(d for d in (dx, dy) if d.terms))

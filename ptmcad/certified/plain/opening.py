@@ -10,7 +10,7 @@ is differentiated; then their ordinary formulas take their places.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import comb
@@ -23,8 +23,8 @@ from ptmcad.certified.plain.frame import Frame
 from ptmcad.certified.plain.involution import image_of
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial
-from ptmcad.certified.solved import with_formula
 from ptmcad.formulas.graph import Formula, Graph, inverse_length, length
+from ptmcad.formulas.values import substituted
 from ptmcad.text.expressions import Expression, constant
 
 QUARTER = (0.0, 1.5708)
@@ -260,7 +260,7 @@ def stiffness(at: Coordinates, vectors: Sequence[tuple[Formula, Formula]]) -> Fo
     springs = list(_springs(at))
     slope, _ = _slopes(at, springs)
     here = at.graph.constant(int(at.is_turning))
-    return placed(
+    return substituted(
         -slope if at.is_turning else slope,
         {at.coordinate.variable: here} | dict.fromkeys(at.nears(), at.graph.constant(1)) | _lengths(springs, vectors),
     )
@@ -318,7 +318,7 @@ def opening(at: Coordinates, vectors: Sequence[tuple[Formula, Formula]]) -> Open
     values = {at.coordinate.variable: at.value} | at.nears() | _lengths(springs, vectors)
 
     def put(f: Formula, *by: Formula) -> Formula:
-        return placed(derivative(f, *by) if by else f, values)
+        return substituted(derivative(f, *by) if by else f, values)
 
     return Opening(
         put(slope),
@@ -375,10 +375,3 @@ def _share(at: Coordinates, spring: _Spring, odd: Sequence[tuple[int, int]]) -> 
     # 1/l = (l' + l - r M/(l + l'))/(2 l l'), with the squares N + r M and N - r M
     tilt = spring.share * spring.parts.odd
     return spring.inverse * (slope.odd * (_HALF / spring.share) - slope.even * tilt)
-
-
-def placed(f: Formula, values: Mapping[int, Formula]) -> Formula:
-    """The formula with others in place of variables."""
-    for variable, value in values.items():
-        f = with_formula(variable, value, f)
-    return f

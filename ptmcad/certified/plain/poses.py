@@ -10,7 +10,7 @@ boxes there may be more. Every number settles the digits asked for or, where it 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt
 
@@ -25,12 +25,12 @@ from ptmcad.certified.plain.points import BranchCounter, PlainCounter, plain_cou
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS_AT_POINTS
 from ptmcad.certified.plain.rational import Point, exact_eigenvalues, exact_values, rational_point
 from ptmcad.certified.plain.spectrum import ordered_eigenvalues
-from ptmcad.certified.potential import potential
 from ptmcad.formulas.balls import ball, run_arb
-from ptmcad.formulas.graph import Graph
+from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.formulas.tape import Tape, record
-from ptmcad.model import ClosedMechanism, Mechanism, Model, ptm
-from ptmcad.model.evaluate import value_at
+from ptmcad.model import Mechanism, Model, ptm
+from ptmcad.model.closed import mechanism_in
+from ptmcad.model.compile import CompiledSystem, compiled_with
 from ptmcad.model.fourbars import flat_everywhere
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Axis, Count, Slice
@@ -43,8 +43,6 @@ _PEAKS = {
     1: f"the energy has a peak where spring {_PEAKED.start}{_PEAKED.end} has no length too",
     2: f"the energy has two peaks where spring {_PEAKED.start}{_PEAKED.end} has no length too",
 }
-Written = tuple[Tape, tuple[str, ...]]
-"""A tape and the names of its first outputs."""
 MAX_DOUBLINGS = 4
 """Of the bits, for a number that is not distinguished from zero."""
 NOT_TOLD = (
@@ -54,7 +52,7 @@ NOT_TOLD = (
 NOT_TOLD_OF_LOOPS = NOT_TOLD.replace("or a spring", "a loop is nearly flat, or a spring")
 
 
-def plain_poses(model: Mechanism | ClosedMechanism, parameters: Mapping[str, Fraction], digits: int) -> Poses:
+def plain_poses(model: Model, parameters: Mapping[str, Fraction], digits: int) -> Poses:
     """All equilibria of a mechanism.
 
     Parameters
@@ -69,16 +67,13 @@ def plain_poses(model: Mechanism | ClosedMechanism, parameters: Mapping[str, Fra
     """
     slice = point_slice(model, parameters)
     prove_slice(slice)
-    mechanism, count, reason = model, Count.INDEX, NOT_TOLD
-    if isinstance(model, ClosedMechanism):
-        mechanism, count, reason = model.mechanism, Count.TOTAL, NOT_TOLD_OF_LOOPS
-        if flat := flat_everywhere(mechanism, slice.parameters):
-            loop, fold = flat
-            return Poses(model, parameters, (), Status.UNDECIDED, digits, 0, loop.in_short(fold))
-    assert isinstance(mechanism, Mechanism)
+    at = numbers_at(model, parameters)
+    if flat := flat_everywhere(at.mechanism, slice.parameters):
+        loop, fold = flat
+        return Poses(model, parameters, (), Status.UNDECIDED, digits, 0, loop.in_short(fold))
+    count, reason = (Count.TOTAL, NOT_TOLD_OF_LOOPS) if at.is_closed else (Count.INDEX, NOT_TOLD)
     zeros, unclear = solutions_at(plain_counter(slice, MAX_UNKNOWNS_AT_POINTS), count)
-    written = tape_of(mechanism, parameters)
-    poses = [pose_at(mechanism, parameters, written, at, solution, digits) for at, solution in zeros]
+    poses = [pose_at(at, counter, solution, digits) for counter, solution in zeros]
     remark = _PEAKS.get(peaks(parameters).count, "") if model == ptm() else ""
     return answered(model, parameters, digits, _ordered(poses), unclear, reason, remark)
 
@@ -153,61 +148,63 @@ def point_slice(model: Model, parameters: Mapping[str, Fraction]) -> Slice:
     return Slice("point", model, (Axis("x", *unit), Axis("y", *unit)), constants, Count.INDEX)
 
 
-def tape_of(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> Written:
-    """Everything asked of a pose as a tape, and the names of its outputs; the Hessian's entries come row by row, and
-    then the energy's slopes.
+@dataclass(frozen=True, slots=True)
+class Numbers:
+    """Everything asked of a pose of a mechanism at values of its parameters.
 
-    Without a potential there is none of these; with closed loops an energy alone, whose slopes are not zero.
+    Attributes
+    ----------
+    system : compiled with these values.
+    tape : the numbers by ``names``; the Hessian's entries row by row; the energy's slopes. Without a potential there
+        is none of the latter two, nor with closed loops, where slopes of the energy are not zero.
     """
+
+    mechanism: Mechanism
+    parameters: Mapping[str, Fraction]
+    system: CompiledSystem
+    names: tuple[str, ...]
+    tape: Tape
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether loops are closed."""
+        return bool(self.system.tangent)
+
+
+def numbers_at(model: Model, parameters: Mapping[str, Fraction]) -> Numbers:
+    """Of a mechanism, as formulas in its unknowns."""
+    mechanism = mechanism_in(model)
+    assert mechanism is not None
     graph = Graph()
     unknowns = {name: graph.variable(number) for number, name in enumerate(mechanism.unknowns, FIRST)}
-    at = potential(mechanism, {name: graph.constant(value) for name, value in parameters.items()}, unknowns)
-    found = {f"cos {angle}": unknowns[angle].cos() for angle in mechanism.angles}
-    found |= {f"sin {angle}": unknowns[angle].sin() for angle in mechanism.angles}
-    found |= {f"real {name}": unknowns[name] for name in mechanism.reals}
-    found |= {f"{name} {n}": coordinate for name, pair in at.points.items() for n, coordinate in enumerate(pair)}
-    found |= {f"length {n}": length for n, length in enumerate(at.lengths)}
-    found |= {f"force {n}": force for n, force in enumerate(at.forces)}
-    for n, (spring, (cosine, sine)) in enumerate(zip(mechanism.torsion, at.deflections, strict=True)):
-        moment = value_at(spring.stiffness, parameters) * sine
-        found |= {f"torsion cos {n}": cosine, f"torsion sin {n}": sine, f"torsion moment {n}": moment}
-    if not mechanism.has_potential:
-        return record([list(found.values()), [], []]), tuple(found)
-    found["energy"] = at.energy
-    if mechanism.closing:
-        return record([list(found.values()), [], []]), tuple(found)
-    slopes = [graph.derivative(at.energy, v.variable) for v in unknowns.values()]
-    hessian = [graph.derivative(slope, v.variable) for slope in slopes for v in unknowns.values()]
-    return record([list(found.values()), hessian, slopes]), tuple(found)
+    system = compiled_with(model, {name: graph.constant(value) for name, value in parameters.items()} | unknowns)
+    found = {f"{angle}.cos": unknowns[angle].cos() for angle in mechanism.angles}
+    found |= {f"{angle}.sin": unknowns[angle].sin() for angle in mechanism.angles}
+    found |= {name: unknowns[name] for name in mechanism.reals} | system.quantities
+    hessian, slopes = list[Formula](), list[Formula]()
+    if (energy := system.energy()) is not None:
+        found["energy"] = energy
+        if system.has_index:
+            slopes = [graph.derivative(energy, v.variable) for v in unknowns.values()]
+            hessian = [graph.derivative(slope, v.variable) for slope in slopes for v in unknowns.values()]
+    tape = record([list(found.values()), hessian, slopes])
+    return Numbers(mechanism, parameters, system, tuple(found), tape)
 
 
-def pose_at(
-    mechanism: Mechanism,
-    parameters: Mapping[str, Fraction],
-    written: Written,
-    counter: PlainCounter,
-    solution: Solution,
-    digits: int,
-) -> tuple[Pose, int]:
+def pose_at(at: Numbers, counter: PlainCounter, solution: Solution, digits: int) -> tuple[Pose, int]:
     """The pose with all numbers settled or, where they may be zero, enclosed; and the bits that this took."""
-    numbers, bits = measured(mechanism, parameters, written, lambda bits: boxes_of(counter, solution, bits), digits)
-    has_index = mechanism.has_potential and solution.signs and not mechanism.closing
-    index = solution.signs.count("-") if has_index else None
-    flat = all(numbers[f"{name} 1"].exact == 0 for name in mechanism.points)
-    pose = assembled(mechanism, parameters, numbers, index, flat)
-    if mechanism.closing:
-        stable = solution.signs == "+" if solution.signs else None
-        pose = replace(pose, stable=stable, admissible=is_tense(stable, pose.springs))
-    return pose, bits
+    numbers, bits = measured(at, lambda bits: boxes_of(counter, solution, bits), digits)
+    index = stable = None
+    if solution.signs and at.is_closed:
+        stable = solution.signs == "+"
+    elif solution.signs and at.system.has_index:
+        index = solution.signs.count("-")
+        stable = index == 0
+    return assembled(at, numbers, index, stable), bits
 
 
 def measured(
-    mechanism: Mechanism,
-    parameters: Mapping[str, Fraction],
-    written: Written,
-    boxes: Callable[[int], tuple[Box, Box]],
-    digits: int,
-    doublings: int = MAX_DOUBLINGS,
+    at: Numbers, boxes: Callable[[int], tuple[Box, Box]], digits: int, doublings: int = MAX_DOUBLINGS
 ) -> tuple[dict[str, Enclosure], int]:
     """The numbers of a pose by name, settled or, where they may be zero, enclosed; and the bits that this took.
 
@@ -215,19 +212,19 @@ def measured(
     ----------
     boxes : with so many bits, one that holds the solution and no other one, and a narrow one.
     """
-    tape, _ = written
-    bits, at = 32 + 2 * digits, Point()
-    found = _exact_numbers(mechanism, written, at)
+    unknowns = at.mechanism.unknowns
+    bits, point = 32 + 2 * digits, Point()
+    found = _exact_numbers(at, point)
     for attempt in range(doublings):
         bits *= 2
         whole, box = boxes(bits)
         with ctx.workprec(bits):
-            if attempt > 0 and not mechanism.closing and len(at) < len(mechanism.unknowns):
+            if attempt > 0 and not at.is_closed and len(point) < len(unknowns):
                 # some number is not settled: it may be a short one, or a longer one with more bits
-                held, around = (dict(zip(mechanism.unknowns, some[FIRST:], strict=True)) for some in (box, whole))
-                at = rational_point(mechanism, parameters, tape, held, around) or at
-                found |= _exact_numbers(mechanism, written, at)
-            numbers = _numbers_of(mechanism, written, run_arb(tape, box, bits), found)
+                held, around = (dict(zip(unknowns, some[FIRST:], strict=True)) for some in (box, whole))
+                point = rational_point(at.mechanism, at.parameters, at.tape, held, around) or point
+                found |= _exact_numbers(at, point)
+            numbers = _numbers_of(at, run_arb(at.tape, box, bits), found)
             waiting = [name for name, number in numbers.items() if name not in found or number.is_exact()]
             settled = {name: _proved_digits(numbers[name], digits, attempt) for name in waiting}
         found |= {name: number for name, number in settled.items() if number is not None}
@@ -236,21 +233,18 @@ def measured(
     return _all_bounded(found, numbers), bits
 
 
-def _exact_numbers(mechanism: Mechanism, written: Written, at: Point) -> dict[str, Enclosure]:
+def _exact_numbers(at: Numbers, point: Point) -> dict[str, Enclosure]:
     """The numbers that are rational by these unknowns."""
-    tape, names = written
-    values = exact_values(tape, at)
-    known, entries = ([values[int(place)] for place in outputs] for outputs in tape.outputs[:2])
-    found = {name: value for name, value in zip(names, known, strict=True) if value is not None}
+    values = exact_values(at.tape, point)
+    known, entries = ([values[int(place)] for place in outputs] for outputs in at.tape.outputs[:2])
+    found = {name: value for name, value in zip(at.names, known, strict=True) if value is not None}
     size = isqrt(len(entries))
     rows = [entries[k : k + size] for k in range(0, len(entries), size or 1)]
     found |= {f"eigenvalue {n}": value for n, value in enumerate(exact_eigenvalues(rows))}
     return {name: Enclosure(value, value) for name, value in found.items()}
 
 
-def _numbers_of(
-    mechanism: Mechanism, written: Written, values: Sequence[arb], found: Mapping[str, Enclosure]
-) -> dict[str, arb]:
+def _numbers_of(at: Numbers, values: Sequence[arb], found: Mapping[str, Enclosure]) -> dict[str, arb]:
     """The numbers of a pose by name, with its angles and deflections in radians and degrees, and eigenvalues.
 
     Parameters
@@ -258,16 +252,15 @@ def _numbers_of(
     values : on the tape.
     found : has an angle's cosine or sine, where it is known to be zero.
     """
-    tape, names = written
-    numbers = {name: values[int(place)] for name, place in zip(names, tape.outputs[0], strict=True)}
-    size = isqrt(len(tape.outputs[1]))
-    hessian = arb_mat(size, size, [values[int(place)] for place in tape.outputs[1]])
-    turned = [(f"cos {angle}", f"sin {angle}", angle, f"degrees {angle}") for angle in mechanism.angles]
-    torsion = [f"torsion {{}} {n}".format for n in range(len(mechanism.torsion))]
-    turned += [(name("cos"), name("sin"), name("deflection"), name("degrees")) for name in torsion]
-    for cosine, sine, radians, degrees in turned:
-        numbers[radians], numbers[degrees] = _angle(numbers[cosine], numbers[sine], found.get(cosine), found.get(sine))
-    numbers = {name: number for name, number in numbers.items() if not name.startswith(("torsion cos", "torsion sin"))}
+    numbers = {name: values[int(place)] for name, place in zip(at.names, at.tape.outputs[0], strict=True)}
+    size = isqrt(len(at.tape.outputs[1]))
+    hessian = arb_mat(size, size, [values[int(place)] for place in at.tape.outputs[1]])
+    for name in [name.removesuffix(".cos") for name in at.names if name.endswith(".cos")]:
+        cosine, sine = f"{name}.cos", f"{name}.sin"
+        turned = _angle(numbers[cosine], numbers[sine], found.get(cosine), found.get(sine))
+        numbers[f"{name}.radians"], numbers[f"{name}.degrees"] = turned
+        if name not in at.mechanism.angles:  # of a deflection they are not asked for
+            del numbers[cosine], numbers[sine]
     return numbers | {f"eigenvalue {n}": value for n, value in enumerate(ordered_eigenvalues(hessian))}
 
 
@@ -315,56 +308,59 @@ def is_tense(stable: bool | None, springs: Sequence[Spring]) -> bool | None:
     return True if stable and all(force.low > 0 for force in forces) else None
 
 
-def assembled(
-    mechanism: Mechanism,
-    parameters: Mapping[str, Fraction],
-    at: Mapping[str, Enclosure],
-    index: int | None,
-    flat: bool = False,
-) -> Pose:
+def assembled(at: Numbers, numbers: Mapping[str, Enclosure], index: int | None, stable: bool | None) -> Pose:
     """The pose of these numbers by name, whose Hessian was proved to have so many negative eigenvalues.
 
     Parameters
     ----------
     index : None where there is no Hessian, or its index is not decided.
+    stable : None where that is not decided.
     """
+    mechanism, system = at.mechanism, at.system
     springs = tuple(
         Spring(
             spring.name,
             spring.start,
             spring.end,
-            value_at(spring.stiffness, parameters),
-            at[f"length {n}"],
-            at[f"force {n}"],
-            value_at(spring.free, parameters),
+            _number(spring.stiffness),
+            numbers[f"{spring.name}.length"],
+            numbers[f"{spring.name}.force"],
+            _number(spring.free),
         )
-        for n, spring in enumerate(mechanism.springs)
+        for spring in system.springs
     )
     torsion = tuple(
         TorsionSpring(
             spring.name,
-            value_at(spring.stiffness, parameters),
-            *(at[f"torsion {what} {n}"] for what in ("deflection", "degrees", "moment")),
+            _number(spring.stiffness),
+            *(numbers[f"{spring.name}.{what}"] for what in ("deflection.radians", "deflection.degrees", "moment")),
         )
-        for n, spring in enumerate(mechanism.torsion)
+        for spring in system.torsion
     )
-    stable = None if index is None else index == 0
-    eigenvalues = tuple(at[f"eigenvalue {n}"] for n in range(len(mechanism.unknowns)) if f"eigenvalue {n}" in at)
+    eigenvalues = tuple(
+        numbers[f"eigenvalue {n}"] for n in range(len(mechanism.unknowns)) if f"eigenvalue {n}" in numbers
+    )
     if index is not None and not all((v.low < 0) if n < index else (v.high > 0) for n, v in enumerate(eigenvalues)):
         raise ArithmeticError("the Hessian's eigenvalues contradict the index that was proved")
+    nodes = {name: (numbers[f"{name}.x"], numbers[f"{name}.y"]) for name in mechanism.points}
     return Pose(
-        angles=tuple(at[angle] for angle in mechanism.angles),
-        degrees=tuple(at[f"degrees {angle}"] for angle in mechanism.angles),
-        cosines_sines=tuple(at[f"{part} {angle}"] for angle in mechanism.angles for part in ("cos", "sin")),
-        nodes={name: (at[f"{name} 0"], at[f"{name} 1"]) for name in mechanism.points},
+        angles=tuple(numbers[f"{angle}.radians"] for angle in mechanism.angles),
+        degrees=tuple(numbers[f"{angle}.degrees"] for angle in mechanism.angles),
+        cosines_sines=tuple(numbers[f"{angle}.{part}"] for angle in mechanism.angles for part in ("cos", "sin")),
+        nodes=nodes,
         springs=springs,
-        energy=at.get("energy"),
+        energy=numbers.get("energy"),
         eigenvalues=eigenvalues,
         multiplicity=1,
         index=index,
         stable=stable,
-        flat=flat,
-        admissible=is_tense(stable, springs) if mechanism.has_potential else None,
-        reals=tuple(at[f"real {name}"] for name in mechanism.reals),
+        flat=all(y.exact == 0 for _, y in nodes.values()),
+        admissible=is_tense(stable, springs) if system.has_energy or at.is_closed else None,
+        reals=tuple(numbers[name] for name in mechanism.reals),
         torsion=torsion,
     )
+
+
+def _number(formula: Formula) -> Fraction:
+    assert formula.value is not None
+    return formula.value

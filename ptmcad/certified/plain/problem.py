@@ -9,25 +9,23 @@ apart has the energy k |d|^2/2 - k l0 |d| + k l0^2/2, so that K = k l0.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
 
 from ptmcad.certified.parameters import expression_formula
-from ptmcad.certified.plain.ends import Vector, springs_of
-from ptmcad.certified.plain.excesses import Excess, excesses
+from ptmcad.certified.plain.excesses import Excess, excesses, name_of
 from ptmcad.certified.plain.parallel import shares
-from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
+from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial, Vector
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError
 from ptmcad.formulas.graph import Formula, Graph, length
-from ptmcad.model import ClosedMechanism, Kind, Mechanism, System
-from ptmcad.model.energy import points_in, with_springs
-from ptmcad.model.evaluate import evaluate
+from ptmcad.model import Kind
+from ptmcad.model.closed import equations_in, mechanism_in
+from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.model.fourbars import closed_by, flat_everywhere
-from ptmcad.model.work import split_moments
 from ptmcad.question.domain import fault, unproved
-from ptmcad.question.slice import Axis, Count, Slice
+from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.numerals import text_of
 from ptmcad.text.tree import Tree, to_text
@@ -38,16 +36,6 @@ MAX_UNKNOWNS_AT_POINTS = 5
 """The same at a single point, without axes to be searched: of four angles a second, of five half a minute."""
 FIRST = 2
 """Number of the first unknown among the variables, after the two axes."""
-
-_IRRELEVANT = frozenset(
-    {"name", "title", "parameters", "unknowns", "source", "bars", "bodies", "supports", "symmetries"}
-)
-_SAID_IN_EQUATIONS = frozenset({"mechanism", "tangent", "multipliers"})
-"""Of a mechanism with closed loops."""
-_USED = frozenset(
-    {"points", "springs", "torsion", "loads", "moments", "equations", "potential", "inequalities", "stability"}
-)
-"""What a description may have: nothing else may go unnoticed into a proof."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,112 +159,119 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
             f"the certified engine takes up to {most} unknowns, and {model.name} has {len(model.unknowns)}",
             key="unknowns",
         )
-    for key in (found.name for found in fields(model)):
-        if key not in _IRRELEVANT | _SAID_IN_EQUATIONS | _USED and getattr(model, key):
-            raise ConfigError(f"the certified engine does not take {key}, and {model.name} has some", key=key)
+    check_loops(slice)
+    system, own = compiled(model), equations_in(model)
     ring = Harmonics(tuple(model.unknowns), model.reals, slice.parameters)
-    if isinstance(model, ClosedMechanism) and model.tangent:
-        check_loops(model, slice)
-    if isinstance(model, ClosedMechanism) and slice.has_free_lengths:
-        return _asked(slice, model.mechanism, ring, _of_loops(model, ring, slice.axes))
-    if isinstance(model, System):
-        return _of_system(model, ring)
-    assert isinstance(model, Mechanism)
-    cones = _checked(model, _cones(model, ring), slice.axes)
-    equations = list(_gradient(_energy(model, ring), ring))
-    for unknown, tree in split_moments(model).steady:
-        k = ring.unknowns.index(unknown)
-        equations[k] = equations[k] - evaluate(tree, ring)
-    return _asked(slice, model, ring, Problem(ring.unknowns, ring.reals, tuple(equations), cones, model.has_potential))
+    inequalities = _conditions("positive", () if own is None else own.inequalities, system.inequalities, system, ring)
+    problem = Problem(ring.unknowns, ring.reals, (), (), system.has_index, inequalities)
+    if slice.has_free_lengths and system.tangent:
+        return _with_springs(_of_loops(problem, system, ring), slice, system, ring)
+    if system.are_slopes:
+        return _with_springs(_of_slopes(problem, system, ring), slice, system, ring)
+    stability = _conditions("stable", () if own is None else own.stability, system.stability, system, ring)
+    # an unknown that is not zero where solutions count is no factor of an equation: without this, the solutions at
+    # which it is zero, say those where a species is extinct, would be undecided all over the window
+    nonzero = [k for k in range(len(ring.unknowns)) if any(_is_multiple(c.value, k) for c in inequalities)]
+    equations = system.values(system.equations, ring)
+    divided = tuple(_without_factors(f, nonzero) for f in equations)
+    multiples = tuple(f for f, g in zip(equations, divided, strict=True) if f != g)
+    return replace(problem, equations=divided, stability=stability, multiples=multiples)
 
 
-def _asked(slice: Slice, mechanism: Mechanism, ring: Harmonics, problem: Problem) -> Problem:
-    """The problem with what tells admissible equilibria, where these are asked for."""
-    if slice.count is not Count.ADMISSIBLE:
-        return problem
-    return replace(problem, excesses=tuple(excesses(mechanism, ring)))
-
-
-def _checked(mechanism: Mechanism, cones: Iterable[Cone], axes: tuple[Axis, Axis]) -> tuple[Cone, ...]:
-    """The cones of a mechanism, no K of which is negative anywhere in the window; those side by side are one."""
-    found: list[Cone] = []
-    for cone in cones:
-        asked = f"stiffness times free length of spring {cone.name}", Kind.FREE_LENGTH, cone.pull, axes
-        if problem := fault(*asked) or unproved(*asked):
-            number = next(n for n, s in enumerate(mechanism.springs, 1) if cone.name in (s.name, s.start + s.end))
-            raise GeometryError(problem, part=f"springs.{number}")
-        for k, other in enumerate(found):
-            # each of K |d| and K' |d'| alone has a cone, and where both are short at once neither direction would be
-            # balanced by the rest; but K f |e| and K' g |e| are one
-            if parts := shares(other.difference, cone.difference, axes):
-                f, g = parts
-                pull = f * other.pull + g * cone.pull
-                found[k] = replace(_over(other, f), name=f"{other.name} + {cone.name}", pull=pull)
-                break
-        else:
-            found.append(cone)
-    return tuple(found)
-
-
-def _over(cone: Cone, factor: Expression) -> Cone:
-    """The cone with its vector over a factor."""
-    (dx, dy), *weights = (
-        (across.scaled(1 / factor), up.scaled(1 / factor)) for across, up in (cone.difference, *cone.weights)
-    )
-    return replace(cone, difference=(dx, dy), weights=tuple(weights))
-
-
-def check_loops(model: ClosedMechanism, slice: Slice) -> None:
+def check_loops(slice: Slice) -> None:
     """Refuse a loop with flat poses all over the window: the Jacobian is singular there, nothing would be decided."""
-    found = flat_everywhere(model.mechanism, slice.parameters)
-    if found is not None:
+    mechanism = mechanism_in(slice.model)
+    found = None if mechanism is None else flat_everywhere(mechanism, slice.parameters)
+    if mechanism is not None and found is not None:
         loop, fold = found
         raise DegenerateSliceError(
-            f"at every point of the slice the loop that {closed_by(model.mechanism)} closes can fold flat"
+            f"at every point of the slice the loop that {closed_by(mechanism)} closes can fold flat"
             f"{loop.named(fold, slice.has_free_lengths)}. Of the branches together the certified engine decides no "
             "count, not even that of stable equilibria",
             part="closing.1",
         )
 
 
-def _of_loops(model: ClosedMechanism, ring: Harmonics, axes: tuple[Axis, Axis]) -> Problem:
-    """Of closed loops with one degree of freedom left: where K |d| is taken off the energy, K u . w is taken off its
-    slope along the loops, w being the derivative of d along them."""
-    places = [ring.unknowns.index(name) for name in (*model.angles, *model.reals)]
-    # where unknowns are in another order the Jacobian's determinant may have the other sign: so has the slope then
-    sign = Fraction(-1 if sum(a > b for a, b in combinations(places, 2)) % 2 else 1)
-    tangent = [evaluate(tree, ring).scaled(sign) for tree in model.tangent]
+def _places(system: CompiledSystem, ring: Harmonics) -> list[int]:
+    """The numbers of the compiled system's unknowns, angles first, in the description's order."""
+    return [ring.unknowns.index(system.names[k]) for k in system.unknowns]
+
+
+def _of_slopes(problem: Problem, system: CompiledSystem, ring: Harmonics) -> Problem:
+    """The energy's derivatives, less the moments."""
+    assert system.smooth is not None
+    energy, *moments = system.values((system.smooth, *system.moments), ring)
+    by_place = dict(zip(_places(system, ring), moments, strict=True))
+    return replace(problem, equations=tuple(energy.derivative(k) - by_place[k] for k in range(len(moments))))
+
+
+def _of_loops(problem: Problem, system: CompiledSystem, ring: Harmonics) -> Problem:
+    """Of closed loops with one degree of freedom left."""
+    *closed, slope = system.values(system.equations, ring)
+    sign = Fraction(_order_sign(_places(system, ring)))
+    return replace(problem, equations=(*closed, slope.scaled(sign)), closing=len(closed))
+
+
+def _order_sign(places: Sequence[int]) -> int:
+    """Where unknowns are in another order the Jacobian's determinant may have the other sign: so has the slope then."""
+    return -1 if sum(a > b for a, b in combinations(places, 2)) % 2 else 1
+
+
+def _with_springs(problem: Problem, slice: Slice, system: CompiledSystem, ring: Harmonics) -> Problem:
+    """The problem with a cone for each spring with a free length, and with what tells admissible equilibria."""
+    size = range(len(ring.unknowns))
+    places = _places(system, ring)
+    sign = Fraction(_order_sign(places))
+    tangent = [f.scaled(sign) for f in system.values(system.tangent, ring)]
     nothing = ring.constant(Fraction(0))
 
-    def along(f: TrigonometricPolynomial) -> TrigonometricPolynomial:
-        slopes = (t * f.derivative(k) for t, k in zip(tangent, places, strict=True))
-        return sum(slopes, start=nothing)
+    def weights(difference: Vector) -> tuple[Vector, ...]:
+        """Where K |d| is taken off the energy, K u . w is taken off its slope along the loops, w being the derivative
+        of d along them."""
+        across, up = ([f.derivative(k) for k in size] for f in difference)
+        if not problem.closing:
+            return tuple(zip(across, up, strict=True))
+        x, y = (
+            sum((t * slopes[k] for t, k in zip(tangent, places, strict=True)), start=nothing) for slopes in (across, up)
+        )
+        return (*[(nothing, nothing)] * problem.closing, (x, y))
 
-    bars = len(model.equations) - 1
-    cones = tuple(
-        replace(cone, weights=(*[(nothing, nothing)] * bars, (along(cone.difference[0]), along(cone.difference[1]))))
-        for cone in _checked(model.mechanism, _cones(model.mechanism, ring), axes)
-    )
-    *closed, slope = (evaluate(tree, ring) for tree in model.equations)
-    return Problem(ring.unknowns, ring.reals, (*closed, slope.scaled(sign)), cones, False, closing=bars)
-
-
-def _of_system(system: System, ring: Harmonics) -> Problem:
-    inequalities = _conditions("positive", system.inequalities, ring)
-    stability = _conditions("stable", system.stability, ring)
-    if system.potential is not None:
-        gradient = _gradient(evaluate(system.potential, ring), ring)
-        return Problem(ring.unknowns, ring.reals, gradient, (), True, inequalities)
-    equations = tuple(evaluate(tree, ring) for tree in system.equations)
-    # an unknown that is not zero where solutions count is no factor of an equation: without this, the solutions at
-    # which it is zero, say those where a species is extinct, would be undecided all over the window
-    nonzero = [k for k in range(len(ring.unknowns)) if any(_is_multiple(c.value, k) for c in inequalities)]
-    divided = tuple(_without_factors(f, nonzero) for f in equations)
-    multiples = tuple(f for f, g in zip(equations, divided, strict=True) if f != g)
-    return Problem(ring.unknowns, ring.reals, divided, (), False, inequalities, stability, multiples)
+    cones = tuple(Cone(name, pull, d, weights(d)) for name, pull, d in _pulls(slice, system, ring))
+    found = excesses(slice.model, system, ring) if slice.count is Count.ADMISSIBLE else ()
+    return replace(problem, cones=cones, excesses=tuple(found))
 
 
-def _conditions(key: str, trees: Sequence[Tree], ring: Harmonics) -> tuple[Condition, ...]:
+def _pulls(slice: Slice, system: CompiledSystem, ring: Harmonics) -> list[tuple[str, Expression, Vector]]:
+    """Name, K and d of each spring with a free length, no K of which is negative anywhere in the window; of those side
+    by side as of one."""
+    found: list[tuple[str, Expression, Vector]] = []
+    for spring in system.springs:
+        pull = constant_of(system.values([spring.pull], ring)[0])
+        if not pull.numerator:
+            continue
+        across, up = system.values(spring.difference, ring)
+        if not (across.terms or up.terms):
+            continue
+        name = name_of(spring, slice.model)
+        asked = f"stiffness times free length of spring {name}", Kind.FREE_LENGTH, pull, slice.axes
+        if problem := fault(*asked) or unproved(*asked):
+            raise GeometryError(problem, part=spring.key)
+        for k, (other, its_pull, its_vector) in enumerate(found):
+            # each of K |d| and K' |d'| alone has a cone, and where both are short at once neither direction would be
+            # balanced by the rest; but K f |e| and K' g |e| are one
+            if parts := shares(its_vector, (across, up), slice.axes):
+                f, g = parts
+                x, y = (c.scaled(1 / f) for c in its_vector)
+                found[k] = f"{other} + {name}", f * its_pull + g * pull, (x, y)
+                break
+        else:
+            found.append((name, pull, (across, up)))
+    return found
+
+
+def _conditions(
+    key: str, trees: Sequence[Tree], formulas: Sequence[Formula], system: CompiledSystem, ring: Harmonics
+) -> tuple[Condition, ...]:
     """The conditions that say something; the key is that of their list.
 
     Raises
@@ -285,8 +280,8 @@ def _conditions(key: str, trees: Sequence[Tree], ring: Harmonics) -> tuple[Condi
         When one holds nowhere.
     """
     found = []
-    for n, tree in enumerate(trees, 1):
-        value, text = evaluate(tree, ring), to_text(tree)
+    for n, (tree, value) in enumerate(zip(trees, system.values(formulas, ring), strict=True), 1):
+        text = to_text(tree)
         if set(value.terms) - set(ring.constant(Fraction(1)).terms) or not constant_of(value).is_constant:
             found.append(Condition(text, value))
         elif (number := constant_of(value).constant()) <= 0:
@@ -305,27 +300,6 @@ def _without_factors(f: TrigonometricPolynomial, unknowns: Sequence[int]) -> Tri
     return TrigonometricPolynomial(
         {(m, tuple(p - least.get(k, 0) for k, p in enumerate(e))): c for (m, e), c in f.terms.items()}
     )
-
-
-def _gradient(energy: TrigonometricPolynomial, ring: Harmonics) -> tuple[TrigonometricPolynomial, ...]:
-    return tuple(energy.derivative(k) for k in range(len(ring.unknowns)))
-
-
-def _cones(mechanism: Mechanism, ring: Harmonics) -> Iterator[Cone]:
-    """The springs with a free length, as parts of the energy's derivatives by the unknowns."""
-    for spring, (dx, dy) in springs_of(mechanism, ring):
-        pull = constant_of(evaluate(spring.stiffness, ring) * evaluate(spring.free, ring))
-        if pull.numerator and (dx.terms or dy.terms):
-            slopes = tuple((dx.derivative(k), dy.derivative(k)) for k in range(len(ring.unknowns)))
-            yield Cone(spring.name, pull, (dx, dy), slopes)
-
-
-def _energy(mechanism: Mechanism, ring: Harmonics) -> TrigonometricPolynomial:
-    """Without what springs with a free length take off it."""
-    smooth = ring.constant(Fraction(0))
-    for spring, (dx, dy) in springs_of(mechanism, ring):
-        smooth = smooth + (evaluate(spring.stiffness, ring) * (dx * dx + dy * dy)).scaled(Fraction(1, 2))
-    return with_springs(mechanism, ring, points_in(mechanism, ring), smooth)
 
 
 def constant_of(value: TrigonometricPolynomial) -> Expression:

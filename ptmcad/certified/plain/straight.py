@@ -21,9 +21,8 @@ from itertools import product
 
 from ptmcad.certified.plain.covering import in_half_angle
 from ptmcad.certified.plain.divisors import common_divisor, quotient, square_root
-from ptmcad.certified.plain.ends import Vector
 from ptmcad.certified.plain.problem import Condition, Cone, Problem, Push
-from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial, waves
+from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial, Vector, waves
 from ptmcad.question.positivity import PROVED, Need, decide
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant

@@ -22,6 +22,7 @@ from ptmcad.errors import ExpressionError
 from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.text.expressions import Expression, constant
 
+Vector = tuple["TrigonometricPolynomial", "TrigonometricPolynomial"]
 Multi = tuple[int, ...]
 """One integer for each unknown: the multiple of an angle, or the power of a real unknown."""
 _HALF = Fraction(1, 2)
@@ -44,7 +45,10 @@ class TrigonometricPolynomial:
         return _collected([*self.terms.items(), *other.terms.items()])
 
     def __sub__(self, other: TrigonometricPolynomial) -> TrigonometricPolynomial:
-        return self + other.scaled(Fraction(-1))
+        return self + -other
+
+    def __neg__(self) -> TrigonometricPolynomial:
+        return self.scaled(Fraction(-1))
 
     def __mul__(self, other: TrigonometricPolynomial) -> TrigonometricPolynomial:
         found = []
