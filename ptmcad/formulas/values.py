@@ -6,7 +6,7 @@ variables only, as in compiled systems.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, Protocol, TypeVar
 
@@ -43,6 +43,31 @@ def values(formulas: Sequence[Formula], arithmetic: Arithmetic[Any]) -> list[Any
     for node in _in_order(formulas):
         known[node.number] = _value(node, known, arithmetic)
     return [known[formula.number] for formula in formulas]
+
+
+def evaluated(structure: Any, arithmetic: Arithmetic[Any]) -> Any:
+    """Tuples and mappings, nested in any way, with values in place of their formulas; anything else in them stays.
+
+    Raises
+    ------
+    TypeError
+        As `values`.
+    """
+    formulas: list[Formula] = []
+    _mapped(structure, formulas.append)
+    found = iter(values(formulas, arithmetic))
+    return _mapped(structure, lambda _: next(found))
+
+
+def _mapped(structure: Any, of: Callable[[Formula], Any]) -> Any:
+    if isinstance(structure, Formula):
+        return of(structure)
+    if isinstance(structure, Mapping):
+        return {key: _mapped(part, of) for key, part in structure.items()}
+    if isinstance(structure, tuple):
+        make = getattr(structure, "_make", tuple)  # of a named tuple its own
+        return make(_mapped(part, of) for part in structure)
+    return structure
 
 
 def _in_order(formulas: Sequence[Formula]) -> list[Formula]:

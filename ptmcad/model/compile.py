@@ -54,7 +54,7 @@ class LinearSpring(NamedTuple):
     def square(self) -> Formula:
         """Of its length."""
         x, y = self.difference
-        return x.squared() + y.squared()
+        return x * x + y * y
 
     @property
     def length(self) -> Formula:
@@ -118,6 +118,9 @@ class CompiledSystem:
         close them, and then the energy's slope along them.
     inequalities, stability : a solution counts, and is stable, where all are positive.
     tangent : along closed loops with one degree of freedom, the direction in which unknowns move.
+    heights : of the points that the unknowns raise, where no loop holds these together.
+    definite : whether the conditions for stability hold together where a symmetric matrix is positive definite, and the
+        last one is its determinant, times what is positive.
     has_energy : whether that is an energy, and not only a part of what acts, as beside moments without a potential.
     has_index : whether solutions are critical points of the energy, less the work of constant moments.
     """
@@ -137,6 +140,8 @@ class CompiledSystem:
     inequalities: tuple[Formula, ...] = ()
     stability: tuple[Formula, ...] = ()
     tangent: tuple[Formula, ...] = ()
+    heights: tuple[Formula, ...] = ()
+    definite: bool = False
     has_energy: bool = False
     has_index: bool = False
 
@@ -162,7 +167,6 @@ class CompiledSystem:
         return total
 
 
-@lru_cache(maxsize=8)
 def compiled(model: Model) -> CompiledSystem:
     """The formulas of a description.
 
@@ -171,8 +175,12 @@ def compiled(model: Model) -> CompiledSystem:
     ExpressionError
         When a moment that depends on its unknown is too large to be multiplied out.
     """
+    return _compiled(model, mechanism_in(model))
+
+
+@lru_cache(maxsize=8)  # by both, as closed mechanisms are equal where their equations are
+def _compiled(model: Model, mechanism: Mechanism | None) -> CompiledSystem:
     angles, reals = model.angles, model.reals
-    mechanism = mechanism_in(model)
     followers = () if mechanism is None else tuple(mechanism.followers)
     names = (*model.variables, *angles, *reals, *followers)
     graph = Graph()
@@ -254,6 +262,7 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
         loads=tuple(loads),
         smooth=energy,
         moments=tuple(steady[known.names[k]] for k in known.unknowns),
+        heights=() if mechanism.closing or followers else tuple(points[name][1] for name in mechanism.rising),
         has_energy=mechanism.has_potential,
     )
 
@@ -266,8 +275,9 @@ def _with_equations(known: CompiledSystem, model: Model, ring: _Ring) -> Compile
             equations=ring.of(model.equations),
             inequalities=ring.of(model.inequalities),
             stability=ring.of(model.stability),
-            tangent=ring.of(model.tangent) if isinstance(model, ClosedMechanism) else (),
         )
+        if isinstance(model, ClosedMechanism):
+            known = replace(known, tangent=ring.of(model.tangent), definite=True)
         if model.potential is not None:
             moments = (ring.constant(Fraction(0)),) * len(known.unknowns)
             known = replace(known, smooth=evaluate(model.potential, ring), moments=moments, has_energy=True)
