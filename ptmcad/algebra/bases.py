@@ -10,12 +10,12 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 
-from ptmcad.algebra.fibre import Fibre, RationalPolynomial, Work, bezout_bound, fibre
+from ptmcad.algebra.fibre import FibreAlgebra, RationalPolynomial, WorkLimit, bezout_bound, fibre
 from ptmcad.errors import LimitReached, PtmcadWarning
 
 MANY = 128
 """Solutions by Bezout's theorem, from which on a basis may not end by Buchberger's algorithm."""
-SMALL = Work(1_000, 120, 400, 4_000)
+SMALL = WorkLimit(1_000, 120, 400, 4_000)
 """Of such a system our own basis is tried up to this size, some tenths of a second."""
 SECONDS = 120.0
 """For msolve, and as many again for the proof."""
@@ -37,7 +37,9 @@ def plan_text(bound: int) -> str:
     return f"up to {bound} solutions: by ptmcad while small, {then}"
 
 
-def quotient(equations: Sequence[RationalPolynomial], unknowns: int, most: Work | None = None) -> Fibre | None:
+def quotient(
+    equations: Sequence[RationalPolynomial], unknowns: int, most: WorkLimit | None = None
+) -> FibreAlgebra | None:
     """The quotient by the given equations; None when there are infinitely many complex solutions.
 
     Parameters

@@ -53,11 +53,11 @@ _OUTER = (2, 4)
 """Radii for majorants."""
 
 
-class PrecisionTooLow(ArithmeticError):
+class TooFewBits(ArithmeticError):
     """The context's precision does not suffice for this curve at this place."""
 
 
-class Tube(NamedTuple):
+class SeriesTube(NamedTuple):
     """A polynomial with the only root of the curve near it, for each -1 <= h <= 1.
 
     Attributes
@@ -146,7 +146,7 @@ def _near_others(local: Sequence[arb_poly], root: RealRoot) -> fmpq | None:
     return gap.fmpq() if gap.is_finite() and 0 < gap < arb(root.high - root.low) else None
 
 
-def tube_around(local: Sequence[arb_poly], order: int, start: arb, wanted: arb) -> Tube | None:
+def tube_around(local: Sequence[arb_poly], order: int, start: arb, wanted: arb) -> SeriesTube | None:
     """The tube around the root w(h) of sum_i b_i(h) w^i that starts near zero at h = 0, on as much of |h| <= 1 as seems
     to be within the error that is wanted; None when it is not proved.
 
@@ -161,10 +161,10 @@ def tube_around(local: Sequence[arb_poly], order: int, start: arb, wanted: arb) 
         When cancellation leaves too few bits.
     """
     if local[1][0].rel_accuracy_bits() < DERIVATIVE_BITS:
-        raise PrecisionTooLow  # the root is simple, so the derivative is not zero
+        raise TooFewBits  # the root is simple, so the derivative is not zero
     steepness = abs(local[1][0])
     if len(local) > 2 and not _noise(local[0]) * _norm(local[2]) * 2**SEPARATION_BITS < steepness * steepness:
-        raise PrecisionTooLow  # rounding blurs the branch nearly as far as the next one
+        raise TooFewBits  # rounding blurs the branch nearly as far as the next one
     series = _series(local, order)
     part, radius = _usable(series, order, wanted)
     if part < _SHORT_SHARE and (longer := _bits_wanted(series, wanted) // _BITS_PER_ORDER) > order:
@@ -178,7 +178,7 @@ def tube_around(local: Sequence[arb_poly], order: int, start: arb, wanted: arb) 
         share = share * part
         proved = _proved(local, series, start, wanted)
         if proved is not None:
-            return Tube(share, series, *proved, radius, crowded)
+            return SeriesTube(share, series, *proved, radius, crowded)
         part, crowded = fmpq(1, 2), True
     return None
 
@@ -228,7 +228,7 @@ def _proved(local: Sequence[arb_poly], series: arb_poly, start: arb, wanted: arb
         len(local) > 2
         and not _norm(residual.truncate(order + 1)) * _norm(local[2]) * 2**PANEL_SEPARATION_BITS < steepness * steepness
     ):
-        raise PrecisionTooLow
+        raise TooFewBits
     scale = _inverse(slope, order)
     size = _norm(scale)
     error = _norm(scale * residual) + size * beyond[0]
@@ -329,7 +329,7 @@ def _inverse(p: arb_poly, order: int) -> arb_poly:
     """
     length = order + 1
     if not abs(p[0]) > 0:
-        raise PrecisionTooLow
+        raise TooFewBits
     previous = ctx.cap
     ctx.cap = length
     try:

@@ -20,7 +20,7 @@ _RADII = 8
 """Numbers of radii that are tried, the least first, in geometric progression."""
 
 
-class Cluster(NamedTuple):
+class RootDisc(NamedTuple):
     """An open disc.
 
     Attributes
@@ -38,7 +38,7 @@ class Cluster(NamedTuple):
         """Whether the disc meets the real axis, and then lies symmetrically to it."""
         return bool(self.center.imag == 0)
 
-    def meets(self, other: Cluster) -> bool:
+    def meets(self, other: RootDisc) -> bool:
         """False where the closed discs are certainly disjoint."""
         return not abs(self.center - other.center) > self.radius + other.radius
 
@@ -49,7 +49,7 @@ class Cluster(NamedTuple):
         return low.lower().fmpq(), high.upper().fmpq()
 
 
-def clusters_over(rows: Sequence[UnivariatePolynomial], abscissa: arb) -> list[Cluster] | None:
+def clusters_over(rows: Sequence[UnivariatePolynomial], abscissa: arb) -> list[RootDisc] | None:
     """The clusters of a polynomial in v with coefficients in Z[u], for u in a ball."""
     coefficients, axis = [arb_poly(row)(abscissa) for row in rows], axis_of(rows)
     if axis is None:
@@ -61,7 +61,7 @@ def clusters_over(rows: Sequence[UnivariatePolynomial], abscissa: arb) -> list[C
     return clusters(coefficients, [((acb(axis(middle)) + w).mid(), m) for s, m in steps for w in (s, -s)])
 
 
-def clusters(coefficients: Sequence[arb], starts: Sequence[tuple[acb, int]] | None = None) -> list[Cluster] | None:
+def clusters(coefficients: Sequence[arb], starts: Sequence[tuple[acb, int]] | None = None) -> list[RootDisc] | None:
     """Disjoint discs that hold all roots; None where the balls are too large to tell.
 
     Roots so near to each other that the balls do not part them are in one disc.
@@ -75,7 +75,7 @@ def clusters(coefficients: Sequence[arb], starts: Sequence[tuple[acb, int]] | No
         return None
     polynomial = acb_poly(list(coefficients))
     waiting: list[_Group] = [(root,) * m for root, m in (_approximate(coefficients) if starts is None else starts)]
-    found: list[tuple[_Group, Cluster]] = []
+    found: list[tuple[_Group, RootDisc]] = []
     while waiting:
         group = waiting.pop()
         others = [*waiting, *(g for g, _ in found)]
@@ -110,12 +110,12 @@ def _gap(one: _Group, other: _Group) -> arb:
     return min((abs(z - w) for z in one for w in other), key=lambda d: d.mid().fmpq())
 
 
-def _is_settled(c: Cluster) -> bool:
+def _is_settled(c: RootDisc) -> bool:
     """Whether the disc is known to meet the real axis, or known not to."""
     return c.is_real or bool(abs(c.center.imag) > c.radius)
 
 
-def _cluster(polynomial: acb_poly, group: _Group, others: Sequence[_Group]) -> Cluster | None:
+def _cluster(polynomial: acb_poly, group: _Group, others: Sequence[_Group]) -> RootDisc | None:
     """A disc about the group's roots that passes Pellet's test, or None."""
     center = (sum(group, acb(0)) / len(group)).mid()
     spread = _gap((center,), group) if len(group) == 1 else max(
@@ -135,5 +135,5 @@ def _cluster(polynomial: acb_poly, group: _Group, others: Sequence[_Group]) -> C
         terms = [size * radius**j for j, size in enumerate(sizes)]
         inside = terms.pop(len(group))
         if inside > sum(terms, arb(0)):
-            return Cluster(center, radius, len(group))
+            return RootDisc(center, radius, len(group))
     return None

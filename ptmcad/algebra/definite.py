@@ -1,6 +1,6 @@
 """Whether a polynomial is negative, or zero, somewhere in an open rectangle: decided, not sampled.
 
-Guarantee: `PROVED` and a `Found` point are theorems. `OPEN` is returned only where the work would be more than was
+Guarantee: `PROVED` and a `SignPoint` point are theorems. `OPEN` is returned only where the work would be more than was
 allowed, `Near` only where a polynomial that changes sign nowhere may touch zero over an irrational abscissa.
 
 Why this decides. Write p as a constant times powers of different irreducible factors over Q. An irreducible f that
@@ -56,7 +56,7 @@ _HALVINGS = 60
 Point = tuple[fmpq, fmpq]
 
 
-class Answer(Enum):
+class SignAnswer(Enum):
     """What is known when no point was found."""
 
     PROVED = "there is none"
@@ -64,7 +64,7 @@ class Answer(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class SignPoint:
     """A point of the open rectangle.
 
     Attributes
@@ -87,7 +87,7 @@ class Near:
 
 def negative_or_zero(
     p: Coefficient, x: Interval, y: Interval, zero: bool, max_work: int = MAX_WORK
-) -> Found | Near | Answer:
+) -> SignPoint | Near | SignAnswer:
     """A point of the open rectangle where p is negative or, if asked for, zero; or that there is none.
 
     Parameters
@@ -98,13 +98,13 @@ def negative_or_zero(
     max_work : for each discriminant, in the unit of `MAX_WORK`.
     """
     factors = factors_with_multiplicity(p)
-    undecided: Near | Answer | None = None
+    undecided: Near | SignAnswer | None = None
     for f, multiplicity in factors:
         odd = multiplicity % 2 == 1
         if not odd and not zero:
             continue
         crossing = _crossing(f, x, y, max_work)
-        if crossing is Answer.OPEN:
+        if crossing is SignAnswer.OPEN:
             undecided = crossing
         elif isinstance(crossing, _Crossing):
             return _negative_beside(p, crossing, x, y) if odd else crossing.zero(x, y)
@@ -113,13 +113,13 @@ def negative_or_zero(
     # now p has one sign wherever it is not zero
     sample = _nonzero_point(p, x, y)
     if evaluate(p, *sample) < 0:
-        return Found(sample, True, fmpq(0))
+        return SignPoint(sample, True, fmpq(0))
     if zero:
         for f, _ in factors:
             touching = _isolated_zero(f, x, y)
             if touching is not None:
                 return touching
-    return Answer.PROVED
+    return SignAnswer.PROVED
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,12 +131,12 @@ class _Crossing:
     held: Interval
     root: RealRoot
 
-    def zero(self, x: Interval, y: Interval) -> Found:
+    def zero(self, x: Interval, y: Interval) -> SignPoint:
         """The zero itself."""
         root = _narrow(self.root, (x, y)[self.across])
         held, there = _simple(self.held), root.middle
         point = (there, held) if self.across == 0 else (held, there)
-        return Found(point, root.is_rational, root.high - root.low)
+        return SignPoint(point, root.is_rational, root.high - root.low)
 
 
 def _simple(interval: Interval) -> fmpq:
@@ -154,23 +154,23 @@ def _narrow(root: RealRoot, window: Interval) -> RealRoot:
     return near
 
 
-def _crossing(f: Coefficient, x: Interval, y: Interval, max_work: int) -> _Crossing | Answer:
+def _crossing(f: Coefficient, x: Interval, y: Interval, max_work: int) -> _Crossing | SignAnswer:
     """Where an irreducible polynomial changes sign in the open rectangle, if it does."""
     degrees = [int(d) for d in f.degrees()]
     if min(degrees) == 0:
         across = 0 if degrees[1] == 0 else 1
         roots = isolate(coefficients_in(f, 1 - across)[0], *((x, y)[across]))
-        return _Crossing(across, (y, x)[across], roots[0]) if roots else Answer.PROVED
+        return _Crossing(across, (y, x)[across], roots[0]) if roots else SignAnswer.PROVED
     base = _base(f)
     if _work(f, base) > max_work:
-        return Answer.OPEN
+        return SignAnswer.OPEN
     window, fibre = ((x, y), (y, x))[base]
     rows = coefficients_in(f, 1 - base)
     for held in _open_intervals(f, base, window, fibre):
         roots = isolate(univariate(rows, simplest_between(*held)), *fibre)
         if roots:
             return _Crossing(1 - base, held, roots[0])
-    return Answer.PROVED
+    return SignAnswer.PROVED
 
 
 def _base(f: Coefficient) -> int:
@@ -200,7 +200,7 @@ def _open_intervals(f: Coefficient, base: int, window: Interval, fibre: Interval
     return ((ends[k], ends[k + 1]) for k in range(0, len(ends), 2))
 
 
-def _negative_beside(p: Coefficient, crossing: _Crossing, x: Interval, y: Interval) -> Found:
+def _negative_beside(p: Coefficient, crossing: _Crossing, x: Interval, y: Interval) -> SignPoint:
     """A point at which p is negative, on a line across a curve on which it changes sign."""
     across, window = crossing.across, (x, y)[crossing.across]
     rows = coefficients_in(p, across)
@@ -210,7 +210,7 @@ def _negative_beside(p: Coefficient, crossing: _Crossing, x: Interval, y: Interv
         on_line = univariate(rows, held)
         for there in _between_roots(on_line, window):
             if sign_at(on_line, there) < 0:
-                return Found((there, held) if across == 0 else (held, there), True, fmpq(0))
+                return SignPoint((there, held) if across == 0 else (held, there), True, fmpq(0))
         low = held
 
 
@@ -235,7 +235,7 @@ def _nonzero_point(p: Coefficient, x: Interval, y: Interval) -> Point:
     return u, v
 
 
-def _isolated_zero(f: Coefficient, x: Interval, y: Interval) -> Found | Near | None:
+def _isolated_zero(f: Coefficient, x: Interval, y: Interval) -> SignPoint | Near | None:
     """A zero of an irreducible polynomial that changes sign nowhere in the open rectangle, if there is one.
 
     Over a rational value of one of the axes it is found. Over another one, where coefficients are not rational, nothing
@@ -249,7 +249,7 @@ def _isolated_zero(f: Coefficient, x: Interval, y: Interval) -> Found | Near | N
     return found if isinstance(other, Near) else other
 
 
-def _touching(f: Coefficient, base: int, x: Interval, y: Interval) -> Found | Near | None:
+def _touching(f: Coefficient, base: int, x: Interval, y: Interval) -> SignPoint | Near | None:
     """The same, as it is seen over one axis."""
     window, fibre = ((x, y), (y, x))[base]
     rows = coefficients_in(f, 1 - base)
@@ -266,7 +266,7 @@ def _touching(f: Coefficient, base: int, x: Interval, y: Interval) -> Found | Ne
                 point = (there.middle, height.middle) if base == 0 else (height.middle, there.middle)
                 if m.degree() > 1:
                     return Near(point)
-                return Found(point, height.is_rational, height.high - height.low)
+                return SignPoint(point, height.is_rational, height.high - height.low)
     return None
 
 

@@ -32,7 +32,7 @@ from ptmcad.errors import LimitReached
 RationalPolynomial = Mapping[Monomial, fmpq]
 
 
-class Fibre(NamedTuple):
+class FibreAlgebra(NamedTuple):
     """The quotient algebra at a rational point.
 
     Attributes
@@ -52,7 +52,7 @@ class Fibre(NamedTuple):
         return len(self.basis)
 
 
-class Work(NamedTuple):
+class WorkLimit(NamedTuple):
     """How much work a quotient may be, whatever the machine: about a second where each is as large as it may be.
 
     Attributes
@@ -74,7 +74,7 @@ def bezout_bound(equations: Sequence[RationalPolynomial]) -> int:
     return math.prod(max(map(sum, e), default=0) or 1 for e in equations)
 
 
-def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: Work | None = None) -> Fibre | None:
+def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: WorkLimit | None = None) -> FibreAlgebra | None:
     """The quotient by the given equations; None when there are infinitely many complex solutions.
 
     Raises
@@ -111,7 +111,7 @@ def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: Work | N
 
 def fibre_of_rules(
     rules: Mapping[Monomial, Mapping[Monomial, fmpq]], basis: tuple[Monomial, ...], unknowns: int
-) -> Fibre:
+) -> FibreAlgebra:
     """The quotient by a reduced Groebner basis.
 
     Parameters
@@ -125,7 +125,7 @@ def fibre_of_rules(
     for k in range(unknowns):
         columns = [normal_forms[shifted(m, k)] for m in basis]
         matrices.append(fmpq_mat(size, size, [c for column in columns for c in column]).transpose())
-    return Fibre(basis, tuple(matrices))
+    return FibreAlgebra(basis, tuple(matrices))
 
 
 def _normal_forms(
@@ -163,7 +163,7 @@ def _normal_forms(
     return table
 
 
-def combined_angles(algebra: Fibre, matrix: Sequence[Sequence[int]], reals: int) -> Fibre:
+def combined_angles(algebra: FibreAlgebra, matrix: Sequence[Sequence[int]], reals: int) -> FibreAlgebra:
     """The fibre with the cosines and sines of sums of its angles as further coordinates, before the others.
 
     Parameters
@@ -187,10 +187,10 @@ def combined_angles(algebra: Fibre, matrix: Sequence[Sequence[int]], reals: int)
         sums += [cosine, sine]
     own, real = algebra.multiplication[: 2 * angles], algebra.multiplication[2 * angles :]
     basis = tuple((*(0,) * (2 * angles), *m[2 * angles :], *m[: 2 * angles]) for m in algebra.basis)
-    return Fibre(basis, (*sums, *real[:reals], *own), algebra.by_msolve)
+    return FibreAlgebra(basis, (*sums, *real[:reals], *own), algebra.by_msolve)
 
 
-def evaluate(algebra: Fibre, p: RationalPolynomial) -> fmpq_mat:
+def evaluate(algebra: FibreAlgebra, p: RationalPolynomial) -> fmpq_mat:
     """The matrix of multiplication by a polynomial in the unknowns."""
     size = algebra.dimension
     total = fmpq_mat(size, size)
@@ -222,7 +222,7 @@ class UnivariateRepresentation(NamedTuple):
     characteristic: fmpz_poly
 
 
-def univariate_representation(algebra: Fibre, multiple: bool = False) -> UnivariateRepresentation | None:
+def univariate_representation(algebra: FibreAlgebra, multiple: bool = False) -> UnivariateRepresentation | None:
     """The representation by the first separating form of a fixed list.
 
     A form separates the solutions exactly when its characteristic polynomial has as many different roots as there are
@@ -281,7 +281,7 @@ def _stretched(coefficients: Sequence[fmpz], powers: Sequence[fmpz]) -> fmpz_pol
     return fmpz_poly([c * b for c, b in zip(coefficients, powers, strict=False)])
 
 
-def _basis_traces(algebra: Fibre) -> tuple[fmpz_mat, fmpz]:
+def _basis_traces(algebra: FibreAlgebra) -> tuple[fmpz_mat, fmpz]:
     """The traces of the multiplications by the basis monomials: a row of integers, and their common denominator."""
     size = algebra.dimension
     products: dict[Monomial, fmpq_mat] = {}
@@ -314,7 +314,7 @@ class CoordinatesInBalls(NamedTuple):
         return None if slope.contains(0) else [p(value) / slope for p in self.numerators]
 
 
-def hermite_matrix(algebra: Fibre, weight: fmpq_mat) -> fmpq_mat:
+def hermite_matrix(algebra: FibreAlgebra, weight: fmpq_mat) -> fmpq_mat:
     """The matrix trace(weight b_i b_j), weight being a multiplication matrix.
 
     Its rank is the number of different solutions where the weight is not zero, its signature the number of real

@@ -76,7 +76,9 @@ def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[tuple[fmpq,
             return []
     width = high - low
     whole = on_unit_interval(p, low, high)
-    found, stack = _by_halving(whole) if p.degree() <= _MAX_SHORT_DEGREE else ([], [_Part(whole, fmpq(0), fmpq(1))])
+    found, stack = (
+        _by_halving(whole) if p.degree() <= _MAX_SHORT_DEGREE else ([], [_RootInterval(whole, fmpq(0), fmpq(1))])
+    )
     found = [(low + width * left, low + width * right) for left, right in found]
     squarefree = False
     while stack:
@@ -93,7 +95,7 @@ def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[tuple[fmpq,
         if bound == part.bound:
             part = part._replace(polynomial=q, unchanged=part.unchanged + 1)
         else:
-            part = _Part(q, part.left, part.width, bound)
+            part = _RootInterval(q, part.left, part.width, bound)
         if part.unchanged >= _CLUSTER_CUTS:
             if not squarefree and p.gcd(p.derivative()).degree() > 0:
                 raise ValueError(f"a polynomial of degree {p.degree()} is not squarefree")
@@ -107,7 +109,7 @@ def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[tuple[fmpq,
     return sorted(found)
 
 
-def _by_halving(whole: fmpz_poly) -> tuple[list[tuple[fmpq, fmpq]], list[_Part]]:
+def _by_halving(whole: fmpz_poly) -> tuple[list[tuple[fmpq, fmpq]], list[_RootInterval]]:
     """The roots in (0, 1) that halving parts, and the parts that hold what may be a cluster.
 
     Descartes' bound is the number of sign changes of the Bernstein coefficients, and those of the halves come by de
@@ -116,7 +118,7 @@ def _by_halving(whole: fmpz_poly) -> tuple[list[tuple[fmpq, fmpq]], list[_Part]]
     """
     n = whole.degree()
     found: list[tuple[fmpq, fmpq]] = []
-    clusters: list[_Part] = []
+    clusters: list[_RootInterval] = []
     stack = [(0, 0, _bernstein_coefficients(whole), -1, 0, 0)]
     while stack:
         start, level, b, before, unchanged, run = stack.pop()
@@ -129,7 +131,7 @@ def _by_halving(whole: fmpz_poly) -> tuple[list[tuple[fmpq, fmpq]], list[_Part]]
         if unchanged >= _CLUSTER_CUTS:
             left, width = fmpq(start, 1 << level), fmpq(1, 1 << level)
             on_part = on_unit_interval(whole, left, left + width)
-            clusters.append(_Part(on_part, left, width, bound, unchanged - 1, run))
+            clusters.append(_RootInterval(on_part, left, width, bound, unchanged - 1, run))
             continue
         low, high = [], []
         for shift in range(n, -1, -1):
@@ -166,7 +168,7 @@ def _sign_changes(numbers: Sequence[int | fmpz]) -> int:
     return count
 
 
-class _Part(NamedTuple):
+class _RootInterval(NamedTuple):
     """A part of the interval in which roots are isolated.
 
     Attributes
@@ -188,19 +190,19 @@ class _Part(NamedTuple):
     speed: int = _MIN_SPEED
 
 
-def _halves(part: _Part) -> tuple[_Part, _Part]:
+def _halves(part: _RootInterval) -> tuple[_RootInterval, _RootInterval]:
     """The left and the right half."""
     n = part.polynomial.degree()
     half = fmpz_poly([c << (n - i) for i, c in enumerate(part.polynomial.coeffs())])
     width = part.width / 2
     _, left, _, bound, unchanged, run, speed = part
     return (
-        _Part(half, left, width, bound, unchanged, min(run, 0) - 1, speed),
-        _Part(half(_SHIFT), left + width, width, bound, unchanged, max(run, 0) + 1, speed),
+        _RootInterval(half, left, width, bound, unchanged, min(run, 0) - 1, speed),
+        _RootInterval(half(_SHIFT), left + width, width, bound, unchanged, max(run, 0) + 1, speed),
     )
 
 
-def _narrowed(part: _Part) -> _Part:
+def _narrowed(part: _RootInterval) -> _RootInterval:
     """The part, or a shorter one that is proved to hold all its roots."""
     q, left, width, bound, unchanged, run, speed = part
     narrow = _cluster(q, bound)
@@ -216,7 +218,7 @@ def _narrowed(part: _Part) -> _Part:
             run = 0
     if narrow is not None:
         q, left, width = narrow[0], left + narrow[1] * width, narrow[2] * width
-    return _Part(q, left, width, bound, unchanged, run, speed)
+    return _RootInterval(q, left, width, bound, unchanged, run, speed)
 
 
 def _cluster(q: fmpz_poly, bound: int) -> tuple[fmpz_poly, fmpq, fmpq] | None:

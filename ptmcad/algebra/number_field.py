@@ -26,7 +26,7 @@ PRIME = 2**61 - 1
 """Any prime gives the same answers; a large one seldom divides what is not zero."""
 
 
-class Evaluation:
+class RingEvaluation:
     """Values of expressions in one ring, each computed once: parts are shared by many expressions.
 
     Parameters
@@ -48,7 +48,7 @@ class Evaluation:
         return self._known[expression]
 
 
-Expression = Callable[[Evaluation], Any]
+Expression = Callable[[RingEvaluation], Any]
 
 
 class Modulus:
@@ -62,8 +62,8 @@ class Modulus:
 
     def __init__(self, polynomial: fmpz_poly) -> None:
         self.polynomial, self.degree = fmpq_poly(polynomial), int(polynomial.degree())
-        self.residues = Evaluation(lambda p: p % self.polynomial, lambda p: p % self.polynomial, self._inverse)
-        self.images = Evaluation(self._image, lambda p: p % self._modulo_prime, self._inverse_image)
+        self.residues = RingEvaluation(lambda p: p % self.polynomial, lambda p: p % self.polynomial, self._inverse)
+        self.images = RingEvaluation(self._image, lambda p: p % self._modulo_prime, self._inverse_image)
 
     @cached_property
     def _modulo_prime(self) -> nmod_poly:
@@ -93,23 +93,23 @@ class RealField:
     modulus: Modulus
     root: RealRoot
 
-    def element(self, p: fmpq_poly) -> Element:
+    def element(self, p: fmpq_poly) -> FieldElement:
         """The value of a polynomial at the root."""
-        return Element(self, lambda ring: ring.embed(p))
+        return FieldElement(self, lambda ring: ring.embed(p))
 
-    def constant(self, value: fmpq) -> Element:
+    def constant(self, value: fmpq) -> FieldElement:
         """A rational number."""
         return self.element(fmpq_poly([value]))
 
-    def evaluation(self) -> Evaluation:
+    def evaluation(self) -> RingEvaluation:
         """In balls, at the root, whose enclosure is about as wide as one of the context's precision."""
         short = refine(self.root, fmpq(1, 2**ctx.prec) * (abs(self.root.middle) + 1))
         generator = arb(short.low).union(arb(short.high))
-        return Evaluation(lambda p: arb_poly(p)(generator), lambda ball: ball, lambda ball: 1 / ball)
+        return RingEvaluation(lambda p: arb_poly(p)(generator), lambda ball: ball, lambda ball: 1 / ball)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Element:
+class FieldElement:
     """An element of a real field: the value of the expression at the root."""
 
     field: RealField
@@ -144,11 +144,11 @@ class Element:
             return None
         return to_fraction(fmpq(self.residue[0]))
 
-    def conjugate(self, field: RealField) -> Element:
+    def conjugate(self, field: RealField) -> FieldElement:
         """The same residue at another root of the modulus."""
-        return Element(field, self.expression)
+        return FieldElement(field, self.expression)
 
-    def ball(self, at: Evaluation) -> arb:
+    def ball(self, at: RingEvaluation) -> arb:
         """An enclosure, from an evaluation of the field's."""
         ball: arb = at[self.expression]
         return ball
@@ -162,19 +162,23 @@ class Element:
         image = self.image
         return None if image is None else tuple(image[k] for k in range(self.field.modulus.degree))
 
-    def __add__(self, other: Element) -> Element:
+    def __add__(self, other: FieldElement) -> FieldElement:
         a, b = self.expression, other.expression
-        return Element(self.field, lambda ring: ring[a] + ring[b])
+        return FieldElement(self.field, lambda ring: ring[a] + ring[b])
 
-    def __sub__(self, other: Element) -> Element:
+    def __sub__(self, other: FieldElement) -> FieldElement:
         a, b = self.expression, other.expression
-        return Element(self.field, lambda ring: ring[a] - ring[b])
+        return FieldElement(self.field, lambda ring: ring[a] - ring[b])
 
-    def __mul__(self, other: Element) -> Element:
+    def __mul__(self, other: FieldElement) -> FieldElement:
         a, b = self.expression, other.expression
-        return Element(self.field, lambda ring: ring.reduce(ring[a] * ring[b]))
+        return FieldElement(self.field, lambda ring: ring.reduce(ring[a] * ring[b]))
 
-    def inverse(self) -> Element:
+    def __neg__(self) -> FieldElement:
+        a = self.expression
+        return FieldElement(self.field, lambda ring: -ring[a])
+
+    def inverse(self) -> FieldElement:
         """One over the element.
 
         Raises
@@ -185,14 +189,14 @@ class Element:
         if self.is_zero:
             raise ZeroDivisionError("a number that is zero has no inverse")
         a = self.expression
-        return Element(self.field, lambda ring: ring.inverse(ring[a]))
+        return FieldElement(self.field, lambda ring: ring.inverse(ring[a]))
 
-    def times(self, factor: fmpq) -> Element:
+    def times(self, factor: fmpq) -> FieldElement:
         """A rational multiple."""
         return self * self.field.constant(factor)
 
 
-def polynomial_at(field: RealField, at: Sequence[Element], p: Mapping[tuple[int, ...], fmpq]) -> Element:
+def polynomial_at(field: RealField, at: Sequence[FieldElement], p: Mapping[tuple[int, ...], fmpq]) -> FieldElement:
     """The value of a polynomial at elements of a field.
 
     Parameters
@@ -201,7 +205,7 @@ def polynomial_at(field: RealField, at: Sequence[Element], p: Mapping[tuple[int,
     """
     parts = [element.expression for element in at]
 
-    def value(ring: Evaluation) -> Any:
+    def value(ring: RingEvaluation) -> Any:
         total = ring.embed(fmpq_poly([0]))
         for monomial, c in p.items():
             term = ring.embed(fmpq_poly([c]))
@@ -211,4 +215,4 @@ def polynomial_at(field: RealField, at: Sequence[Element], p: Mapping[tuple[int,
             total += term
         return total
 
-    return Element(field, value)
+    return FieldElement(field, value)

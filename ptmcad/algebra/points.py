@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from ptmcad.algebra.fibre import Fibre, RationalPolynomial, evaluate, univariate_representation
+from ptmcad.algebra.fibre import FibreAlgebra, RationalPolynomial, evaluate, univariate_representation
 from ptmcad.algebra.isolation import root_bound
-from ptmcad.algebra.number_field import Element, Expression, Modulus, RealField, polynomial_at
+from ptmcad.algebra.number_field import Expression, FieldElement, Modulus, RealField, polynomial_at
 from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
 
 
@@ -24,12 +24,12 @@ class RealPoint:
     """A real solution: the unknowns as elements of a real field, and the multiplicity."""
 
     field: RealField
-    unknowns: tuple[Element, ...]
+    unknowns: tuple[FieldElement, ...]
     multiplicity: int
 
 
 @dataclass(frozen=True, slots=True)
-class Points:
+class FibrePoints:
     """The points of a fibre.
 
     Attributes
@@ -45,7 +45,7 @@ class Points:
     total: int
 
 
-def points(algebra: Fibre, bound: int | None = 1) -> Points:
+def points(algebra: FibreAlgebra, bound: int | None = 1) -> FibrePoints:
     """The points of a fibre.
 
     Parameters
@@ -70,16 +70,16 @@ def points(algebra: Fibre, bound: int | None = 1) -> Points:
             coordinates[number] = modulus, _coordinates(RealField(modulus, interval), numerators)
         modulus, residues = coordinates[number]
         field = RealField(modulus, interval)
-        found.append(RealPoint(field, tuple(Element(field, r) for r in residues), multiplicity))
-    return Points(tuple(found), form, int(radical.degree()), algebra.dimension)
+        found.append(RealPoint(field, tuple(FieldElement(field, r) for r in residues), multiplicity))
+    return FibrePoints(tuple(found), form, int(radical.degree()), algebra.dimension)
 
 
-def value_at(point: RealPoint, p: RationalPolynomial) -> Element:
+def value_at(point: RealPoint, p: RationalPolynomial) -> FieldElement:
     """A polynomial in the unknowns as a number."""
     return polynomial_at(point.field, point.unknowns, p)
 
 
-def real_values(algebra: Fibre, p: RationalPolynomial, bound: fmpq | None = None) -> tuple[RealRoot, ...]:
+def real_values(algebra: FibreAlgebra, p: RationalPolynomial, bound: fmpq | None = None) -> tuple[RealRoot, ...]:
     """The real numbers, in (-bound, bound), that p takes at complex points of the fibre, in increasing order."""
     factors = evaluate(algebra, p).charpoly().numer().factor()[1]
     radical = _product([factor for factor, _ in factors])

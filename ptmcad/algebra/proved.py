@@ -14,7 +14,7 @@ from time import monotonic
 
 from flint import fmpq, fmpq_mat
 
-from ptmcad.algebra.fibre import Fibre, RationalPolynomial, bezout_bound, fibre_of_rules
+from ptmcad.algebra.fibre import FibreAlgebra, RationalPolynomial, bezout_bound, fibre_of_rules
 from ptmcad.algebra.groebner import Monomial
 from ptmcad.algebra.membership import Rules, lies_in_ideal, order_key
 from ptmcad.algebra.msolve import MsolveError, Terms, groebner_basis
@@ -24,7 +24,7 @@ from ptmcad.errors import LimitReached
 
 def quotient_by_msolve(
     equations: Sequence[RationalPolynomial], unknowns: int, seconds: float, largest: int | None = None
-) -> Fibre:
+) -> FibreAlgebra:
     """The quotient by a basis that msolve has found, with proof that it is the quotient by the equations.
 
     Parameters
@@ -101,7 +101,7 @@ def _rules(elements: Sequence[Terms]) -> Rules:
     return rules
 
 
-def _check_quotient(equations: Sequence[RationalPolynomial], algebra: Fibre, pause: Callable[[], None]) -> None:
+def _check_quotient(equations: Sequence[RationalPolynomial], algebra: FibreAlgebra, pause: Callable[[], None]) -> None:
     """Refuse matrices that do not commute, or in which an equation is not zero.
 
     Raises

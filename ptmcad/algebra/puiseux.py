@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 
-from ptmcad.algebra.branches import PrecisionTooLow, Tube, local_coefficients, shifted, tube_around
+from ptmcad.algebra.branches import SeriesTube, TooFewBits, local_coefficients, shifted, tube_around
 from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
 
 _STAGES = 4
@@ -51,7 +51,7 @@ class Beside(NamedTuple):
         return ((arb(u) - self.abscissa) / arb(self.width)).root(power)
 
 
-class _Chart(NamedTuple):
+class _PuiseuxChart(NamedTuple):
     """u = c + X s^power and v = along(s) + s^exponent w, where sum_j s^-lowered rows_j(s) w^j = 0.
 
     Attributes
@@ -110,7 +110,9 @@ def puiseux_integral(
     return value + tube.error * end**n * arb(size) * arb(0, 1), cut
 
 
-def _straightened(in_v: Sequence[fmpz_poly], beside: Beside, branch: Callable[[fmpq], RealRoot]) -> _Chart | None:
+def _straightened(
+    in_v: Sequence[fmpz_poly], beside: Beside, branch: Callable[[fmpq], RealRoot]
+) -> _PuiseuxChart | None:
     """Coordinates in which the branch is the only one through its point over c."""
     place = beside.near
     fine = abs(beside.width) / 2**ctx.prec
@@ -122,7 +124,7 @@ def _straightened(in_v: Sequence[fmpz_poly], beside: Beside, branch: Callable[[f
         return None
     start, branches = origin
     rows = local_coefficients(in_v, beside.abscissa, arb(beside.width), start)
-    chart: _Chart | None = _Chart(1, arb_poly([start]), 0, rows, 0, branches, height - start)
+    chart: _PuiseuxChart | None = _PuiseuxChart(1, arb_poly([start]), 0, rows, 0, branches, height - start)
     for _ in range(_STAGES):
         if chart is None or chart.branches == 1:
             break
@@ -130,7 +132,7 @@ def _straightened(in_v: Sequence[fmpz_poly], beside: Beside, branch: Callable[[f
     return chart if chart is not None and chart.branches == 1 else None
 
 
-def _blown_up(chart: _Chart, s: arb) -> _Chart | None:
+def _blown_up(chart: _PuiseuxChart, s: arb) -> _PuiseuxChart | None:
     """The coordinates after one more step; s is that of the place where the branch is known."""
     first = _support(chart)
     for upper, lower in _edges(first):
@@ -151,11 +153,11 @@ def _blown_up(chart: _Chart, s: arb) -> _Chart | None:
         lowered = (chart.lowered + first[upper]) * q + upper * e
         exponent = chart.exponent * q + e
         along = _spread(chart.along, q) + arb_poly([value]).left_shift(exponent)
-        return _Chart(chart.power * q, along, exponent, shifted(rows, value), lowered, branches, there - value)
+        return _PuiseuxChart(chart.power * q, along, exponent, shifted(rows, value), lowered, branches, there - value)
     return None
 
 
-def _support(chart: _Chart) -> dict[int, int]:
+def _support(chart: _PuiseuxChart) -> dict[int, int]:
     """For each power of w that matters and has one, the first power of s that its coefficient is known to have."""
     first = {}
     for j, row in enumerate(chart.rows[: chart.branches + 1]):
@@ -197,7 +199,7 @@ def _root_near(p: arb_poly, start: arb) -> tuple[arb, int] | None:
     return None
 
 
-def _regular(chart: _Chart, beside: Beside) -> list[arb_poly]:
+def _regular(chart: _PuiseuxChart, beside: Beside) -> list[arb_poly]:
     """The equation's coefficients as polynomials in s; what has negative powers of s is small, and a ball."""
     least = beside.root(beside.near, chart.power).lower()
     regular = []
@@ -206,12 +208,12 @@ def _regular(chart: _Chart, beside: Beside) -> list[arb_poly]:
         for k in range(chart.lowered):  # so the k-th coefficient is divided as often as the power of s says
             noise = (noise + abs(row[k])) / least
         if not noise.is_finite():
-            raise PrecisionTooLow
+            raise TooFewBits
         regular.append(row.right_shift(chart.lowered) + arb(0, noise.upper()))
     return regular
 
 
-def _is_branch(chart: _Chart, tube: Tube, s: arb, root: RealRoot) -> bool:
+def _is_branch(chart: _PuiseuxChart, tube: SeriesTube, s: arb, root: RealRoot) -> bool:
     """Whether the root over an abscissa is in the tube, which is there the only one in it."""
     near = refine(root, (tube.reach * s**chart.exponent / 2**_ROOM_BITS).mid().fmpq())
     height = arb(near.low).union(arb(near.high))
@@ -219,7 +221,7 @@ def _is_branch(chart: _Chart, tube: Tube, s: arb, root: RealRoot) -> bool:
     return bool(abs(w - tube.series(s / arb(tube.share))) < tube.reach)
 
 
-def _scaled(tube: Tube) -> arb_poly:
+def _scaled(tube: SeriesTube) -> arb_poly:
     """The tube's series in s."""
     return tube.series(arb_poly([0, 1 / arb(tube.share)]))
 

@@ -11,12 +11,12 @@ from typing import TypeVar
 
 from flint import fmpq, fmpq_poly, nmod_poly
 
-from ptmcad.algebra.number_field import Element
+from ptmcad.algebra.number_field import FieldElement
 
 _Polynomial = TypeVar("_Polynomial", fmpq_poly, nmod_poly)
 
 
-def rational_roots(lower: Sequence[Element]) -> Iterator[tuple[Fraction, int]]:
+def rational_roots(lower: Sequence[FieldElement]) -> Iterator[tuple[Fraction, int]]:
     """The rational roots of a polynomial with leading coefficient 1, with multiplicities.
 
     With coefficients in powers of the field's generator, a rational root is one of each power's polynomial, so of their

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from flint import fmpq_poly, fmpz_poly
 
-from ptmcad.algebra.fibre import Fibre, RationalPolynomial, UnivariateRepresentation, evaluate
+from ptmcad.algebra.fibre import FibreAlgebra, RationalPolynomial, UnivariateRepresentation, evaluate
 
 Divisor = fmpz_poly
 """In Z[T], of the representation's minimal polynomial."""
 
 
 def vanishing_divisor(
-    algebra: Fibre, representation: UnivariateRepresentation, p: RationalPolynomial
+    algebra: FibreAlgebra, representation: UnivariateRepresentation, p: RationalPolynomial
 ) -> Divisor | None:
     """The divisor whose roots are those at which p vanishes; None when there are none.
 

@@ -22,7 +22,7 @@ from ptmcad.cover.outlines import outlines
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.slanted import shown
 from ptmcad.errors import ConfigError
-from ptmcad.exact.cad.chains import Chain, chains, critical_shares
+from ptmcad.exact.cad.chains import WallPolyline, chains, critical_shares
 from ptmcad.exact.cad.curves import lines_of
 from ptmcad.question.doubles import within_doubles
 from ptmcad.text.parsing import share_for
@@ -106,7 +106,7 @@ def _continues(left: _Piece, right: _Piece) -> bool:
     return near and (left.component, left.regions) == (right.component, right.regions)
 
 
-def _lines(result: RegionMap, chained: tuple[tuple[Chain, ...], ...]) -> Iterator[_Piece]:
+def _lines(result: RegionMap, chained: tuple[tuple[WallPolyline, ...], ...]) -> Iterator[_Piece]:
     """Lines across the base, from wall to wall."""
     lines = lines_of(result.components, result.base)
     spans = critical_shares(result)

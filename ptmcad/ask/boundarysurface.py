@@ -22,7 +22,7 @@ from ptmcad.ask.changes import Members
 from ptmcad.ask.members import Common, Restored, in_common
 from ptmcad.ask.sheets import Joined, mesh_of
 from ptmcad.errors import ConfigError
-from ptmcad.exact.strips import Strips
+from ptmcad.exact.strips import BoundaryStrips
 from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.doubles import within_doubles
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
@@ -166,7 +166,7 @@ class _Search:
         self.sizes = tuple(a.high - a.low for a in common.family.axes)
         self.joined: set[tuple[Fraction, Fraction]] = set()
         self.deviation, self.unresolved = 0.0, 0
-        self._known: dict[Fraction, Strips | None] = {}
+        self._known: dict[Fraction, BoundaryStrips | None] = {}
 
     def run(self) -> None:
         """Look at gaps until sheets join all members that they can, near enough."""
@@ -230,14 +230,14 @@ class _Search:
         value = _value(slab, middle, (low, high))
         return _Gap(slab, (start, middle, end), low, value, high, self._deviation(low, value, high))
 
-    def _boundary(self, value: Fraction) -> Strips | None:
+    def _boundary(self, value: Fraction) -> BoundaryStrips | None:
         """None where a member has no arrangement."""
         if value not in self._known:
             picture = self.members.tried(value)
-            self._known[value] = None if picture is None else Strips(picture)
+            self._known[value] = None if picture is None else BoundaryStrips(picture)
         return self._known[value]
 
-    def _strips(self, value: Fraction) -> Strips:
+    def _strips(self, value: Fraction) -> BoundaryStrips:
         found = self._boundary(value)
         assert found is not None  # no sheet ends at a member that has none
         return found

@@ -15,7 +15,7 @@ from time import process_time
 from flint import fmpq
 
 from ptmcad.algebra.bases import plan_text
-from ptmcad.algebra.fibre import Work
+from ptmcad.algebra.fibre import WorkLimit
 from ptmcad.ask.classification import check_taken, flat_loops
 from ptmcad.ask.engines import is_certified
 from ptmcad.ask.forecast import QUICK, Forecast, curve_text, forecast, seconds_to_discriminant, way_text
@@ -205,7 +205,7 @@ def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tu
 
 def _foretold(problem: SliceProblem, solutions: int) -> Forecast | None:
     """The forecast for a slice with simple solutions; None where the curve is too large to tell its size at once."""
-    found = sizes(problem, solutions, MAX_SIZING, Work(MAX_COUNTED, *MAX_BASIS))
+    found = sizes(problem, solutions, MAX_SIZING, WorkLimit(MAX_COUNTED, *MAX_BASIS))
     if found is None:
         return None
     quick = seconds_to_discriminant(solutions, found) <= QUICK
@@ -238,7 +238,7 @@ def _solutions(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[in
     LimitReached
         When they are not counted within about a second.
     """
-    most = Work(MAX_COUNTED, *MAX_BASIS)
+    most = WorkLimit(MAX_COUNTED, *MAX_BASIS)
     different, multiplicity = solutions_at(system, values, most=most)
     if system.inequalities:
         counted, of = solutions_at(system, values, saturated=True, most=most)

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ptmcad.exact.sizes import Sizes
+from ptmcad.exact.sizes import CurveSizes
 from ptmcad.exact.survey import Survey
 
 MAX_DEGREE = 50
@@ -52,7 +52,7 @@ class Forecast(NamedTuple):
     seconds, megabytes : of the whole process, on one processor.
     """
 
-    sizes: Sizes
+    sizes: CurveSizes
     seconds: float
     megabytes: float
 
@@ -69,20 +69,20 @@ class Forecast(NamedTuple):
         return min(across * 2 * max(up - 1, 0), up * 2 * max(across - 1, 0)) + 1
 
 
-def _powers(sizes: Sizes) -> tuple[int, int]:
+def _powers(sizes: CurveSizes) -> tuple[int, int]:
     """The degrees in the least powers of the axes that occur."""
     across, up = (max(d // s, 1) for d, s in zip(sizes.degrees, sizes.steps, strict=True))
     return across, up
 
 
-def seconds_to_discriminant(solutions: int, sizes: Sizes) -> float:
+def seconds_to_discriminant(solutions: int, sizes: CurveSizes) -> float:
     """What the curve and its discriminant are predicted to take."""
     across, up = _powers(sizes)
     tables = _TABLE * (solutions * sizes.table_terms) ** 2
     return tables + _NORM * solutions**2 * sizes.terms + _DISCRIMINANT * math.pow(across * up / _UNIT, _BY_SIZE)
 
 
-def seconds_after(solutions: int, sizes: Sizes, seen: Survey | None) -> float:
+def seconds_after(solutions: int, sizes: CurveSizes, seen: Survey | None) -> float:
     """What all stages after the discriminant are predicted to take."""
     if seen is None:
         across, up = _powers(sizes)
@@ -91,7 +91,7 @@ def seconds_after(solutions: int, sizes: Sizes, seen: Survey | None) -> float:
     return counts + _WALLS * math.pow(seen.walls, _BY_WALLS) * math.pow(seen.degree, _BY_DEGREE)
 
 
-def forecast(solutions: int, sizes: Sizes, seen: Survey | None = None) -> Forecast:
+def forecast(solutions: int, sizes: CurveSizes, seen: Survey | None = None) -> Forecast:
     """The forecast for a number of complex solutions, a critical curve, and what is known of the cells.
 
     >>> found = forecast(6, Sizes((24, 12), 24, (2, 1)))

@@ -20,7 +20,7 @@ from ptmcad.answer.words import noun
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError, DegenerateSliceError, expect
-from ptmcad.exact.cad.curves import Curve, curves_of
+from ptmcad.exact.cad.curves import FibredCurve, curves_of
 from ptmcad.exact.models import system_from
 from ptmcad.exact.stages import count_at
 from ptmcad.question.slice import Point
@@ -141,12 +141,12 @@ def _kept(latest: list[tuple[RegionMap, Made]], result: RegionMap, make: Callabl
     return made
 
 
-def _curves(result: RegionMap) -> list[Curve]:
+def _curves(result: RegionMap) -> list[FibredCurve]:
     """The curves over the map's base."""
     return _kept(_latest_curves, result, lambda: curves_of(result.components, result.base))
 
 
-_latest_curves: list[tuple[RegionMap, list[Curve]]] = []
+_latest_curves: list[tuple[RegionMap, list[FibredCurve]]] = []
 
 
 def _locate_outside_cover(result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]) -> Location:
@@ -229,7 +229,7 @@ def _compare(u: fmpq, critical: CriticalValue) -> int:
     return -1 if at == sign_at(p, low) else 1
 
 
-def _step_left(result: RegionMap, curves: list[Curve], u: fmpq, v: fmpq, stack: int) -> fmpq:
+def _step_left(result: RegionMap, curves: list[FibredCurve], u: fmpq, v: fmpq, stack: int) -> fmpq:
     """An abscissa in the stack at the left of u from which the horizontal segment to (u, v) meets no curve."""
     width = u - from_fraction(result.stacks[stack].sample)
     while any(has_root_between(c.trace(v), u - width, u) for c in curves):

@@ -23,7 +23,7 @@ from ptmcad.process.memory import loading
 from ptmcad.question.slice import Count
 
 if TYPE_CHECKING:
-    from ptmcad.algebra.fibre import Work
+    from ptmcad.algebra.fibre import WorkLimit
 
 FEW = 3
 """Unknowns of which a basis is computed whatever it takes: there are seldom more than 64 solutions."""
@@ -34,20 +34,20 @@ _MAX_BY_MSOLVE = 150
 """Solutions, whose algebra takes some tens of seconds: 70 take ten, of which the basis's proof is the half."""
 
 
-def work_for(model: Model) -> Work | None:
+def work_for(model: Model) -> WorkLimit | None:
     """How much work the exact solutions at a point may be before the certified engine is asked; None for any.
 
     It takes critical points of a function of angles alone; with free lengths nothing else is asked anyway.
     """
-    from ptmcad.algebra.fibre import Work
+    from ptmcad.algebra.fibre import WorkLimit
 
     counted_alike = not isinstance(model, System) or (model.potential is not None and not model.inequalities)
     if len(model.unknowns) <= FEW or model.reals or not model.has_potential or not counted_alike:
         return None
-    return Work(*_MAX_WORK) if find_spec("numba") is not None else None
+    return WorkLimit(*_MAX_WORK) if find_spec("numba") is not None else None
 
 
-def work_by_msolve() -> Work | None:
+def work_by_msolve() -> WorkLimit | None:
     """How much work the exact solutions may be where the search has not told all apart; None without msolve."""
     from ptmcad.algebra.bases import SMALL
     from ptmcad.algebra.msolve import program

@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.answer.boundarysurface import Sheet
-from ptmcad.exact.strips import JUMP, Key, Opening, Strips
+from ptmcad.exact.strips import JUMP, BoundaryOpening, BoundaryStrips, Key
 from ptmcad.question.slice import Axis
 
-Joined = list[tuple[Fraction, Strips]]
+Joined = list[tuple[Fraction, BoundaryStrips]]
 """Members with their values, in increasing order, whose boundaries have the same shape."""
 _DEPTH = 5
 _WELD = float(JUMP)
@@ -71,7 +71,7 @@ def _add_walls(builder: _Builder, run: Joined, number: int, tolerance: float) ->
 
 def _add_openings(builder: _Builder, run: Joined) -> None:
     """Pieces of lines across the base that neighbouring members have alike."""
-    openings: list[dict[tuple[tuple[int, int, int], tuple[Key, Key]], Opening]] = [
+    openings: list[dict[tuple[tuple[int, int, int], tuple[Key, Key]], BoundaryOpening]] = [
         {(o.place, o.keys): o for o in strips.openings} for _, strips in run
     ]
     for k, (before, after) in enumerate(pairwise(openings)):

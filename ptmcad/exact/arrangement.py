@@ -16,7 +16,7 @@ from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.arrangement import Arrangement
 from ptmcad.answer.regionmap import Merge, Wall
-from ptmcad.exact.cad.curves import Curve
+from ptmcad.exact.cad.curves import FibredCurve
 from ptmcad.exact.cad.projection import Projection
 from ptmcad.exact.cad.stacks import StackData, heights_between, level_at
 from ptmcad.exact.regions import members
@@ -113,7 +113,7 @@ def _sides(
     return (*across, *along) if variety.base == 0 else (*along, *across)
 
 
-def _levels_at(curves: Sequence[Curve], edge: fmpq, stack: StackData, fibre: Interval) -> list[int]:
+def _levels_at(curves: Sequence[FibredCurve], edge: fmpq, stack: StackData, fibre: Interval) -> list[int]:
     """The levels of a stack's cells along the window's edge at the end of its base, from below.
 
     Not all cells reach the edge along an arc: two walls may end in one point of it.

@@ -40,7 +40,7 @@ from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.version import __version__
 
 
-class Reached(NamedTuple):
+class PartialMap(NamedTuple):
     """What there is by now; None what there is not."""
 
     variety: Variety
@@ -51,7 +51,7 @@ class Reached(NamedTuple):
 def assemble(
     problem: SliceProblem,
     options: Options,
-    reached: Reached,
+    reached: PartialMap,
     status: Status = Status.PARTIAL,
     timings: Mapping[str, float] | None = None,
 ) -> RegionMap:

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.fibre import CoordinatesInBalls, UnivariateRepresentation, Work
+from ptmcad.algebra.fibre import CoordinatesInBalls, UnivariateRepresentation, WorkLimit
 from ptmcad.algebra.inertia import negative_eigenvalues
 from ptmcad.algebra.isolation import root_bound
 from ptmcad.algebra.newton import Newton
@@ -61,7 +61,7 @@ class Equilibria(NamedTuple):
     bits: int
 
 
-def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq], most: Work | None = None) -> Counts:
+def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None = None) -> Counts:
     """Counts at rational values of all parameters, by real-root isolation.
 
     Raises
@@ -74,7 +74,7 @@ def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq], mos
     return equilibria(system, values, most).counts
 
 
-def equilibria(system: ParametricSystem, values: Mapping[str, fmpq], most: Work | None = None) -> Equilibria:
+def equilibria(system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None = None) -> Equilibria:
     """All real solutions that count at rational values of all parameters, by real-root isolation.
 
     Raises

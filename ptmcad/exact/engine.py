@@ -13,7 +13,7 @@ from time import perf_counter
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import LimitReached
 from ptmcad.exact.areas import areas_of
-from ptmcad.exact.assembly import Reached, assemble
+from ptmcad.exact.assembly import PartialMap, assemble
 from ptmcad.exact.cad.adjacency import Crossing
 from ptmcad.exact.cad.projection import Projection
 from ptmcad.exact.sparing import counts_by_component, joined_cells
@@ -86,7 +86,7 @@ def exact_map(slice: Slice, options: Options = DEFAULTS, known: Known | None = N
     clock = _Clock(options)
     prove_slice(slice)
     problem = problem_of(slice)._replace(known=known)
-    reached: Reached | None = None
+    reached: PartialMap | None = None
     try:
         for reached in _stages(problem, options, clock):
             if options.partial is not None and reached.areas is None:
@@ -102,12 +102,12 @@ def exact_map(slice: Slice, options: Options = DEFAULTS, known: Known | None = N
     return result
 
 
-def _stages(problem: SliceProblem, options: Options, clock: _Clock) -> Iterator[Reached]:
+def _stages(problem: SliceProblem, options: Options, clock: _Clock) -> Iterator[PartialMap]:
     """What there is after the variety, after the counts, and with areas if they are asked for."""
     without = options.without
     clock.report("variety")
     variety = variety_of(problem, without)
-    yield Reached(variety)
+    yield PartialMap(variety)
     clock.stage("variety")
     clock.report("projection")
     projection = projection_of(problem, variety, without, clock.check)
@@ -120,7 +120,7 @@ def _stages(problem: SliceProblem, options: Options, clock: _Clock) -> Iterator[
 
 def _counted(
     problem: SliceProblem, options: Options, clock: _Clock, built: tuple[Variety, Projection, Stacks]
-) -> Iterator[Reached]:
+) -> Iterator[PartialMap]:
     """Counts and adjacency, in either order, then areas."""
     variety, projection, stacks = built
     crossings: tuple[Crossing, ...] = ()
@@ -134,10 +134,10 @@ def _counted(
             counts = counts_of(problem, stacks, report)
         clock.stage(stage)
     cells = Cells(projection, stacks, counts, neighbours_of(variety, projection, stacks, counts, crossings))
-    yield Reached(variety, cells)
+    yield PartialMap(variety, cells)
     if options.areas:
         clock.report("areas")
         tolerance = options.area_tolerance or AREA_TOLERANCE
         areas = areas_of(problem, variety, cells, tolerance, options.without, clock.check)
         clock.stage("areas")
-        yield Reached(variety, cells, areas)
+        yield PartialMap(variety, cells, areas)

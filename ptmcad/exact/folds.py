@@ -13,11 +13,14 @@ from flint import fmpq
 
 from ptmcad.algebra.bases import quotient
 from ptmcad.algebra.polynomials import Ratio, evaluate
+from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
 from ptmcad.exact.models.potential import elements_of
 from ptmcad.exact.models.system import ParametricSystem, at_point, polynomial_at
 from ptmcad.exact.witness import Point
-from ptmcad.model import ClosedMechanism, Model
+from ptmcad.model import Mechanism, Model
+from ptmcad.model.closed import looped
+from ptmcad.model.compile import compiled
 from ptmcad.model.fourbars import IN_TWO_WAYS, closed_by, four_bars
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.flint_numbers import to_fraction
@@ -38,35 +41,35 @@ def with_folds(
     ----------
     at : points of the slice that nobody has chosen.
     """
-    if not isinstance(model, ClosedMechanism) or not model.tangent:
+    mechanism, tangent = looped(model), compiled(model).tangent
+    if mechanism is None or not tangent:
         return error
-    seen = {p: found for p in at if (found := _folds_at(model, system, parameters, p)) is not None}
+    flat = elements_of(model, tangent)
+    seen = {p: found for p in at if (found := _folds_at(flat, system, parameters, p)) is not None}
     if not seen or not all(seen.values()):
         return error
-    which = closed_by(model.mechanism)
-    why = _branches(model, parameters, tuple(seen))
+    why = _branches(mechanism, parameters, tuple(seen))
     return DegenerateSliceError(
-        f"at every point of the slice the loop that {which} closes can fold flat{why}", part=error.part
+        f"at every point of the slice the loop that {closed_by(mechanism)} closes can fold flat{why}", part=error.part
     )
 
 
 def _folds_at(
-    model: ClosedMechanism, system: ParametricSystem, parameters: Mapping[str, Ratio], at: Point
+    tangent: Sequence[TrigonometricPolynomial], system: ParametricSystem, parameters: Mapping[str, Ratio], at: Point
 ) -> bool | None:
     """Whether some pose, real or complex, has a tangent that is zero; None where a parameter has no value."""
     below = [evaluate(b, *at) for _, b in parameters.values()]
     if not all(below):
         return None
     values = {name: evaluate(a, *at) / b for (name, (a, _)), b in zip(parameters.items(), below, strict=True)}
-    flat = [polynomial_at(system, p, values) for p in elements_of(model, model.tangent)]
+    flat = [polynomial_at(system, p, values) for p in tangent]
     circles = [{m: fmpq(c) for m, c in circle.items()} for circle in system.ring.circles]
     found = quotient([e for e in (*at_point(system, values)[0], *flat) if e] + circles, system.ring.width)
     return found is None or found.dimension > 0
 
 
-def _branches(model: ClosedMechanism, parameters: Mapping[str, Ratio], at: Sequence[Point]) -> str:
+def _branches(mechanism: Mechanism, parameters: Mapping[str, Ratio], at: Sequence[Point]) -> str:
     """What the branches are that meet in flat poses, where they can be named, and how to describe each by itself."""
-    mechanism = model.mechanism
     for loop in four_bars(mechanism) if len(mechanism.closing) == 1 else ():
         folds = [loop.fold(_values(parameters, p)) for p in at]
         if folds and folds[0] and len(set(folds)) == 1:

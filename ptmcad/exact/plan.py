@@ -11,7 +11,8 @@ from math import gcd
 
 from ptmcad.answer.plan import saving_step, zero_parameters, zero_terms
 from ptmcad.answer.regionmap import HARMLESS, Component, PlanStep
-from ptmcad.model import Model, System
+from ptmcad.model import Model
+from ptmcad.model.compile import compiled
 from ptmcad.question.savings import BY_NAME
 from ptmcad.question.slice import Slice
 
@@ -69,7 +70,8 @@ def plan_of(
 
 
 def _has_conditions(model: Model) -> bool:
-    return isinstance(model, System) and bool(model.inequalities or model.stability)
+    known = compiled(model)
+    return bool(known.inequalities or known.stability)
 
 
 def _sign_curve(model: Model, without: frozenset[str]) -> Iterator[PlanStep]:

@@ -13,9 +13,9 @@ from flint import fmpq
 
 from ptmcad.algebra.bases import quotient
 from ptmcad.algebra.fibre import (
-    Fibre,
+    FibreAlgebra,
     UnivariateRepresentation,
-    Work,
+    WorkLimit,
     evaluate,
     hermite_matrix,
     univariate_representation,
@@ -41,7 +41,7 @@ class PointSystem(NamedTuple):
     jacobian: tuple[tuple[RationalPolynomial, ...], ...]
     inequalities: tuple[RationalPolynomial, ...]
     stability: tuple[RationalPolynomial, ...]
-    algebra: Fibre
+    algebra: FibreAlgebra
     is_bounded: bool
 
     @property
@@ -50,7 +50,7 @@ class PointSystem(NamedTuple):
 
 
 def point_system(
-    system: ParametricSystem, values: Mapping[str, fmpq], saturated: bool = False, most: Work | None = None
+    system: ParametricSystem, values: Mapping[str, fmpq], saturated: bool = False, most: WorkLimit | None = None
 ) -> PointSystem:
     """The system at rational values of all parameters.
 
@@ -107,7 +107,7 @@ def text_of_point(values: Mapping[str, fmpq]) -> str:
 
 
 def simple_solutions(
-    system: ParametricSystem, values: Mapping[str, fmpq], most: Work | None = None
+    system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None = None
 ) -> tuple[PointSystem, UnivariateRepresentation | None]:
     """The point's system when its solutions are simple, and their representation; None when there are none.
 
@@ -145,7 +145,7 @@ def degree_bound(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[
 
 
 def solutions_at(
-    system: ParametricSystem, values: Mapping[str, fmpq], saturated: bool = False, most: Work | None = None
+    system: ParametricSystem, values: Mapping[str, fmpq], saturated: bool = False, most: WorkLimit | None = None
 ) -> tuple[int | None, int]:
     """Number of different complex solutions, and their number with multiplicity; (None, 0) for infinitely many.
 
@@ -172,7 +172,7 @@ def solutions_at(
     return _off(point, point.inequalities if saturated else ())
 
 
-def none_is_stable(system: ParametricSystem, values: Mapping[str, fmpq], most: Work | None = None) -> bool:
+def none_is_stable(system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None = None) -> bool:
     """Whether at a point some condition for stability is zero at each of finitely many solutions, of which there are.
 
     Raises

@@ -19,7 +19,7 @@ from typing import NamedTuple
 from flint import fmpq, nmod_mat
 
 from ptmcad.algebra.determinants import laplace
-from ptmcad.algebra.fibre import Fibre, Work
+from ptmcad.algebra.fibre import FibreAlgebra, WorkLimit
 from ptmcad.algebra.groebner import Monomial
 from ptmcad.algebra.ratios import LinePolynomial, Numerator, degree, numerator, restricted, weighted
 from ptmcad.algebra.residues import primes
@@ -39,7 +39,7 @@ _ACROSS, _UP, _SLOPE, _APART = 29, 37, 3, 43
 y = x, along which degrees are lost where equations have a difference of the axes."""
 
 
-class Sizes(NamedTuple):
+class CurveSizes(NamedTuple):
     """Of the critical curve, its components taken together but for the lines on which an axis' value is zero.
 
     Attributes
@@ -74,7 +74,7 @@ def _terms(degrees: tuple[int, int], total: int, steps: tuple[int, int]) -> int:
     return sum(len(range(0, n, sy)) for n in (min(dy, total - i) + 1 for i in range(0, min(dx, total) + 1, sx)))
 
 
-def sizes(problem: SliceProblem, solutions: int, seconds: float, most: Work | None = None) -> Sizes | None:
+def sizes(problem: SliceProblem, solutions: int, seconds: float, most: WorkLimit | None = None) -> CurveSizes | None:
     """The curve's sizes; None where they are larger than `MAX_POINTS` tell, or take longer.
 
     Parameters
@@ -106,7 +106,7 @@ def sizes(problem: SliceProblem, solutions: int, seconds: float, most: Work | No
         for n, at in ((x, (fmpq(0), _GENERIC[1])), (y, (_GENERIC[0], fmpq(0))))
     ]
     of_tables = tables[1], tables[2], max(tables)
-    return Sizes(degrees, max(total, *degrees), (x.step, y.step), of_tables, (lines[0], lines[1]))
+    return CurveSizes(degrees, max(total, *degrees), (x.step, y.step), of_tables, (lines[0], lines[1]))
 
 
 def _place(s: int, line: tuple[int, int]) -> tuple[int, int]:
@@ -114,7 +114,7 @@ def _place(s: int, line: tuple[int, int]) -> tuple[int, int]:
     return s if line[0] else _ACROSS, (_SLOPE * s + _APART if line[0] else s) if line[1] else _UP
 
 
-def _at(problem: SliceProblem, at: Sample, solutions: int, most: Work | None) -> PointSystem | None:
+def _at(problem: SliceProblem, at: Sample, solutions: int, most: WorkLimit | None) -> PointSystem | None:
     """The system at a point; None where solutions are lost."""
     try:
         point = point_system(problem.system, point_values(problem.parameters, at), most=most)
@@ -131,7 +131,7 @@ def _values(
     problem: SliceProblem,
     solutions: int,
     line: tuple[int, int],
-    usual: tuple[tuple[Monomial, ...], Work | None],
+    usual: tuple[tuple[Monomial, ...], WorkLimit | None],
 ) -> Iterator[_Value]:
     """Values modulo a prime; points over which solutions are lost are left out."""
     prime, (basis, most) = next(primes()), usual
@@ -147,7 +147,7 @@ def _values(
         yield s, _norm(tables, point.jacobian, prime), weighted(entries, prime) if usual_here else None
 
 
-def _residues(algebra: Fibre, prime: int) -> list[nmod_mat] | None:
+def _residues(algebra: FibreAlgebra, prime: int) -> list[nmod_mat] | None:
     """The multiplication tables modulo a prime; None where that divides a denominator."""
     found = []
     for matrix in algebra.multiplication:

@@ -20,7 +20,7 @@ from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import HARMLESS, Adjacency, Component, Merge, Segment
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
 from ptmcad.exact.cad.adjacency import Crossing, Separator, cross
-from ptmcad.exact.cad.curves import Curve, curves_of, lines_of
+from ptmcad.exact.cad.curves import FibredCurve, curves_of, lines_of
 from ptmcad.exact.cad.projection import Projection, predicted_cost, project
 from ptmcad.exact.cad.stacks import Avoided, StackData, level_at, lift
 from ptmcad.exact.counting import Equilibria, equilibria
@@ -96,7 +96,7 @@ class Variety(NamedTuple):
     components: tuple[Component, ...]
     complex_solutions: int
     base: int
-    curves: Sequence[Curve]
+    curves: Sequence[FibredCurve]
     lines: dict[int, UnivariatePolynomial]
     costs: tuple[int, int]
     excludes: bool = False

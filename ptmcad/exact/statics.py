@@ -9,147 +9,133 @@ an eigenvalue is a root of a quadratic over it; and an angle is a rational numbe
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from math import gcd
+from typing import Any, NamedTuple
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.number_field import Element
+from ptmcad.algebra.number_field import FieldElement
 from ptmcad.algebra.points import RealPoint, value_at
-from ptmcad.answer.poses import Pose, Spring, TorsionSpring, Vector
-from ptmcad.exact.models.system import RationalPolynomial
-from ptmcad.exact.stiffness import Number, Stiffness, eigenvalues, square_root, stiffness_of
-from ptmcad.model.xjoint import second_bar
+from ptmcad.answer.poses import Pose, Spring, TorsionSpring
+from ptmcad.exact.point_system import PointSystem
+from ptmcad.exact.stiffness import RealNumber, Stiffness, eigenvalues, square_root, stiffness_of
+from ptmcad.formulas.values import evaluated, values
+from ptmcad.model.compile import CompiledSystem
 from ptmcad.text.balls import ball_of
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.flint_numbers import from_fraction
 
 MAX_BITS = 2**22
 """Parameters of a thousand digits need a hundredth of them: a number that is still open is rational unnoticed."""
+_OPEN = Enclosure(Fraction(0), Fraction(0))
+"""Stands for the enclosure of a number that is not settled, in a pose that nobody is given."""
 _MIN_ORDER = 42
 """Orders of roots of unity that are tried at least: up to degree 6 a field has cosines of no others."""
 
 
-@dataclass(frozen=True, slots=True)
-class PointModel:
-    """A mechanism or system at rational values of its parameters: polynomials in the coordinates of the unknowns.
+class Quantities(NamedTuple):
+    """What a pose lists, as formulas of a compiled model, or as elements of a solution's field in their place.
 
     Attributes
     ----------
-    angles : their number; their cosines and sines are the first coordinates.
-    springs : name, ends and stiffness of each.
-    potential : None where there is none.
-    jacobian : of a potential its Hessian.
-    inequalities, stability : the system's.
-    torsion : name and stiffness of each torsion spring.
-    deflections : cosine and sine of their angles, each less the one at rest.
-    energy : of springs and loads, where there is no Hessian: with closed loops.
-    second_bars : of X-joints: number of the first bar's angle, the bars' length, the base's. Nodes, energy and
-        deflections are polynomials in their cosines and sines too, which stand after those of the unknown angles.
+    turns : cosine and sine of each unknown angle.
+    energy : of springs and loads, or the potential; None where there is none.
     """
 
-    angles: int
-    springs: tuple[tuple[str, str, str, Fraction], ...]
-    nodes: Mapping[str, tuple[RationalPolynomial, RationalPolynomial]]
-    potential: RationalPolynomial | None
-    jacobian: tuple[tuple[RationalPolynomial, ...], ...]
-    inequalities: tuple[RationalPolynomial, ...] = ()
-    stability: tuple[RationalPolynomial, ...] = ()
-    torsion: tuple[tuple[str, Fraction], ...] = ()
-    deflections: tuple[tuple[RationalPolynomial, RationalPolynomial], ...] = ()
-    energy: RationalPolynomial | None = None
-    second_bars: tuple[tuple[int, fmpq, fmpq], ...] = ()
+    turns: tuple[tuple[Any, Any], ...]
+    reals: tuple[Any, ...]
+    points: Mapping[str, tuple[Any, Any]]
+    springs: tuple[Any, ...]
+    torsion: tuple[Any, ...]
+    energy: Any
+
+    @classmethod
+    def of(cls, known: CompiledSystem) -> Quantities:
+        """As formulas."""
+        angles, reals = (tuple(map(known.graph.variable, numbers)) for numbers in (known.angles, known.reals))
+        energy = known.smooth if known.has_energy else None
+        return cls(tuple((a.cos(), a.sin()) for a in angles), reals, known.points, known.springs, known.torsion, energy)
+
+
+class _AtSolution:
+    """Elements of a solution's field, as an arithmetic for formulas: parameters have values, free lengths are zero."""
+
+    def __init__(self, known: CompiledSystem, parameters: Mapping[str, fmpq], point: RealPoint) -> None:
+        self._names, self._parameters, self._field = known.names, parameters, point.field
+        unknowns = iter(point.unknowns)
+        self._turned = {number: (next(unknowns), next(unknowns)) for number in known.angles}
+        self._reals = dict(zip(known.reals, unknowns, strict=True))
+        for follower in known.followers:
+            cosine, sine, below = values((follower.cosine, follower.sine, follower.below), self)
+            inverse = below.inverse()
+            self._turned[follower.variable] = (cosine * inverse, sine * inverse)
+
+    def constant(self, value: Fraction) -> FieldElement:
+        return self._field.constant(from_fraction(value))
+
+    def variable(self, number: int) -> FieldElement:
+        if number in self._reals:
+            return self._reals[number]
+        return self._field.constant(self._parameters.get(self._names[number], fmpq(0)))
+
+    def cos(self, number: int) -> FieldElement:
+        return self._turned[number][0]
+
+    def sin(self, number: int) -> FieldElement:
+        return self._turned[number][1]
 
 
 @dataclass(frozen=True, slots=True)
-class State:
-    """One solution in exact numbers: elements of one real field.
+class ExactSolution:
+    """One solution in exact numbers: elements of one real field, which those at other roots of its polynomial share.
 
     Attributes
     ----------
-    unknowns : cosine and sine of each angle, then the real unknowns.
-    nodes : coordinates x, y of each node.
-    squares : the springs' lengths squared.
-    energy : the potential; None where there is none.
-    conditions : the values of inequalities and stability conditions.
-    deflections : cosine and sine of each torsion spring's.
+    inequalities, stability : the conditions' values.
     """
 
     point: RealPoint
-    unknowns: tuple[Element, ...]
-    nodes: Mapping[str, tuple[Element, Element]]
-    squares: tuple[Element, ...]
-    energy: Element | None
+    quantities: Quantities
     stiffness: Stiffness
-    conditions: tuple[Element, ...]
-    deflections: tuple[tuple[Element, Element], ...] = ()
+    inequalities: tuple[FieldElement, ...]
+    stability: tuple[FieldElement, ...]
 
-    def conjugate(self, point: RealPoint) -> State:
-        """The solution at another root of the same polynomial: the same residues."""
-        field = point.field
-
-        def moved(element: Element) -> Element:
-            return element.conjugate(field)
-
-        def moved_or_none(element: Element | None) -> Element | None:
-            return None if element is None else element.conjugate(field)
-
-        stiffness = self.stiffness
-        return State(
-            point,
-            point.unknowns,
-            {name: (moved(x), moved(y)) for name, (x, y) in self.nodes.items()},
-            tuple(map(moved, self.squares)),
-            moved_or_none(self.energy),
-            stiffness._replace(
-                matrix=tuple(tuple(map(moved, row)) for row in stiffness.matrix),
-                trace=moved_or_none(stiffness.trace),
-                spread=moved_or_none(stiffness.spread),
-            ),
-            tuple(map(moved, self.conditions)),
-            tuple((moved(cosine), moved(sine)) for cosine, sine in self.deflections),
-        )
+    def all_positive(self, conditions: Iterable[FieldElement]) -> bool:
+        """Whether all of these numbers of the field are greater than zero at this solution, decided exactly."""
+        return all(is_positive(condition.conjugate(self.point.field)) for condition in conditions)
 
 
-def state_at(model: PointModel, point: RealPoint) -> State:
+def solution_at(
+    known: CompiledSystem, system: PointSystem, parameters: Mapping[str, fmpq], point: RealPoint
+) -> ExactSolution:
     """The solution at a real point of the fibre.
+
+    Parameters
+    ----------
+    system : the model's at the values of its parameters.
 
     Raises
     ------
     ArithmeticError
         When the Jacobian is singular at a simple point or regular at a multiple one.
     """
-    whole = _with_second_bars(model, point)
-    nodes = {name: (value_at(whole, x), value_at(whole, y)) for name, (x, y) in model.nodes.items()}
-    squares = []
-    for _, start, end, _ in model.springs:
-        dx, dy = (nodes[end][i] - nodes[start][i] for i in (0, 1))
-        squares.append(dx * dx + dy * dy)
-    matrix = tuple(tuple(value_at(point, entry) for entry in row) for row in model.jacobian)
-    stiffness = stiffness_of(matrix, model.potential is not None)
+
+    def at(p: Mapping[tuple[int, ...], fmpq]) -> FieldElement:
+        return value_at(point, p)
+
+    stiffness = stiffness_of(tuple(tuple(map(at, row)) for row in system.jacobian), known.has_index)
     if bool(stiffness.nullity) != (point.multiplicity > 1):
         raise ArithmeticError(f"a point of multiplicity {point.multiplicity} contradicts its Jacobian")
-    potential = model.energy if model.potential is None else model.potential
-    energy = None if potential is None else value_at(whole, potential)
-    conditions = tuple(value_at(point, p) for p in (*model.inequalities, *model.stability))
-    deflections = tuple((value_at(whole, cosine), value_at(whole, sine)) for cosine, sine in model.deflections)
-    return State(point, point.unknowns, nodes, tuple(squares), energy, stiffness, conditions, deflections)
+    quantities = evaluated(Quantities.of(known), _AtSolution(known, parameters, point))
+    return ExactSolution(
+        point, quantities, stiffness, tuple(map(at, system.inequalities)), tuple(map(at, system.stability))
+    )
 
 
-def _with_second_bars(model: PointModel, point: RealPoint) -> RealPoint:
-    """The point with the cosines and sines of X-joints' second bars after those of the unknown angles."""
-    turns = list(point.unknowns[: 2 * model.angles])
-    for number, bars, length in model.second_bars:
-        far, near = point.field.constant(bars), point.field.constant(length)
-        cosine, sine, below = second_bar(far, near, *turns[2 * number : 2 * number + 2])
-        inverse = below.inverse()
-        turns += [cosine * inverse, sine * inverse]
-    return replace(point, unknowns=(*turns, *point.unknowns[2 * model.angles :]))
-
-
-def is_positive(element: Element) -> bool:
+def is_positive(element: FieldElement) -> bool:
     """Whether a number is greater than zero, decided exactly."""
     if element.is_zero:
         return False
@@ -162,7 +148,30 @@ def is_positive(element: Element) -> bool:
         bits *= 2
 
 
-def pose_of(model: PointModel, state: State, digits: int) -> tuple[Pose, int]:
+class _Settled:
+    """The enclosures of a pose's numbers, in their order, at one precision after the other.
+
+    What a lower precision has settled stays as it is.
+    """
+
+    def __init__(self, digits: int) -> None:
+        self._digits = digits
+        self._known: dict[int, Enclosure] = {}
+        self._asked = 0
+
+    def restart(self) -> int:
+        """Go back to the first number; how many are open."""
+        asked, self._asked = self._asked, 0
+        return asked - len(self._known)
+
+    def __call__(self, number: RealNumber) -> Enclosure:
+        place, self._asked = self._asked, self._asked + 1
+        if place not in self._known and (found := number.enclosure(self._digits)) is not None:
+            self._known[place] = found
+        return self._known.get(place, _OPEN)
+
+
+def pose_of(solution: ExactSolution, digits: int) -> tuple[Pose, int]:
     """The pose with all numbers settled to so many digits, and the bits that this took.
 
     Raises
@@ -171,124 +180,100 @@ def pose_of(model: PointModel, state: State, digits: int) -> tuple[Pose, int]:
         When `MAX_BITS` do not settle a number, which would be a fault of this program.
     """
     bits = 64 + 4 * digits
-    settled: list[Enclosure | None] = []
+    settled = _Settled(digits)
     while True:
         with ctx.workprec(bits):
-            balls = list(_numbers(model, state))
-            # what a lower precision settled stays as it is
-            settled = [
-                n.enclosure(digits) if known is None else known
-                for n, known in zip(balls, settled or [None] * len(balls), strict=True)
-            ]
-        numbers = [n for n in settled if n is not None]
-        if len(numbers) == len(settled):
-            return _assembled(model, state, iter(numbers)), bits
+            pose = _pose(solution, settled)
+        still_open = settled.restart()
+        if not still_open:
+            return pose, bits
         bits *= 2
         if bits > MAX_BITS:
-            raise ArithmeticError(
-                f"{len(settled) - len(numbers)} numbers of a pose are not settled by {bits // 2} bits"
-            )
+            raise ArithmeticError(f"{still_open} numbers of a pose are not settled by {bits // 2} bits")
 
 
-def _numbers(model: PointModel, state: State) -> Iterator[Number]:
-    """The numbers of a pose at the context's precision, in the order in which `_assembled` takes them."""
-    at = state.point.field.evaluation()
+def _pose(solution: ExactSolution, settled: _Settled) -> Pose:
+    """The pose at the context's precision."""
+    seen, stiffness = solution.quantities, solution.stiffness
+    at = solution.point.field.evaluation()
 
-    def number(element: Element) -> Number:
+    def number(element: FieldElement) -> RealNumber:
         exact = element.rational
-        return Number(exact, element.ball(at) if exact is None else ball_of(exact))
+        return RealNumber(exact, element.ball(at) if exact is None else ball_of(exact))
 
-    yield from map(number, state.unknowns)
-    for k in range(model.angles):
-        cosine, sine = state.unknowns[2 * k : 2 * k + 2]
-        angle = _angle(number(cosine), number(sine))
-        yield angle
-        yield _degrees(angle, cosine)
-    for x, y in state.nodes.values():
-        yield number(x)
-        yield number(y)
-    for (*_, stiffness), square in zip(model.springs, state.squares, strict=True):
-        length = square_root(number(square))
-        yield length
-        yield Number(None if length.exact is None else stiffness * length.exact, length.ball * ball_of(stiffness))
-    for (_, stiffness), (cosine, sine) in zip(model.torsion, state.deflections, strict=True):
-        angle = _angle(number(cosine), number(sine))
-        yield angle
-        yield _degrees(angle, cosine)
-        yield number(sine.times(from_fraction(stiffness)))
-    if state.energy is not None:
-        yield number(state.energy)
-    if model.potential is not None:
-        yield from eigenvalues(state.stiffness, number)
+    def enclosed(element: FieldElement) -> Enclosure:
+        return settled(number(element))
+
+    def angle(cosine: FieldElement, sine: FieldElement) -> tuple[Enclosure, Enclosure]:
+        radians = _angle(number(cosine), number(sine))
+        return settled(radians), settled(_degrees(radians, cosine))
+
+    def spring(part: Any) -> Spring:
+        length, stiffness = square_root(number(part.square)), number(part.stiffness)
+        assert stiffness.exact is not None
+        force = None if length.exact is None else stiffness.exact * length.exact
+        tension = RealNumber(force, length.ball * stiffness.ball)
+        return Spring(part.name, part.start, part.end, stiffness.exact, settled(length), settled(tension))
+
+    def torsion(part: Any) -> TorsionSpring:
+        stiffness = number(part.stiffness).exact
+        assert stiffness is not None
+        return TorsionSpring(part.name, stiffness, *angle(part.cosine, part.sine), enclosed(part.moment))
+
+    angles = [angle(*turn) for turn in seen.turns]
+    eigen = tuple(map(settled, eigenvalues(stiffness, number))) if stiffness.is_symmetric else ()
+    index = stable = None
+    if solution.point.multiplicity == 1 and stiffness.is_symmetric:
+        index = sum(value.high < 0 for value in eigen)
+        stable = index == 0
+    elif solution.point.multiplicity == 1 and solution.stability:
+        stable = solution.all_positive(solution.stability)
+    return Pose(
+        angles=tuple(radians for radians, _ in angles),
+        degrees=tuple(degrees for _, degrees in angles),
+        cosines_sines=tuple(enclosed(x) for turn in seen.turns for x in turn),
+        nodes={name: (enclosed(x), enclosed(y)) for name, (x, y) in seen.points.items()},
+        springs=tuple(map(spring, seen.springs)),
+        energy=None if seen.energy is None else enclosed(seen.energy),
+        eigenvalues=eigen,
+        multiplicity=solution.point.multiplicity,
+        index=index,
+        stable=stable,
+        flat=bool(seen.points) and all(y.is_zero for _, y in seen.points.values()),
+        reals=tuple(map(enclosed, seen.reals)),
+        torsion=tuple(map(torsion, seen.torsion)),
+    )
 
 
-def _angle(cosine: Number, sine: Number) -> Number:
+def _angle(cosine: RealNumber, sine: RealNumber) -> RealNumber:
     """The angle in (-pi, pi]."""
     if sine.exact != 0:
-        return Number(None, arb.atan2(sine.ball, cosine.ball))
-    return Number(Fraction(0), arb(0)) if cosine.exact == 1 else Number(None, arb.pi())
+        return RealNumber(None, arb.atan2(sine.ball, cosine.ball))
+    return RealNumber(Fraction(0), arb(0)) if cosine.exact == 1 else RealNumber(None, arb.pi())
 
 
-def _degrees(angle: Number, cosine: Element) -> Number:
+def _degrees(angle: RealNumber, cosine: FieldElement) -> RealNumber:
     """The angle in degrees; it is exact when it is rational, that is when cos + i sin is a root of unity."""
     if angle.exact is not None:
         return angle
     if cosine.rational == -1:
-        return Number(Fraction(180), arb(180))
+        return RealNumber(Fraction(180), arb(180))
     turns = angle.ball / (2 * arb.pi())
     if turns.rel_accuracy_bits() < ctx.prec // 2:
-        return Number(None, arb.nan())  # a wide ball holds many fractions, and each is tried by algebra
+        return RealNumber(None, arb.nan())  # a wide ball holds many fractions, and each is tried by algebra
     # a field of degree d has cosines of those of totient at most 2d, and n is at most twice its totient's square
     degree = cosine.field.modulus.degree
     for order in range(3, (_MIN_ORDER if degree <= 6 else 8 * degree**2) + 1):
         number = (turns * order).unique_fmpz()
         # other fractions are in lowest terms with a smaller order, and 0 and 1/2 are where the sine is zero
         if number is not None and gcd(int(number), order) == 1 and _chebyshev(order, cosine).rational == 1:
-            return Number(Fraction(360 * int(number), order), turns * 360)
-    return Number(None, turns * 360)
+            return RealNumber(Fraction(360 * int(number), order), turns * 360)
+    return RealNumber(None, turns * 360)
 
 
-def _chebyshev(order: int, cosine: Element) -> Element:
+def _chebyshev(order: int, cosine: FieldElement) -> FieldElement:
     """cos(order * angle)."""
     last, this = cosine.field.constant(fmpq(1)), cosine
     for _ in range(order - 1):
         last, this = this, (cosine * this).times(fmpq(2)) - last
     return this
-
-
-def _assembled(model: PointModel, state: State, numbers: Iterator[Enclosure]) -> Pose:
-    """The pose from its numbers in the order of `_numbers`."""
-    unknowns = tuple(next(numbers) for _ in state.unknowns)
-    turns = [(next(numbers), next(numbers)) for _ in range(model.angles)]
-    nodes: dict[str, Vector] = {name: (next(numbers), next(numbers)) for name in state.nodes}
-    springs = tuple(
-        Spring(name, start, end, stiffness, next(numbers), next(numbers))
-        for name, start, end, stiffness in model.springs
-    )
-    torsion = tuple(
-        TorsionSpring(name, stiffness, next(numbers), next(numbers), next(numbers)) for name, stiffness in model.torsion
-    )
-    energy = None if state.energy is None else next(numbers)
-    values = tuple(numbers)
-    multiplicity = state.point.multiplicity
-    index = stable = None
-    if multiplicity == 1 and model.potential is not None:
-        index = sum(value.high < 0 for value in values)
-        stable = index == 0
-    elif multiplicity == 1 and model.stability:
-        stable = all(map(is_positive, state.conditions[len(model.inequalities) :]))
-    return Pose(
-        angles=tuple(radians for radians, _ in turns),
-        degrees=tuple(degrees for _, degrees in turns),
-        cosines_sines=unknowns[: 2 * model.angles],
-        nodes=nodes,
-        springs=springs,
-        energy=energy,
-        eigenvalues=values,
-        multiplicity=multiplicity,
-        index=index,
-        stable=stable,
-        flat=bool(state.nodes) and all(y.is_zero for _, y in state.nodes.values()),
-        reals=unknowns[2 * model.angles :],
-        torsion=torsion,
-    )

@@ -44,7 +44,7 @@ Key = tuple[int, ...]
 """The count by which regions are told apart."""
 
 
-class _Part(NamedTuple):
+class _StackPart(NamedTuple):
     """A stack between rational abscissae just inside of it, with the walls that part regions, from below."""
 
     low: fmpq
@@ -53,7 +53,7 @@ class _Part(NamedTuple):
     regions: tuple[int, ...]
 
 
-class Strip(NamedTuple):
+class BoundaryStrip(NamedTuple):
     """A part of the base over which the same walls part the same regions.
 
     Attributes
@@ -62,7 +62,7 @@ class Strip(NamedTuple):
     keys : of the regions from below; one more than there are walls.
     """
 
-    parts: tuple[_Part, ...]
+    parts: tuple[_StackPart, ...]
     keys: tuple[Key, ...]
 
     @property
@@ -74,7 +74,7 @@ class Strip(NamedTuple):
         return self.parts[-1].high
 
 
-class Opening(NamedTuple):
+class BoundaryOpening(NamedTuple):
     """A piece of a line across the base that parts two regions, between the walls of the strips beside it.
 
     Attributes
@@ -100,7 +100,7 @@ Shape = tuple[int, tuple[tuple[Key, ...], ...]]
 """The base axis, and the counts over each strip from below: what two slices with the same boundary have in common."""
 
 
-class Strips:
+class BoundaryStrips:
     """The boundary of a slice's regions.
 
     Attributes
@@ -133,12 +133,12 @@ class Strips:
             self._known[number, share] = (to_fraction(u), *self._heights(part, u))
         return self._known[number, share]
 
-    def _heights(self, part: _Part, u: fmpq, accuracy: Fraction = ACCURACY) -> tuple[Fraction, ...]:
+    def _heights(self, part: _StackPart, u: fmpq, accuracy: Fraction = ACCURACY) -> tuple[Fraction, ...]:
         width = (self._fibre[1] - self._fibre[0]) * from_fraction(accuracy)
         roots = {c: self._curves[c].roots_over(u, self._fibre) for c in {w.component for w in part.walls}}
         return tuple(to_fraction(refine(roots[w.component][w.root], width).middle) for w in part.walls)
 
-    def _parts(self, picture: Picture) -> list[_Part]:
+    def _parts(self, picture: Picture) -> list[_StackPart]:
         numbers = iter(picture.neighbours.region_of)
         found = []
         for stack in picture.stacks.stacks:
@@ -146,25 +146,25 @@ class Strips:
             kept = [k for k, (a, b) in enumerate(pairwise(row)) if a != b]
             low, high = _inner(stack.left, stack.sample), _inner(stack.right, stack.sample)
             regions = (row[0], *(row[k + 1] for k in kept))
-            found.append(_Part(low, high, tuple(stack.walls[k] for k in kept), regions))
+            found.append(_StackPart(low, high, tuple(stack.walls[k] for k in kept), regions))
         return found
 
-    def _joined(self, parts: Sequence[_Part]) -> tuple[Strip, ...]:
-        groups: list[list[_Part]] = []
+    def _joined(self, parts: Sequence[_StackPart]) -> tuple[BoundaryStrip, ...]:
+        groups: list[list[_StackPart]] = []
         for part in parts:
             if groups and self._goes_on(groups[-1][-1], part):
                 groups[-1].append(part)
             else:
                 groups.append([part])
-        return tuple(Strip(tuple(g), tuple(self._keys[r] for r in g[0].regions)) for g in groups)
+        return tuple(BoundaryStrip(tuple(g), tuple(self._keys[r] for r in g[0].regions)) for g in groups)
 
-    def _goes_on(self, left: _Part, right: _Part) -> bool:
+    def _goes_on(self, left: _StackPart, right: _StackPart) -> bool:
         if left.regions != right.regions:
             return False
         ends = list(zip(self._heights(left, left.high), self._heights(right, right.low), strict=True))
         return all(abs(a - b) <= self._jump for a, b in ends) and not self._has_corner(left, right)
 
-    def _has_corner(self, left: _Part, right: _Part) -> bool:
+    def _has_corner(self, left: _StackPart, right: _StackPart) -> bool:
         """Whether a wall turns by more than `CORNER` where two parts meet; seen in the window's unit square."""
         near = min(left.high - left.low, right.high - right.low) * _BESIDE
         scale = [float(to_fraction(b - a)) for a, b in (self._window, self._fibre)]
@@ -179,7 +179,7 @@ class Strips:
     def _jump(self) -> Fraction:
         return to_fraction(self._fibre[1] - self._fibre[0]) * JUMP
 
-    def _openings(self) -> list[Opening]:
+    def _openings(self) -> list[BoundaryOpening]:
         bottom, top = map(to_fraction, self._fibre)
         found = []
         for k, (left, right) in enumerate(pairwise(self.strips)):
@@ -191,11 +191,11 @@ class Strips:
                     low, high = max(levels[0][i], levels[1][j]), min(levels[0][i + 1], levels[1][j + 1])
                     if first != second and high - low > self._jump:
                         keys = self._keys[first], self._keys[second]
-                        found.append(Opening((k, i, j), keys, at, low, high))
+                        found.append(BoundaryOpening((k, i, j), keys, at, low, high))
         return found
 
 
-def _abscissa(strip: Strip, share: float) -> fmpq:
+def _abscissa(strip: BoundaryStrip, share: float) -> fmpq:
     """One with few digits, very near to the share."""
     low, high = strip.low, strip.high
     if share in (0, 1):

@@ -96,6 +96,31 @@ def substituted(formula: Formula, places: Mapping[int, Formula]) -> Formula:
     return found
 
 
+def evaluated(structure: Any, arithmetic: Arithmetic[Any]) -> Any:
+    """Tuples and mappings, nested in any way, with values in place of their formulas; anything else in them stays.
+
+    Raises
+    ------
+    AttributeError
+        As `values`.
+    """
+    formulas: list[Formula] = []
+    _mapped(structure, formulas.append)
+    found = iter(values(formulas, arithmetic))
+    return _mapped(structure, lambda _: next(found))
+
+
+def _mapped(structure: Any, of: Callable[[Formula], Any]) -> Any:
+    if isinstance(structure, Formula):
+        return of(structure)
+    if isinstance(structure, Mapping):
+        return {key: _mapped(part, of) for key, part in structure.items()}
+    if isinstance(structure, tuple):
+        make = getattr(structure, "_make", tuple)  # of a named tuple its own
+        return make(_mapped(part, of) for part in structure)
+    return structure
+
+
 def nodes_of(formulas: Iterable[Formula]) -> list[Formula]:
     """All nodes that the formulas need: operands have smaller numbers than what is made of them, and come first."""
     found: dict[int, Formula] = {}

@@ -49,6 +49,11 @@ class ClosedMechanism(System):
         yield from self.mechanism._trees()
 
 
+def looped(model: Model) -> Mechanism | None:
+    """The mechanism whose loops a model closes, as it was described; None where there are none."""
+    return model.mechanism if isinstance(model, ClosedMechanism) else None
+
+
 def mechanism_in(model: Model) -> Mechanism | None:
     """The mechanism that a model is, or of whose poses it has the equations; None of another system."""
     if isinstance(model, ClosedMechanism):

@@ -56,7 +56,7 @@ class LinearSpring(NamedTuple):
     def square(self) -> Formula:
         """Of its length."""
         x, y = self.difference
-        return x.squared() + y.squared()
+        return x * x + y * y
 
     @property
     def length(self) -> Formula:
@@ -134,6 +134,9 @@ class CompiledSystem:
     are_slopes : whether they are the smooth energy's derivatives by the unknowns, less the moments.
     inequalities, stability : a solution counts, and is stable, where all are positive.
     tangent : along closed loops with one degree of freedom, the direction in which unknowns move.
+    heights : of the points that the unknowns raise, where no loop holds these together.
+    definite : whether the conditions for stability hold together where a symmetric matrix is positive definite, and the
+        last one is its determinant, times what is positive.
     has_energy : whether that is an energy, and not only a part of what acts, as beside moments without a potential.
     has_index : whether solutions are critical points of the energy, less the work of constant moments.
     """
@@ -155,6 +158,8 @@ class CompiledSystem:
     inequalities: tuple[Formula, ...] = ()
     stability: tuple[Formula, ...] = ()
     tangent: tuple[Formula, ...] = ()
+    heights: tuple[Formula, ...] = ()
+    definite: bool = False
     has_energy: bool = False
     has_index: bool = False
 
@@ -215,7 +220,6 @@ class _ByNames(Generic[E]):
         return self.ring.sin(self.names[number])
 
 
-@lru_cache(maxsize=8)
 def compiled(model: Model) -> CompiledSystem:
     """The formulas of a description.
 
@@ -224,8 +228,12 @@ def compiled(model: Model) -> CompiledSystem:
     ExpressionError
         When a moment that depends on its unknown is too large to be multiplied out.
     """
+    return _compiled(model, mechanism_in(model))
+
+
+@lru_cache(maxsize=8)  # by both, as closed mechanisms are equal where their equations are
+def _compiled(model: Model, mechanism: Mechanism | None) -> CompiledSystem:
     graph, names = Graph(), [*model.variables, *model.angles, *model.reals]
-    mechanism = mechanism_in(model)
     if mechanism is not None:
         names += mechanism.followers
     return compiled_with(model, {name: graph.variable(k) for k, name in enumerate(names)})
@@ -308,6 +316,7 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
         smooth=sum((*(spring.relaxed_energy for spring in springs), *others), start=ring.constant(Fraction(0))),
         others=tuple(others),
         moments=tuple(steady[name] for name in (*mechanism.angles, *mechanism.reals)),
+        heights=() if mechanism.closing or followers else tuple(points[name][1] for name in mechanism.rising),
         has_energy=mechanism.has_potential,
     )
 
@@ -320,8 +329,9 @@ def _with_equations(known: CompiledSystem, model: Model, ring: _Ring) -> Compile
             equations=ring.of(model.equations),
             inequalities=ring.of(model.inequalities),
             stability=ring.of(model.stability),
-            tangent=ring.of(model.tangent) if isinstance(model, ClosedMechanism) else (),
         )
+        if isinstance(model, ClosedMechanism):
+            known = replace(known, tangent=ring.of(model.tangent), definite=True)
         if model.potential is not None:
             moments = (ring.constant(Fraction(0)),) * len(known.unknowns)
             energy = evaluate(model.potential, ring)

@@ -59,6 +59,11 @@ class Model:
         """Whether it is known what a stable solution is."""
         return self.has_potential
 
+    @property
+    def stability(self) -> tuple[Tree, ...]:
+        """What is positive where a solution is stable; nothing where its index says so."""
+        return ()
+
     def __hash__(self) -> int:
         return hash((type(self).__name__, self.name, *self.parameters, *self.unknowns))
 

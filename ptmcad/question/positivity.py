@@ -306,9 +306,9 @@ def _by_algebra(terms: tuple[Term, ...], window: Box, strict: bool, left: Undeci
     x, y = ((from_fraction(low), from_fraction(high)) for low, high in window)
     bound = definite.MAX_WORK if max_work is None else max_work
     answer = definite.negative_or_zero(from_terms(terms)[0], x, y, strict, bound)
-    if answer is definite.Answer.PROVED:
+    if answer is definite.SignAnswer.PROVED:
         return PROVED
-    if answer is definite.Answer.OPEN:
+    if answer is definite.SignAnswer.OPEN:
         return left
     point = to_fraction(answer.point[0]), to_fraction(answer.point[1])
     if isinstance(answer, definite.Near):

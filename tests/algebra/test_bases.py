@@ -14,7 +14,7 @@ from support.programs import needs_msolve
 import ptmcad
 from ptmcad.algebra import bases, msolve
 from ptmcad.algebra.bases import quotient
-from ptmcad.algebra.fibre import RationalPolynomial, Work, fibre
+from ptmcad.algebra.fibre import RationalPolynomial, WorkLimit, fibre
 from ptmcad.algebra.membership import lies_in_ideal
 from ptmcad.algebra.msolve import MsolveError, parsed_basis
 from ptmcad.algebra.proved import quotient_by_msolve
@@ -85,7 +85,7 @@ def test_a_wrong_answer_is_refused_and_survived(fake: Fake, monkeypatch: pytest.
     with pytest.raises(MsolveError, match=why):
         quotient_by_msolve(CORNERS, 2, 0.2 if what == "endless" else 20)
     monkeypatch.setattr(bases, "MANY", 1)
-    monkeypatch.setattr(bases, "SMALL", Work(0, 0, 0, 0))
+    monkeypatch.setattr(bases, "SMALL", WorkLimit(0, 0, 0, 0))
     monkeypatch.setattr(bases, "SECONDS", 0.2 if what == "endless" else 20)
     with pytest.warns(PtmcadWarning, match="its basis is not used"):
         assert quotient(CORNERS, 2) == fibre(CORNERS, 2)
@@ -104,7 +104,7 @@ def test_a_lost_root_changes_no_count(fake: Fake, monkeypatch: pytest.MonkeyPatc
     fake(answering(LOST))
     system = ptmcad.System(unknowns={"x": "real", "y": "real"}, equations=["x^2 - a", "y^2 - a"])
     monkeypatch.setattr(bases, "MANY", 1)
-    monkeypatch.setattr(bases, "SMALL", Work(0, 0, 0, 0))
+    monkeypatch.setattr(bases, "SMALL", WorkLimit(0, 0, 0, 0))
     with pytest.warns(PtmcadWarning, match="may miss solutions"):
         assert ptmcad.counts_at(system, a=1).total == 4
     fake(answering(RIGHT))
@@ -118,11 +118,11 @@ def test_a_lost_root_changes_no_count(fake: Fake, monkeypatch: pytest.MonkeyPatc
 def test_without_msolve_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(msolve, "program", lambda: None)
     monkeypatch.setattr(bases, "MANY", 1)
-    monkeypatch.setattr(bases, "SMALL", Work(0, 0, 0, 0))
+    monkeypatch.setattr(bases, "SMALL", WorkLimit(0, 0, 0, 0))
     with pytest.warns(PtmcadWarning, match=r"may take very long; .*pip install 'ptmcad\[large\]'"):
         assert quotient(CORNERS, 2) == fibre(CORNERS, 2)
     with pytest.raises(LimitReached, match=r"pip install 'ptmcad\[large\]'"):
-        quotient(CORNERS, 2, Work(0, 0, 0, 0, by_msolve=10))
+        quotient(CORNERS, 2, WorkLimit(0, 0, 0, 0, by_msolve=10))
 
 
 def test_small_systems_and_small_questions_do_not_ask_msolve(fake: Fake) -> None:
@@ -132,7 +132,7 @@ def test_small_systems_and_small_questions_do_not_ask_msolve(fake: Fake) -> None
     assert bases.is_large(many)
     assert quotient(many, 2) == fibre(many, 2)  # its basis is small
     with pytest.raises(LimitReached):
-        quotient(CORNERS, 2, Work(1, 100, 100, 100))
+        quotient(CORNERS, 2, WorkLimit(1, 100, 100, 100))
 
 
 def test_membership_with_falling_degrees_over_q() -> None:

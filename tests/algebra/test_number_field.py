@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from support.examples import examples
 
 from ptmcad.algebra import number_field
-from ptmcad.algebra.number_field import Element, Modulus, RealField, polynomial_at
+from ptmcad.algebra.number_field import FieldElement, Modulus, RealField, polynomial_at
 from ptmcad.algebra.real_roots import isolate
 from ptmcad.exact import stiffness
 from ptmcad.text.flint_numbers import from_fraction
@@ -33,11 +33,11 @@ def fields(draw: st.DrawFn) -> RealField:
 
 
 @st.composite
-def expressions(draw: st.DrawFn, field: RealField) -> tuple[Element, fmpq_poly]:
+def expressions(draw: st.DrawFn, field: RealField) -> tuple[FieldElement, fmpq_poly]:
     """An element and its residue, computed step by step over Q."""
     modulus = field.modulus.polynomial
 
-    def leaf() -> tuple[Element, fmpq_poly]:
+    def leaf() -> tuple[FieldElement, fmpq_poly]:
         if draw(st.booleans()):
             c = draw(NUMBERS)
             return field.constant(c), fmpq_poly([c])
@@ -103,7 +103,7 @@ def test_most_elements_are_told_without_a_residue_over_q() -> None:
             asked.append(ring)
         return root.expression(ring)
 
-    silent = Element(field, told)
+    silent = FieldElement(field, told)
     value = (silent * silent * silent + silent).times(fmpq(1, 3)).inverse()
     assert (value.is_zero, value.rational, asked) == (False, None, [])
     assert (silent * silent).rational == 2

@@ -21,7 +21,7 @@ from ptmcad.ask import boundarysurface as asking
 from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.exact.arrangement import picture_of
-from ptmcad.exact.strips import Strips
+from ptmcad.exact.strips import BoundaryStrips
 from ptmcad.question.config import family_from, slice_from
 from ptmcad.text.flint_numbers import from_fraction
 
@@ -152,12 +152,12 @@ def test_sheets_are_told_by_the_counts_that_they_part() -> None:
 def test_a_line_across_the_base_parts_regions_too(base: int) -> None:
     axis = "ab"[base]
     slice = slice_from({"system": {"unknowns": {"u": "real"}, "equations": [f"u^2 - ({axis} - 1/3)"]}, "axes": SQUARE})
-    found = Strips(picture_of(slice, base=base))
+    found = BoundaryStrips(picture_of(slice, base=base))
     assert [strip.keys for strip in found.strips] == [((0,),), ((2,),)]
     (opening,) = found.openings
     assert (opening.keys, opening.low, opening.high) == (((0,), (2,)), -1, 1)
     assert float(opening.at) == pytest.approx(1 / 3, abs=1e-9)
-    other = Strips(picture_of(slice, base=1 - base))
+    other = BoundaryStrips(picture_of(slice, base=1 - base))
     assert not other.openings
     (strip,) = other.strips
     assert strip.keys == ((0,), (2,))
@@ -176,12 +176,12 @@ def test_a_plane_is_a_sheet_over_either_axis(first: str) -> None:
 
 def test_strips_end_at_corners_of_walls_and_not_at_other_curves() -> None:
     system = {"unknowns": {"u": "real"}, "equations": ["u - 1"], "positive": ["b - a", "b + a"]}
-    corner = Strips(picture_of(slice_from({"system": system, "axes": SQUARE}), base=0))
+    corner = BoundaryStrips(picture_of(slice_from({"system": system, "axes": SQUARE}), base=0))
     assert [strip.keys for strip in corner.strips] == [((0,), (1,))] * 2
     wall = {"unknowns": {"u": "real", "v": "real"}, "equations": ["u^2 - (b - a/2)", "v^3 - (b + a)^2*(a^2 + 1)"]}
     smooth = picture_of(slice_from({"system": wall, "axes": SQUARE}), base=0)
     assert len(smooth.stacks.stacks) > 1  # cut where the line on which no count changes crosses the wall
-    assert [strip.keys for strip in Strips(smooth).strips] == [((0,), (2,))]
+    assert [strip.keys for strip in BoundaryStrips(smooth).strips] == [((0,), (2,))]
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ import pytest
 from ptmcad.ask.checking import check as checked
 from ptmcad.ask.checking import cost_text, foretold
 from ptmcad.ask.forecast import WITHIN, forecast
-from ptmcad.exact.sizes import Sizes
+from ptmcad.exact.sizes import CurveSizes
 from ptmcad.exact.survey import Survey
 from ptmcad.question.config import load
 
@@ -38,7 +38,7 @@ def test_the_way_of_the_projection_is_told() -> None:
 
 
 def test_a_curve_out_of_reach_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("ptmcad.ask.checking.sizes", lambda *_: Sizes((60, 50), 70, (1, 1)))
+    monkeypatch.setattr("ptmcad.ask.checking.sizes", lambda *_: CurveSizes((60, 50), 70, (1, 1)))
     found = checked(load(CONFIGS / "systems" / "kuramoto.yaml"))
     assert "out of the exact map's reach" in found.cost
     assert "--engine certified encloses the map" in found.cost
@@ -52,16 +52,20 @@ def test_where_the_size_is_not_known_neither_is_the_cost(monkeypatch: pytest.Mon
 
 
 def test_more_solutions_and_higher_degrees_take_longer() -> None:
-    known = (6, Sizes((12, 12), 24, (1, 1))), (6, Sizes((24, 24), 24, (1, 1))), (12, Sizes((24, 24), 24, (1, 1)))
+    known = (
+        (6, CurveSizes((12, 12), 24, (1, 1))),
+        (6, CurveSizes((24, 24), 24, (1, 1))),
+        (12, CurveSizes((24, 24), 24, (1, 1))),
+    )
     least, middle, most = (forecast(n, sizes) for n, sizes in known)
     assert least.seconds < middle.seconds < most.seconds
     assert least.megabytes < middle.megabytes
-    assert forecast(6, Sizes((24, 24), 24, (2, 2))).seconds < middle.seconds
-    assert not forecast(6, Sizes((60, 50), 70, (1, 1))).reachable
+    assert forecast(6, CurveSizes((24, 24), 24, (2, 2))).seconds < middle.seconds
+    assert not forecast(6, CurveSizes((60, 50), 70, (1, 1))).reachable
 
 
 def test_seconds_follow_what_there_is_to_compute() -> None:
-    curve = Sizes((12, 12), 24, (1, 1), (5, 5, 5))
+    curve = CurveSizes((12, 12), 24, (1, 1), (5, 5, 5))
     cells = Survey(40, 20, 12)
     usual = forecast(6, curve, cells).seconds
     assert usual < forecast(6, curve._replace(tables=(25, 25, 25)), cells).seconds

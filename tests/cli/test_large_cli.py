@@ -12,7 +12,7 @@ import pytest
 
 from ptmcad import cli
 from ptmcad.algebra import bases
-from ptmcad.algebra.fibre import Work
+from ptmcad.algebra.fibre import WorkLimit
 
 SQUARE = """
 system:
@@ -50,7 +50,7 @@ def test_a_lost_root_is_one_line_of_warning(
     lost = "[u0*u1+u0+u1+1, u0^2-1, u1^2-1]:"
     monkeypatch.setenv("PATH", fake(tmp_path, f"open(sys.argv[-1], 'w').write({lost!r})"))
     monkeypatch.setattr(bases, "MANY", 1)
-    monkeypatch.setattr(bases, "SMALL", Work(0, 0, 0, 0))
+    monkeypatch.setattr(bases, "SMALL", WorkLimit(0, 0, 0, 0))
     assert cli.run(["solve", record(tmp_path, SQUARE), "--at", "a=1,b=1"]) == 0
     said = capsys.readouterr()
     why = "msolve's basis is not proved to lie in the ideal of the equations: it may miss solutions"

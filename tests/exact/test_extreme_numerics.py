@@ -18,12 +18,12 @@ from support.work import work_of
 import ptmcad
 from ptmcad.algebra import isolation
 from ptmcad.algebra.arcs import arc_integral
-from ptmcad.algebra.fibre import CoordinatesInBalls, Fibre, univariate_representation
+from ptmcad.algebra.fibre import CoordinatesInBalls, FibreAlgebra, univariate_representation
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
 from ptmcad.algebra.resultants import balanced, discriminant, resultant
 from ptmcad.answer.regionmap import Status
 from ptmcad.exact.cad import area
-from ptmcad.exact.cad.curves import Curve
+from ptmcad.exact.cad.curves import FibredCurve
 from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import point_system
 from ptmcad.question.config import slice_from_mapping
@@ -171,7 +171,7 @@ def test_balanced_units_change_discriminants_and_resultants_by_a_factor(rows: li
     assert unit == 10**a and max(c.height_bits() for c in shorter) < 4
 
 
-def by_solving(algebra: Fibre, form: tuple[int, ...]) -> list[fmpq_poly]:
+def by_solving(algebra: FibreAlgebra, form: tuple[int, ...]) -> list[fmpq_poly]:
     """The unknowns as polynomials in a form, from the linear system for its powers."""
     size = algebra.dimension
     step = fmpq_mat(size, size)
@@ -209,7 +209,7 @@ def test_walls_share_their_fibres_and_hopeless_strips_are_not_tried(monkeypatch:
     rounds: list[int] = []
 
     class Counted(NamedTuple):
-        curve: Curve
+        curve: FibredCurve
 
         def __getattr__(self, name: str) -> object:
             return getattr(self.curve, name)

@@ -19,7 +19,7 @@ from ptmcad.ask.ranges import Fate, PosePath, pose_paths
 from ptmcad.errors import ConfigError
 from ptmcad.exact.models import system_from, system_of
 from ptmcad.exact.models.system import on_slice
-from ptmcad.exact.ranges.equations import Family
+from ptmcad.exact.ranges.equations import LineSystem
 from ptmcad.exact.ranges.line import system_on
 from ptmcad.exact.ranges.matrices import plus, times
 from ptmcad.exact.ranges.mirror import Mirror, mirror_of
@@ -205,7 +205,7 @@ def test_derivatives_of_second_order() -> None:
     slice = ptmcad.load(CONFIGS / "mechanisms" / "two-bar-chain.yaml")
     line = line_of(slice, "a", {"F": "1/3"})
     stiffness = parse("(1 + 2*a^2)/(3 - a)", {"a": line.parameters["a"]})
-    chain = Family(
+    chain = LineSystem(
         slice.model, system_from(slice.model), dict.fromkeys(line.parameters, stiffness) | {"a": line.parameters["a"]}
     )
     point, velocity, at, h = (arb("0.3"), arb("1.1")), (arb("0.7"), arb("-0.4")), Fraction(1, 2), Fraction(1, 10**9)
@@ -240,9 +240,9 @@ def test_a_pair_that_meets_elsewhere_does_not_stop_a_path() -> None:
     assert path.points[0].value < Fraction(1, 1000) and path.points[-1].value > Fraction(19, 10)
 
 
-def family() -> Family:
+def family() -> LineSystem:
     line = line_of(record("fig4"), "rho", {"L2": "3/2"})
-    return Family(ptm(), system_of("ptm"), line.parameters)
+    return LineSystem(ptm(), system_of("ptm"), line.parameters)
 
 
 def test_a_tube_holds_one_branch_only() -> None:
@@ -369,7 +369,7 @@ def test_a_minimum_in_three_angles_is_followed() -> None:
     potential = "-2*(cos(t0) + cos(t1) + cos(t2)) - a/3*(cos(t0 - t1) + cos(t1 - t2)) - (b + 3)*sin(t0)/9"
     slice = system(unknowns=dict.fromkeys(("t0", "t1", "t2"), "angle"), potential=potential)
     line = line_of(slice, "b", {"a": 1})
-    chain = Family(slice.model, system_from(slice.model), line.parameters)
+    chain = LineSystem(slice.model, system_from(slice.model), line.parameters)
     start = at_value(chain, Fraction(0), (arb("0.15"), arb(0), arb(0)))
     assert start is not None
     steps, done = follow(chain, Reached(Fraction(0), start, start), Fraction(2), Fraction(1, 4))

@@ -18,7 +18,7 @@ from ptmcad.answer.widths import Maximum
 from ptmcad.ask.ranges import Place, intervals, operation_widths
 from ptmcad.exact.cad.curves import curve
 from ptmcad.exact.cad.stacks import BaseEnd
-from ptmcad.exact.ranges.strips import Branch, Strip, strips
+from ptmcad.exact.ranges.strips import RangeEnd, RangeStrip, strips
 from ptmcad.exact.ranges.width import largest
 from ptmcad.question.config import slice_from_options
 from ptmcad.show.ranges.document import document, part
@@ -93,18 +93,18 @@ def test_a_cusp_at_an_irrational_value_is_enclosed() -> None:
     assert only.at.high - only.at.low < Fraction(1, 10**12) and only.width.text(9) == "2.19864613"
 
 
-def by_hand(low: object, high: object, left: int, right: int) -> Strip:
+def by_hand(low: object, high: object, left: int, right: int) -> RangeStrip:
     """A strip between the largest root of one curve and the smallest of another, over (left, right)."""
     fibre = (fmpq(-10), fmpq(10))
     lower, upper = curve(0, low, 0), curve(1, high, 0)
     middle = fmpq(left + right, 2) + fmpq(1, 7)
     last = len(isolate(lower.fibre(middle), *fibre)) - 1
-    return Strip(
+    return RangeStrip(
         BaseEnd(fmpq(left), None, None),
         BaseEnd(fmpq(right), None, None),
         middle,
-        Branch(lower, last, fibre[0]),
-        Branch(upper, 0, fibre[1]),
+        RangeEnd(lower, last, fibre[0]),
+        RangeEnd(upper, 0, fibre[1]),
         fibre,
     )
 

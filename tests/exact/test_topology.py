@@ -20,13 +20,13 @@ from hypothesis import strategies as st
 from support.examples import examples
 
 from ptmcad.algebra import puiseux
-from ptmcad.algebra.branches import PrecisionTooLow
+from ptmcad.algebra.branches import TooFewBits
 from ptmcad.algebra.polynomials import PLANE, coefficients_in
 from ptmcad.algebra.puiseux import puiseux_integral
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part
 from ptmcad.exact.cad.adjacency import Separator, cross
 from ptmcad.exact.cad.area import RegionStacks, region_areas
-from ptmcad.exact.cad.curves import Curve, curve
+from ptmcad.exact.cad.curves import FibredCurve, curve
 from ptmcad.exact.cad.halves import before, below
 from ptmcad.exact.cad.projection import project
 from ptmcad.exact.cad.stacks import StackData, lift
@@ -41,7 +41,7 @@ Window = tuple[str, str, str, str]
 class Decomposition:
     """Stacks over the base axis, and the pieces of the complement: for each stack, the piece of each cell."""
 
-    curves: list[Curve]
+    curves: list[FibredCurve]
     stacks: tuple[StackData, ...]
     crossings: list[tuple[Separator, ...]]
     pieces: list[tuple[int, ...]]
@@ -81,7 +81,7 @@ def decompose(polynomials: Sequence[fmpz_mpoly], window: Window, base: int) -> D
     return Decomposition(curves, stacks, crossings, pieces, inner, outer)
 
 
-def check_separator(curves: list[Curve], p: Separator, left: StackData, right: StackData) -> None:
+def check_separator(curves: list[FibredCurve], p: Separator, left: StackData, right: StackData) -> None:
     """The witness is a segment that crosses the abscissa and meets no curve, at the levels that it claims."""
     end = left.right
     assert end.root is not None
@@ -361,7 +361,7 @@ def test_a_series_beside_a_cusp_is_tried_at_twice_the_precision(failures: int, m
     def scarce(*arguments: Any) -> tuple[arb, fmpq] | None:
         tried.append(ctx.prec)
         if len(tried) % (failures + 1):
-            raise PrecisionTooLow
+            raise TooFewBits
         return puiseux_integral(*arguments)
 
     monkeypatch.setattr(puiseux, "puiseux_integral", scarce)
@@ -386,7 +386,7 @@ def test_areas_of_a_window_beside_the_origin_are_those_of_a_half(name: str) -> N
     check_area(name, 0, Fraction(1, 10**6), "v = u")
 
 
-def _below(c: Curve, u: fmpq, low: fmpq, v: fmpq) -> Sequence[object]:
+def _below(c: FibredCurve, u: fmpq, low: fmpq, v: fmpq) -> Sequence[object]:
     return isolate(squarefree_part(c.fibre(u)), low, v)
 
 

@@ -18,7 +18,7 @@ from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import Kind
 from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import ParametricSystem, system_from, system_of
-from ptmcad.exact.models.system import from_potential
+from ptmcad.exact.models.system import from_equations
 from ptmcad.exact.point_system import solutions_at
 from ptmcad.exact.poses import exact_poses
 from ptmcad.exact.variety import discriminant_variety
@@ -40,7 +40,9 @@ def chain(angles: int) -> ParametricSystem:
         energy -= ring.parameter("F") * ring.cos(name)
     for one, two in pairwise(names):
         energy -= ring.parameter("k") * (ring.cos(one) * ring.cos(two) + ring.sin(one) * ring.sin(two))
-    return from_potential(ring, ring.reduce(energy), positive=("k",), nonnegative=())
+    potential = ring.reduce(energy)
+    slopes = [ring.reduce(ring.derivative(potential, name)) for name in names]
+    return from_equations(ring, slopes, potential=potential, positive=("k",))
 
 
 @pytest.mark.parametrize("angles", [1, 2, 3, pytest.param(4, marks=pytest.mark.slow)])

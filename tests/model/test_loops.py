@@ -405,12 +405,17 @@ def test_without_any_solution_there_are_none() -> None:
 )
 def test_derivatives_of_trees(text: str, by: str, slope: str) -> None:
     from ptmcad.algebra.trigonometric import TrigonometricRing
-    from ptmcad.exact.models.potential import _Evaluation
 
     ring = TrigonometricRing(("a", "b"), ("t", "s"), ("x",))
 
+    class InRing:
+        parameter, cos, sin = ring.parameter, ring.cos, ring.sin
+
+        def constant(self, value: Fraction) -> TrigonometricPolynomial:
+            return ring.context.constant(from_fraction(value))
+
     def value(tree: Any) -> TrigonometricPolynomial:
-        return ring.reduce(evaluate(tree, _Evaluation(ring)))
+        return ring.reduce(evaluate(tree, InRing()))
 
     wanted = ring.reduce(ring.derivative(value(parse(text)), by))
     assert value(derivative(parse(text), by)) == value(parse(slope)) == wanted

@@ -14,8 +14,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.exact.models.potential import geometry_of, squared_lengths, system_from
+from ptmcad.exact.models.potential import elements_of, system_from
 from ptmcad.model import Kind, Mechanism, described, mechanism_of, ptm
+from ptmcad.model.compile import compiled
 from ptmcad.model.evaluate import evaluate, value_at
 from ptmcad.model.ptm import RECORD
 from ptmcad.text.flint_numbers import from_fraction
@@ -116,14 +117,15 @@ def test_the_potential_is_the_published_one(text: str) -> None:
 
 def test_squared_lengths_are_the_law_of_cosines() -> None:
     expected = tuple(InRing().value(line) for line in LENGTHS.strip().splitlines())
-    assert squared_lengths(ptm()) == expected
+    assert elements_of(ptm(), [spring.square for spring in compiled(ptm()).springs]) == expected
 
 
 def test_bars_have_the_lengths_of_their_parameters() -> None:
-    geometry = geometry_of(ptm())
+    points = compiled(ptm()).points
     for (start, end), length in zip(ptm().bars, ("L1", "L2"), strict=True):
-        (x0, y0), (x1, y1) = geometry.nodes[start], geometry.nodes[end]
-        assert geometry.ring.reduce((x1 - x0) ** 2 + (y1 - y0) ** 2) == geometry.ring.parameter(length) ** 2
+        (x0, y0), (x1, y1) = points[start], points[end]
+        (square,) = elements_of(ptm(), [(x1 - x0).squared() + (y1 - y0).squared()])
+        assert square == system_from(ptm()).ring.parameter(length) ** 2
 
 
 @pytest.mark.parametrize("symmetry", ptm().symmetries, ids=["across", "along"])

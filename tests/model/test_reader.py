@@ -17,7 +17,7 @@ from support.signatures import count_by_signature
 from ptmcad import RegionMap, classify, slice_from_mapping
 from ptmcad.errors import MAX_FAULTS, ConfigError, Faults
 from ptmcad.exact.counting import count_by_isolation
-from ptmcad.exact.models.potential import potential, system_from
+from ptmcad.exact.models.potential import system_from
 from ptmcad.model import Mechanism, described, described_system, ptm, recognised, without_loops, work
 from ptmcad.model.proofs import check_bars, check_unknowns
 from ptmcad.model.ptm import RECORD
@@ -84,7 +84,7 @@ def test_bodies_torsion_loads_and_moments_are_those_written_out_by_hand() -> Non
     system = system_from(m)
     for _ in range(5):
         at = {name: random.uniform(0.5, 2) for name in (*m.parameters, *m.unknowns)}
-        assert value(potential(m), at) == pytest.approx(energy(at))
+        assert value(system.potential, at) == pytest.approx(energy(at))
         for unknown, equation in zip(("th", "phi", "x"), system.equations, strict=True):
             h = 1e-5
             slope = (energy({**at, unknown: at[unknown] + h}) - energy({**at, unknown: at[unknown] - h})) / (2 * h)

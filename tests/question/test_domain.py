@@ -159,9 +159,9 @@ def test_a_reader_does_not_do_the_work_of_an_engine(monkeypatch: pytest.MonkeyPa
     asked: list[int] = []
     work = definite._work
 
-    def undecided(*given: Any) -> definite.Answer:
+    def undecided(*given: Any) -> definite.SignAnswer:
         asked.append(given[-1])
-        return definite.Answer.OPEN
+        return definite.SignAnswer.OPEN
 
     monkeypatch.setattr(definite, "negative_or_zero", undecided)
     decide.cache_clear()

@@ -21,7 +21,7 @@ from ptmcad.algebra.polynomials import from_plane
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.exact.cad.chains import chains
 from ptmcad.exact.cad.curves import curve
-from ptmcad.exact.cad.polyline import FLAT, Branch, chords
+from ptmcad.exact.cad.polyline import FLAT, WallBranch, chords
 from ptmcad.studies import byhand
 from ptmcad.studies.bench.error import (
     COUNTS,
@@ -138,7 +138,7 @@ def test_walls_that_leave_a_cusp_side_by_side_are_shut_in() -> None:
     unit = (fmpq(0), fmpq(1))
     span = (Fraction(1, 2**32), 1 - Fraction(1, 2**32))
     for root, side in ((0, -1), (1, 1)):
-        found = chords(Branch(source, root, unit, unit), span, Fraction(1, 2**18), Fraction(1, 2**24))
+        found = chords(WallBranch(source, root, unit, unit), span, Fraction(1, 2**18), Fraction(1, 2**24))
         assert len(found) < 2000
         assert max(c.distance for c in found) <= FLAT
         assert sum(c.distance * (c.right - c.left) for c in found) < Fraction(1, 2**17)

@@ -12,7 +12,7 @@ from math import comb
 
 from flint import fmpq, fmpq_mat
 
-from ptmcad.algebra.fibre import Fibre, evaluate
+from ptmcad.algebra.fibre import FibreAlgebra, evaluate
 from ptmcad.algebra.real_roots import sign
 from ptmcad.answer.counts import Counts
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial
@@ -97,7 +97,7 @@ def _lifted(p: RationalPolynomial, width: int) -> RationalPolynomial:
     return {(*m, *(0,) * (width - len(m))): c for m, c in p.items()}
 
 
-def block_hermite_matrix(algebra: Fibre, weights: Sequence[Sequence[fmpq_mat]]) -> fmpq_mat:
+def block_hermite_matrix(algebra: FibreAlgebra, weights: Sequence[Sequence[fmpq_mat]]) -> fmpq_mat:
     """The matrix of blocks trace(weights[k][l] b_i b_j), for a symmetric matrix of multiplication matrices.
 
     Its signature is the sum over the real solutions of the signatures of the weights' values there: the form is the sum

@@ -6,7 +6,7 @@ import pytest
 from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from support.jets import circle
 
-from ptmcad.exact.models.potential import potential as energy_of_the_engine
+from ptmcad.exact.models import system_from
 from ptmcad.model import Mechanism, described, ptm
 from ptmcad.verification.derivation import Configuration, potential
 from ptmcad.verification.equations import equations_of
@@ -49,7 +49,7 @@ def place(m: Mechanism) -> list[fmpq]:
 @pytest.mark.parametrize("m", [ptm(), CHAIN], ids=lambda m: m.name)
 def test_the_engine_and_the_checker_derive_the_same_potential(m: Mechanism) -> None:
     """By two readers of the same trees."""
-    assert polynomial_and_ring(m)[0](*place(m)) == energy_of_the_engine(m)(*place(m))
+    assert polynomial_and_ring(m)[0](*place(m)) == system_from(m).potential(*place(m))
 
 
 @pytest.mark.parametrize("m", [ptm(), CHAIN], ids=lambda m: m.name)

@@ -17,9 +17,9 @@ from ptmcad.answer.intervals import lower, upper
 from ptmcad.answer.widths import Maximum
 from ptmcad.ask.members import in_space
 from ptmcad.errors import DegenerateSliceError, ExpressionError, HypothesisError, InfiniteSolutionsError
-from ptmcad.exact.design.areas import Areas
+from ptmcad.exact.design.areas import AreaBounder
 from ptmcad.exact.design.problem import Axes, space_of_family, space_of_slice
-from ptmcad.exact.design.search import Bounder, Lengths, Outcome, Place, Point, Wanted, search
+from ptmcad.exact.design.search import Bounder, Goal, Lengths, Outcome, Place, Point, search
 from ptmcad.exact.ranges.strips import strips
 from ptmcad.exact.ranges.width import lines_of, widest
 from ptmcad.exact.stages import problem_of
@@ -122,7 +122,7 @@ def _bounder(design: Design, tolerance: fmpq) -> Bounder | None:
     found = space_of_family(*in_space(family), Axes(tuple(a.name for a in axes), ranges, along), design.working)
     if found is None:
         return None
-    return Areas(found, ranges[0]) if design.aim is Aim.AREA else Lengths(found, tolerance)
+    return AreaBounder(found, ranges[0]) if design.aim is Aim.AREA else Lengths(found, tolerance)
 
 
 def _interval(axis: Axis) -> tuple[fmpq, fmpq]:
@@ -145,7 +145,7 @@ def bounded(design: Design, bounder: Bounder, look: Look, limits: Limits) -> Pro
         return limits.go_on(boxes, float(to_fraction(bound)), float(to_fraction(best)))
 
     size = _size(design)
-    wanted = Wanted(from_fraction(limits.tolerance), from_fraction(limits.tolerance * size), limits.boxes)
+    wanted = Goal(from_fraction(limits.tolerance), from_fraction(limits.tolerance * size), limits.boxes)
     whole = tuple(_interval(axis) for axis in design.over)
     try:
         outcome = search(bounder, whole, feasible, improved, wanted, check)

@@ -31,7 +31,7 @@ from ptmcad.algebra.real_roots import (
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.regionmap import Reason
-from ptmcad.exact.cad.curves import Curve, max_height_bits
+from ptmcad.exact.cad.curves import FibredCurve, max_height_bits
 from ptmcad.exact.cad.points import PointsOver
 from ptmcad.exact.cad.stacks import BaseEnd, StackData, roots_over
 
@@ -52,7 +52,7 @@ class Separator(NamedTuple):
     height: fmpq
 
 
-class Gap(NamedTuple):
+class StackGap(NamedTuple):
     """Heights between two separators (None at the window's edge) which branches enter, and why no other separator fits.
 
     Attributes
@@ -71,11 +71,11 @@ class Crossing(NamedTuple):
     """What happens between two neighbouring stacks: one separator for each adjacent pair, and the gaps between them."""
 
     separators: tuple[Separator, ...]
-    gaps: tuple[Gap, ...]
+    gaps: tuple[StackGap, ...]
 
 
 def cross(
-    curves: Sequence[Curve], left: StackData, right: StackData, fibre: Interval, check: Check = nothing
+    curves: Sequence[FibredCurve], left: StackData, right: StackData, fibre: Interval, check: Check = nothing
 ) -> Crossing:
     """All adjacent pairs of cells across the abscissa between two neighbouring stacks, with proof."""
     end = left.right
@@ -119,7 +119,7 @@ def _bracket(end: BaseEnd, width: fmpq, low: fmpq, high: fmpq) -> tuple[fmpq, fm
 
 
 def _separators(
-    curves: Sequence[Curve], bracket: Interval, sides: Sequence[Sequence[RealRoot]], fibre: Interval,
+    curves: Sequence[FibredCurve], bracket: Interval, sides: Sequence[Sequence[RealRoot]], fibre: Interval,
     extra: Sequence[fmpq],
 ) -> list[Separator]:  # fmt: skip
     """The separators among the gaps between the branches and among the extra heights, from below.
@@ -178,7 +178,7 @@ def _open_gaps(found: Sequence[Separator], count_left: int, count_right: int, fi
     return [_OpenGap(a[0], b[0], a[3], b[3], (a[1], b[1]), (a[2], b[2])) for a, b in pairwise(ends)]
 
 
-def _reason(gap: _OpenGap, curves: Sequence[Curve], end: BaseEnd, points: PointsOver | None) -> Reason | None:
+def _reason(gap: _OpenGap, curves: Sequence[FibredCurve], end: BaseEnd, points: PointsOver | None) -> Reason | None:
     """Why branches run into at most one point of the gap; None when that is not known.
 
     ``points`` is None while the points on the line are not looked for. A gap without branches may
@@ -196,13 +196,13 @@ def _reason(gap: _OpenGap, curves: Sequence[Curve], end: BaseEnd, points: Points
     return Reason.POINT
 
 
-def _gap(gap: _OpenGap, curves: Sequence[Curve], end: BaseEnd, points: PointsOver | None) -> Gap:
+def _gap(gap: _OpenGap, curves: Sequence[FibredCurve], end: BaseEnd, points: PointsOver | None) -> StackGap:
     reason = _reason(gap, curves, end, points)
     assert reason is not None
-    return Gap(gap.left, gap.right, gap.below, gap.above, reason)
+    return StackGap(gap.left, gap.right, gap.below, gap.above, reason)
 
 
-def _meets(curves: Sequence[Curve], end: BaseEnd, edge: fmpq) -> bool:
+def _meets(curves: Sequence[FibredCurve], end: BaseEnd, edge: fmpq) -> bool:
     """Whether a curve passes through the point of the window's edge over the critical abscissa."""
     assert end.root is not None
     for c in curves:
@@ -216,7 +216,7 @@ def _meets(curves: Sequence[Curve], end: BaseEnd, edge: fmpq) -> bool:
     return False
 
 
-def _between_points(points: PointsOver, gap: _OpenGap, curves: Sequence[Curve], end: BaseEnd) -> list[fmpq]:
+def _between_points(points: PointsOver, gap: _OpenGap, curves: Sequence[FibredCurve], end: BaseEnd) -> list[fmpq]:
     """Heights between all possible points in the gap."""
     met = [edge for edge in gap.edges if _meets(curves, end, edge)]
     inner = points.between(gap.bottom, gap.top, met)

@@ -16,12 +16,12 @@ from typing import NamedTuple, TypeVar
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.branches import PrecisionTooLow
+from ptmcad.algebra.branches import TooFewBits
 from ptmcad.algebra.polynomials import RationalPolynomial
 from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
 from ptmcad.algebra.window import Interval
-from ptmcad.exact.cad.curves import Curve, by_component, max_height_bits
-from ptmcad.exact.cad.panels import Border, Effort, Panel, halves, panels
+from ptmcad.exact.cad.curves import FibredCurve, by_component, max_height_bits
+from ptmcad.exact.cad.panels import Border, PanelEffort, WallPanel, halves, panels
 from ptmcad.exact.cad.stacks import StackData
 from ptmcad.text.balls import exact
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
@@ -63,7 +63,7 @@ class RegionStacks(NamedTuple):
 
     stacks: Sequence[StackData]
     regions: Sequence[Sequence[int]]
-    curves: Sequence[Curve]
+    curves: Sequence[FibredCurve]
     base: Interval
     fibre: Interval
     images: Sequence[int] = ()
@@ -119,7 +119,7 @@ class _Frame(NamedTuple):
     lost: fmpq
     allowed: Sequence[fmpq]
 
-    def bounds(self, panels: Sequence[Panel]) -> Bounds:
+    def bounds(self, panels: Sequence[WallPanel]) -> Bounds:
         totals = [arb(f) for f in self.fixed]
         for p in panels:
             totals[p.border.below] += p.integral
@@ -166,12 +166,12 @@ def region_areas(
         return curve_of[component].roots_over(u, parts.fibre)
 
     while True:
-        effort = Effort(digits + more, width, parts.fibre, broad, narrowest / 2 ** (bits // 2), roots)
+        effort = PanelEffort(digits + more, width, parts.fibre, broad, narrowest / 2 ** (bits // 2), roots)
         try:
             with ctx.workprec(bits):
                 bounds = _areas(parts, _spans(parts.stacks, share, own=own), tolerance * 3 / 4, effort, check)
                 return tuple(_with_room(b, tolerance, whole) for b in bounds), bits
-        except PrecisionTooLow:
+        except TooFewBits:
             bits = 3 * bits // 2
         except _Unreachable as obstacle:
             # a region is tiny, or the precision is too low for it: the effort grows fast, so this ends soon
@@ -200,7 +200,7 @@ def _with_room(bounds: tuple[Fraction, Fraction], tolerance: Fraction, whole: Fr
 
 
 def _areas(
-    parts: RegionStacks, spans: Sequence[Interval], tolerance: Fraction, effort: Effort, check: Callable[[], None]
+    parts: RegionStacks, spans: Sequence[Interval], tolerance: Fraction, effort: PanelEffort, check: Callable[[], None]
 ) -> Bounds:
     """One attempt, at the context's precision."""
     lost = sum((b[0] - a[1] for a, b in pairwise(spans)), fmpq(0)) * parts.height * (2 if parts.images else 1)
@@ -214,7 +214,7 @@ def _areas(
     load = Counter(i for row in borders for b in row for i in parts.beside(b))
     # of a panel's integral: what would do if all were about as bad, with some more panels than borders
     allowed = [from_fraction(tolerance) * rough[i] / (_PANELS * max(load[i], 1)) for i in range(parts.number)]
-    covered: list[Panel] = []
+    covered: list[WallPanel] = []
     for border in chain.from_iterable(borders):
         check()
         covered += panels(border, border.span, effort, min(allowed[border.below], allowed[border.above]))
@@ -262,7 +262,7 @@ def _span(stack: StackData, left_strip: fmpq, right_strip: fmpq) -> Interval:
 
 
 def _rough(
-    spans: Sequence[Interval], parts: RegionStacks, borders: Sequence[Sequence[Border]], effort: Effort
+    spans: Sequence[Interval], parts: RegionStacks, borders: Sequence[Sequence[Border]], effort: PanelEffort
 ) -> tuple[list[fmpq], list[fmpq]]:
     """Each region's area as if its cells were as high everywhere as in the middle, and how large the integrals of its
     walls are, which cancel but for that; both prove nothing."""
@@ -300,7 +300,7 @@ def _edges(spans: Sequence[Interval], parts: RegionStacks) -> list[fmpq]:
 
 
 def _refine(
-    panels: list[Panel], frame: _Frame, tolerance: Fraction, effort: Effort, check: Callable[[], None]
+    panels: list[WallPanel], frame: _Frame, tolerance: Fraction, effort: PanelEffort, check: Callable[[], None]
 ) -> Bounds:
     """Halve panels until every region is known well enough."""
     while True:
@@ -312,7 +312,7 @@ def _refine(
             raise _Unreachable(strips=True)
         load = Counter(i for p in panels for i in frame.parts.beside(p.border))
         target = {i: tolerance * max(bounds[i][0], bounds[i][1] / 8) / (2 * max(load[i], 1)) for i in poor}
-        refined: list[Panel] = []
+        refined: list[WallPanel] = []
         for p in panels:
             allowed = min((target[i] for i in poor & frame.parts.beside(p.border)), default=p.width)
             if p.width > allowed:

@@ -1,7 +1,7 @@
 """Every wall of a stack as one polyline from critical value to critical value, with a proved distance.
 
-Guarantee: over the whole open interval of its stack the wall stays within `Chain.distance` of the polyline, measured
-along the fibre and as a share of the window.
+Guarantee: over the whole open interval of its stack the wall stays within `WallPolyline.distance` of the polyline,
+measured along the fibre and as a share of the window.
 
 Inside, chords are those of `ptmcad.exact.cad.polyline`. Towards an end, where the wall may turn upright, a last piece
 is level: two heights without a root of p(., v) from there to the end, the end included, shut the wall in, and the piece
@@ -22,7 +22,7 @@ from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, halve, isolate, refine, sign_at
 from ptmcad.answer.regionmap import CriticalValue, RegionMap
 from ptmcad.exact.cad.curves import by_component, curves_of
-from ptmcad.exact.cad.polyline import ROUNDING, UNPROVED, Branch, Span, chords, shut_in, to_share
+from ptmcad.exact.cad.polyline import ROUNDING, UNPROVED, Span, WallBranch, chords, shut_in, to_share
 from ptmcad.text.flint_numbers import from_fraction
 
 _NARROWEST = Fraction(1, 2**40)
@@ -33,7 +33,7 @@ _FIRST, _QUARTERS = Fraction(1, 8), 40
 
 
 @dataclass(frozen=True, slots=True)
-class Chain:
+class WallPolyline:
     """A wall as a polyline; coordinates are shares of the window along the base and along the fibre.
 
     Attributes
@@ -48,12 +48,12 @@ class Chain:
 
 def chains(
     result: RegionMap, tolerance: Fraction, check: Callable[[], None] = lambda: None
-) -> tuple[tuple[Chain, ...], ...]:
+) -> tuple[tuple[WallPolyline, ...], ...]:
     """The walls of every stack, from below.
 
     Parameters
     ----------
-    tolerance : the largest distance wanted, as a share of the window. `Chain.distance` says what was reached.
+    tolerance : the largest distance wanted, as a share of the window. `WallPolyline.distance` says what was reached.
     check : called between pieces; may raise to stop.
     """
     axes = result.slice.axes
@@ -62,7 +62,7 @@ def chains(
     ends = [(Fraction(0), Fraction(0)), *critical_shares(result), (Fraction(1), Fraction(1))]
     found = []
     for k, stack in enumerate(result.stacks):
-        branches = [Branch(curves[w.component], w.root, base, fibre) for w in stack.walls]
+        branches = [WallBranch(curves[w.component], w.root, base, fibre) for w in stack.walls]
         number = Counter(w.component for w in stack.walls)
         walls = []
         for b in branches:
@@ -76,7 +76,7 @@ _End = tuple[Fraction, Fraction, bool]
 """An end of a stack, between two shares of the base; and whether the wall runs on into it, as where it is regular."""
 
 
-def _goes_on(wall: Branch, end: Span, number: int) -> bool:
+def _goes_on(wall: WallBranch, end: Span, number: int) -> bool:
     """Whether so many walls of a curve run to its so many roots over the window's edge, each to its own."""
     if end[0] != end[1] or end[0] not in (0, 1):
         return False
@@ -119,7 +119,7 @@ def _enclosed(value: CriticalValue, before: fmpq, after: fmpq) -> RealRoot:
     return refine(root, min(root.low - before, after - root.high) * _END)
 
 
-def _chain(wall: Branch, left: _End, right: _End, tolerance: Fraction, check: Callable[[], None]) -> Chain:
+def _chain(wall: WallBranch, left: _End, right: _End, tolerance: Fraction, check: Callable[[], None]) -> WallPolyline:
     width = right[0] - left[1]
     start, first = _level(wall, left, width, tolerance)
     end, last = _level(wall, right, -width, tolerance)
@@ -129,10 +129,10 @@ def _chain(wall: Branch, left: _End, right: _End, tolerance: Fraction, check: Ca
         points.insert(0, ((left[0] + left[1]) / 2, parts[0].at_left))
     if not right[2]:
         points.append(((right[0] + right[1]) / 2, parts[-1].at_right))
-    return Chain(tuple(points), max(first, last, *(c.distance for c in parts)))
+    return WallPolyline(tuple(points), max(first, last, *(c.distance for c in parts)))
 
 
-def _level(wall: Branch, end: _End, width: Fraction, tolerance: Fraction) -> tuple[Fraction, Fraction]:
+def _level(wall: WallBranch, end: _End, width: Fraction, tolerance: Fraction) -> tuple[Fraction, Fraction]:
     """Where the level piece at an end of a wall stops, and how far the wall is from it at most."""
     low, high, regular = end
     if regular:

@@ -25,7 +25,7 @@ _LONG_FIBRE = 16
 roots."""
 
 
-class Curve(NamedTuple):
+class FibredCurve(NamedTuple):
     """An irreducible polynomial that involves v.
 
     Attributes
@@ -66,13 +66,13 @@ class Curve(NamedTuple):
         return self.on_horizontals.at(v)
 
 
-def curve(component: int, p: Coefficient, base: int) -> Curve:
+def curve(component: int, p: Coefficient, base: int) -> FibredCurve:
     """The curve of a component, for the base axis 0 or 1."""
     in_v, in_u = coefficients_in(p, 1 - base), coefficients_in(p, base)
-    return Curve(component, in_v, in_u, Restrictions(in_v), Restrictions(in_u), reflection_of(in_v))
+    return FibredCurve(component, in_v, in_u, Restrictions(in_v), Restrictions(in_u), reflection_of(in_v))
 
 
-def curves_of(components: Sequence[Component], base: int, reason: str = "") -> list[Curve]:
+def curves_of(components: Sequence[Component], base: int, reason: str = "") -> list[FibredCurve]:
     """The components that are used, or left out for a reason, as curves over the base; lines across it are none."""
     return [
         curve(n, from_plane(c.polynomial), base)
@@ -81,7 +81,7 @@ def curves_of(components: Sequence[Component], base: int, reason: str = "") -> l
     ]
 
 
-def by_component(curves: Iterable[Curve]) -> dict[int, Curve]:
+def by_component(curves: Iterable[FibredCurve]) -> dict[int, FibredCurve]:
     """The curve of each component's number."""
     return {c.component: c for c in curves}
 
@@ -95,7 +95,7 @@ def lines_of(components: Sequence[Component], base: int, reason: str = "") -> di
     }
 
 
-def max_height_bits(curves: Sequence[Curve]) -> int:
+def max_height_bits(curves: Sequence[FibredCurve]) -> int:
     """The bits of the longest coefficient."""
     return max((int(q.height_bits()) for c in curves for q in c.in_v), default=0)
 

@@ -25,7 +25,7 @@ from ptmcad.algebra.real_roots import (
 )
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.area import RegionStacks
-from ptmcad.exact.cad.curves import Curve
+from ptmcad.exact.cad.curves import FibredCurve
 from ptmcad.exact.cad.stacks import BaseEnd, StackData, level_at
 
 
@@ -82,7 +82,7 @@ def _between(left: BaseEnd, right: BaseEnd, walls: Sequence[Wall], heights: Sequ
     return StackData(left, right, simplest_between(low, high), tuple(walls), tuple(heights))
 
 
-def _on_line(curve: Curve, line: RationalPolynomial) -> UnivariatePolynomial:
+def _on_line(curve: FibredCurve, line: RationalPolynomial) -> UnivariatePolynomial:
     """A multiple of p(u, line(u)); zero where the line is the curve."""
     total = RationalPolynomial([0])
     for c in reversed(curve.in_v):

@@ -13,10 +13,10 @@ from flint import fmpq
 from ptmcad.algebra.branches import avoids
 from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
 from ptmcad.algebra.window import Interval
-from ptmcad.exact.cad.curves import Curve
+from ptmcad.exact.cad.curves import FibredCurve
 
 
-def horizontals(curve: Curve, at_middle: RealRoot, over: Interval, share: fmpq, fibre: Interval) -> Interval:
+def horizontals(curve: FibredCurve, at_middle: RealRoot, over: Interval, share: fmpq, fibre: Interval) -> Interval:
     """Two heights between which the branch stays.
 
     Parameters

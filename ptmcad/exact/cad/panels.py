@@ -12,11 +12,11 @@ from typing import NamedTuple
 from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.arcs import arc_integral
-from ptmcad.algebra.branches import Integral, PrecisionTooLow, branch_integral
+from ptmcad.algebra.branches import Integral, TooFewBits, branch_integral
 from ptmcad.algebra.graphs import graph_integral
 from ptmcad.algebra.real_roots import RealRoot, refine, sign_at, simplest_between
 from ptmcad.algebra.window import Interval
-from ptmcad.exact.cad.curves import Curve
+from ptmcad.exact.cad.curves import FibredCurve
 from ptmcad.exact.cad.horizontals import horizontals
 from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.text.balls import exact
@@ -37,7 +37,7 @@ _MAX_CUTS = 10
 """The fastest cut is to the part 2^-32 of a panel."""
 
 
-class Effort(NamedTuple):
+class PanelEffort(NamedTuple):
     """Degree of the polynomial on a panel, what is worth trying on panels of which width, and what is known already.
 
     Attributes
@@ -66,19 +66,19 @@ class Border(NamedTuple):
     ends : the stack's true ends.
     """
 
-    curve: Curve
+    curve: FibredCurve
     root: int
     below: int
     above: int
     span: Interval
     ends: tuple[BaseEnd, BaseEnd]
 
-    def over(self, u: fmpq, effort: Effort) -> RealRoot:
+    def over(self, u: fmpq, effort: PanelEffort) -> RealRoot:
         """Its height over an abscissa of its stack, isolated."""
         return effort.roots(self.curve.component, u)[self.root]
 
 
-class Panel(NamedTuple):
+class WallPanel(NamedTuple):
     """The part of a border over [low, high], with the enclosure of its integral.
 
     ``smooth`` shows whether the branch was enclosed by a series or by arcs; ``singular`` is not zero when that
@@ -99,7 +99,7 @@ class Panel(NamedTuple):
         return 2 * exact(self.integral.rad())
 
 
-def panels(border: Border, over: Interval, effort: Effort, allowed: fmpq, singular: int = 0) -> list[Panel]:
+def panels(border: Border, over: Interval, effort: PanelEffort, allowed: fmpq, singular: int = 0) -> list[WallPanel]:
     """Panels over an interval, from the left, each with the first enclosure that works: a polynomial's antiderivative,
     Taylor series, arcs, horizontals, the window's edges.
 
@@ -113,8 +113,8 @@ def panels(border: Border, over: Interval, effort: Effort, allowed: fmpq, singul
     if singular:
         return [_rough_panel(border, over, effort, singular)]
     if (integral := graph_integral(border.curve.in_v, *over)) is not None:
-        return [Panel(border, *over, arb(integral), True, 0)]
-    done: list[Panel] = []
+        return [WallPanel(border, *over, arb(integral), True, 0)]
+    done: list[WallPanel] = []
     left = [over]
     while left:
         low, high = left.pop()
@@ -125,7 +125,7 @@ def panels(border: Border, over: Interval, effort: Effort, allowed: fmpq, singul
             done.append(_rough_panel(border, (low, high), effort, 0))
             continue
         start, stop = middle - radius * found.share, middle + radius * found.share
-        done.append(Panel(border, start, stop, found.value, True, 0))
+        done.append(WallPanel(border, start, stop, found.value, True, 0))
         if start < stop < high and found.radius < _REGULAR:
             if low == border.span[0]:
                 done.append(_at_end(border, (low, start), 0, effort, allowed))
@@ -137,17 +137,17 @@ def panels(border: Border, over: Interval, effort: Effort, allowed: fmpq, singul
     return sorted(done, key=lambda p: p.low)
 
 
-def _rough_panel(border: Border, over: Interval, effort: Effort, singular: int) -> Panel:
+def _rough_panel(border: Border, over: Interval, effort: PanelEffort, singular: int) -> WallPanel:
     """A panel between horizontals, or the window's edges."""
     width = over[1] - over[0]
     bottom, top = effort.fibre
     if width < effort.broad:
         at_middle = border.over((over[0] + over[1]) / 2, effort)
         bottom, top = horizontals(border.curve, at_middle, over, width / effort.width, effort.fibre)
-    return Panel(border, *over, arb(bottom).union(arb(top)) * arb(width), False, singular)
+    return WallPanel(border, *over, arb(bottom).union(arb(top)) * arb(width), False, singular)
 
 
-def _at_end(border: Border, over: Interval, side: int, effort: Effort, allowed: fmpq) -> Panel:
+def _at_end(border: Border, over: Interval, side: int, effort: PanelEffort, allowed: fmpq) -> WallPanel:
     """A panel from an end of the stack as far as a series about that end reaches; a rough one when that fails."""
     end, near, far = border.ends[side], over[side], over[1 - side]
     width = far - near
@@ -164,7 +164,7 @@ def _at_end(border: Border, over: Interval, side: int, effort: Effort, allowed: 
         return _rough_panel(border, over, effort, 2 * side - 1)
     value, cut = found
     ends = (over[0], cut) if side == 0 else (cut, over[1])
-    return Panel(border, *ends, value + strip, True, 0)
+    return WallPanel(border, *ends, value + strip, True, 0)
 
 
 def _place_of(end: BaseEnd, near: fmpq) -> fmpq:
@@ -177,7 +177,7 @@ def _place_of(end: BaseEnd, near: fmpq) -> fmpq:
 
 
 def _about_end(
-    border: Border, end: BaseEnd, ends: Interval, effort: Effort, allowed: fmpq, bits: int
+    border: Border, end: BaseEnd, ends: Interval, effort: PanelEffort, allowed: fmpq, bits: int
 ) -> tuple[arb, fmpq] | None:
     """The integral from beside an end of the stack as far as a series about it reaches, and how far; None when that
     fails.
@@ -206,14 +206,14 @@ def _about_end(
         try:
             with ctx.workprec(precision):
                 found = enclosed()
-        except PrecisionTooLow:
+        except TooFewBits:
             continue
         if found is not None:
             return found
     return None
 
 
-def halves(p: Panel, effort: Effort, allowed: fmpq) -> list[Panel]:
+def halves(p: WallPanel, effort: PanelEffort, allowed: fmpq) -> list[WallPanel]:
     """The parts of a panel; if only one half is smooth, the other one's far end is taken to be singular.
 
     A branch that turns at an end is cut nearer and nearer to that end. When this has gone well for some times, the cuts
@@ -237,7 +237,7 @@ def halves(p: Panel, effort: Effort, allowed: fmpq) -> list[Panel]:
     return left + right
 
 
-def _smooth(border: Border, over: Interval, effort: Effort, allowed: fmpq) -> Integral | None:
+def _smooth(border: Border, over: Interval, effort: PanelEffort, allowed: fmpq) -> Integral | None:
     """The integral of a branch that does not turn, by its Taylor series or between arcs; None if neither is proved.
 
     Raises
@@ -259,7 +259,7 @@ def _smooth(border: Border, over: Interval, effort: Effort, allowed: fmpq) -> In
     series, obstacle = None, False
     try:
         series = _sharper(by_series, allowed)
-    except PrecisionTooLow:
+    except TooFewBits:
         obstacle = True
     if series is not None and not series.crowded:
         return series
@@ -278,7 +278,7 @@ def _or_else(arcs: Integral, enclose: Callable[[], Integral | None]) -> Integral
     """The enclosure, or that by arcs where there is none."""
     try:
         return enclose() or arcs
-    except PrecisionTooLow:
+    except TooFewBits:
         return arcs
 
 
@@ -304,7 +304,7 @@ def _more_precisely(enclose: Callable[[], Integral | None]) -> Integral | None:
         try:
             with ctx.workprec(bits):
                 return enclose()
-        except PrecisionTooLow:
+        except TooFewBits:
             if bits >= most:
                 raise
         bits *= 2

@@ -19,12 +19,12 @@ from math import gcd
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.clusters import Cluster, clusters_over
+from ptmcad.algebra.clusters import RootDisc, clusters_over
 from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, is_root_of, isolate, refine, squarefree_part
 from ptmcad.algebra.resultants import Check, discriminant, nothing, resultant
 from ptmcad.algebra.window import Interval
-from ptmcad.exact.cad.curves import Curve, deflation, shortened, stretched
+from ptmcad.exact.cad.curves import FibredCurve, deflation, shortened, stretched
 
 _BITS = (128, 512)
 """Of the critical abscissa, until all discs are told apart; with more of them the other way is the shorter one."""
@@ -33,7 +33,7 @@ _BITS = (128, 512)
 class PointsOver:
     """The points of curves on the line over a root."""
 
-    def __init__(self, curves: tuple[Curve, ...], root: RealRoot, check: Check = nothing) -> None:
+    def __init__(self, curves: tuple[FibredCurve, ...], root: RealRoot, check: Check = nothing) -> None:
         self.curves, self.root, self.check = curves, root, check
 
     def between(self, bottom: fmpq, top: fmpq, edges: Sequence[fmpq]) -> list[Interval]:
@@ -70,7 +70,7 @@ class PointsOver:
                 if group is None or not self._are_points(k, group):
                     return None
                 groups.append(group)
-            same: list[tuple[Cluster, Cluster]] = []
+            same: list[tuple[RootDisc, RootDisc]] = []
             for (k, one), (m, other) in combinations(enumerate(groups), 2):
                 meeting = [(c, d) for c in one for d in other if c.meets(d)]
                 # where they have a root in common, it is in the only place where it can be
@@ -79,7 +79,7 @@ class PointsOver:
                 same += meeting
             return _merged([c for group in groups for c in group if c.is_real], same)
 
-    def _are_points(self, k: int, group: Sequence[Cluster]) -> bool:
+    def _are_points(self, k: int, group: Sequence[RootDisc]) -> bool:
         """Whether each disc of a curve is known to hold one root only, as often as it counts."""
         multiple = [c.number for c in group if c.number > 1]
         return not multiple or (multiple == [2] and _vanishes(self._discriminants[k], self.root))
@@ -114,7 +114,7 @@ class PointsOver:
         return product
 
 
-def _discriminant(c: Curve, check: Check) -> UnivariatePolynomial:
+def _discriminant(c: FibredCurve, check: Check) -> UnivariatePolynomial:
     """A polynomial with the roots of the curve's discriminant, from that of least degree.
 
     The discriminant of p(u, v^k) is, but for a constant, a power of that of p(u, v) times powers of p(u, 0) and of the
@@ -130,9 +130,9 @@ def _vanishes(p: UnivariatePolynomial, root: RealRoot) -> bool:
     return not p or is_root_of(p.gcd(root.polynomial), root)
 
 
-def _merged(found: Sequence[Cluster], same: Sequence[tuple[Cluster, Cluster]]) -> list[Interval] | None:
+def _merged(found: Sequence[RootDisc], same: Sequence[tuple[RootDisc, RootDisc]]) -> list[Interval] | None:
     """The discs' intervals, those of discs with the same point as one; None where others meet, by their rounding."""
-    merged: list[tuple[Interval, list[Cluster]]] = []
+    merged: list[tuple[Interval, list[RootDisc]]] = []
     for cluster in sorted(found, key=lambda c: c.extent[0]):
         low, high = cluster.extent
         if not merged or low > merged[-1][0][1]:

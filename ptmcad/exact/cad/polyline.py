@@ -22,7 +22,7 @@ from ptmcad.algebra.branches import local_coefficients
 from ptmcad.algebra.chords import slope_over
 from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.algebra.window import Interval
-from ptmcad.exact.cad.curves import Curve
+from ptmcad.exact.cad.curves import FibredCurve
 from ptmcad.text.balls import exact
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
@@ -60,10 +60,10 @@ class Chord:
 
 
 @dataclass(frozen=True, slots=True)
-class Branch:
+class WallBranch:
     """A wall, the ``root``-th real root of a curve, in the window base x fibre."""
 
-    curve: Curve
+    curve: FibredCurve
     root: int
     base: Interval
     fibre: Interval
@@ -80,7 +80,7 @@ class Branch:
 
 
 def chords(
-    wall: Branch,
+    wall: WallBranch,
     span: Span,
     max_distance: Fraction,
     narrowest: Fraction,
@@ -125,7 +125,7 @@ def chords(
     return tuple(found)
 
 
-def _distance(wall: Branch, panel: Span) -> Fraction | None:
+def _distance(wall: WallBranch, panel: Span) -> Fraction | None:
     """A bound for the distance between the wall and its chord over a panel, as a share of the fibre; None: unproved."""
     u, radius = _part(panel, wall.base)
     slope = slope_over(wall.curve.in_v, wall.at(u), u, radius)
@@ -135,7 +135,7 @@ def _distance(wall: Branch, panel: Span) -> Fraction | None:
     return -((-distance * _GRID_STEPS).__floor__()) * Fraction(1, _GRID_STEPS)
 
 
-def shut_in(wall: Branch, panel: Span, ends: Span, most: Fraction = FLAT) -> Fraction | None:
+def shut_in(wall: WallBranch, panel: Span, ends: Span, most: Fraction = FLAT) -> Fraction | None:
     """How far apart two heights are between which a wall with these ends is shut in over a panel; None: not proved.
 
     None is more than ``most`` away from an end.
@@ -159,7 +159,7 @@ def shut_in(wall: Branch, panel: Span, ends: Span, most: Fraction = FLAT) -> Fra
     return found[1] - found[0]
 
 
-def _absent(curve: Curve, across: tuple[fmpq, fmpq], height: fmpq) -> bool:
+def _absent(curve: FibredCurve, across: tuple[fmpq, fmpq], height: fmpq) -> bool:
     """Whether the curve is proved to miss a closed level segment: p in the middle outweighs the rest of its Taylor sum.
 
     Parameters

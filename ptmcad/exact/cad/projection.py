@@ -20,7 +20,7 @@ from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, refine
 from ptmcad.algebra.resultants import Check, discriminant, nothing, resultant
 from ptmcad.algebra.window import Interval
-from ptmcad.exact.cad.curves import Curve, base_deflation, deflation, shortened
+from ptmcad.exact.cad.curves import FibredCurve, base_deflation, deflation, shortened
 
 
 class Projection(NamedTuple):
@@ -34,7 +34,7 @@ class Projection(NamedTuple):
         return next(origin for p, origin in self.polynomials if p == polynomial)
 
 
-def predicted_cost(curves: Sequence[Curve]) -> int:
+def predicted_cost(curves: Sequence[FibredCurve]) -> int:
     """A figure for the cost of the projection: evaluation points times the cost of one evaluation, summed."""
     sizes = []
     for c in curves:
@@ -49,7 +49,7 @@ def predicted_cost(curves: Sequence[Curve]) -> int:
 
 
 def project(
-    curves: Sequence[Curve],
+    curves: Sequence[FibredCurve],
     verticals: Sequence[UnivariatePolynomial],
     base: Interval,
     fibre: Interval,
@@ -98,7 +98,9 @@ def _factors(p: UnivariatePolynomial, unit: int = 1, inflation: int = 1) -> list
     return result
 
 
-def _of_one(c: Curve, fibre: Interval, check: Check, deflate: bool) -> list[tuple[list[UnivariatePolynomial], str]]:
+def _of_one(
+    c: FibredCurve, fibre: Interval, check: Check, deflate: bool
+) -> list[tuple[list[UnivariatePolynomial], str]]:
     k = deflation(c.in_v) if deflate else 1
     (deflated,), unit, inflation = shortened([c.in_v[::k]], deflate)
     name = f"component {c.component}"
@@ -110,7 +112,7 @@ def _of_one(c: Curve, fibre: Interval, check: Check, deflate: bool) -> list[tupl
     return result
 
 
-def _of_two(c: Curve, d: Curve, check: Check, deflate: bool) -> list[UnivariatePolynomial]:
+def _of_two(c: FibredCurve, d: FibredCurve, check: Check, deflate: bool) -> list[UnivariatePolynomial]:
     k = gcd(deflation(c.in_v), deflation(d.in_v)) if deflate else 1
     (first, second), unit, inflation = shortened([c.in_v[::k], d.in_v[::k]], deflate)
     return _factors(resultant(first, second, check), unit, inflation)

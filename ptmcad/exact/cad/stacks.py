@@ -14,7 +14,7 @@ from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, sign_at, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.regionmap import Wall
-from ptmcad.exact.cad.curves import Curve
+from ptmcad.exact.cad.curves import FibredCurve
 
 
 class BaseEnd(NamedTuple):
@@ -35,7 +35,7 @@ class StackData(NamedTuple):
     heights: tuple[fmpq, ...]
 
 
-def roots_over(curves: Sequence[Curve], u: fmpq, fibre: Interval) -> tuple[tuple[Wall, RealRoot], ...]:
+def roots_over(curves: Sequence[FibredCurve], u: fmpq, fibre: Interval) -> tuple[tuple[Wall, RealRoot], ...]:
     """All roots of the curves in the open fibre interval over a rational abscissa that is not critical, in order.
 
     The isolating intervals are pairwise disjoint, ends included.
@@ -60,7 +60,7 @@ def roots_over(curves: Sequence[Curve], u: fmpq, fibre: Interval) -> tuple[tuple
 class Avoided(NamedTuple):
     """Curves, and lines by their polynomials in u, that are no walls but on which no sample may lie."""
 
-    curves: Sequence[Curve] = ()
+    curves: Sequence[FibredCurve] = ()
     lines: Sequence[UnivariatePolynomial] = ()
 
 
@@ -68,7 +68,7 @@ NOTHING_AVOIDED = Avoided()
 
 
 def lift(
-    curves: Sequence[Curve],
+    curves: Sequence[FibredCurve],
     abscissae: Sequence[RealRoot],
     base: Interval,
     fibre: Interval,
@@ -109,6 +109,6 @@ def _simplest_off(low: fmpq, high: fmpq, avoided: Sequence[UnivariatePolynomial]
     return value
 
 
-def level_at(curves: Sequence[Curve], u: fmpq, v: fmpq, fibre: Interval) -> int:
+def level_at(curves: Sequence[FibredCurve], u: fmpq, v: fmpq, fibre: Interval) -> int:
     """The number of walls below a point, over an abscissa that is not critical."""
     return sum(len(isolate(c.fibre(u), fibre[0], v)) for c in curves)

@@ -16,7 +16,7 @@ from ptmcad.exact.design.cover import Run, Space, measure, refined
 from ptmcad.exact.design.search import Bounded, Place
 
 
-class Strip(NamedTuple):
+class AreaStrip(NamedTuple):
     """A part of the window between two values of the axis that is not the line's, with its runs.
 
     Attributes
@@ -30,7 +30,7 @@ class Strip(NamedTuple):
     least: fmpq
 
 
-class Areas(NamedTuple):
+class AreaBounder(NamedTuple):
     """The area where the count is the wanted one.
 
     Attributes
@@ -42,14 +42,14 @@ class Areas(NamedTuple):
     space: Space
     base: Interval
 
-    def whole(self) -> tuple[Strip, ...]:
+    def whole(self) -> tuple[AreaStrip, ...]:
         size = self.space.window[1] - self.space.window[0]
-        return (Strip(self.base, self.space.whole(), size * (self.base[1] - self.base[0]), fmpq(0)),)
+        return (AreaStrip(self.base, self.space.whole(), size * (self.base[1] - self.base[0]), fmpq(0)),)
 
-    def over(self, place: Place, state: Sequence[Strip], share: fmpq, enough: fmpq) -> Bounded:
+    def over(self, place: Place, state: Sequence[AreaStrip], share: fmpq, enough: fmpq) -> Bounded:
         """Strips are cut until they are about as narrow as the designs' interval, in shares of their ranges."""
         narrowest = (self.base[1] - self.base[0]) * share / _FINENESS
-        done: list[Strip] = []
+        done: list[AreaStrip] = []
         waiting = [self._strip(strip.base, strip.runs, place[0], share) for strip in state]
         while waiting:
             strips = [*done, *waiting]
@@ -57,7 +57,7 @@ class Areas(NamedTuple):
             doubt = bound - sum((s.least for s in strips), fmpq(0))
             if bound <= enough:
                 break
-            cut: list[Strip] = []
+            cut: list[AreaStrip] = []
             for strip in waiting:
                 low, high = strip.base
                 if high - low <= narrowest or (strip.most - strip.least) * 2 * len(strips) < doubt:
@@ -70,13 +70,13 @@ class Areas(NamedTuple):
         most, least = (sum((getattr(s, end) for s in strips), fmpq(0)) for end in ("most", "least"))
         return most, least, tuple(strips)
 
-    def _strip(self, base: Interval, runs: Sequence[Run], designs: Interval, share: fmpq) -> Strip:
+    def _strip(self, base: Interval, runs: Sequence[Run], designs: Interval, share: fmpq) -> AreaStrip:
         space, width = self.space, base[1] - base[0]
         size = space.window[1] - space.window[0]
         fine = max(share / _FINENESS, width / (self.base[1] - self.base[0])) * size / _FINENESS
         found = refined(space, (base, designs), runs, fine)
         least = sum((space.least(p.low, p.high) for run in found for p in run.parts if p.here), fmpq(0))
-        return Strip(base, found, width * measure(space, found), width * least)
+        return AreaStrip(base, found, width * measure(space, found), width * least)
 
 
 _FINENESS = 4

@@ -51,7 +51,7 @@ class Space(NamedTuple):
     def whole(self) -> tuple[Run, ...]:
         """The line as one run of which nothing is known."""
         low, high = (value**self.power for value in self.window)
-        return (Run((Part(low, high, None, None),), None, None),)
+        return (Run((LinePart(low, high, None, None),), None, None),)
 
     def length(self, low: fmpq, high: fmpq) -> fmpq:
         """An upper bound for the length of a part, given by the powers of its ends; exact where the power is 1."""
@@ -62,7 +62,7 @@ class Space(NamedTuple):
         return root_bound(high, self.power, up=False) - root_bound(low, self.power, up=True)
 
 
-class Part(NamedTuple):
+class LinePart(NamedTuple):
     """A part of the line, by the powers of its ends.
 
     Attributes
@@ -86,7 +86,7 @@ class Run(NamedTuple):
     left, right : the signs of the polynomials beyond its ends; None at the window's edge.
     """
 
-    parts: tuple[Part, ...]
+    parts: tuple[LinePart, ...]
     left: Signs | None
     right: Signs | None
 
@@ -123,7 +123,7 @@ def certain(space: Space, runs: Sequence[Run]) -> fmpq:
 
 
 def _refined(space: Space, box: Box, run: Run, resolution: fmpq) -> Iterator[Run]:
-    parts: list[Part] = []
+    parts: list[LinePart] = []
     for part in run.parts:
         if part.here is None and (part.signs is None or len(part.signs) < len(space.tables)):
             parts += _cut(space, box, part, resolution)
@@ -135,7 +135,7 @@ def _refined(space: Space, box: Box, run: Run, resolution: fmpq) -> Iterator[Run
     if run.right is not None and parts[-1].signs == run.right:
         parts[-1] = parts[-1]._replace(here=False)
     parts = [_counted(space, box, part) if part.signs is not None and part.here is None else part for part in parts]
-    left, kept = run.left, list[Part]()
+    left, kept = run.left, list[LinePart]()
     for part in parts:
         if part.here is not False:
             kept.append(part)
@@ -147,7 +147,7 @@ def _refined(space: Space, box: Box, run: Run, resolution: fmpq) -> Iterator[Run
         yield Run(tuple(kept), left, run.right)
 
 
-def _cut(space: Space, box: Box, part: Part, resolution: fmpq) -> Iterator[Part]:
+def _cut(space: Space, box: Box, part: LinePart, resolution: fmpq) -> Iterator[LinePart]:
     """The part in pieces that are free of the variety, or too short to be cut."""
     place = ((part.low, part.high), *box)
     tables = {number: over(table, place) for number, table in enumerate(space.tables)}
@@ -156,17 +156,17 @@ def _cut(space: Space, box: Box, part: Part, resolution: fmpq) -> Iterator[Part]
 
 def _pieces(
     space: Space, tables: dict[int, Table], known: dict[int, int], place: Interval, resolution: fmpq
-) -> Iterator[Part]:
+) -> Iterator[LinePart]:
     """The same, of polynomials that are not ``known`` to have a sign there."""
     signs = {number: sign(table) for number, table in tables.items()}
     known = known | {number: found for number, found in signs.items() if found}
     tables = {number: table for number, table in tables.items() if number not in known}
     low, high = place
     if not tables:
-        yield Part(low, high, tuple(known[number] for number in range(len(known))), None)
+        yield LinePart(low, high, tuple(known[number] for number in range(len(known))), None)
         return
     if space.length(low, high) <= resolution:
-        yield Part(low, high, None, None)
+        yield LinePart(low, high, None, None)
         return
     middle = (low + high) / 2
     cut = {number: halves(table) for number, table in tables.items()}
@@ -174,19 +174,19 @@ def _pieces(
     yield from _pieces(space, {n: pair[1] for n, pair in cut.items()}, known, (middle, high), resolution)
 
 
-def _joined(parts: Sequence[Part]) -> list[Part]:
+def _joined(parts: Sequence[LinePart]) -> list[LinePart]:
     """Neighbours of equal signs as one."""
-    found: list[Part] = []
+    found: list[LinePart] = []
     for part in parts:
         if found and found[-1].signs == part.signs:
             here = part.here if found[-1].here is None else found[-1].here
-            found[-1] = Part(found[-1].low, part.high, part.signs, here)
+            found[-1] = LinePart(found[-1].low, part.high, part.signs, here)
         else:
             found.append(part)
     return found
 
 
-def _counted(space: Space, box: Box, part: Part) -> Part:
+def _counted(space: Space, box: Box, part: LinePart) -> LinePart:
     """The part with what a sample says of its count."""
     low, high = (root_bound(part.low, space.power, up=True), root_bound(part.high, space.power, up=False))
     if low >= high:

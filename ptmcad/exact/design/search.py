@@ -42,7 +42,7 @@ class Bounder(Protocol):
         """
 
 
-class Wanted(NamedTuple):
+class Goal(NamedTuple):
     """When a search ends.
 
     Attributes
@@ -76,7 +76,7 @@ def search(
     whole: Place,
     feasible: Callable[[Place], bool],
     improved: Callable[[Point | None], fmpq],
-    wanted: Wanted,
+    wanted: Goal,
     check: Callable[[int, fmpq, fmpq], bool],
 ) -> Outcome:
     """Cut boxes, always the one with the largest bound, until the largest bound is near enough to the best value.
@@ -112,7 +112,7 @@ def search(
     return Outcome(bound, tuple(settled), bound <= _enough(best, wanted))
 
 
-def _enough(best: fmpq, wanted: Wanted) -> fmpq:
+def _enough(best: fmpq, wanted: Goal) -> fmpq:
     return max(best * (1 + wanted.tolerance), wanted.least if best <= 0 else fmpq(0))
 
 

@@ -84,36 +84,6 @@ class ParametricSystem(NamedTuple):
         return not self.ring.reals and not self.inequalities
 
 
-def from_potential(
-    ring: TrigonometricRing,
-    potential: TrigonometricPolynomial,
-    positive: tuple[str, ...],
-    nonnegative: tuple[str, ...],
-    inequalities: tuple[TrigonometricPolynomial, ...] = (),
-    moments: Mapping[str, TrigonometricPolynomial] | None = None,
-) -> ParametricSystem:
-    """The system of critical points of a potential, by differentiation.
-
-    Parameters
-    ----------
-    moments : generalised forces on unknowns, which are subtracted from the gradient. With one that depends on an
-        unknown there is no potential.
-    """
-    gradient = [ring.reduce(ring.derivative(potential, u)) for u in ring.unknowns]
-    has_potential = True
-    for unknown, moment in (moments or {}).items():
-        gradient[ring.unknowns.index(unknown)] -= moment
-        has_potential = has_potential and not any(ring.derivative(moment, u) for u in ring.unknowns)
-    return from_equations(
-        ring,
-        gradient,
-        potential=potential if has_potential else None,
-        positive=positive,
-        nonnegative=nonnegative,
-        inequalities=inequalities,
-    )
-
-
 def from_equations(
     ring: TrigonometricRing, equations: Sequence[TrigonometricPolynomial], **asked: Any
 ) -> ParametricSystem:
@@ -340,23 +310,6 @@ def at_point(
         tuple(_specialised(system, e, values) for e in system.equation_terms),
         tuple(tuple(_specialised(system, d, values) for d in row) for row in system.jacobian_terms),
     )
-
-
-def specialised(ring: TrigonometricRing, p: TrigonometricPolynomial, values: Mapping[str, fmpq]) -> RationalPolynomial:
-    """An element of any trigonometric ring with rational numbers for the parameters, exactly."""
-    numbers = [values[name] for name in ring.parameters]
-    found: RationalPolynomial = {}
-    for monomial, part in ring.split(p).items():
-        total = fmpq(0)
-        for powers, coefficient in part.items():
-            term = coefficient
-            for number, e in zip(numbers, powers, strict=True):
-                if e:
-                    term = term * number**e
-            total += term
-        if total:
-            found[monomial] = total
-    return found
 
 
 def polynomial_at(

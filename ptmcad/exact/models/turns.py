@@ -12,7 +12,7 @@ from __future__ import annotations
 from itertools import permutations
 from typing import NamedTuple
 
-from ptmcad.algebra.fibre import Fibre, combined_angles
+from ptmcad.algebra.fibre import FibreAlgebra, combined_angles
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
 from ptmcad.exact.models.system import ParametricSystem, from_equations
 
@@ -64,7 +64,7 @@ def with_turns(system: ParametricSystem) -> ParametricSystem:
     return system._replace(turns=Turns(_moved(system, equations, best), best))
 
 
-def in_old_angles(system: ParametricSystem, algebra: Fibre, turns: Turns) -> Fibre:
+def in_old_angles(system: ParametricSystem, algebra: FibreAlgebra, turns: Turns) -> FibreAlgebra:
     """The fibre of the equations in new angles, with the coordinates of the unknown ones before the new ones'."""
     return combined_angles(algebra, turns.matrix, len(system.ring.reals))
 

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import NamedTuple
 
 from flint import arb
 
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.exact.models.system import ParametricSystem, Terms, terms_of
 from ptmcad.exact.ranges.matrices import Matrix, Vector, plus, scaled, times
+from ptmcad.formulas.graph import Formula
+from ptmcad.formulas.values import values
 from ptmcad.model import Model
+from ptmcad.model.compile import compiled
 from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import Expression, Term
 
 
 @dataclass(frozen=True, slots=True)
-class Family:
+class LineSystem:
     """A model on a line: its system, and its parameters as expressions in one unknown, the first axis."""
 
     model: Model
@@ -36,15 +40,10 @@ class Family:
     def at(self, low: Fraction, high: Fraction) -> Instance:
         """The equations for all parameters from low to high, with their derivatives by the parameter."""
         numbers = self._numbers(low, high)
-        equations = [_specialised(g, numbers) for g in self.system.equation_terms]
-        jacobian = [[_specialised(h, numbers) for h in row] for row in self.system.jacobian_terms]
         return Instance(
             self.angles,
-            tuple(terms for terms, _, _ in equations),
-            tuple(terms for _, terms, _ in equations),
-            tuple(terms for _, _, terms in equations),
-            tuple(tuple(terms for terms, _, _ in row) for row in jacobian),
-            tuple(tuple(terms for _, terms, _ in row) for row in jacobian),
+            tuple(_specialised(g, numbers) for g in self.system.equation_terms),
+            tuple(tuple(_specialised(h, numbers) for h in row) for row in self.system.jacobian_terms),
         )
 
     def conditions(self, low: Fraction, high: Fraction, point: Vector) -> Vector:
@@ -52,7 +51,13 @@ class Family:
         numbers = self._numbers(low, high)
         coordinates = coordinates_of(point, self.angles)
         terms = (terms_of(self.system.ring, p) for p in self.system.inequalities)
-        return tuple(_evaluated(_specialised(t, numbers)[0], coordinates) for t in terms)
+        return tuple(evaluated(_specialised(t, numbers)[0], coordinates) for t in terms)
+
+    def values_of(self, formulas: Sequence[Formula], low: Fraction, high: Fraction, point: Vector) -> list[arb]:
+        """Formulas of the model's for all parameters from low to high, at balls of the unknowns."""
+        known, span = compiled(self.model), ball_of(low).union(ball_of(high))
+        unknowns = dict(zip(known.unknowns, point, strict=True))
+        return values(formulas, _BallArithmetic(known.names, self.parameters, span, unknowns))
 
     def slope(self, p: TrigonometricPolynomial, low: Fraction, high: Fraction) -> arb:
         """The derivative of an element of the system's ring by the parameter, from low to high and at all angles.
@@ -60,12 +65,42 @@ class Family:
         The ring has no unknowns on the line.
         """
         numbers = self._numbers(low, high)
-        return _evaluated(_specialised(terms_of(self.system.ring, p), numbers)[1], [arb(0, 1)] * (2 * self.angles))
+        return evaluated(_specialised(terms_of(self.system.ring, p), numbers)[1], [arb(0, 1)] * (2 * self.angles))
+
+
+class _BallArithmetic(NamedTuple):
+    """Balls as an arithmetic for formulas, whose variables have these names.
+
+    Attributes
+    ----------
+    span : of the first axis.
+    unknowns : by their numbers.
+    """
+
+    names: tuple[str, ...]
+    parameters: Mapping[str, Expression]
+    span: arb
+    unknowns: Mapping[int, arb]
+
+    def constant(self, value: Fraction) -> arb:
+        return ball_of(value)
+
+    def variable(self, number: int) -> arb:
+        known = self.unknowns.get(number)
+        return _jet(self.parameters[self.names[number]], self.span)[0] if known is None else known
+
+    def cos(self, number: int) -> arb:
+        return self.unknowns[number].cos()
+
+    def sin(self, number: int) -> arb:
+        return self.unknowns[number].sin()
 
 
 Jet = tuple[arb, arb, arb]
 """A value and its first and second derivative by the parameter."""
 Specialised = tuple[tuple[tuple[int, ...], arb], ...]
+"""A polynomial in the unknowns: exponents with coefficients."""
+SpecialisedJet = tuple[Specialised, Specialised, Specialised]
 
 
 def _jet(expression: Expression, x: arb) -> Jet:
@@ -93,12 +128,7 @@ def _times_jet(first: Jet, second: Jet) -> Jet:
     return a * b, da * b + a * db, dda * b + 2 * da * db + a * ddb
 
 
-def value_of(expression: Expression, x: arb) -> arb:
-    """An expression in the first axis at a ball."""
-    return _jet(expression, x)[0]
-
-
-def _specialised(terms: Terms, numbers: list[Jet]) -> tuple[Specialised, Specialised, Specialised]:
+def _specialised(terms: Terms, numbers: list[Jet]) -> SpecialisedJet:
     """The polynomial in the unknowns, and its first and second derivative by the parameter."""
     found: tuple[list[tuple[tuple[int, ...], arb]], ...] = ([], [], [])
     for monomial, part in terms:
@@ -109,9 +139,9 @@ def _specialised(terms: Terms, numbers: list[Jet]) -> tuple[Specialised, Special
                 for _ in range(e):
                     term = _times_jet(term, numbers[k])
             total = _plus(total, term)
-        for order, (values, x) in enumerate(zip(found, total, strict=True)):
+        for order, (kept, x) in enumerate(zip(found, total, strict=True)):
             if order == 0 or x != 0:
-                values.append((monomial, x))
+                kept.append((monomial, x))
     return tuple(found[0]), tuple(found[1]), tuple(found[2])
 
 
@@ -120,39 +150,40 @@ class Instance:
     """Equations and Jacobian with balls for the parameters, to be evaluated at balls of the unknowns."""
 
     angles: int
-    equation_terms: tuple[Specialised, ...]
-    slope_terms: tuple[Specialised, ...]
-    curvature_terms: tuple[Specialised, ...]
-    jacobian_terms: tuple[tuple[Specialised, ...], ...]
-    jacobian_slope_terms: tuple[tuple[Specialised, ...], ...]
+    equation_jets: tuple[SpecialisedJet, ...]
+    jacobian_jets: tuple[tuple[SpecialisedJet, ...], ...]
 
     def equations(self, point: Vector) -> Vector:
-        coordinates = coordinates_of(point, self.angles)
-        return tuple(_evaluated(g, coordinates) for g in self.equation_terms)
+        return self._equations(point, 0)
 
     def slope(self, point: Vector) -> Vector:
         """The derivative of the equations by the parameter."""
-        coordinates = coordinates_of(point, self.angles)
-        return tuple(_evaluated(g, coordinates) for g in self.slope_terms)
+        return self._equations(point, 1)
 
     def jacobian(self, point: Vector) -> Matrix:
+        return self._jacobian(point, 0)
+
+    def _equations(self, point: Vector, order: int) -> Vector:
         coordinates = coordinates_of(point, self.angles)
-        return tuple(tuple(_evaluated(h, coordinates) for h in row) for row in self.jacobian_terms)
+        return tuple(evaluated(g[order], coordinates) for g in self.equation_jets)
+
+    def _jacobian(self, point: Vector, order: int) -> Matrix:
+        coordinates = coordinates_of(point, self.angles)
+        return tuple(tuple(evaluated(h[order], coordinates) for h in row) for row in self.jacobian_jets)
 
     def jacobian_slopes(self, point: Vector) -> tuple[Matrix, ...]:
         """The Jacobian's derivative by the parameter, then that by each unknown."""
         coordinates = coordinates_of(point, self.angles)
-        first = tuple(tuple(_evaluated(h, coordinates) for h in row) for row in self.jacobian_slope_terms)
-        entries = [[_gradient(h, coordinates, self.angles) for h in row] for row in self.jacobian_terms]
-        return first, *(tuple(tuple(e[k] for e in row) for row in entries) for k in range(len(point)))
+        entries = [[_gradient(h, coordinates, self.angles) for h, *_ in row] for row in self.jacobian_jets]
+        return self._jacobian(point, 1), *(
+            tuple(tuple(e[k] for e in row) for row in entries) for k in range(len(point))
+        )
 
     def bend(self, point: Vector, velocity: Vector) -> Vector:
         """The second derivative of the equations by the parameter along a straight line of unknowns."""
-        coordinates = coordinates_of(point, self.angles)
-        own = tuple(_evaluated(g, coordinates) for g in self.curvature_terms)
         mixed, *by = self.jacobian_slopes(point)
         turned = (scaled(times(d, velocity), v) for d, v in zip(by, velocity, strict=True))
-        return plus(plus(own, scaled(times(mixed, velocity), arb(2))), *turned)
+        return plus(plus(self._equations(point, 2), scaled(times(mixed, velocity), arb(2))), *turned)
 
 
 def coordinates_of(point: Vector, angles: int) -> list[arb]:
@@ -160,7 +191,8 @@ def coordinates_of(point: Vector, angles: int) -> list[arb]:
     return [*(f(a) for a in point[:angles] for f in (arb.cos, arb.sin)), *point[angles:]]
 
 
-def _evaluated(terms: Specialised, unknowns: list[arb]) -> arb:
+def evaluated(terms: Specialised, unknowns: list[arb]) -> arb:
+    """A polynomial's value at balls of the coordinates."""
     total = arb(0)
     for monomial, coefficient in terms:
         term = coefficient
@@ -176,6 +208,6 @@ def _gradient(terms: Specialised, coordinates: list[arb], angles: int) -> Vector
     by = []
     for k in range(len(coordinates)):
         lowered = ((m, c * m[k]) for m, c in terms if m[k])
-        by.append(_evaluated(tuple(((*m[:k], m[k] - 1, *m[k + 1 :]), c) for m, c in lowered), coordinates))
+        by.append(evaluated(tuple(((*m[:k], m[k] - 1, *m[k + 1 :]), c) for m, c in lowered), coordinates))
     turned = (coordinates[k] * by[k + 1] - coordinates[k + 1] * by[k] for k in range(0, 2 * angles, 2))
     return (*turned, *by[2 * angles :])

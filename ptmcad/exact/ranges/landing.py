@@ -19,7 +19,7 @@ from flint import arb, ctx
 
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.exact.poses import exact_poses
-from ptmcad.exact.ranges.equations import Family
+from ptmcad.exact.ranges.equations import LineSystem
 from ptmcad.exact.ranges.meeting import Meeting, parameters_at, value_at, what_meets
 from ptmcad.exact.ranges.tracking import BITS, Reached, bridge, enclose, follow
 from ptmcad.question.line import Line
@@ -35,7 +35,7 @@ _MAX_STEPS = 1000
 """On that way, of which a fold takes some hundred; a pitchfork, of which fewer digits are told, takes them all."""
 
 
-class Landing(NamedTuple):
+class LimitPose(NamedTuple):
     """The stable pose at a critical value to which a state goes, and the energies.
 
     Attributes
@@ -50,8 +50,8 @@ class Landing(NamedTuple):
 
 
 def landing(
-    family: Family, line: Line, number: AlgebraicNumber, met: Meeting, current: Reached, target: Reached
-) -> Landing | None:
+    family: LineSystem, line: Line, number: AlgebraicNumber, met: Meeting, current: Reached, target: Reached
+) -> LimitPose | None:
     """What holds at the critical value where a branch ends; None where the pose that is reached is not proved.
 
     Parameters
@@ -68,14 +68,14 @@ def landing(
     energy = _limit(family, line, number, before)
     if 0 in met.leaving:
         merged = _merged(family, line, number, before, after)
-        return None if merged is None else Landing(merged, energy, energy)
+        return None if merged is None else LimitPose(merged, energy, energy)
     across = bridge(family, after, near)
     at = None if across is None else enclose(family, number.low, number.high, across.point)
     if across is None or at is None or not across.over.holds(at, near):
         return None
     with ctx.workprec(BITS):
         unknowns = tuple(map(enclosure_of, at.hull()))
-    return Landing(unknowns, energy, _limit(family, line, number, Reached(near, at, at)))
+    return LimitPose(unknowns, energy, _limit(family, line, number, Reached(near, at, at)))
 
 
 def beside(value: Fraction, side: int, gap: Fraction) -> Fraction:
@@ -84,13 +84,13 @@ def beside(value: Fraction, side: int, gap: Fraction) -> Fraction:
     return to_fraction(simplest_between(from_fraction(low), from_fraction(high)))
 
 
-def _nearer(family: Family, place: Reached, value: Fraction) -> Reached:
+def _nearer(family: LineSystem, place: Reached, value: Fraction) -> Reached:
     """The branch at a value, or as near to it as it can be followed."""
     steps, _ = follow(family, place, value, abs(value - place.value), _MAX_STEPS)
     return steps[-1] if steps else place
 
 
-def _limit(family: Family, line: Line, number: AlgebraicNumber, place: Reached) -> Enclosure:
+def _limit(family: LineSystem, line: Line, number: AlgebraicNumber, place: Reached) -> Enclosure:
     """The energy of a branch at the critical value to which it leads, from its energy at a place beside."""
     potential = family.system.potential
     assert potential is not None  # snaps and mergers are those of a potential
@@ -101,7 +101,7 @@ def _limit(family: Family, line: Line, number: AlgebraicNumber, place: Reached) 
 
 
 def _merged(
-    family: Family, line: Line, number: AlgebraicNumber, before: Reached, after: Reached
+    family: LineSystem, line: Line, number: AlgebraicNumber, before: Reached, after: Reached
 ) -> tuple[Enclosure, ...] | None:
     """The pose in which several merge, at the critical value between two places."""
     found = what_meets(family, line, before, after.value)

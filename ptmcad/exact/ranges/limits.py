@@ -20,7 +20,7 @@ from ptmcad.algebra.slopes import tangent_resultant
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.intervals import End
 from ptmcad.exact.cad.stacks import BaseEnd
-from ptmcad.exact.ranges.strips import Branch, Strip, at_abscissa, bound_over, end_interval
+from ptmcad.exact.ranges.strips import RangeEnd, RangeStrip, at_abscissa, bound_over, end_interval
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 
@@ -31,7 +31,7 @@ def ends_of(end: End) -> Interval:
     return as_interval(end)
 
 
-def limit(branch: Branch, strip: Strip, end: BaseEnd, width: fmpq) -> End | None:
+def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, width: fmpq) -> End | None:
     """The limit of a branch at an end of its strip; None when it could not be separated from other points."""
     if branch.curve is None:
         return to_fraction(branch.edge)
@@ -58,7 +58,7 @@ def limit(branch: Branch, strip: Strip, end: BaseEnd, width: fmpq) -> End | None
     return None
 
 
-def narrowing_length(strip: Strip, end: BaseEnd, width: fmpq) -> fmpq | None:
+def narrowing_length(strip: RangeStrip, end: BaseEnd, width: fmpq) -> fmpq | None:
     """A length from an end within which the range gets narrower away from it; None if not proved.
 
     For some slope s, v - s u of the lower branch does not fall away from the end, that of the upper one does not rise,
@@ -82,7 +82,7 @@ def narrowing_length(strip: Strip, end: BaseEnd, width: fmpq) -> fmpq | None:
     return None
 
 
-def _course(branch: Branch, strip: Strip, end: BaseEnd, slope: fmpq) -> tuple[fmpq, int | None]:
+def _course(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, slope: fmpq) -> tuple[fmpq, int | None]:
     """A length from an end within which v - s u of a branch is monotone, and the sign of its growth; None: not seen."""
     at = end_interval(end, fmpq(1, 2**80))
     run = strip.sample - at[0]
@@ -105,14 +105,14 @@ def _course(branch: Branch, strip: Strip, end: BaseEnd, slope: fmpq) -> tuple[fm
     return abs(run), None if low < 0 < high else sign(low + high)
 
 
-def _growth(branch: Branch, strip: Strip, over: Interval, slope: fmpq) -> Interval:
+def _growth(branch: RangeEnd, strip: RangeStrip, over: Interval, slope: fmpq) -> Interval:
     """Bounds of what v - s u of a branch grows by from one abscissa to another."""
     near, far = (at_abscissa(branch, u, strip.fibre, abs(over[1] - over[0]) / 2**200) for u in over)
     difference = -slope * (over[1] - over[0])
     return difference + far.low - near.high, difference + far.high - near.low
 
 
-def chord_length(strip: Strip, end: fmpq, direction: int, limits: tuple[End, End]) -> fmpq | None:
+def chord_length(strip: RangeStrip, end: fmpq, direction: int, limits: tuple[End, End]) -> fmpq | None:
     """A length within which the range keeps between parallel chords from its limits at an end; None if not proved."""
     length = abs(strip.sample - end)
     branches, starts = (strip.low, strip.high), [ends_of(e) for e in limits]
@@ -136,7 +136,7 @@ def chord_length(strip: Strip, end: fmpq, direction: int, limits: tuple[End, End
     return None
 
 
-def _keeps_to(side: int, branch: Branch, fibre: Interval, start: tuple[fmpq, End], slope: fmpq, run: fmpq) -> bool:
+def _keeps_to(side: int, branch: RangeEnd, fibre: Interval, start: tuple[fmpq, End], slope: fmpq, run: fmpq) -> bool:
     """Whether a branch is proved to stay above (side 1) or below (side -1) a chord.
 
     It starts at a branch's limit at the end of a strip, and goes as far as ``run``, which is negative towards the left.

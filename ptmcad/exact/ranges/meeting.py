@@ -21,7 +21,7 @@ from ptmcad.algebra.polynomials import PLANE
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.exact.counting import equilibria
 from ptmcad.exact.models.system import on_slice, polynomial_at
-from ptmcad.exact.ranges.equations import Family, coordinates_of
+from ptmcad.exact.ranges.equations import LineSystem, coordinates_of, evaluated
 from ptmcad.exact.ranges.line import system_on
 from ptmcad.exact.ranges.matrices import Vector
 from ptmcad.exact.ranges.mirror import Mirror, mirror_of
@@ -39,7 +39,7 @@ _MAX_DEPTH = 60
 """Into how many pieces, and how often, a region's boundary is cut."""
 
 
-class Solution(NamedTuple):
+class PlacedSolution(NamedTuple):
     """A solution at one value: its place, and how many negative eigenvalues it has.
 
     Without a potential the number is 0 for a stable solution and 1 for another.
@@ -66,7 +66,7 @@ class Meeting(NamedTuple):
     meeting: tuple[int, ...]
     leaving: tuple[int, ...]
     among: bool
-    beyond: tuple[Solution, ...]
+    beyond: tuple[PlacedSolution, ...]
     box: Vector | None = None
     fixed: Mapping[int, Mirror] = {}
 
@@ -81,34 +81,27 @@ class _Symmetry(NamedTuple):
 class _Member(NamedTuple):
     """A solution that is not bridged."""
 
-    solution: Solution
+    solution: PlacedSolution
     ahead: bool
     shifted: Vector
     sign: int
 
 
-def parameters_at(family: Family, line: Line, value: Fraction) -> dict[str, Fraction]:
+def parameters_at(family: LineSystem, line: Line, value: Fraction) -> dict[str, Fraction]:
     """The system's parameters at a value of the line."""
     used = family.system.ring.parameters
     return {n: e.evaluate(value, Fraction(0)) for n, e in line.parameters.items() if n in used}
 
 
-def value_at(family: Family, line: Line, reached: Reached, p: TrigonometricPolynomial) -> arb:
+def value_at(family: LineSystem, line: Line, reached: Reached, p: TrigonometricPolynomial) -> arb:
     """An element of the system's ring at a place."""
     values = {n: from_fraction(v) for n, v in parameters_at(family, line, reached.value).items()}
     with ctx.workprec(BITS):
-        coordinates = coordinates_of(reached.point, family.angles)
-        total = arb(0)
-        for monomial, coefficient in polynomial_at(family.system, p, values).items():
-            term = arb(coefficient)
-            for value, e in zip(coordinates, monomial, strict=True):
-                for _ in range(e):
-                    term = term * value
-            total += term
-        return total
+        terms = tuple((m, arb(c)) for m, c in polynomial_at(family.system, p, values).items())
+        return evaluated(terms, coordinates_of(reached.point, family.angles))
 
 
-def what_meets(family: Family, line: Line, current: Reached, after: Fraction) -> Meeting | None:
+def what_meets(family: LineSystem, line: Line, current: Reached, after: Fraction) -> Meeting | None:
     """What a branch meets at the only critical value between its place and another value; None where not proved."""
     before, beyond = _solutions(family, line, current.value), _solutions(family, line, after)
     if before is None or beyond is None:
@@ -137,7 +130,7 @@ def what_meets(family: Family, line: Line, current: Reached, after: Fraction) ->
     return Meeting(met, left, len(classes) > 1, tuple(beyond), box, fixed)
 
 
-def _solutions(family: Family, line: Line, value: Fraction) -> list[Solution] | None:
+def _solutions(family: LineSystem, line: Line, value: Fraction) -> list[PlacedSolution] | None:
     """All solutions at a value that is not critical; None when one was not enclosed."""
     values = parameters_at(family, line, value)
     found = []
@@ -152,18 +145,18 @@ def _solutions(family: Family, line: Line, value: Fraction) -> list[Solution] | 
             return None
         stable = family.system.tells_stability and not solution.signs.strip("+")
         negative = solution.signs.count("-") if family.system.has_index else int(not stable)
-        found.append(Solution(Reached(value, place, place), negative))
+        found.append(PlacedSolution(Reached(value, place, place), negative))
     return found
 
 
 def _unmatched(
-    family: Family,
+    family: LineSystem,
     line: Line,
     current: Reached,
     after: Fraction,
-    before: Sequence[Solution],
-    beyond: Sequence[Solution],
-) -> list[tuple[Solution, bool]] | None:
+    before: Sequence[PlacedSolution],
+    beyond: Sequence[PlacedSolution],
+) -> list[tuple[PlacedSolution, bool]] | None:
     """The solutions that no tube leads across, the branch's own first, and whether each is on the far side."""
     own = [s for s in before if _close(family, s.place.point, current.point)]
     if len(own) != 1:
@@ -184,7 +177,7 @@ def _unmatched(
     return lost + [(solution, True) for solution in left]
 
 
-def _close(family: Family, first: Vector, second: Vector) -> bool:
+def _close(family: LineSystem, first: Vector, second: Vector) -> bool:
     """Whether the boxes overlap, whole turns apart."""
     with ctx.workprec(BITS):
         apart = [a - b for a, b in zip(first, second, strict=True)]
@@ -192,7 +185,7 @@ def _close(family: Family, first: Vector, second: Vector) -> bool:
         return all(d.contains(0) for d in (*turned, *apart[family.angles :]))
 
 
-def _member(family: Family, current: Reached, solution: Solution, ahead: bool) -> _Member:
+def _member(family: LineSystem, current: Reached, solution: PlacedSolution, ahead: bool) -> _Member:
     """A solution with its angles less than a turn from the branch's, and the sign of the Jacobian's determinant."""
     with ctx.workprec(BITS):
         shifted = []
@@ -207,7 +200,7 @@ def _member(family: Family, current: Reached, solution: Solution, ahead: bool) -
 
 
 def _without_region(
-    family: Family, unmatched: Sequence[tuple[Solution, bool]], beyond: tuple[Solution, ...]
+    family: LineSystem, unmatched: Sequence[tuple[PlacedSolution, bool]], beyond: tuple[PlacedSolution, ...]
 ) -> Meeting | None:
     """What can be said without a region: a branch vanishes where nothing is left that it may have become."""
     if family.system.inequalities or any(ahead for _, ahead in unmatched):
@@ -218,7 +211,7 @@ def _without_region(
 
 
 def _region(
-    family: Family, current: Reached, after: Fraction, members: Sequence[_Member]
+    family: LineSystem, current: Reached, after: Fraction, members: Sequence[_Member]
 ) -> tuple[list[_Member], Vector] | None:
     """The fewest solutions around the branch's own, the first, in a region that none enters or leaves."""
     with ctx.workprec(BITS):
@@ -249,7 +242,7 @@ def _hull(balls: Sequence[arb], margin: float) -> tuple[arb, arb]:
 
 
 def _isolates(
-    family: Family,
+    family: LineSystem,
     box: Sequence[tuple[arb, arb]],
     start: Fraction,
     end: Fraction,
@@ -285,7 +278,7 @@ def _isolates(
     return True
 
 
-def _outside(family: Family, point: Vector, box: Sequence[tuple[arb, arb]]) -> bool:
+def _outside(family: LineSystem, point: Vector, box: Sequence[tuple[arb, arb]]) -> bool:
     """Whether a point is certainly outside a box, by any number of whole turns."""
     for k, (x, (low, high)) in enumerate(zip(point, box, strict=True)):
         if k >= family.angles:
@@ -298,7 +291,7 @@ def _outside(family: Family, point: Vector, box: Sequence[tuple[arb, arb]]) -> b
     return False
 
 
-def _symmetries(family: Family, line: Line, group: Sequence[_Member], after: Fraction) -> list[_Symmetry]:
+def _symmetries(family: LineSystem, line: Line, group: Sequence[_Member], after: Fraction) -> list[_Symmetry]:
     """How the involutions that keep all points of the line, and a reflection of all angles, permute the group."""
     if len(group) <= 2:
         return []
@@ -319,7 +312,7 @@ def _symmetries(family: Family, line: Line, group: Sequence[_Member], after: Fra
 
 
 def _reflections(
-    family: Family, line: Line, group: Sequence[_Member], places: Sequence[Sequence[arb]], after: Fraction
+    family: LineSystem, line: Line, group: Sequence[_Member], places: Sequence[Sequence[arb]], after: Fraction
 ) -> list[_Symmetry]:
     """How the reflection of all angles at once, whose line may turn with the parameter, permutes the group."""
     if family.system.ring.reals:

@@ -25,26 +25,18 @@ from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
 from ptmcad.exact.models import system_from
 from ptmcad.exact.poses import exact_poses
-from ptmcad.exact.ranges.equations import Family, value_of
+from ptmcad.exact.ranges.equations import LineSystem
 from ptmcad.exact.ranges.landing import DIGITS, beside, landing
 from ptmcad.exact.ranges.line import critical_values, is_regular
 from ptmcad.exact.ranges.matrices import Vector
 from ptmcad.exact.ranges.meeting import parameters_at, value_at, what_meets
-from ptmcad.exact.ranges.tracking import (
-    BITS,
-    Reached,
-    at_value,
-    bridge,
-    follow,
-)
-from ptmcad.model import Mechanism
-from ptmcad.model.evaluate import evaluate
+from ptmcad.exact.ranges.tracking import BITS, Reached, at_value, bridge, follow
+from ptmcad.model.compile import compiled
 from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Slice, moved
 from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.parsing import number_for
-from ptmcad.text.tree import names_of
 
 _MIN_DISTANCE = Fraction(1, 10**5)
 """How near to a critical value a branch is followed, against the window's width."""
@@ -79,7 +71,7 @@ def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, n
     if any(n.compare(value) == 0 for n in numbers) and not is_regular(line, value):
         raise ConfigError(f"{along} = {value} is a critical value: start beside it", key="--path")
     system = system_from(slice.model)
-    family = Family(slice.model, system, line.parameters)
+    family = LineSystem(slice.model, system, line.parameters)
     poses = exact_poses(slice.model, parameters_at(family, line, value), DIGITS)
     stable = [k for k, pose in enumerate(poses.equilibria) if pose.stable or not slice.model.tells_stability]
     if number is not None and number - 1 not in stable:
@@ -100,7 +92,7 @@ def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, n
 
 
 def _path(
-    family: Family, line: Line, numbers: Sequence[AlgebraicNumber], pose: Pose, number: int, start: Fraction
+    family: LineSystem, line: Line, numbers: Sequence[AlgebraicNumber], pose: Pose, number: int, start: Fraction
 ) -> PosePath:
     box = at_value(family, start, _guess(pose))
     if box is None:
@@ -124,41 +116,15 @@ def _guess(pose: Pose) -> Vector:
         return tuple(ball_of(a.center) for a in (*pose.angles, *pose.reals))
 
 
-def _sides(family: Family, low: Fraction, high: Fraction, unknowns: Vector) -> tuple[int, ...]:
+def _sides(family: LineSystem, low: Fraction, high: Fraction, unknowns: Vector) -> tuple[int, ...]:
     """Of each rising point of a mechanism, 1 when it is proved above the x axis, -1 when below, else 0."""
-    model = family.model
-    if not isinstance(model, Mechanism):
-        return ()
     with ctx.workprec(BITS):
-        span = ball_of(low).union(ball_of(high))
-        used = {name for point in model.rising for name in names_of(model.points[point][1])}
-        values = {name: value_of(family.parameters[name], span) for name in used & family.parameters.keys()}
-        within = _Balls(values, dict(zip((*model.angles, *model.reals), unknowns, strict=True)))
-        heights = [evaluate(model.points[name][1], within) for name in model.rising]
+        heights = family.values_of(compiled(family.model).heights, low, high, unknowns)
         return tuple(1 if y > 0 else -1 if y < 0 else 0 for y in heights)
 
 
-class _Balls:
-    """The ring of balls, at balls of the parameters and the unknowns."""
-
-    def __init__(self, parameters: Mapping[str, arb], unknowns: Mapping[str, arb]):
-        self.parameters, self.unknowns = parameters, unknowns
-
-    def constant(self, value: Fraction) -> arb:
-        return ball_of(value)
-
-    def parameter(self, name: str) -> arb:
-        return self.unknowns[name] if name in self.unknowns else self.parameters[name]
-
-    def cos(self, angle: str) -> arb:
-        return self.unknowns[angle].cos()
-
-    def sin(self, angle: str) -> arb:
-        return self.unknowns[angle].sin()
-
-
 def _one_way(
-    family: Family, line: Line, numbers: Sequence[AlgebraicNumber], origin: Reached, side: int
+    family: LineSystem, line: Line, numbers: Sequence[AlgebraicNumber], origin: Reached, side: int
 ) -> tuple[list[Reached], PathEnd]:
     """Follow a branch in one direction through all critical values that do not concern it."""
     window = line.along.high - line.along.low
@@ -214,7 +180,7 @@ def _ends(number: AlgebraicNumber, side: int) -> tuple[Fraction, Fraction]:
     return (number.low, number.high) if side > 0 else (number.high, number.low)
 
 
-def _condition(family: Family, line: Line, reached: Reached) -> Fate | None:
+def _condition(family: LineSystem, line: Line, reached: Reached) -> Fate | None:
     """What a solution loses at a critical value that it passes: an inequality, or stability that is given by signs."""
     system = family.system
     conditions = [(Fate.EXCLUDED, p) for p in system.inequalities]
@@ -227,7 +193,7 @@ def _condition(family: Family, line: Line, reached: Reached) -> Fate | None:
     return None
 
 
-def _meeting(family: Family, line: Line, number: AlgebraicNumber, current: Reached, after: Fraction) -> PathEnd:
+def _meeting(family: LineSystem, line: Line, number: AlgebraicNumber, current: Reached, after: Fraction) -> PathEnd:
     """Which solutions meet at a critical value that the path does not pass."""
     stopped = PathEnd(Fate.UNDECIDED, number, _point(family, current))
     found = what_meets(family, line, current, after)
@@ -251,7 +217,7 @@ def _meeting(family: Family, line: Line, number: AlgebraicNumber, current: Reach
     )
 
 
-def _descends(family: Family, line: Line) -> bool:
+def _descends(family: LineSystem, line: Line) -> bool:
     """Whether every descent ends at an equilibrium: solutions are all critical points of one function on a torus."""
     system = family.system
     return system.has_index and system.is_on_torus and not moved(family.model, line.parameters)
@@ -262,7 +228,7 @@ def _ball(enclosure: Enclosure) -> arb:
         return ball_of(enclosure.low).union(ball_of(enclosure.high))
 
 
-def _point(family: Family, reached: Reached) -> PathPoint:
+def _point(family: LineSystem, reached: Reached) -> PathPoint:
     with ctx.workprec(BITS):
         unknowns = tuple(map(enclosure_of, reached.point))
     sides = _sides(family, reached.value, reached.value, reached.point)

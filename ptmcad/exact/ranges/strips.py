@@ -20,23 +20,23 @@ from ptmcad.algebra.window import Interval
 from ptmcad.answer.counts import operation_number
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.adjacency import Crossing, cross
-from ptmcad.exact.cad.curves import Curve, by_component
+from ptmcad.exact.cad.curves import FibredCurve, by_component
 from ptmcad.exact.cad.stacks import BaseEnd, StackData
 from ptmcad.exact.stages import counts_of, lines_across, problem_of, projection_of, stacks_of, variety_of
 from ptmcad.question.slice import Slice, without_free_lengths
 
 
 @dataclass(frozen=True, slots=True)
-class Branch:
+class RangeEnd:
     """The ``root``-th real root of a curve over a strip, or an edge of the window when ``curve`` is None."""
 
-    curve: Curve | None
+    curve: FibredCurve | None
     root: int
     edge: fmpq
 
 
 @dataclass(frozen=True, slots=True)
-class Strip:
+class RangeStrip:
     """An operation range over an open interval of the base axis.
 
     Attributes
@@ -49,12 +49,12 @@ class Strip:
     left: BaseEnd
     right: BaseEnd
     sample: fmpq
-    low: Branch
-    high: Branch
+    low: RangeEnd
+    high: RangeEnd
     fibre: Interval
 
     @property
-    def branches(self) -> tuple[Branch, Branch]:
+    def branches(self) -> tuple[RangeEnd, RangeEnd]:
         return self.low, self.high
 
 
@@ -74,7 +74,7 @@ def refuse_free_lengths(slice: Slice) -> None:
     )
 
 
-class Strips(NamedTuple):
+class RangeStrips(NamedTuple):
     """The strips of a slice over one of its axes.
 
     Attributes
@@ -85,12 +85,12 @@ class Strips(NamedTuple):
         whole line is in the variety, those at which two ranges meet at a point, and the window's edges.
     """
 
-    found: tuple[Strip, ...]
+    found: tuple[RangeStrip, ...]
     working: int
     special: tuple[BaseEnd, ...]
 
 
-def strips(slice: Slice, along: str, working: int | None = None) -> Strips:
+def strips(slice: Slice, along: str, working: int | None = None) -> RangeStrips:
     """The strips of a slice over the axis that is not ``along``.
 
     Parameters
@@ -126,7 +126,7 @@ def strips(slice: Slice, along: str, working: int | None = None) -> Strips:
         ):
             special.append(left.right)
     special.append(stacks.stacks[-1].right)
-    return Strips(tuple(chain.from_iterable(found)), working, tuple(special))
+    return RangeStrips(tuple(chain.from_iterable(found)), working, tuple(special))
 
 
 def _ranges_meet(crossing: Crossing, left: Sequence[bool], right: Sequence[bool]) -> bool:
@@ -140,7 +140,9 @@ def _ranges_meet(crossing: Crossing, left: Sequence[bool], right: Sequence[bool]
     return False
 
 
-def _over(stack: StackData, inside: Sequence[bool], curves: dict[int, Curve], fibre: Interval) -> list[Strip]:
+def _over(
+    stack: StackData, inside: Sequence[bool], curves: dict[int, FibredCurve], fibre: Interval
+) -> list[RangeStrip]:
     """The strips of a stack, given which of its cells are in the operation range."""
     found = []
     first = None
@@ -148,18 +150,20 @@ def _over(stack: StackData, inside: Sequence[bool], curves: dict[int, Curve], fi
         if is_inside and first is None:
             first = k
         elif not is_inside and first is not None:
-            low = _branch(stack.walls[first - 1], curves, fibre[0]) if first else Branch(None, 0, fibre[0])
-            high = _branch(stack.walls[k - 1], curves, fibre[1]) if k <= len(stack.walls) else Branch(None, 0, fibre[1])
-            found.append(Strip(stack.left, stack.right, stack.sample, low, high, fibre))
+            low = _branch(stack.walls[first - 1], curves, fibre[0]) if first else RangeEnd(None, 0, fibre[0])
+            high = (
+                _branch(stack.walls[k - 1], curves, fibre[1]) if k <= len(stack.walls) else RangeEnd(None, 0, fibre[1])
+            )
+            found.append(RangeStrip(stack.left, stack.right, stack.sample, low, high, fibre))
             first = None
     return found
 
 
-def _branch(wall: Wall, curves: dict[int, Curve], edge: fmpq) -> Branch:
-    return Branch(curves[wall.component], wall.root, edge)
+def _branch(wall: Wall, curves: dict[int, FibredCurve], edge: fmpq) -> RangeEnd:
+    return RangeEnd(curves[wall.component], wall.root, edge)
 
 
-def at_abscissa(branch: Branch, u: fmpq, fibre: Interval, width: fmpq) -> RealRoot:
+def at_abscissa(branch: RangeEnd, u: fmpq, fibre: Interval, width: fmpq) -> RealRoot:
     """The branch's value at a rational abscissa of the strip, isolated within ``width``."""
     if branch.curve is None:
         return _edge(branch.edge)
@@ -171,7 +175,7 @@ def _edge(value: fmpq) -> RealRoot:
     return RealRoot(UnivariatePolynomial([-int(value.p), int(value.q)]), value, value)
 
 
-def bound_over(branch: Branch, start: fmpq, side: int, over: Interval, fibre: Interval) -> fmpq | None:
+def bound_over(branch: RangeEnd, start: fmpq, side: int, over: Interval, fibre: Interval) -> fmpq | None:
     """A level above (side 1) or below (side -1) the branch on a closed interval of abscissae.
 
     Guarantee: the curve has no point on the horizontal segment at this level over the interval; so the branch, which is
@@ -197,7 +201,7 @@ def bound_over(branch: Branch, start: fmpq, side: int, over: Interval, fibre: In
         step = 2 * step
 
 
-def base_interval(strip: Strip, width: fmpq) -> tuple[Interval, Interval]:
+def base_interval(strip: RangeStrip, width: fmpq) -> tuple[Interval, Interval]:
     """Intervals that hold the two ends of the strip's base: of length zero at rational ends, else within ``width``."""
     return end_interval(strip.left, width), end_interval(strip.right, width)
 
@@ -213,7 +217,7 @@ def end_interval(end: BaseEnd, width: fmpq) -> Interval:
     return root.low, root.high
 
 
-def constant_width(strip: Strip) -> bool:
+def constant_width(strip: RangeStrip) -> bool:
     """Whether the range is of one width over the whole strip: its ends are level, or one curve and its translate."""
     curves = [b.curve for b in (strip.low, strip.high) if b.curve is not None and len(b.curve.in_u) > 1]
     if len(curves) != 2:

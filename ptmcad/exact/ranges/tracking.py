@@ -1,6 +1,6 @@
 """Following a solution along a line of parameters, by Krawczyk's operator in balls, in any number of unknowns.
 
-Guarantee: a `Tube` that `enclose` returns holds, for every value of the parameter in its range, exactly one
+Guarantee: a `BranchTube` that `enclose` returns holds, for every value of the parameter in its range, exactly one
 solution, which is nondegenerate and depends smoothly on the parameter. Two tubes are taken to hold the same branch
 only where a third one, for a value that both cover, lies inside both. So `follow` never jumps to another branch.
 
@@ -15,7 +15,7 @@ from fractions import Fraction
 from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.real_roots import simplest_between
-from ptmcad.exact.ranges.equations import Family, Instance
+from ptmcad.exact.ranges.equations import Instance, LineSystem
 from ptmcad.exact.ranges.matrices import (
     Matrix,
     Vector,
@@ -39,7 +39,7 @@ _MAX_STEPS = 3000
 
 
 @dataclass(frozen=True, slots=True)
-class Tube:
+class BranchTube:
     """A box of unknowns that moves with the parameter x: center + velocity (x - middle) + (a box around 0).
 
     For every x from low to high there is one solution in the box ``unique``, and it lies in the box ``tight``.
@@ -62,7 +62,7 @@ class Tube:
         with ctx.workprec(BITS):
             return self._moved(ball_of((self.high - self.low) / 2) * arb(0, 1), self.tight)
 
-    def holds(self, other: Tube, value: Fraction) -> bool:
+    def holds(self, other: BranchTube, value: Fraction) -> bool:
         """Whether the other tube's solution at a value lies where this one's is the only one."""
         with ctx.workprec(BITS):
             mine = self._moved(ball_of(value - self._middle), self.unique)
@@ -76,7 +76,7 @@ class Tube:
         return tuple(c + v * offset + w for c, v, w in zip(self.center, self.velocity, box, strict=True))
 
 
-def enclose(family: Family, low: Fraction, high: Fraction, guess: Vector) -> Tube | None:
+def enclose(family: LineSystem, low: Fraction, high: Fraction, guess: Vector) -> BranchTube | None:
     """A tube around the branch near a guess for the middle of the range; None when not proved.
 
     Notes
@@ -99,7 +99,7 @@ def enclose(family: Family, low: Fraction, high: Fraction, guess: Vector) -> Tub
         for centered in (False, True) if low < high else (False,):
             found = _krawczyk(family.angles, over, center, inverse, velocity, centered)
             if found is not None:
-                return Tube(low, high, center, velocity, *found)
+                return BranchTube(low, high, center, velocity, *found)
         return None
 
 
@@ -177,8 +177,8 @@ class Reached:
     """A value of the parameter with the branch's place there; ``over`` covers the branch since the last one."""
 
     value: Fraction
-    place: Tube
-    over: Tube
+    place: BranchTube
+    over: BranchTube
 
     @property
     def point(self) -> Vector:
@@ -186,13 +186,13 @@ class Reached:
         return self.place.at(self.value)
 
 
-def at_value(family: Family, value: Fraction, guess: Vector) -> Tube | None:
+def at_value(family: LineSystem, value: Fraction, guess: Vector) -> BranchTube | None:
     """The place of the solution near a guess, at one value of the parameter."""
     return enclose(family, value, value, guess)
 
 
 def follow(
-    family: Family, start: Reached, end: Fraction, longest: Fraction, most: int | None = None
+    family: LineSystem, start: Reached, end: Fraction, longest: Fraction, most: int | None = None
 ) -> tuple[list[Reached], bool]:
     """Follow a branch from one value of the parameter to another, in steps no longer than ``longest``.
 
@@ -228,7 +228,7 @@ def _short(value: Fraction, step: Fraction) -> Fraction:
     return to_fraction(simplest_between(from_fraction(low), from_fraction(high)))
 
 
-def bridge(family: Family, start: Reached, value: Fraction) -> Reached | None:
+def bridge(family: LineSystem, start: Reached, value: Fraction) -> Reached | None:
     """The same branch at another value, if one tube proves it for all values between; else None."""
     ahead = start.place.velocity
     with ctx.workprec(BITS):

@@ -40,8 +40,8 @@ from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.exact.ranges.anyline import LineRanges, ranges_on
 from ptmcad.exact.ranges.limits import chord_length, limit, narrowing_length
 from ptmcad.exact.ranges.strips import (
-    Strip,
-    Strips,
+    RangeStrip,
+    RangeStrips,
     at_abscissa,
     base_interval,
     bound_over,
@@ -71,7 +71,7 @@ class _Candidate:
     sides: dict[End, bool | None] = field(default_factory=dict)
 
 
-def widest(slice: Slice, along: str, found: Strips) -> tuple[Maximum, ...]:
+def widest(slice: Slice, along: str, found: RangeStrips) -> tuple[Maximum, ...]:
     """The largest width over a slice's strips and on the lines that have a width of their own."""
     return largest(found.found, lines_of(slice, along, found))
 
@@ -92,14 +92,14 @@ class SpecialLine(NamedTuple):
         return max((span.width.high for span in self.ranges[1]), default=Fraction(0))
 
 
-def lines_of(slice: Slice, along: str, found: Strips) -> list[SpecialLine]:
+def lines_of(slice: Slice, along: str, found: RangeStrips) -> list[SpecialLine]:
     """The lines at the special values of the other axis."""
     return [SpecialLine(end, ranges_on(slice, along, _value(end), found.working)) for end in found.special]
 
 
-def largest(found: Sequence[Strip], lines: Sequence[SpecialLine] = ()) -> tuple[Maximum, ...]:
+def largest(found: Sequence[RangeStrip], lines: Sequence[SpecialLine] = ()) -> tuple[Maximum, ...]:
     """The largest width over all strips and on lines; see the module."""
-    search = _Search(lines)
+    search = _WidthSearch(lines)
     for line in lines:
         search.line(line)
     for strip in found:
@@ -114,10 +114,10 @@ def largest(found: Sequence[Strip], lines: Sequence[SpecialLine] = ()) -> tuple[
 
 
 @dataclass(frozen=True, slots=True)
-class _Piece:
+class _WidthPiece:
     """A part [low, high] of a strip's base; ``open_left`` and ``open_right`` when it reaches an irrational end."""
 
-    strip: Strip
+    strip: RangeStrip
     low: fmpq
     high: fmpq
     open_left: bool
@@ -125,14 +125,14 @@ class _Piece:
     smallest: fmpq
 
 
-class _Search:
+class _WidthSearch:
     """Branch and bound over the strips."""
 
     def __init__(self, lines: Sequence[SpecialLine]) -> None:
         self.lines = {line.value: line.ranges for line in lines}
         self.known = fmpq(0)  # a width that occurs, or is approached
         self.candidates: list[_Candidate] = []
-        self.heap: list[tuple[fmpq, int, _Piece]] = []
+        self.heap: list[tuple[fmpq, int, _WidthPiece]] = []
         self.number = 0
 
     # ---------------------------------------------------------------------------------------------------- the lines
@@ -165,12 +165,12 @@ class _Search:
 
     # ------------------------------------------------------------------------------------------------ lower bounds
 
-    def sample(self, strip: Strip) -> None:
+    def sample(self, strip: RangeStrip) -> None:
         (_, left), (right, _) = base_interval(strip, _END_WIDTH)
         for k in range(1, 8):
             self.width_at(strip, left + (right - left) * fmpq(k, 8))
 
-    def width_at(self, strip: Strip, u: fmpq) -> Interval:
+    def width_at(self, strip: RangeStrip, u: fmpq) -> Interval:
         low, high = (at_abscissa(b, u, strip.fibre, _END_WIDTH) for b in (strip.low, strip.high))
         width = (high.low - low.high, high.high - low.low)
         self.known = max(self.known, width[0])
@@ -178,13 +178,13 @@ class _Search:
 
     # -------------------------------------------------------------------------------------------------- strips' ends
 
-    def plateau(self, strip: Strip) -> None:
+    def plateau(self, strip: RangeStrip) -> None:
         (left, _), (_, right) = base_interval(strip, _END_WIDTH)
         width = self.width_at(strip, strip.sample)
         sides = {_value(end): self.attains(end, width, _limits(strip, end)) for end in (strip.left, strip.right)}
         self.candidates.append(_Candidate(Place.PLATEAU, (left, right), width, sides=sides))
 
-    def ends(self, strip: Strip) -> None:
+    def ends(self, strip: RangeStrip) -> None:
         """Settle neighbourhoods of ends with the largest limits, and list the rest as one piece."""
         left, right = base_interval(strip, _END_WIDTH)
         low, high = left[0], right[1]
@@ -208,11 +208,11 @@ class _Search:
                 low = at[0] + length
             else:
                 high = at[0] - length
-        self.add(_Piece(strip, low, high, low == left[0], high == right[1], (right[1] - left[0]) * _MIN_PIECE))
+        self.add(_WidthPiece(strip, low, high, low == left[0], high == right[1], (right[1] - left[0]) * _MIN_PIECE))
 
     # -------------------------------------------------------------------------------------------------------- pieces
 
-    def add(self, piece: _Piece) -> None:
+    def add(self, piece: _WidthPiece) -> None:
         if piece.low >= piece.high:
             return
         bound = self.bound(piece)
@@ -220,7 +220,7 @@ class _Search:
             self.number += 1
             heappush(self.heap, (-bound, self.number, piece))
 
-    def bound(self, piece: _Piece) -> fmpq:
+    def bound(self, piece: _WidthPiece) -> fmpq:
         """An upper bound for the width over the piece."""
         strip = piece.strip
         u = (piece.low + piece.high) / 2
@@ -250,10 +250,10 @@ class _Search:
             self.width_at(piece.strip, middle)
             if not piece.open_left and not piece.open_right and self.smooth(piece):
                 continue
-            self.add(_Piece(piece.strip, piece.low, middle, piece.open_left, False, piece.smallest))
-            self.add(_Piece(piece.strip, middle, piece.high, False, piece.open_right, piece.smallest))
+            self.add(_WidthPiece(piece.strip, piece.low, middle, piece.open_left, False, piece.smallest))
+            self.add(_WidthPiece(piece.strip, middle, piece.high, False, piece.open_right, piece.smallest))
 
-    def smooth(self, piece: _Piece) -> bool:
+    def smooth(self, piece: _WidthPiece) -> bool:
         """Whether derivatives settle the piece: monotone, or concave with one maximum, which is then a candidate."""
         slopes = width_slopes(piece.strip, piece.low, piece.high)
         if slopes is None:
@@ -330,7 +330,7 @@ def _value(end: BaseEnd) -> End:
     return number if number.exact is None else number.exact
 
 
-def _limits(strip: Strip, end: BaseEnd) -> tuple[End, End] | None:
+def _limits(strip: RangeStrip, end: BaseEnd) -> tuple[End, End] | None:
     low, high = (limit(branch, strip, end, _END_WIDTH) for branch in strip.branches)
     return None if low is None or high is None else (low, high)
 
@@ -357,7 +357,7 @@ def _cut(low: fmpq, high: fmpq) -> fmpq:
     return unit * (int(((low + width * fmpq(61, 128)) / unit).floor()) | 1)
 
 
-def width_slopes(strip: Strip, low: fmpq, high: fmpq) -> tuple[arb, arb] | None:
+def width_slopes(strip: RangeStrip, low: fmpq, high: fmpq) -> tuple[arb, arb] | None:
     """Enclosures of the width's first and second derivative over a piece."""
     middle, radius = (low + high) / 2, (high - low) / 2
     total = (arb(0), arb(0))
@@ -372,7 +372,7 @@ def width_slopes(strip: Strip, low: fmpq, high: fmpq) -> tuple[arb, arb] | None:
     return total
 
 
-def _sign_at(strip: Strip, u: fmpq, width: fmpq) -> int | None:
+def _sign_at(strip: RangeStrip, u: fmpq, width: fmpq) -> int | None:
     """The sign of the width's derivative at an abscissa; None when it is too near to zero."""
     for bits in (10, 40, 80):
         slopes = width_slopes(strip, u - width / 2**bits, u + width / 2**bits)

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from ptmcad.algebra.polynomials import coefficients_in, from_plane
 from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.answer.regionmap import RegionMap, Stack
-from ptmcad.exact.cad.curves import Curve, by_component, curves_of
+from ptmcad.exact.cad.curves import FibredCurve, by_component, curves_of
 from ptmcad.show.render.simplification import simplified_line
 from ptmcad.show.render.view import Floats, Interval, Same, View
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
@@ -225,7 +225,12 @@ class _Tracer:
     """Traces the walls of one stack within a view."""
 
     def __init__(
-        self, result: RegionMap, view: View, curves: dict[int, Curve], numbered: tuple[int, Stack], tolerance: float
+        self,
+        result: RegionMap,
+        view: View,
+        curves: dict[int, FibredCurve],
+        numbered: tuple[int, Stack],
+        tolerance: float,
     ) -> None:
         self.number, self.stack = numbered
         stack = self.stack

@@ -26,7 +26,7 @@ from ptmcad.ask.location import component_cells
 from ptmcad.cover import slanted
 from ptmcad.cover.subdivision import COVERED, FREE
 from ptmcad.errors import LimitReached
-from ptmcad.exact.cad.chains import Chain, chains, critical_shares
+from ptmcad.exact.cad.chains import WallPolyline, chains, critical_shares
 from ptmcad.exact.regions import Link, merge
 from ptmcad.text.numerals import decimal
 
@@ -130,7 +130,7 @@ def truths(result: RegionMap) -> dict[str, Truth] | None:
     return {count: truth(result, of_cells, lines, ends) for count, of_cells in shown.items() if None not in of_cells}
 
 
-def truth(result: RegionMap, shown: list[int], lines: Sequence[Sequence[Chain]], ends: Sequence[float]) -> Truth:
+def truth(result: RegionMap, shown: list[int], lines: Sequence[Sequence[WallPolyline]], ends: Sequence[float]) -> Truth:
     """What separates regions when each cell shows a number; `ends` are those of the stacks' parts of the base."""
     region_of = merge(shown, [Link(a.first, a.second, a.component) for a in result.adjacencies])
     counts = dict(zip(region_of, shown, strict=True))

@@ -13,7 +13,7 @@ from fractions import Fraction
 from forger.consistency import NO_AREAS, settled, with_plan
 from ptmcad.answer.regionmap import Component, RegionMap
 from ptmcad.errors import HypothesisError
-from ptmcad.exact.assembly import Reached, assemble
+from ptmcad.exact.assembly import PartialMap, assemble
 from ptmcad.exact.cad.curves import curves_of, lines_of
 from ptmcad.exact.counting import Equilibria
 from ptmcad.exact.stages import (
@@ -53,7 +53,7 @@ def decomposed(r: RegionMap, components: Sequence[Component]) -> RegionMap:
         neighbours = neighbours_of(variety, projection, stacks, counts, crossings)
     options = Options(areas=NO_AREAS not in r.plan)
     cells = Cells(projection, stacks, counts, neighbours)
-    found = replace(assemble(problem, options, Reached(variety, cells)), plan=r.plan, system=r.system)
+    found = replace(assemble(problem, options, PartialMap(variety, cells)), plan=r.plan, system=r.system)
     found = with_plan(found)
     areas = {frozenset(tuple(r.cells[n].sample) for n in g.cells): g.area for g in r.regions}
     whole = (Fraction(0), found.regions[0].area[1])
