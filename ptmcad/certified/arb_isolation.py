@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from flint import arb, arb_mat, ctx, fmpq
 
-from ptmcad.certified.system import System
+from ptmcad.certified.system import EquationSystem
 from ptmcad.formulas.balls import EmptyMeet, run_arb
 
 Box = tuple[arb, ...]
@@ -25,7 +25,7 @@ class Isolated:
     narrow: Box
 
 
-def newton(system: System, box: Box, precision: int) -> tuple[Box, bool] | None:
+def newton(system: EquationSystem, box: Box, precision: int) -> tuple[Box, bool] | None:
     """The box that the linearised equations leave of a box, and whether it is proved to hold exactly one zero.
 
     None when there is no solution in the box (discarding formulas included).
@@ -106,7 +106,7 @@ def _nonzero(value: arb) -> bool:
     return bool(value > 0 or value < 0)
 
 
-def width(system: System, box: Box) -> arb:
+def width(system: EquationSystem, box: Box) -> arb:
     """The largest radius in the unknowns, as an exact ball."""
     widest = arb(0)
     for k in system.unknowns:
@@ -115,7 +115,7 @@ def width(system: System, box: Box) -> arb:
     return widest
 
 
-def refined(equations: System, box: Box, precision: int) -> Box:
+def refined(equations: EquationSystem, box: Box, precision: int) -> Box:
     """The zero in a box that holds exactly one, as narrow as the precision allows."""
     finest = arb(fmpq(1, 4**precision))  # zeros that are dyadic have ever smaller boxes
     while True:
@@ -129,7 +129,7 @@ def refined(equations: System, box: Box, precision: int) -> Box:
 
 
 def isolate_arb(
-    system: System, equations: System, start: Sequence[Box], precision: int, budget: int
+    system: EquationSystem, equations: EquationSystem, start: Sequence[Box], precision: int, budget: int
 ) -> list[Isolated] | None:
     """Isolate the solutions in some boxes; a zero may be found more than once. None when the budget does not suffice.
 
@@ -164,7 +164,7 @@ def isolate_arb(
     return found
 
 
-def _proved(equations: System, box: Box, size: arb, precision: int) -> Box | None:
+def _proved(equations: EquationSystem, box: Box, size: arb, precision: int) -> Box | None:
     """A box around the given one, proved to hold exactly one zero."""
     with ctx.workprec(precision):
         least = arb(fmpq(1, 2 ** (precision // 2)))
@@ -175,7 +175,7 @@ def _proved(equations: System, box: Box, size: arb, precision: int) -> Box | Non
         return tuple(wide) if step is not None and step[1] else None
 
 
-def _halves(system: System, box: Box, precision: int) -> tuple[Box, Box]:
+def _halves(system: EquationSystem, box: Box, precision: int) -> tuple[Box, Box]:
     with ctx.workprec(2 * precision):
         widest = max((int(k) for k in system.unknowns), key=lambda k: float(box[k].rad()))
         middle, half = box[widest].mid(), box[widest].rad() / 2

@@ -30,7 +30,7 @@ _MAX_PASSES = 8
 
 
 @dataclass(frozen=True, slots=True)
-class Branches:
+class BranchEquations:
     """Equations along an axis, as many as unknowns.
 
     Attributes
@@ -65,31 +65,31 @@ class Branches:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class ProvedPoint:
     """A branch at one value, in narrow balls."""
 
     value: Fraction
     unknowns: Unknowns
 
 
-def branches(equations: Sequence[Formula], varying: int, fixed: Fraction) -> Branches:
+def branches(equations: Sequence[Formula], varying: int, fixed: Fraction) -> BranchEquations:
     """The formulas of some equations in the two axes and the unknowns, variables from 2 on."""
     graph, size = equations[0].graph, len(equations)
     rows = [graph.derivative(f, k + 2) for f in equations for k in range(size)]
     rises = [graph.derivative(f, varying) for f in equations]
-    return Branches(size, record([[*equations, *rows, *rises]]), varying, fixed)
+    return BranchEquations(size, record([[*equations, *rows, *rises]]), varying, fixed)
 
 
-def located(at: Branches, value: Fraction, near: Sequence[Enclosure]) -> Place | None:
+def located(at: BranchEquations, value: Fraction, near: Sequence[Enclosure]) -> ProvedPoint | None:
     """The solution that is proved to be the only one about some enclosures; None where that is not proved."""
     radius = max(x.radius for x in near)
     center = tuple(ball_of(x.center).mid() for x in near)
     here = ball_of(value)
     found = _enclosed(at, here, center, [ball_of(2 * radius).upper()] * at.size)
-    return None if found is None else Place(value, _narrowed(at, here, found))
+    return None if found is None else ProvedPoint(value, _narrowed(at, here, found))
 
 
-def carried(at: Branches, start: Place, end: Fraction) -> Place:
+def carried(at: BranchEquations, start: ProvedPoint, end: Fraction) -> ProvedPoint:
     """The branch at another value, or as near to it as it can be carried, at the context's precision."""
     place, step = start, end - start.value
     for _ in range(_MAX_STEPS):
@@ -103,11 +103,11 @@ def carried(at: Branches, start: Place, end: Fraction) -> Place:
             step = step / 2
         else:
             break
-        place, step = Place(goal, found), 2 * step
+        place, step = ProvedPoint(goal, found), 2 * step
     return place
 
 
-def over(at: Branches, start: Place, goal: Enclosure) -> Unknowns | None:
+def over(at: BranchEquations, start: ProvedPoint, goal: Enclosure) -> Unknowns | None:
     """The branch at all values of an enclosure, in one box; None where that is not proved."""
     values = ball(min(start.value, goal.low), max(start.value, goal.high))
     center = tuple(x.mid() for x in start.unknowns)
@@ -125,7 +125,7 @@ def _short(step: Fraction) -> Fraction:
     return round(step / unit) * unit
 
 
-def _enclosed(at: Branches, values: arb, center: Unknowns, least: Sequence[arb]) -> Unknowns | None:
+def _enclosed(at: BranchEquations, values: arb, center: Unknowns, least: Sequence[arb]) -> Unknowns | None:
     """A box around a center that holds exactly one solution for each of some values; None where that is not proved."""
     middle, unit = values.mid(), arb(0, 1)
     residual, jacobian, _ = at.run(middle, center)
@@ -149,12 +149,12 @@ def _enclosed(at: Branches, values: arb, center: Unknowns, least: Sequence[arb])
     return None
 
 
-def _image(at: Branches, values: arb, box: Unknowns, inverse: arb_mat, spread: arb_mat) -> arb_mat:
+def _image(at: BranchEquations, values: arb, box: Unknowns, inverse: arb_mat, spread: arb_mat) -> arb_mat:
     identity = arb_mat(at.size, at.size, [int(i == j) for i in range(at.size) for j in range(at.size)])
     return (identity - inverse * at.run(values, box)[1]) * spread
 
 
-def _narrowed(at: Branches, values: arb, box: Unknowns) -> Unknowns:
+def _narrowed(at: BranchEquations, values: arb, box: Unknowns) -> Unknowns:
     """The solution that a box holds at each of some values, as narrow as the operator makes it."""
     while True:
         center = tuple(x.mid() for x in box)

@@ -14,7 +14,7 @@ from math import inf
 
 import numpy as np
 
-from ptmcad.certified.refinement import Enclosure
+from ptmcad.certified.refinement import CurveEnclosure
 from ptmcad.certified.search import Boxes
 from ptmcad.certified.strips import NONE, Strips, areas_of_pieces, numbers_of_pieces, pieces, strips
 from ptmcad.cover import from_boxes, union_area
@@ -86,7 +86,7 @@ def outward(window: Window, rectangles: Integers, steps: int) -> Boxes:
     return result
 
 
-def box_rectangles(enclosures: Sequence[Enclosure]) -> Boxes:
+def box_rectangles(enclosures: Sequence[CurveEnclosure]) -> Boxes:
     """The projections of all boxes, shape (k, 4)."""
     boxes = [enclosure.boxes() for enclosure in enclosures]
     return np.concatenate([np.concatenate([b[:, :2], b[:, b.shape[1] // 2 :][:, :2]], axis=1) for b in boxes])
@@ -139,7 +139,7 @@ class Thinning:
         return step
 
 
-def thinning(enclosures: Sequence[Enclosure], lattice: Lattice, jobs: int) -> Thinning:
+def thinning(enclosures: Sequence[CurveEnclosure], lattice: Lattice, jobs: int) -> Thinning:
     """The strips of all boxes of the curves."""
     with ThreadPoolExecutor(jobs) as pool:
         found = [

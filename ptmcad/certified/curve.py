@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.certified.search import Boxes
-from ptmcad.certified.system import System
+from ptmcad.certified.system import EquationSystem
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Curve:
+class CriticalCurve:
     """One curve: its name, why counts change there, and the system that defines it.
 
     The variables of its boxes are x, y and those that ``ranges`` gives.
@@ -20,7 +20,7 @@ class Curve:
 
     name: str
     reason: str
-    system: System
+    system: EquationSystem
     ranges: tuple[tuple[float, float], ...]
     weights: NDArray[np.float64] | None = None
     """Of the variables' widths in the choice which one to bisect; equal ones when None."""

@@ -19,14 +19,14 @@ import numpy as np
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified.assembly import Assembler
 from ptmcad.certified.covering import START_TILES, Lattice, Thinning, box_rectangles, outward, thinning
-from ptmcad.certified.headway import PARTS, Headway
 from ptmcad.certified.loading import load, may_be_slanted
 from ptmcad.certified.pace import SAFETY, Pace
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.involution import halving
 from ptmcad.certified.plain.points import plain_counter
-from ptmcad.certified.refinement import Enclosure, begin, refine
+from ptmcad.certified.refinement import CurveEnclosure, begin, refine
 from ptmcad.certified.search import Boxes
+from ptmcad.certified.searchprogress import PARTS, SearchProgress
 from ptmcad.certified.slanted import slanting
 from ptmcad.certified.specks import without_specks
 from ptmcad.certified.statement import plan_of
@@ -96,17 +96,17 @@ def certified_map(slice: Slice, options: Options = DEFAULTS) -> RegionMap:
             f"the certified engine computes in floats: an axis may reach {float(MAX_AXIS_END):g}, no more"
         )
     prove_slice(slice)
-    return _Run(slice, options).run()
+    return _MapSearch(slice, options).run()
 
 
-class _Run:
+class _MapSearch:
     """One computation of a map: the enclosures, which shrink, and the time each part took."""
 
     def __init__(self, slice: Slice, options: Options):
         load(options.progress, options)
         self.pace = Pace(options.deadline)
         self.clock = self.pace.clock
-        self.headway = Headway(float(options.tolerance or TOLERANCE))
+        self.search_progress = SearchProgress(float(options.tolerance or TOLERANCE))
         self.slice, self.options = slice, options
         self.tolerance = options.tolerance or TOLERANCE
         self.jobs = options.jobs or os.cpu_count() or 1
@@ -121,7 +121,7 @@ class _Run:
         window = (horizontal.low, horizontal.high), (vertical.low, vertical.high)
         self.lattice = Lattice(window, steps, None if whole else halving(slice))
         wanted = curves(slice, slice.count, options.without)
-        self.enclosures: list[Enclosure] = begin(wanted, _rectangles(self.lattice, self.resumed))
+        self.enclosures: list[CurveEnclosure] = begin(wanted, _rectangles(self.lattice, self.resumed))
         plan = plan_of(slice, wanted, options.without, self.lattice.change)
         self.assembler = Assembler(slice, plain_counter(slice), plan, _versions())
         self.best: RegionMap | None = None
@@ -363,7 +363,7 @@ class _Run:
         def report(treated: int, waiting: int) -> None:
             level = treated / max(treated + 8 * waiting, 1)  # most of those that wait are cut again
             share = self._kept(undetermined)
-            progress(f"undetermined {percent(share)}", self.headway.at(float(share), level), PARTS)
+            progress(f"undetermined {percent(share)}", self.search_progress.at(float(share), level), PARTS)
 
         return report
 

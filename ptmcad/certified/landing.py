@@ -19,10 +19,10 @@ from flint import arb, arb_mat, ctx, fmpq
 
 from ptmcad.answer.paths import PathPoint, Target
 from ptmcad.certified.arb_isolation import Box, newton, refined
-from ptmcad.certified.continuation import Branches, Place, branches, carried, located, over
+from ptmcad.certified.continuation import BranchEquations, ProvedPoint, branches, carried, located, over
 from ptmcad.certified.parameters import parameter_formulas
 from ptmcad.certified.plain.chart import determinant
-from ptmcad.certified.system import System, system
+from ptmcad.certified.system import EquationSystem, system
 from ptmcad.formulas.balls import run_arb
 from ptmcad.formulas.graph import Graph
 from ptmcad.formulas.tape import Tape, record
@@ -41,7 +41,7 @@ _NEAREST = Fraction(1, 2**60)
 """How near to a critical value a branch is carried, against its distance."""
 
 
-class Landing(NamedTuple):
+class BranchEnd(NamedTuple):
     """The pose that is reached at a critical value, its energy, and that of the branch that ends there."""
 
     target: Target
@@ -50,7 +50,7 @@ class Landing(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class LineFormulas:
     """A mechanism on unknown angles, on a line of a slice.
 
     Attributes
@@ -60,12 +60,12 @@ class Line:
     numbers : a tape of the energy, its slope along the line, and the heights of the rising points.
     """
 
-    equations: Branches
-    folds: System
+    equations: BranchEquations
+    folds: EquationSystem
     numbers: Tape
 
 
-def line_of(slice: Slice, mechanism: Mechanism, varying: int, fixed: Fraction) -> Line:
+def line_of(slice: Slice, mechanism: Mechanism, varying: int, fixed: Fraction) -> LineFormulas:
     """The formulas of a slice of a mechanism, along the axis number ``varying`` at a value of the other one."""
     graph = Graph()
     unknowns = {name: graph.variable(number) for number, name in enumerate(mechanism.unknowns, _FIRST)}
@@ -78,10 +78,10 @@ def line_of(slice: Slice, mechanism: Mechanism, varying: int, fixed: Fraction) -
     variables = [v.variable for v in unknowns.values()]
     hessian = tuple(tuple(graph.derivative(f, k) for k in variables) for f in slopes)
     folds = system([*slopes, determinant(hessian)], [varying, *variables])
-    return Line(branches(slopes, varying, fixed), folds, numbers)
+    return LineFormulas(branches(slopes, varying, fixed), folds, numbers)
 
 
-def landing(line: Line, at: Enclosure, last: PathPoint, beyond: PathPoint) -> Landing | None:
+def landing(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint) -> BranchEnd | None:
     """What holds at a critical value; None where that is not proved.
 
     Parameters
@@ -99,10 +99,10 @@ def landing(line: Line, at: Enclosure, last: PathPoint, beyond: PathPoint) -> La
         value = ball_of(at.low).union(ball_of(at.high))
         reached, _, *heights = _numbers(line, value, there)
         sides = tuple(1 if y > 0 else -1 if y < 0 else 0 for y in heights)
-        return Landing(Target(tuple(map(enclosure_of, there)), (), sides), energy, enclosure_of(reached))
+        return BranchEnd(Target(tuple(map(enclosure_of, there)), (), sides), energy, enclosure_of(reached))
 
 
-def merger(line: Line, at: Enclosure, last: PathPoint, beyond: PathPoint) -> Landing | None:
+def merger(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint) -> BranchEnd | None:
     """The same where the pose beyond is what several become, of which ``last`` is one; None where that is not proved.
 
     The pose in which they merge is told, without proof, to lie about where those on both sides are, no farther off than
@@ -115,7 +115,7 @@ def merger(line: Line, at: Enclosure, last: PathPoint, beyond: PathPoint) -> Lan
         b if (ball_of(b.low).union(ball_of(b.high)) / arb.pi()).contains_integer() else _around(a, b)
         for a, b in zip(last.angles, beyond.angles, strict=True)
     )
-    return Landing(Target(angles, (), beyond.sides), energy, energy)
+    return BranchEnd(Target(angles, (), beyond.sides), energy, energy)
 
 
 def _around(first: Enclosure, second: Enclosure) -> Enclosure:
@@ -124,7 +124,7 @@ def _around(first: Enclosure, second: Enclosure) -> Enclosure:
     return Enclosure(2 * low - high, 2 * high - low)
 
 
-def _energy_at(line: Line, at: Enclosure, last: PathPoint) -> Enclosure | None:
+def _energy_at(line: LineFormulas, at: Enclosure, last: PathPoint) -> Enclosure | None:
     """The energy of a branch at the critical value at which it ends; None where the branch is not proved."""
     with ctx.workprec(BITS):
         place = located(line.equations, last.value, last.angles)
@@ -138,7 +138,7 @@ def _energy_at(line: Line, at: Enclosure, last: PathPoint) -> Enclosure | None:
         return enclosure_of(energy if limit.contains(energy) else limit)
 
 
-def _near(line: Line, at: Enclosure, point: PathPoint) -> Place | None:
+def _near(line: LineFormulas, at: Enclosure, point: PathPoint) -> ProvedPoint | None:
     """A branch as near to a critical value as it can be carried."""
     start = located(line.equations, point.value, point.angles)
     if start is None:
@@ -147,7 +147,7 @@ def _near(line: Line, at: Enclosure, point: PathPoint) -> Place | None:
     return carried(line.equations, start, end + (point.value - end) * _NEAREST)
 
 
-def _limit(line: Line, at: Enclosure, place: Place) -> arb:
+def _limit(line: LineFormulas, at: Enclosure, place: ProvedPoint) -> arb:
     """The energy of a branch at the critical value, from a place beside."""
     between = ball_of(place.value).union(ball_of(at.low)).union(ball_of(at.high))
     anywhere = (arb.pi() * arb(0, 1),) * len(place.unknowns)
@@ -155,7 +155,7 @@ def _limit(line: Line, at: Enclosure, place: Place) -> arb:
     return _numbers(line, ball_of(place.value), place.unknowns)[0] + 2 * between.rad() * slope * arb(0, 1)
 
 
-def _fold(line: Line, at: Enclosure, place: Place) -> Box | None:
+def _fold(line: LineFormulas, at: Enclosure, place: ProvedPoint) -> Box | None:
     """The degenerate pose at a critical value that Newton's method finds from a place beside; None without proof."""
     folds, varying = line.folds, line.equations.varying
     variables, size = [int(k) for k in folds.unknowns], len(folds.unknowns)
@@ -180,6 +180,6 @@ def _fold(line: Line, at: Enclosure, place: Place) -> Box | None:
     return found if found[varying].overlaps(ball_of(at.low).union(ball_of(at.high))) else None
 
 
-def _numbers(line: Line, value: arb, unknowns: tuple[arb, ...]) -> list[arb]:
+def _numbers(line: LineFormulas, value: arb, unknowns: tuple[arb, ...]) -> list[arb]:
     values = run_arb(line.numbers, line.equations.box(value, unknowns), ctx.prec)
     return [values[int(place)] for place in line.numbers.outputs[0]]

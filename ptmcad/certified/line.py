@@ -15,12 +15,12 @@ import numpy as np
 from flint import ctx
 
 from ptmcad.certified.arb_isolation import Box, refined
-from ptmcad.certified.curve import Curve
+from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.points import PointCount
 from ptmcad.certified.search import Boxes, isolate
-from ptmcad.certified.system import System
+from ptmcad.certified.system import EquationSystem
 from ptmcad.formulas.balls import ball, lower, upper
 from ptmcad.formulas.tape import enclosing_floats
 from ptmcad.question.slice import Count, Slice
@@ -36,7 +36,7 @@ MIN_PART = Fraction(1, 2**16)
 
 
 @dataclass(frozen=True, slots=True)
-class Gap:
+class CriticalGap:
     """Values among which counts may change: [low, high], and the names of the curves of which it holds points.
 
     ``proved``: each of these points was proved to be the only one near it. Otherwise the gap may hold none.
@@ -63,7 +63,7 @@ class LineCounts:
     """Stretches and the gaps between them, both in increasing order."""
 
     stretches: tuple[Stretch, ...]
-    gaps: tuple[Gap, ...]
+    gaps: tuple[CriticalGap, ...]
 
 
 def line_counts(slice: Slice, varying: int, value: Fraction, bits: int) -> LineCounts:
@@ -75,7 +75,7 @@ def line_counts(slice: Slice, varying: int, value: Fraction, bits: int) -> LineC
     """
     axis = slice.axes[varying]
     wanted = curves(slice, Count.INDEX)
-    found: list[list[Gap]] = [[] for _ in wanted]
+    found: list[list[CriticalGap]] = [[] for _ in wanted]
     # what is quick to search comes first: what it leaves undecided need not be looked at closely again
     for k in sorted(range(len(wanted)), key=lambda k: len(wanted[k].system.tape)):
         undecided = _joined([gap for gaps in found for gap in gaps if not gap.proved])
@@ -92,8 +92,8 @@ def line_counts(slice: Slice, varying: int, value: Fraction, bits: int) -> LineC
 
 
 def _gaps(
-    slice: Slice, curve: Curve, varying: int, value: Fraction, bits: int, undecided: Sequence[Gap]
-) -> Iterator[Gap]:
+    slice: Slice, curve: CriticalCurve, varying: int, value: Fraction, bits: int, undecided: Sequence[CriticalGap]
+) -> Iterator[CriticalGap]:
     """Where the line meets a curve; parts of it that are too hard as a whole are halved while the budget lasts, but for
     what is ``undecided`` in them."""
     system = on_line(curve.system, varying)
@@ -114,19 +114,21 @@ def _gaps(
         left, variables = found.left(), start.shape[1] // 2
         if (found.used >= BUDGET or len(left) > MAX_OPEN_BOXES) and high - low > smallest and total < MAX_BOXES:
             inside = [(max(low, g.low), min(high, g.high)) for g in undecided if g.high > low and g.low < high]
-            yield from (Gap(*ends, (curve.name,), False) for ends in inside)
+            yield from (CriticalGap(*ends, (curve.name,), False) for ends in inside)
             middle = (low + high) / 2
             edges = [low, *chain.from_iterable(inside or [(middle, middle)]), high]
             waiting += [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]
             continue
         for box in left:
-            yield Gap(Fraction(float(box[varying])), Fraction(float(box[variables + varying])), (curve.name,), False)
+            yield CriticalGap(
+                Fraction(float(box[varying])), Fraction(float(box[variables + varying])), (curve.name,), False
+            )
         # ``narrow`` was contracted with the equations alone; its number can be enclosed to any precision
         for row in found.narrow:
             with ctx.workprec(bits):
                 box = _balls(row, varying, value)
             exact = refined(equations, box, bits)[varying]
-            yield Gap(lower(exact), upper(exact), (curve.name,), True)
+            yield CriticalGap(lower(exact), upper(exact), (curve.name,), True)
 
 
 _NONE = np.empty(0, np.int64)
@@ -139,7 +141,7 @@ def _balls(row: Boxes, varying: int, value: Fraction) -> Box:
     return tuple(box)
 
 
-def on_line(system: System, varying: int) -> System:
+def on_line(system: EquationSystem, varying: int) -> EquationSystem:
     """The square system that is left when the other axis has a value."""
     kept = np.array([k for k, unknown in enumerate(system.unknowns) if unknown != 1 - varying], np.int64)
     # the value is fixed: what the equations say of it must not narrow the floats around it
@@ -148,16 +150,16 @@ def on_line(system: System, varying: int) -> System:
     return replace(system, unknowns=system.unknowns[kept], jacobian=jacobian, solved=solved)
 
 
-def _joined(gaps: list[Gap]) -> list[Gap]:
+def _joined(gaps: list[CriticalGap]) -> list[CriticalGap]:
     """Gaps that touch become one."""
-    joined: list[Gap] = []
+    joined: list[CriticalGap] = []
     for gap in sorted(gaps, key=lambda g: (g.low, g.high)):
         if not joined or gap.low > joined[-1].high:
             joined.append(gap)
             continue
         last = joined.pop()
         names = tuple(dict.fromkeys((*last.names, *gap.names)))
-        joined.append(Gap(last.low, max(last.high, gap.high), names, last.proved and gap.proved))
+        joined.append(CriticalGap(last.low, max(last.high, gap.high), names, last.proved and gap.proved))
     return joined
 
 

@@ -21,7 +21,7 @@ from ptmcad.formulas.affine import (
     LARGE,
     ROUNDING,
     SLACK,
-    Frame,
+    AffineFrame,
     frame_for,
     run_affine,
     set_frame,
@@ -60,7 +60,7 @@ class Linear(NamedTuple):
     """Space that a search uses again for every box."""
 
     forms: Floats
-    frame: Frame
+    frame: AffineFrame
     rows: Rows
 
 
@@ -187,7 +187,7 @@ def _bound(rows: Rows, i: int, nonnegative: bool) -> bool:
 
 
 @compiled
-def _shrink(unknowns: Indices, box_low: Floats, box_high: Floats, frame: Frame, rows: Rows) -> int:
+def _shrink(unknowns: Indices, box_low: Floats, box_high: Floats, frame: AffineFrame, rows: Rows) -> int:
     """Carry the bounds of each e_j over to the box; returns what `contract_linear` does."""
     result = 0
     for j in range(len(unknowns)):

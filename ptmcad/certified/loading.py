@@ -19,7 +19,7 @@ from numba.core.event import Event, Listener, install_listener
 from ptmcad.certified.distinct import distinct
 from ptmcad.certified.search import isolate
 from ptmcad.certified.strips import areas_of_pieces, numbers_of_pieces, pieces, strips
-from ptmcad.certified.system import System, equations_alone, system
+from ptmcad.certified.system import EquationSystem, system
 from ptmcad.certified.tubes import tubes
 from ptmcad.formulas.compiled import FUNCTIONS, in_turn
 from ptmcad.formulas.graph import Graph
@@ -116,7 +116,7 @@ def _functions(slanted: bool) -> Iterator[None]:
     square = np.array([[0.0, 0.0, 1.0, 1.0]])
     line, point = _systems()
     if slanted:
-        tubes(line.arguments(), equations_alone(line).arguments(), square, weights, (0, 0.0, 1.0), (2, 1e-3, 4))
+        tubes(line.arguments(), line.alone().arguments(), square, weights, (0, 0.0, 1.0), (2, 1e-3, 4))
         yield
         return
     distinct(square, square, 0)
@@ -134,7 +134,7 @@ def _functions(slanted: bool) -> Iterator[None]:
     yield
 
 
-def _systems() -> tuple[System, System]:
+def _systems() -> tuple[EquationSystem, EquationSystem]:
     graph = Graph()
     x, y = graph.variable(0), graph.variable(1)
     half = graph.constant(1) / 2

@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ptmcad.certified.curve import Curve
-from ptmcad.certified.search import Boxes, Found, search_curve
+from ptmcad.certified.curve import CriticalCurve
+from ptmcad.certified.search import Boxes, SearchResult, search_curve
 
 BUDGET = 20_000
 """Boxes that a task treats before it returns: about a tenth of a second."""
@@ -24,10 +24,10 @@ BATCH = 64
 
 
 @dataclass(slots=True)
-class Enclosure:
+class CurveEnclosure:
     """The boxes of one curve: those that the present level has not reached, and those that it has left alone."""
 
-    curve: Curve
+    curve: CriticalCurve
     waiting: list[Boxes]
     small: list[Boxes] = field(default_factory=list)
 
@@ -41,13 +41,13 @@ class Enclosure:
         return np.concatenate([none, *self.waiting, *self.small])
 
 
-def begin(curves: Sequence[Curve], rectangles: Boxes) -> list[Enclosure]:
+def begin(curves: Sequence[CriticalCurve], rectangles: Boxes) -> list[CurveEnclosure]:
     """Everything over the rectangles (k, 4: low x, low y, high x, high y) is open."""
-    return [Enclosure(curve, [curve.start(rectangles)]) for curve in curves]
+    return [CurveEnclosure(curve, [curve.start(rectangles)]) for curve in curves]
 
 
 def refine(
-    enclosures: Sequence[Enclosure],
+    enclosures: Sequence[CurveEnclosure],
     area: float,
     jobs: int,
     report: Callable[[int, int], None] | None = None,
@@ -72,7 +72,7 @@ def refine(
 
 
 def _refine_one(
-    enclosure: Enclosure,
+    enclosure: CurveEnclosure,
     area: float,
     pool: ThreadPoolExecutor,
     jobs: int,
@@ -81,7 +81,7 @@ def _refine_one(
 ) -> bool:
     arguments, weights = enclosure.curve.system.arguments(), enclosure.curve.importance()
     queue = list(_batches(enclosure.waiting))
-    running: dict[Future[Found], Boxes] = {}
+    running: dict[Future[SearchResult], Boxes] = {}
     treated = 0
     ending = late is not None and late()
     while running or (queue and not ending):

@@ -40,7 +40,7 @@ NEVER = -1.0
 MAX_BOXES = 2**62
 
 
-class Limits(NamedTuple):
+class SearchLimits(NamedTuple):
     """Where a search stops.
 
     Attributes
@@ -59,7 +59,7 @@ class Limits(NamedTuple):
     allowed: int
 
 
-class Found(NamedTuple):
+class SearchResult(NamedTuple):
     """What a search leaves.
 
     Attributes
@@ -81,35 +81,39 @@ class Found(NamedTuple):
         return np.concatenate((self.small, self.waiting))
 
 
-def search_curve(system: Arguments, start: Boxes, area: float, budget: int, weights: Floats) -> Found:
+def search_curve(system: Arguments, start: Boxes, area: float, budget: int, weights: Floats) -> SearchResult:
     """Enclose a curve in the plane of variables 0 and 1 (the first two unknowns).
 
     Parameters
     ----------
-    area, budget : see `Limits`.
+    area, budget : see `SearchLimits`.
     weights : shape (v,): the variable whose width times its weight is largest is bisected.
     """
-    return branch_and_prune(system, system, start, Limits(area, NEVER, NEVER, budget, MAX_BOXES), weights)
+    return branch_and_prune(system, system, start, SearchLimits(area, NEVER, NEVER, budget, MAX_BOXES), weights)
 
 
 def isolate(
     system: Arguments, equations: Arguments, start: Boxes, limits: tuple[float, int, int], weights: Floats
-) -> Found:
+) -> SearchResult:
     """Isolate the solutions of a square system.
 
     Parameters
     ----------
     system : with what discards boxes that hold no solution looked for.
     equations : the same equations alone, for the proofs.
-    limits : the width, the budget and the number of allowed boxes; see `Limits`.
+    limits : the width, the budget and the number of allowed boxes; see `SearchLimits`.
     weights : shape (v,), positive: of the variables' widths.
     """
     width, budget, allowed = limits
-    return branch_and_prune(system, equations, start, Limits(NEVER, width, MAX_PROOF_WIDTH, budget, allowed), weights)
+    return branch_and_prune(
+        system, equations, start, SearchLimits(NEVER, width, MAX_PROOF_WIDTH, budget, allowed), weights
+    )
 
 
 @compiled
-def branch_and_prune(system: Arguments, equations: Arguments, start: Boxes, limits: Limits, weights: Floats) -> Found:
+def branch_and_prune(
+    system: Arguments, equations: Arguments, start: Boxes, limits: SearchLimits, weights: Floats
+) -> SearchResult:
     """The one loop of both."""
     variables = start.shape[1] // 2
     larger = system if len(system.program.operations) > len(equations.program.operations) else equations
@@ -162,7 +166,9 @@ def branch_and_prune(system: Arguments, equations: Arguments, start: Boxes, limi
         stack[top, variables + widest] = middle
         stack[top + 1, widest] = middle
         top += 2
-    return Found(unique[:proved].copy(), narrow[:proved].copy(), small[:finished].copy(), stack[:top].copy(), used)
+    return SearchResult(
+        unique[:proved].copy(), narrow[:proved].copy(), small[:finished].copy(), stack[:top].copy(), used
+    )
 
 
 @inlined

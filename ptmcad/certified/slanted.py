@@ -22,9 +22,9 @@ from flint import fmpq
 
 from ptmcad.certified.controls import controls
 from ptmcad.certified.covering import Lattice
-from ptmcad.certified.refinement import Enclosure
+from ptmcad.certified.refinement import CurveEnclosure
 from ptmcad.certified.search import Boxes, search_curve
-from ptmcad.certified.system import Arguments, equations_alone
+from ptmcad.certified.system import Arguments
 from ptmcad.certified.tubes import Tubes, tubes
 from ptmcad.cover import tubes as exact
 from ptmcad.cover.rectangles import Cover, Patch, Rectangle, Tube
@@ -82,7 +82,7 @@ class Slanting:
     whole, alone : of each curve the system, and its equations alone.
     """
 
-    enclosures: Sequence[Enclosure]
+    enclosures: Sequence[CurveEnclosure]
     lattice: Lattice
     whole: tuple[Arguments, ...]
     alone: tuple[Arguments, ...]
@@ -146,7 +146,7 @@ class Slanting:
         return ends[0], ends[1], ends[2], ends[3]
 
     def _over(
-        self, frame: tuple[float, float, float, float], boxes: Boxes, system: Arguments, enclosure: Enclosure
+        self, frame: tuple[float, float, float, float], boxes: Boxes, system: Arguments, enclosure: CurveEnclosure
     ) -> Boxes:
         """The boxes over a frame, bisected until they are small enough."""
         boxes = _meeting(frame, boxes)
@@ -210,13 +210,13 @@ class Slanting:
         return result
 
 
-def slanting(enclosures: Sequence[Enclosure], lattice: Lattice) -> Slanting:
+def slanting(enclosures: Sequence[CurveEnclosure], lattice: Lattice) -> Slanting:
     """What makes slanted covers of enclosures."""
     return Slanting(
         enclosures,
         lattice,
         tuple(enclosure.curve.system.arguments() for enclosure in enclosures),
-        tuple(equations_alone(enclosure.curve.system).arguments() for enclosure in enclosures),
+        tuple(enclosure.curve.system.alone().arguments() for enclosure in enclosures),
     )
 
 

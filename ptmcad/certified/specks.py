@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.certified.covering import Lattice, outward
-from ptmcad.certified.refinement import Enclosure
+from ptmcad.certified.refinement import CurveEnclosure
 from ptmcad.certified.search import Boxes, search_curve
 from ptmcad.cover.complement import Components
 from ptmcad.cover.slanted import components
@@ -40,7 +40,7 @@ MAX_PAIRS = 3 * 10**7
 
 
 def without_specks(
-    complement: Components, enclosures: Sequence[Enclosure], lattice: Lattice, area: float
+    complement: Components, enclosures: Sequence[CurveEnclosure], lattice: Lattice, area: float
 ) -> Components:
     """The components of a cover's complement, and its clusters, without its specks.
 

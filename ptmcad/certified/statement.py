@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from ptmcad.answer.plan import half_step
 from ptmcad.answer.regionmap import PlanStep, System
-from ptmcad.certified.curve import Curve
+from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.plan import beforehand
 from ptmcad.model import Model
 from ptmcad.model.closed import equations_in, mechanism_in
@@ -50,7 +50,10 @@ def system_text(model: Model, has_free_lengths: bool = False) -> System:
 
 
 def plan_of(
-    slice: Slice, curves: Sequence[Curve], without: frozenset[str] = frozenset(), change: Involution | None = None
+    slice: Slice,
+    curves: Sequence[CriticalCurve],
+    without: frozenset[str] = frozenset(),
+    change: Involution | None = None,
 ) -> tuple[PlanStep, ...]:
     """What the certified engine does for a slice and what it leaves out.
 

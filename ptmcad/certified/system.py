@@ -1,7 +1,7 @@
 """Systems of equations in a box: what a search looks for, as a tape with named outputs.
 
-Guarantee: a `System` says which points are solutions: those at which the equations vanish and the nonnegative formulas
-are at least zero. Everything else in it holds at each solution and serves to discard boxes.
+Guarantee: an `EquationSystem` says which points are solutions: those at which the equations vanish and the nonnegative
+formulas are at least zero. Everything else in it holds at each solution and serves to discard boxes.
 """
 
 from __future__ import annotations
@@ -11,16 +11,15 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ptmcad.certified.solved import Quotient
-from ptmcad.formulas.graph import Formula, Operation
+from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.intervals import Indices, Program, program
 from ptmcad.formulas.tape import Tape, record
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class System:
+class EquationSystem:
     """Equations f = 0 (m of them) in n unknowns, n = m (points) or m + 1 (curves).
 
     Attributes
@@ -32,6 +31,7 @@ class System:
     jacobian : int64 (m, n): places of df_i/dx_j.
     solved : int64 (k, 3): a variable and the places of two formulas, rest and slope, with rest + slope v = 0 for the
         variable's value v at each solution. They stand before ``solved_end``, at the beginning of the tape.
+    formulas : the equations, and their derivatives by the unknowns.
     """
 
     tape: Tape
@@ -42,6 +42,13 @@ class System:
     nonnegative: Indices
     solved: Indices
     solved_end: int
+    formulas: tuple[Sequence[Formula], Sequence[Sequence[Formula]]]
+
+    def alone(self) -> EquationSystem:
+        """The same equations and derivatives, on a tape without anything else: at points that are no solutions,
+        formulas that are equal at solutions only may exclude each other."""
+        equations, jacobian = self.formulas
+        return system(equations, [int(x) for x in self.unknowns], jacobian=jacobian)
 
     def arguments(self) -> Arguments:
         """The system as the compiled code takes it."""
@@ -52,7 +59,7 @@ class System:
 
 
 class Arguments(NamedTuple):
-    """A `System` for compiled code; what vanishes at solutions is known after stage 0, 1 and 2 in turn."""
+    """An `EquationSystem` for compiled code; what vanishes at solutions is known after stage 0, 1 and 2 in turn."""
 
     program: Program
     stages: Indices
@@ -74,7 +81,7 @@ def system(
     nonnegative: Sequence[Formula] = (),
     jacobian: Sequence[Sequence[Formula]] | None = None,
     solved: Sequence[Quotient] = (),
-) -> System:
+) -> EquationSystem:
     """Write a system out.
 
     Parameters
@@ -100,7 +107,7 @@ def system(
     ])  # fmt: skip
     places, solved_end = tape.outputs[0].reshape(-1, 2), int(tape.stages[0])
     tape = replace(tape, stages=tape.stages[1:], outputs=tape.outputs[1:])
-    return System(
+    return EquationSystem(
         tape,
         np.array(unknowns, np.int64),
         np.concatenate([tape.outputs[0][: len(first)], tape.outputs[1]]),
@@ -109,47 +116,5 @@ def system(
         tape.outputs[2][len(costly) :],
         np.column_stack([np.array([quotient.variable for quotient in solved], np.int64), places]),
         solved_end,
+        (equations, jacobian),
     )
-
-
-def equations_alone(whole: System) -> System:
-    """The same equations and derivatives, on a tape without anything else: at points that are no solutions, formulas
-    that are equal at solutions only may exclude each other."""
-    tape = whole.tape
-    first = _needed(tape, whole.equations)
-    rest = _needed(tape, whole.jacobian.ravel()) & ~first
-    order = np.concatenate([np.flatnonzero(first), np.flatnonzero(rest)])
-    place = np.full(len(tape) + 1, -1, np.int64)  # the last one stands for no operand
-    place[order] = np.arange(len(order))
-    plain = np.isin(tape.operations[order], _WITHOUT_OPERANDS)
-    equations = int(first.sum())
-    shorter = Tape(
-        tape.operations[order],
-        np.where(plain, tape.first[order], place[tape.first[order]]),
-        np.where(plain, tape.second[order], place[tape.second[order]]),
-        tape.low[order],
-        tape.high[order],
-        {int(place[k]): value for k, value in tape.constants.items() if place[k] >= 0},
-        np.array([equations, equations, equations, len(order)], np.int64),
-        (),
-    )
-    none = np.empty(0, np.int64)
-    return System(
-        shorter, whole.unknowns, place[whole.equations], place[whole.jacobian], (none, none, none), none,
-        np.empty((0, 3), np.int64), 0,
-    )  # fmt: skip
-
-
-_WITHOUT_OPERANDS = (int(Operation.CONSTANT), int(Operation.VARIABLE))
-
-
-def _needed(tape: Tape, outputs: Indices) -> NDArray[np.bool_]:
-    """Which nodes of a tape some outputs need."""
-    needed = np.zeros(len(tape), dtype=np.bool_)
-    needed[outputs] = True
-    for k in range(len(tape) - 1, -1, -1):
-        if needed[k] and tape.operations[k] not in _WITHOUT_OPERANDS:
-            for operand in (tape.first[k], tape.second[k]):
-                if operand >= 0:
-                    needed[operand] = True
-    return needed

@@ -2,8 +2,9 @@
 
 Guarantee: after a run that returns True, at every point of the box at which the operands of all meets are equal, the
 k-th node's value is forms[k, CENTER] + the sum over j of forms[k, FIRST + j] e_j + d with |d| <= forms[k, ERROR], and
-it lies in [low[k], high[k]]; e_j in [-1, 1] is the j-th unknown's distance from ``Frame.middle`` over ``Frame.radius``.
-A run that returns False has proved that there is no such point. (Lemma 24 of docs/soundness.md.)
+it lies in [low[k], high[k]]; e_j in [-1, 1] is the j-th unknown's distance from ``AffineFrame.middle`` over
+``AffineFrame.radius``. A run that returns False has proved that there is no such point. (Lemma 24 of
+docs/soundness.md.)
 
 Linear terms that cancel, as they do in the equations of equilibrium and in determinants, cancel here; what is left of
 nonlinear ones is of second order. Nothing is differentiated: formulas that hold at solutions only have forms, too.
@@ -63,7 +64,7 @@ MAX_TURN = 0.9
 """Of the distance of (x, y) from zero in its form, the largest part that it may vary by."""
 
 
-class Frame(NamedTuple):
+class AffineFrame(NamedTuple):
     """The box that forms are written for.
 
     Attributes
@@ -78,16 +79,16 @@ class Frame(NamedTuple):
 
 
 @compiled
-def frame_for(unknowns: Indices, variables: int) -> Frame:
+def frame_for(unknowns: Indices, variables: int) -> AffineFrame:
     """Space for the frames of a system with these unknowns."""
     lane = np.full(variables, -1)
     for j in range(len(unknowns)):
         lane[unknowns[j]] = j
-    return Frame(np.empty(variables), np.empty(variables), lane)
+    return AffineFrame(np.empty(variables), np.empty(variables), lane)
 
 
 @compiled
-def set_frame(frame: Frame, box_low: Floats, box_high: Floats) -> None:
+def set_frame(frame: AffineFrame, box_low: Floats, box_high: Floats) -> None:
     """Lay the frame around a box."""
     for k in range(len(box_low)):
         middle = 0.5 * (box_low[k] + box_high[k])
@@ -266,7 +267,7 @@ def _variable(forms: Floats, k: Place, middle: float, radius: float, lane: int) 
 
 
 @compiled
-def run_affine(program: Program, frame: Frame, low: Floats, high: Floats, forms: Floats, end: int) -> bool:
+def run_affine(program: Program, frame: AffineFrame, low: Floats, high: Floats, forms: Floats, end: int) -> bool:
     """Run the nodes before ``end``, which have been run in intervals on the frame's box or on one around it.
 
     Parameters

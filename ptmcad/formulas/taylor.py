@@ -26,7 +26,7 @@ _MULTIPLY, _SQUARE, _NEGATE, _SINE, _COSINE = (int(x) for x in list(Operation)[4
 _INVERSE_LENGTH, _DIRECTION, _LENGTH, _MEET, _DIVIDE = (int(x) for x in list(Operation)[9:])
 
 
-class Series(NamedTuple):
+class TapeSeries(NamedTuple):
     """Coefficients of all nodes of a tape; row k has those of node k, column j those of t^j.
 
     Attributes
@@ -43,9 +43,9 @@ class Series(NamedTuple):
 
 
 @compiled
-def series(nodes: int, order: int) -> Series:
+def series(nodes: int, order: int) -> TapeSeries:
     """Room for so many nodes."""
-    return Series(
+    return TapeSeries(
         np.empty((nodes, order + 1)), np.empty((nodes, order + 1)),
         np.empty((nodes, order + 1)), np.empty((nodes, order + 1)),
     )  # fmt: skip
@@ -99,7 +99,9 @@ def _quotient_coefficient(
 
 
 @compiled
-def extend(program: Program, low_of: Floats, high_of: Floats, into: Series, first: int, last: int, end: int) -> None:
+def extend(
+    program: Program, low_of: Floats, high_of: Floats, into: TapeSeries, first: int, last: int, end: int
+) -> None:
     """Coefficients ``first`` to ``last`` of the tape's nodes before ``end``; those before are known.
 
     Parameters
@@ -143,7 +145,7 @@ def extend(program: Program, low_of: Floats, high_of: Floats, into: Series, firs
 
 
 @inlined
-def _wave(cosine: bool, low: Floats, high: Floats, into: Series, i: int, k: int) -> tuple[float, float]:
+def _wave(cosine: bool, low: Floats, high: Floats, into: TapeSeries, i: int, k: int) -> tuple[float, float]:
     """Coefficient k of a sine or cosine, whose derivative is the other one, up to its sign."""
     if k == 0:
         u, v = sine(low[0], high[0], ONE if cosine else ZERO)

@@ -20,7 +20,7 @@ from support.minima_search import minima
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified import engine
-from ptmcad.certified.curve import Curve
+from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.model.ptm import RECORD
@@ -247,7 +247,7 @@ def without(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
 
     complete = engine.curves
 
-    def some(*given: Any, **options: Any) -> tuple[Curve, ...]:
+    def some(*given: Any, **options: Any) -> tuple[CriticalCurve, ...]:
         return tuple(curve for curve in complete(*given, **options) if kept(curve.name))
 
     monkeypatch.setattr(engine, "curves", some)

@@ -18,8 +18,8 @@ from ptmcad.text.balls import ball_of
 pytest.importorskip("numba")
 
 from ptmcad.certified.contraction import contract, workspace
-from ptmcad.certified.curve import Curve
-from ptmcad.certified.plain.chart import Chart, chart
+from ptmcad.certified.curve import CriticalCurve
+from ptmcad.certified.plain.chart import SpringChart, chart
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import problem_of
@@ -47,7 +47,7 @@ def slice_of(name: str) -> Slice:
     )
 
 
-def differentiable(m: Chart) -> list[Formula]:
+def differentiable(m: SpringChart) -> list[Formula]:
     (p11, q), (_, p22) = m.hessian
     return [*m.equations, p11, p22, q, m.determinant()]
 
@@ -193,7 +193,7 @@ FOLDS = 2
 
 
 @cache
-def fold_curves() -> list[Curve]:
+def fold_curves() -> list[CriticalCurve]:
     """The systems in the four unknowns whose solutions include all folds of minima away from short springs."""
     slice = slice_of("free02")
     return [c for count in (Count.STABLE, Count.TOTAL) for c in curves(slice, count)

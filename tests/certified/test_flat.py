@@ -16,7 +16,7 @@ from support.paper_energy import PaperEnergy, energy_at
 pytest.importorskip("numba")
 
 import ptmcad
-from ptmcad.certified.curve import Curve
+from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.plain import curves as plain_curves
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.involution import mirrors
@@ -106,7 +106,7 @@ def newton(slice: Slice, x: Fraction, z: Floats, *, flat: bool) -> Floats | None
     return None
 
 
-def is_kept(found: tuple[Curve, ...], point: Floats) -> bool:
+def is_kept(found: tuple[CriticalCurve, ...], point: Floats) -> bool:
     """Whether one of the curves' searches leaves a box that has the point, or its mirror image."""
     x, y = point[:2]
     window = np.array([[x - 0.02, y - 0.02, x + 0.011, y + 0.03]])

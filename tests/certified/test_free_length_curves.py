@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ptmcad.certified.curve import Curve
+from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.plain.chart import chart
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.geometry import geometry
@@ -94,7 +94,7 @@ def fold_points(free: float, load: float, seed: int, number: int) -> list[Vector
     return found
 
 
-def rectangles(all_curves: tuple[Curve, ...], centre: Vector, half: float, area: float) -> Vector:
+def rectangles(all_curves: tuple[CriticalCurve, ...], centre: Vector, half: float, area: float) -> Vector:
     """The enclosure over a small square of the plane: rows low x, low y, high x, high y."""
     window = np.array([[*(centre - half), *(centre + half)]])
     parts = []

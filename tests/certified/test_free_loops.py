@@ -22,7 +22,7 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.bands import certified_widths
 from ptmcad.ask.fields.field import field_of, request_of
 from ptmcad.certified import engine
-from ptmcad.certified.curve import Curve
+from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.engine import certified_map
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain import curves as plain_curves
@@ -343,7 +343,7 @@ def without_curves(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
     """Leave out the curves whose names begin with one of these."""
     complete = engine.curves
 
-    def some(*given: Any, **options: Any) -> tuple[Curve, ...]:
+    def some(*given: Any, **options: Any) -> tuple[CriticalCurve, ...]:
         return tuple(curve for curve in complete(*given, **options) if not curve.name.startswith(names))
 
     monkeypatch.setattr(engine, "curves", some)

@@ -17,7 +17,7 @@ from support.paper_energy import PaperEnergy, energy_at
 pytest.importorskip("numba")
 
 import ptmcad
-from ptmcad.certified.curve import Curve
+from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.plain import curves as plain_curves
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.involution import mirrors
@@ -112,12 +112,12 @@ def halves(point: Floats) -> tuple[float, float]:
     return float((s - turns * np.pi + 3) % (2 * np.pi) - 3), float(abs(d - turns * np.pi))
 
 
-def left_around(curve: Curve, x: float, y: float) -> Floats:
+def left_around(curve: CriticalCurve, x: float, y: float) -> Floats:
     window = np.array([[x - 0.02, y - 0.2, x + 0.011, y + 0.3]])
     return search_curve(curve.system.arguments(), curve.start(window), 1e-5, 50_000, curve.importance()).left()
 
 
-def is_kept(found: tuple[Curve, ...], point: Floats) -> bool:
+def is_kept(found: tuple[CriticalCurve, ...], point: Floats) -> bool:
     """Whether one of the curves' searches leaves a box that has it."""
     s, d = halves(point)
     here = np.array([*point[:2], s, d])

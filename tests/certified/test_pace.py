@@ -18,8 +18,8 @@ from numba.core.event import install_listener
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified import engine, loading, refinement, slanted
-from ptmcad.certified.headway import PARTS, Headway
 from ptmcad.certified.pace import ALLOWANCE, MAP_TIME_SHARE, MIN_RESERVE, SAFETY, Pace
+from ptmcad.certified.searchprogress import PARTS, SearchProgress
 from ptmcad.errors import LimitReached
 from ptmcad.formulas.compiled import FUNCTIONS
 from ptmcad.options import Options
@@ -258,5 +258,5 @@ def test_nothing_is_compiled_after_loading() -> None:
 
 
 def test_a_tolerance_below_all_floats_has_a_way_to_it() -> None:
-    way = Headway(0.0)
+    way = SearchProgress(0.0)
     assert [way.at(share, 0.0) for share in (1.0, 1e-300, 0.0)] == [0, 975, PARTS]  # of 307.65 powers of ten

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from copy import deepcopy
-from dataclasses import dataclass, fields, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -25,7 +25,6 @@ from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.trigonometric import Harmonics
 from ptmcad.certified.search import search_curve
 from ptmcad.errors import ConfigError, GeometryError
-from ptmcad.model import Mechanism
 from ptmcad.model.ptm import RECORD
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
@@ -279,20 +278,6 @@ def test_equations_without_a_potential_are_counted() -> None:
     for cell in certified.cells:
         assert exact.locate(a=cell.sample[0], b=cell.sample[1]).total == cell.total
     assert {cell.total for cell in certified.cells} == {1, 3}
-
-
-def test_what_a_description_says_beyond_springs_and_loads_does_not_go_unnoticed() -> None:
-    @dataclass(frozen=True)
-    class Wound(Mechanism):
-        wires: tuple[str, ...] = ()
-
-        __hash__ = Mechanism.__hash__
-
-    slice = _slice(PENDULUM)
-    known = {f.name: getattr(slice.model, f.name) for f in fields(slice.model)}
-    assert problem_of(replace(slice, model=Wound(**known))).cones
-    with pytest.raises(ConfigError, match="does not take wires"):
-        problem_of(replace(slice, model=Wound(**known, wires=("th",))))
 
 
 def test_range_of_the_truss_ends_on_the_astroid() -> None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from test_plain_formulas import PLAIN_PTM
 
 import ptmcad
-from ptmcad.certified.plain.chart import Chart, chart, principal_minors
+from ptmcad.certified.plain.chart import SpringChart, chart, principal_minors
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import Problem, problem_of
 from ptmcad.certified.plain.scaling import common_factor, common_factors
@@ -51,7 +51,7 @@ THREE_BARS: dict[str, Any] = {
 POINT = np.array([0.7, 1.5, 0.4, -1.1, 0.9, 0.0])
 
 
-def charts(record: dict[str, Any], short: int | None = None) -> tuple[Problem, Chart]:
+def charts(record: dict[str, Any], short: int | None = None) -> tuple[Problem, SpringChart]:
     slice = slice_from_mapping(record)
     problem = problem_of(slice)
     return problem, chart(geometry(problem, slice.axes), short)
@@ -65,7 +65,7 @@ def values(formulas: Sequence[Formula], at: NDArray[np.float64]) -> NDArray[np.f
     return found
 
 
-def matrix(at: Chart, point: NDArray[np.float64]) -> NDArray[np.float64]:
+def matrix(at: SpringChart, point: NDArray[np.float64]) -> NDArray[np.float64]:
     return values([entry for row in at.hessian for entry in row], point).reshape(len(at.hessian), -1)
 
 
@@ -91,17 +91,17 @@ def test_determinant_in_a_chart_is_that_times_the_length(mechanism: dict[str, An
     phi = 2 + len(problem.unknowns)
     for s in range(len(problem.cones)):
         _, turned = charts(mechanism, s)
-        x, y = values(turned.springs[s].vector, POINT)
+        x, y = values(turned.cones[s].vector, POINT)
         point = POINT.copy()
         point[phi] = atan2(y, x)
         length = hypot(x, y)
-        found = values([turned.determinant(), turned.aligned, turned.springs[s].extent, *turned.equations], point)
+        found = values([turned.determinant(), turned.aligned, turned.cones[s].extent, *turned.equations], point)
         assert found[0] == pytest.approx(np.linalg.det(matrix(direct, POINT)) * length, rel=1e-9)
         assert found[1:3] == pytest.approx([0, length], abs=1e-12)
         assert found[3:] == pytest.approx(values(direct.equations, POINT), rel=1e-9)
 
 
-def equilibria(at: Chart, number: int) -> list[NDArray[np.float64]]:
+def equilibria(at: SpringChart, number: int) -> list[NDArray[np.float64]]:
     """Points in the axes and the unknowns, by Newton's method."""
     generator = np.random.default_rng(1)
     found: list[NDArray[np.float64]] = []
@@ -119,11 +119,11 @@ def equilibria(at: Chart, number: int) -> list[NDArray[np.float64]]:
 @pytest.mark.slow_cases("mechanism1")
 def test_what_holds_at_equilibria_holds_there_and_nowhere_else(mechanism: dict[str, Any]) -> None:
     _, at = charts(mechanism)
-    number = len(at.springs)
+    number = len(at.cones)
     exact = [at.determinant(), *principal_minors(at.hessian)]
     there = [at.determinant(at_equilibrium=True), *principal_minors(at.matrix_at_equilibrium())]
     times = [f for s in range(number) for f in at.diagonal_times_length(s)]
-    diagonal = [at.springs[s].extent * at.hessian[i][i] for s in range(number) for i in at.springs[s].active]
+    diagonal = [at.cones[s].extent * at.hessian[i][i] for s in range(number) for i in at.cones[s].active]
     zero = [*at.dependent, *at.balances]
     for point in equilibria(at, 4):
         # only equal operands of meets give a value
@@ -161,7 +161,7 @@ def test_moment_on_bodies_that_turn_is_that_of_the_equations(mechanism: dict[str
     assert stiffness * factor == pytest.approx(w @ hessian @ w, rel=1e-9)
     for s in range(len(problem.cones)):
         _, charted = charts(mechanism, s)
-        x, y = values(charted.springs[s].vector, POINT)
+        x, y = values(charted.cones[s].vector, POINT)
         point = POINT.copy()
         point[2 + len(at.equations)] = atan2(y, x)
         again = values([charted.turned[0].moment, charted.turned[0].stiffness, *charted.along], point)

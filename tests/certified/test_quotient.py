@@ -24,7 +24,7 @@ from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain.bounds import ranges
 from ptmcad.certified.plain.chart import chart
 from ptmcad.certified.plain.curves import curves
-from ptmcad.certified.plain.frame import Frame, frames
+from ptmcad.certified.plain.frame import MirrorFrame, frames
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.involution import halving, mirrors
 from ptmcad.certified.plain.opening import Coordinates, coordinates, opening, stiffness
@@ -142,7 +142,7 @@ def place_of(at: Coordinates, e: Sequence[mpf], c: mpf, w: Sequence[mpf]) -> lis
     ]
 
 
-def cases(name: str) -> list[tuple[Frame, int]]:
+def cases(name: str) -> list[tuple[MirrorFrame, int]]:
     slice = slice_of(name)
     problem = problem_of(slice)
     change, *_ = mirrors(slice, problem)
@@ -157,7 +157,7 @@ def test_formulas_are_the_energys_derivatives(name: str) -> None:
     exact = geometry(problem_of(slice), slice.axes)
     for frame, lead in rng.sample(cases(name), min(2, len(cases(name)))):
         at = coordinates(frame, lead)
-        near = opening(at, [s.vector for s in chart(exact, unknowns=at.unknowns()).springs])
+        near = opening(at, [s.vector for s in chart(exact, unknowns=at.unknowns()).cones])
         numbers = [Fraction(rng.randint(100, 900), 1000) for _ in range(3 + len(frame.places))]
         x, y = (a.low + (a.high - a.low) * share for a, share in zip(slice.axes, numbers, strict=False))
         *free, r = numbers[2 : 3 + len(frame.ranges)]
@@ -208,7 +208,7 @@ def test_the_stiffness_on_the_fixed_points_is_the_hessians() -> None:
     (frame, _), *_ = cases("twins")
     at = coordinates(frame, 0)
     here = chart(geometry(problem, slice.axes), unknowns=frame.unknowns(at.evens, (), at.graph))
-    across: Formula = stiffness(at, [s.vector for s in here.springs])
+    across: Formula = stiffness(at, [s.vector for s in here.cones])
     block = frame.block(here.hessian, frame.odds, here.scales, over=False)[0][0]
     tape = record([[across, block]])
     with ctx.workprec(200):

@@ -15,8 +15,8 @@ pytest.importorskip("numba")
 
 import ptmcad
 from ptmcad.certified import refinement
-from ptmcad.certified.curve import Curve
-from ptmcad.certified.refinement import Enclosure, begin, refine
+from ptmcad.certified.curve import CriticalCurve
+from ptmcad.certified.refinement import CurveEnclosure, begin, refine
 from ptmcad.certified.system import system
 from ptmcad.formulas.graph import Graph
 
@@ -24,24 +24,24 @@ ANGLES = np.linspace(0.1, 3.1, 97)
 ON_THE_CIRCLE = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)
 
 
-def circle(monkeypatch: pytest.MonkeyPatch) -> list[Enclosure]:
+def circle(monkeypatch: pytest.MonkeyPatch) -> list[CurveEnclosure]:
     """A half of the unit circle, in tasks so small that a level has several of them."""
     monkeypatch.setattr(refinement, "BUDGET", 24)
     monkeypatch.setattr(refinement, "BATCH", 4)
     graph = Graph()
     line = graph.variable(0).squared() + graph.variable(1).squared() - graph.constant(1)
-    curve = Curve("circle", "of radius 1", system([line], (0, 1)), ())
+    curve = CriticalCurve("circle", "of radius 1", system([line], (0, 1)), ())
     return begin([curve], np.array([[x, 0.0, x + 0.5, 1.0] for x in np.arange(-1, 1, 0.5)]))
 
 
-def lost(enclosures: list[Enclosure]) -> int:
+def lost(enclosures: list[CurveEnclosure]) -> int:
     """How many points of the circle are in no box."""
     boxes = enclosures[0].boxes()
     inside = (boxes[:, None, :2] <= ON_THE_CIRCLE) & (boxes[:, None, 2:] >= ON_THE_CIRCLE)
     return int((~inside.all(axis=2).any(axis=0)).sum())
 
 
-def broken_at(statement: int, enclosures: list[Enclosure]) -> bool:
+def broken_at(statement: int, enclosures: list[CurveEnclosure]) -> bool:
     """Refine once, with a KeyboardInterrupt before so many statements of the module are done; whether it came."""
     left = statement
 

@@ -12,13 +12,13 @@ pytest.importorskip("numba")
 
 from ptmcad.certified.contraction import contract, workspace
 from ptmcad.certified.line import on_line
-from ptmcad.certified.plain.chart import Chart, chart
+from ptmcad.certified.plain.chart import SpringChart, chart
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.search import search_curve
 from ptmcad.certified.solved import quotients
-from ptmcad.certified.system import System, system
+from ptmcad.certified.system import EquationSystem, system
 from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.formulas.intervals import program, run
 from ptmcad.formulas.tape import record
@@ -47,7 +47,7 @@ def slice_of(horizontal: str, vertical: str, **given: str) -> Slice:
     return slice_from_mapping({"name": "s", "parameters": parameters, "axes": window})
 
 
-def chart_of(slice: Slice) -> Chart:
+def chart_of(slice: Slice) -> SpringChart:
     return chart(geometry(problem_of(slice), slice.axes))
 
 
@@ -100,7 +100,7 @@ def test_a_solution_at_which_the_slope_is_zero_is_kept() -> None:
         assert contract(arguments, point.copy(), point.copy(), workspace(arguments, 3))
 
 
-def equilibria_over_two_linear_axes(number: int) -> tuple[System, list[Floats]]:
+def equilibria_over_two_linear_axes(number: int) -> tuple[EquationSystem, list[Floats]]:
     """The equations of equilibrium over axes F and l0, and solutions: the angles by chance, the axes by Cramer's rule.
 
     Some angles are right, where the slope of a load is zero, or zero, where a spring is short.

@@ -13,8 +13,8 @@ pytest.importorskip("numba")
 
 from ptmcad.certified import specks
 from ptmcad.certified.covering import Lattice, box_rectangles, thinning
-from ptmcad.certified.curve import Curve
-from ptmcad.certified.refinement import Enclosure, begin, refine
+from ptmcad.certified.curve import CriticalCurve
+from ptmcad.certified.refinement import CurveEnclosure, begin, refine
 from ptmcad.certified.search import Boxes
 from ptmcad.certified.specks import without_specks
 from ptmcad.certified.system import system
@@ -30,7 +30,7 @@ EMPTY = np.array([[0.5, 0.5, 0.501, 0.51], [-0.3, 0.1, -0.299, 0.1001], [1.5, -2
 """Boxes in which there is nothing; the last one is at the window's edge."""
 
 
-def curves() -> list[Enclosure]:
+def curves() -> list[CurveEnclosure]:
     """The unit circle with the small one, and a line, all of them enclosed; with boxes that hold nothing."""
     graph = Graph()
     x, y = graph.variable(0), graph.variable(1)
@@ -41,7 +41,7 @@ def curves() -> list[Enclosure]:
 
     both = circle(0.0, 1.0) * circle(AT, SMALL)
     line = x - graph.constant(1.75)
-    made = [Curve(name, "", system([f], (0, 1)), ()) for name, f in (("circles", both), ("line", line))]
+    made = [CriticalCurve(name, "", system([f], (0, 1)), ()) for name, f in (("circles", both), ("line", line))]
     found = begin(made, np.array([[-2.0, -2.0, 2.0, 2.0]]))
     assert refine(found, AREA, 1)
     for enclosure in found:

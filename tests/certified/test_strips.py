@@ -16,13 +16,13 @@ pytest.importorskip("numba")
 
 from ptmcad.certified.covering import Lattice, Thinning
 from ptmcad.certified.strips import NONE, areas_of_pieces, numbers_of_pieces, pieces, strips
-from ptmcad.certified.system import System, system
+from ptmcad.certified.system import EquationSystem, system
 from ptmcad.formulas.graph import Graph
 
 COEFFICIENTS = st.fractions(-3, 3, max_denominator=8)
 
 
-def polynomial_curve(p: list[Fraction], q: list[Fraction], kind: str) -> System:
+def polynomial_curve(p: list[Fraction], q: list[Fraction], kind: str) -> EquationSystem:
     """x = p(t), y = q(t), as two equations in x, y, t; or two others that hold there, linear or curved in x and y."""
     graph = Graph()
     x, y, t = (graph.variable(k) for k in range(3))

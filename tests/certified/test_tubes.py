@@ -11,7 +11,7 @@ from flint import arb, arb_series, ctx
 
 pytest.importorskip("numba")
 
-from ptmcad.certified.system import equations_alone, system
+from ptmcad.certified.system import system
 from ptmcad.certified.tubes import Tubes, tubes
 from ptmcad.formulas.graph import Formula, Graph, direction, length
 from ptmcad.formulas.intervals import program
@@ -71,7 +71,7 @@ def exponential(order: int, most: float, end: float = 0.5) -> Tubes:
          for k in range(16) for a, b in [(end * (k - 8) / 8, end * (k - 7) / 8)]]
     )  # fmt: skip
     limits = (order, most, 4000)
-    return tubes(curve.arguments(), equations_alone(curve).arguments(), boxes, np.ones(3), (0, -end, end), limits)
+    return tubes(curve.arguments(), curve.alone().arguments(), boxes, np.ones(3), (0, -end, end), limits)
 
 
 def test_a_tube_holds_its_curve_and_is_thinner_with_a_higher_order() -> None:
@@ -96,7 +96,7 @@ def test_boxes_of_a_second_branch_are_in_a_tube_of_their_own() -> None:
     x, y = graph.variable(0), graph.variable(1)
     curve = system([y.squared() - 1 - x], (0, 1))
     boxes = np.array([[-0.25, s * 1.0 - 0.2, 0.25, s * 1.0 + 0.2] for s in (-1, 1)])
-    both = [curve.arguments(), equations_alone(curve).arguments()]
+    both = [curve.arguments(), curve.alone().arguments()]
     found = tubes(both[0], both[1], boxes, np.ones(2), (0, -0.25, 0.25), (8, 1e-4, 400))
     assert found.left == 0
     assert sorted(np.sign(found.coefficients[:, 0]).tolist()) == [-1, 1]
@@ -108,7 +108,5 @@ def test_where_the_curve_turns_back_no_tube_is_found() -> None:
     x, y = graph.variable(0), graph.variable(1)
     curve = system([x - y.squared()], (0, 1))
     boxes = np.array([[-0.01, -0.5, 0.25, 0.5]])
-    found = tubes(
-        curve.arguments(), equations_alone(curve).arguments(), boxes, np.ones(2), (0, -0.01, 0.25), (8, 1e-3, 300)
-    )
+    found = tubes(curve.arguments(), curve.alone().arguments(), boxes, np.ones(2), (0, -0.01, 0.25), (8, 1e-3, 300))
     assert found.left > 0

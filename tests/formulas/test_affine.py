@@ -15,7 +15,7 @@ pytest.importorskip("numba")
 from ptmcad.certified.contraction import contract_curve, survives, workspace
 from ptmcad.certified.linear import contract_linear, space_for
 from ptmcad.certified.solved import quotients
-from ptmcad.certified.system import System, system
+from ptmcad.certified.system import EquationSystem, system
 from ptmcad.formulas.affine import CENTER, ERROR, FIRST, LANES, frame_for, run_affine, set_frame
 from ptmcad.formulas.balls import run_arb
 from ptmcad.formulas.graph import Formula, Graph, direction, inverse_length, length, meet
@@ -121,7 +121,7 @@ def test_a_length_that_may_be_zero_leaves_every_direction_and_every_inverse() ->
         assert r[ERROR] == s[ERROR] == q[ERROR] == np.inf
 
 
-def plane_system(rng: random.Random, kind: str) -> tuple[System, Floats]:
+def plane_system(rng: random.Random, kind: str) -> tuple[EquationSystem, Floats]:
     """A system in four unknowns that vanishes, and has nonnegative formulas, at a point that comes with it."""
     graph = Graph()
     point = np.array([rng.uniform(-1, 1) for _ in range(4)])

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import importlib
 import math
+import shutil
 from collections.abc import Iterator
 from fractions import Fraction
 from math import inf, nan
 from pathlib import Path
+from types import FunctionType
 
 import numpy as np
 import pytest
@@ -18,10 +21,13 @@ from support.examples import examples
 
 pytest.importorskip("numba")
 
+from numba.core.registry import CPUDispatcher
+
 from ptmcad.formulas import compiled as compilation
 from ptmcad.formulas import rounding as arithmetic
 from ptmcad.formulas.compiled import compiled
 
+PACKAGE = Path(compilation.__file__).parents[1]
 Floats = NDArray[np.float64]
 LARGEST, SMALLEST, SUBNORMAL = 1.7976931348623157e308, 2.0**-1022, 5e-324
 CORNERS = [
@@ -252,12 +258,52 @@ def test_error_of_sine_and_cosine_is_a_quarter_of_what_is_claimed() -> None:
     assert worst > arithmetic.SINE_ERROR / 64, "a bound this loose, or a test this blind, is a mistake"
 
 
-def test_compiled_code_belongs_to_the_sources(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """Another text of any module of the package is another folder: callers do not keep what they called before."""
-    folders = []
-    for text in ("UNIT = 1", "UNIT = 2"):
-        (tmp_path / "arithmetic.py").write_text(text)
-        monkeypatch.setattr(compilation, "__file__", str(tmp_path / "compiled.py"))
-        folders.append(compilation._folder())
-    assert folders[0] != folders[1]
+def copied(into: Path) -> Path:
+    """The modules of the package as far as the digest is of them, and one that it is not of."""
+    for room in (*compilation.ROOMS, "cover"):
+        shutil.copytree(PACKAGE / room, into / room, ignore=lambda _, names: [n for n in names if n[-3:] != ".py"])
+    return into
+
+
+@pytest.mark.parametrize("module", ["certified/search.py", "formulas/rounding.py"])
+def test_compiled_code_belongs_to_the_sources(module: str, tmp_path: Path) -> None:
+    """Another text of one module of the rooms is another folder: callers do not keep what they called before."""
+    package = copied(tmp_path)
+    before = compilation.digest_of(package)
+    assert before == compilation.digest_of(PACKAGE)
+    (package / module).write_text((package / module).read_text() + "UNIT = 1\n")
+    assert compilation.digest_of(package) != before
+
+
+def test_compiled_code_is_kept_where_the_digest_says() -> None:
     assert compilation._FOLDER.is_dir()
+    assert compilation._FOLDER.name.endswith(compilation.digest_of(PACKAGE)[:16])
+
+
+def test_the_digest_is_of_no_more_than_compiled_code_needs(tmp_path: Path) -> None:
+    package = copied(tmp_path)
+    before = compilation.digest_of(package)
+    (package / "cover" / "samples.py").write_text("")
+    assert compilation.digest_of(package) == before
+
+
+def called_by(function: object) -> Iterator[str]:
+    """The module of a compiled function, and those of functions among the globals that its code names."""
+    python = function.py_func  # type: ignore[attr-defined]
+    yield python.__module__
+    for name in python.__code__.co_names:
+        value = python.__globals__.get(name)
+        if isinstance(value, CPUDispatcher):
+            yield value.py_func.__module__
+        elif isinstance(value, FunctionType):
+            yield value.__module__
+
+
+def test_the_digest_is_of_all_that_is_compiled() -> None:
+    """A function of another room that compiled code calls could be edited, and old code would go on."""
+    modules = [importlib.import_module(f"ptmcad.{room}.{path.stem}")
+               for room in compilation.ROOMS for path in sorted((PACKAGE / room).glob("*.py"))]  # fmt: skip
+    functions = [f for m in modules for f in vars(m).values() if isinstance(f, CPUDispatcher)]
+    assert len({f.py_func for f in functions}) >= len(compilation.FUNCTIONS) > 40
+    rooms = {module.rpartition(".")[0] for function in functions for module in called_by(function)}
+    assert rooms == {f"ptmcad.{room}" for room in compilation.ROOMS}

@@ -62,7 +62,7 @@ def known_ranges(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Range, ...]
     # the equations that are polynomials: with springs those that close loops
     rigid = problem.equations[: problem.closing] if problem.has_springs else problem.equations
     known = [*rigid, *problem.multiples]
-    return _Search(problem, window, [*known, *eliminated(known)]).ranges()
+    return _BoundSearch(problem, window, [*known, *eliminated(known)]).ranges()
 
 
 def refusal(problem: Problem, found: Sequence[Range]) -> ConfigError:
@@ -82,7 +82,7 @@ def refusal(problem: Problem, found: Sequence[Range]) -> ConfigError:
 
 
 @dataclass(frozen=True, slots=True)
-class _Search:
+class _BoundSearch:
     """The search for bounds over a window, with some polynomials that vanish at solutions."""
 
     problem: Problem

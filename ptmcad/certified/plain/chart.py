@@ -21,10 +21,10 @@ from typing import NamedTuple
 
 from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Unknown
-from ptmcad.certified.plain.geometry import Geometry
+from ptmcad.certified.plain.cones import ConeFormulas, Matrix
+from ptmcad.certified.plain.geometry import FactoredProblem
 from ptmcad.certified.plain.minors import Bent, bent, determinant
 from ptmcad.certified.plain.problem import FIRST
-from ptmcad.certified.plain.springs import Matrix, Spring
 from ptmcad.certified.plain.turning import Turn
 from ptmcad.formulas.graph import Formula, Graph, length
 
@@ -39,7 +39,7 @@ class Turned(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Chart:
+class SpringChart:
     """Formulas in the axes, the unknowns and, with a spring in its chart, phi as the last variable.
 
     Attributes
@@ -50,7 +50,7 @@ class Chart:
     dependent : formulas that vanish at every equilibrium, linear in the direction of a spring: the equations solved for
         its unit vector u_s, each coordinate.
     balances : the same, smooth where one spring has no length, unlike the equations: that u_s has the length 1.
-    springs : one for each cone.
+    cones : with what their springs are in the equations by.
     smooth : the derivatives of the equations without springs.
     anywhere, there : the sines' products of each spring, everywhere and where the equations vanish; the latter never to
         be differentiated.
@@ -66,7 +66,7 @@ class Chart:
     lengths: tuple[Formula, ...]
     dependent: tuple[Formula, ...]
     balances: tuple[Formula, ...]
-    springs: tuple[Spring, ...]
+    cones: tuple[ConeFormulas, ...]
     smooth: Matrix
     anywhere: tuple[Matrix, ...]
     there: tuple[Matrix, ...]
@@ -80,22 +80,22 @@ class Chart:
     def aligned(self) -> Formula:
         """d x u of the spring in its chart."""
         assert self.short is not None
-        at = self.springs[self.short]
+        at = self.cones[self.short]
         return at.vector[0] * at.unit[1] - at.vector[1] * at.unit[0]
 
     @property
     def along(self) -> tuple[Formula, Formula]:
         """d - |d| u of the spring in its chart, with |d| as a formula without u."""
         assert self.short is not None
-        at, extent = self.springs[self.short], self.lengths[self.short]
+        at, extent = self.cones[self.short], self.lengths[self.short]
         return at.vector[0] - extent * at.unit[0], at.vector[1] - extent * at.unit[1]
 
     def _bends(self, products: Sequence[Matrix]) -> list[Bent]:
-        return [Bent(s.pull * s.inverse, p, s) for s, p in zip(self.springs, products, strict=True)]
+        return [Bent(s.pull * s.inverse, p, s) for s, p in zip(self.cones, products, strict=True)]
 
     def rigid(self) -> Matrix:
         """The matrix M."""
-        return _rigid(self.smooth, self.springs)
+        return _rigid(self.smooth, self.cones)
 
     def matrix_at_equilibrium(self) -> Matrix:
         """The Hessian where the equations vanish."""
@@ -107,7 +107,7 @@ class Chart:
         rigid = self.rigid()
         if self.short is None:
             return bent(rigid, bends, self.scales)
-        chosen = self.springs[self.short]
+        chosen = self.cones[self.short]
         others = bends[: self.short] + bends[self.short + 1 :]
         whole = bent(rigid, others, self.scales)
         unit = bends[self.short]._replace(factor=self.equations[0].graph.constant(1))
@@ -115,8 +115,8 @@ class Chart:
 
     def levelled(self) -> Formula:
         """The determinant times the lengths of all springs, where the equations vanish: finite everywhere."""
-        bends = [Bent(at.pull, there, at) for at, there in zip(self.springs, self.there, strict=True)]
-        return bent(self.rigid(), bends, self.scales, extents=[at.extent for at in self.springs])
+        bends = [Bent(at.pull, there, at) for at, there in zip(self.cones, self.there, strict=True)]
+        return bent(self.rigid(), bends, self.scales, extents=[at.extent for at in self.cones])
 
     def determinants_by_turning(self) -> Iterator[Formula]:
         """Of two unknowns: the determinant by one of them and both turned, where the equations vanish."""
@@ -133,8 +133,8 @@ class Chart:
 
         What that spring is in it by is without its direction: |d_s| u_s is d_s.
         """
-        bends, chosen = self._bends(self.there), self.springs[s]
-        others = _rigid(self.smooth, [*self.springs[:s], *self.springs[s + 1 :]])
+        bends, chosen = self._bends(self.there), self.cones[s]
+        others = _rigid(self.smooth, [*self.cones[:s], *self.cones[s + 1 :]])
         rest = _less(others, bends[:s] + bends[s + 1 :], self.scales)
         return tuple(
             self.lengths[s] * rest[i][i] - chosen.pull * (chosen.levers[i] + self.scales[i] * self.there[s][i][i])
@@ -142,7 +142,7 @@ class Chart:
         )
 
 
-def chart(exact: Geometry, short: int | None = None, unknowns: Sequence[Unknown] = ()) -> Chart:
+def chart(exact: FactoredProblem, short: int | None = None, unknowns: Sequence[Unknown] = ()) -> SpringChart:
     """The formulas of a problem, in a graph of their own or in that of what stands for the unknowns.
 
     Parameters
@@ -167,7 +167,7 @@ def chart(exact: Geometry, short: int | None = None, unknowns: Sequence[Unknown]
     rests = [_without(smooth, [t for t in springs if t is not at]) for at in springs]
     anywhere = tuple(at.products() for at in springs)
     bends = [Bent(at.pull * at.inverse, p, at) for at, p in zip(springs, anywhere, strict=True)]
-    return Chart(
+    return SpringChart(
         tuple(_without(smooth, springs)),
         _less(_rigid(slopes, springs), bends, scales),
         tuple(length(*at.vector) for at in springs),
@@ -185,12 +185,12 @@ def chart(exact: Geometry, short: int | None = None, unknowns: Sequence[Unknown]
     )
 
 
-def _turned(turn: Turn, springs: Sequence[Spring], unknowns: Sequence[Unknown]) -> Turned:
+def _turned(turn: Turn, springs: Sequence[ConeFormulas], unknowns: Sequence[Unknown]) -> Turned:
     factor = expression_formula(unknowns[0].graph, turn.factor)
     return Turned(turn.weights, turn.moment(springs, unknowns), turn.stiffness(springs, unknowns, factor), factor)
 
 
-def _rigid(smooth: Sequence[Sequence[Formula]], springs: Sequence[Spring]) -> Matrix:
+def _rigid(smooth: Sequence[Sequence[Formula]], springs: Sequence[ConeFormulas]) -> Matrix:
     """The matrix M of some springs."""
     entries = [list(row) for row in smooth]
     for at in springs:
@@ -210,7 +210,7 @@ def _less(rigid: Sequence[Sequence[Formula]], bends: Sequence[Bent], scales: Seq
     return tuple(map(tuple, entries))
 
 
-def _without(smooth: Sequence[Formula], springs: Sequence[Spring]) -> list[Formula]:
+def _without(smooth: Sequence[Formula], springs: Sequence[ConeFormulas]) -> list[Formula]:
     """The smooth part of each equation less the springs' parts."""
     total = list(smooth)
     for at in springs:
@@ -218,7 +218,7 @@ def _without(smooth: Sequence[Formula], springs: Sequence[Spring]) -> list[Formu
     return total
 
 
-def _directed(at: Spring, rest: Sequence[Formula]) -> list[Formula]:
+def _directed(at: ConeFormulas, rest: Sequence[Formula]) -> list[Formula]:
     """With r = K (u.a_i, u.a_j): |a_i|^2 r_j - a_i.a_j r_i = K (a_i x a_j)(a_i x u)."""
     return [
         at.squares[i][i] * rest[j] - at.squares[i][j] * rest[i] + at.pull * (at.crosses[i][j] * at.sines[i])
@@ -227,7 +227,7 @@ def _directed(at: Spring, rest: Sequence[Formula]) -> list[Formula]:
     ]
 
 
-def _balances(at: Spring, rest: Sequence[Formula]) -> list[Formula]:
+def _balances(at: ConeFormulas, rest: Sequence[Formula]) -> list[Formula]:
     """Gram's determinant: |r_i a_j - r_j a_i|^2 = (K a_i x a_j)^2."""
     return [
         rest[i].squared() * at.squares[j][j]
@@ -248,4 +248,4 @@ def principal_minors(hessian: Matrix, *, whole: bool = False) -> list[Formula]:
     ]
 
 
-__all__ = ["Chart", "Matrix", "chart", "determinant", "principal_minors"]
+__all__ = ["Matrix", "SpringChart", "chart", "determinant", "principal_minors"]

@@ -19,7 +19,7 @@ from ptmcad.certified.distinct import FULL_TURN
 from ptmcad.certified.plain.problem import FIRST, Condition, Problem
 from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial, Vector
 from ptmcad.certified.points import PRECISIONS, PointCount, radius_between
-from ptmcad.certified.system import System
+from ptmcad.certified.system import EquationSystem
 from ptmcad.formulas.balls import ball
 from ptmcad.text.balls import ball_of, exact
 from ptmcad.text.flint_numbers import to_fraction
@@ -79,7 +79,7 @@ def in_half_angle(problem: Problem, turn: Multi) -> Problem:
 
 
 def located(
-    problem: Problem, equations: System, point: tuple[Fraction, Fraction], solution: Solution, precision: int
+    problem: Problem, equations: EquationSystem, point: tuple[Fraction, Fraction], solution: Solution, precision: int
 ) -> tuple[Solution, Box]:
     """The cube of the description's unknowns in which a solution is the only one, and a narrow box around that.
 
@@ -104,7 +104,7 @@ def located(
 
 
 def in_description(
-    problem: Problem, equations: System, point: tuple[Fraction, Fraction], counts: PointCount
+    problem: Problem, equations: EquationSystem, point: tuple[Fraction, Fraction], counts: PointCount
 ) -> PointCount:
     """Counts of a problem with their solutions in the description's unknowns; undecided where these are too near."""
     if not problem.covering:

@@ -13,15 +13,15 @@ from fractions import Fraction
 
 import numpy as np
 
-from ptmcad.certified.curve import Curve
+from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.plain.angle import Angle
 from ptmcad.certified.plain.bounds import TURN, Range, ranges
-from ptmcad.certified.plain.chart import Chart, chart, determinant, principal_minors
-from ptmcad.certified.plain.frame import Frame, frames
-from ptmcad.certified.plain.geometry import Geometry, geometry
+from ptmcad.certified.plain.chart import SpringChart, chart, determinant, principal_minors
+from ptmcad.certified.plain.frame import MirrorFrame, frames
+from ptmcad.certified.plain.geometry import FactoredProblem, geometry
 from ptmcad.certified.plain.involution import mirrors, square_of
-from ptmcad.certified.plain.problem import FIRST, Condition, Cone, Problem, problem_of
-from ptmcad.certified.plain.quotient import NEAR, Fold, folds
+from ptmcad.certified.plain.problem import FIRST, Condition, Problem, SpringCone, problem_of
+from ptmcad.certified.plain.quotient import NEAR, SymmetricFold, folds
 from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.scales import TURNING_WEIGHT, short_lengths, variable_weights
 from ptmcad.certified.solved import Quotient, quotients
@@ -36,7 +36,7 @@ elsewhere, times the distance of a configuration from its image: nearly all spri
 
 
 @dataclass(frozen=True, slots=True)
-class _Search:
+class _CurveSearch:
     """What all curves of a slice have in common.
 
     Attributes
@@ -51,7 +51,7 @@ class _Search:
     """
 
     problem: Problem
-    exact: Geometry
+    exact: FactoredProblem
     ranges: tuple[Range, ...]
     weights: tuple[float, ...]
     short: tuple[Fraction, ...]
@@ -61,10 +61,10 @@ class _Search:
     conditions: tuple[Condition, ...]
     rising: bool
     where: str
-    mirrors: tuple[Frame, ...] = ()
+    mirrors: tuple[MirrorFrame, ...] = ()
 
 
-def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) -> tuple[Curve, ...]:
+def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) -> tuple[CriticalCurve, ...]:
     """The curves at which ``count`` may change.
 
     Parameters
@@ -80,12 +80,12 @@ def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) ->
     return tuple(curve for branch in found for curve in _of_branch(slice, count, without, branch))
 
 
-def _of_branch(slice: Slice, count: Count, without: frozenset[str], problem: Problem) -> Iterator[Curve]:
+def _of_branch(slice: Slice, count: Count, without: frozenset[str], problem: Problem) -> Iterator[CriticalCurve]:
     bounds = ranges(problem, slice.axes)
     exact = geometry(problem, slice.axes)
     at = chart(exact)
     stable = problem.is_gradient and count.is_of_stable and "folds-of-saddles" not in without
-    search = _Search(
+    search = _CurveSearch(
         problem,
         exact,
         bounds,
@@ -104,7 +104,7 @@ def _of_branch(slice: Slice, count: Count, without: frozenset[str], problem: Pro
     yield from _at_free_lengths(search, at)
 
 
-def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
+def _smooth(search: _CurveSearch, at: SpringChart) -> tuple[CriticalCurve, ...]:
     """The folds, and the cones."""
     if not search.swallowed:
         # the folds' systems have the points at which a minimum is swallowed
@@ -112,7 +112,7 @@ def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
     return (_fold(search, at), *_short_folds(search, at), *_cones(search, at))
 
 
-def _quotient(search: _Search, changes: Sequence[Involution], whole: Chart) -> Iterator[Curve]:
+def _quotient(search: _CurveSearch, changes: Sequence[Involution], whole: SpringChart) -> Iterator[CriticalCurve]:
     """The folds where involutions keep the problem, and limits without a spring's length.
 
     Minima are searched all about one involution's fixed points if one unknown is odd; else what is far from all fixed
@@ -134,14 +134,14 @@ def _quotient(search: _Search, changes: Sequence[Involution], whole: Chart) -> I
     yield from _cones(search, whole)
 
 
-def _fold_about(search: _Search, fold: Fold, charted: Frame | None) -> Curve:
+def _fold_about(search: _CurveSearch, fold: SymmetricFold, charted: MirrorFrame | None) -> CriticalCurve:
     """A fold in coordinates about an involution's fixed points, every spring long where these are ``charted``."""
     long = () if charted is None else [_excess(search, fold.at, s, charted) for s in _charted(search, fold.at)]
     cheap, costly = (
         [*own, *more] if search.dependent else []
         for own, more in zip(fold.vanishing, _dependent(search, fold.at), strict=True)
     )
-    return Curve(
+    return CriticalCurve(
         fold.name + search.where,
         fold.reason,
         system(
@@ -162,7 +162,7 @@ def _fold_about(search: _Search, fold: Fold, charted: Frame | None) -> Curve:
     )
 
 
-def _solved(search: _Search, vanishing: Sequence[Formula]) -> tuple[Quotient, ...]:
+def _solved(search: _CurveSearch, vanishing: Sequence[Formula]) -> tuple[Quotient, ...]:
     """Formulas that vanish at solutions, solved for axes; for none that springs' directions depend on.
 
     With one unknown that costs more boxes than it saves.
@@ -173,14 +173,14 @@ def _solved(search: _Search, vanishing: Sequence[Formula]) -> tuple[Quotient, ..
     return quotients(vanishing, [k for k in (0, 1) if not any(c.uses(k) for c in ends)])
 
 
-def _charted(search: _Search, at: Chart) -> list[int]:
+def _charted(search: _CurveSearch, at: SpringChart) -> list[int]:
     """The cones that have a chart: those of springs that several unknowns move, and all in closed loops."""
-    return [s for s, spring in enumerate(at.springs) if len(spring.active) > 1 or search.problem.closing]
+    return [s for s, cone in enumerate(at.cones) if len(cone.active) > 1 or search.problem.closing]
 
 
-def _fold(search: _Search, at: Chart) -> Curve:
+def _fold(search: _CurveSearch, at: SpringChart) -> CriticalCurve:
     """Solutions with a singular Jacobian, every spring long that has a chart where it is short."""
-    return Curve(
+    return CriticalCurve(
         _name(search),
         _reason(search),
         system(
@@ -200,12 +200,12 @@ def _fold(search: _Search, at: Chart) -> Curve:
     )
 
 
-def _far(search: _Search, at: Chart) -> list[Formula]:
+def _far(search: _CurveSearch, at: SpringChart) -> list[Formula]:
     """What is not negative where configurations are not searched about an involution's fixed points."""
     return [_distance(search, at, mirror) - NEAR for mirror in search.mirrors]
 
 
-def _distance(search: _Search, at: Chart, mirror: Frame) -> Formula:
+def _distance(search: _CurveSearch, at: SpringChart, mirror: MirrorFrame) -> Formula:
     """Of a configuration from its image, squared."""
     angles = [name not in search.problem.reals for name in search.problem.unknowns]
     unknowns = [
@@ -215,7 +215,7 @@ def _distance(search: _Search, at: Chart, mirror: Frame) -> Formula:
     return mirror.distance(unknowns)
 
 
-def _excess(search: _Search, at: Chart, s: int, near: Frame | None = None) -> Formula:
+def _excess(search: _CurveSearch, at: SpringChart, s: int, near: MirrorFrame | None = None) -> Formula:
     """What is not negative where a spring is long, near an involution's fixed points or elsewhere."""
     if near is None:
         return at.lengths[s] - search.short[s]
@@ -223,16 +223,16 @@ def _excess(search: _Search, at: Chart, s: int, near: Frame | None = None) -> Fo
     return at.lengths[s].squared() - search.short[s] ** 2 * share
 
 
-def _semidefinite(at: Chart) -> list[Formula]:
+def _semidefinite(at: SpringChart) -> list[Formula]:
     """What is not negative at minima, nor at limits of them, but for the determinant."""
     return [
         *principal_minors(at.matrix_at_equilibrium()),
-        *(f for s in range(len(at.springs)) for f in at.diagonal_times_length(s)),
+        *(f for s in range(len(at.cones)) for f in at.diagonal_times_length(s)),
         *(turned.stiffness for turned in at.turned),
     ]
 
 
-def _dependent(search: _Search, at: Chart) -> tuple[Sequence[Formula], Sequence[Formula]]:
+def _dependent(search: _CurveSearch, at: SpringChart) -> tuple[Sequence[Formula], Sequence[Formula]]:
     """What vanishes at folds besides the equations, cheap formulas first."""
     if not search.dependent:
         return (), ()
@@ -240,24 +240,24 @@ def _dependent(search: _Search, at: Chart) -> tuple[Sequence[Formula], Sequence[
     along = () if at.short is None else at.along
     return (*moments, *at.dependent, *along), (
         *at.balances,
-        *([at.determinant(at_equilibrium=True)] if at.springs else []),
+        *([at.determinant(at_equilibrium=True)] if at.cones else []),
         *at.determinants_by_turning(),
-        *([at.levelled()] if at.springs and not search.stable else []),
+        *([at.levelled()] if at.cones and not search.stable else []),
     )
 
 
-def _values(conditions: Sequence[Condition], at: Chart) -> list[Formula]:
+def _values(conditions: Sequence[Condition], at: SpringChart) -> list[Formula]:
     """What is not negative at solutions that count, nor at limits of them."""
     return [condition.value.formula(at.equations[0].graph, at.unknowns) for condition in conditions]
 
 
-def _boundaries(search: _Search, at: Chart) -> Iterator[Curve]:
+def _boundaries(search: _CurveSearch, at: SpringChart) -> Iterator[CriticalCurve]:
     """Solutions at which a condition is zero and no other one is violated; there one stops or begins to count."""
     semidefinite = [*principal_minors(at.hessian), determinant(at.hessian)] if search.stable else []
     semidefinite += [at.determinant()] if search.rising else []
     for k, condition in enumerate(search.conditions):
         others = _values([*search.conditions[:k], *search.conditions[k + 1 :]], at)
-        yield Curve(
+        yield CriticalCurve(
             f"point where {condition.text} is 0{search.where}",
             f"solutions count where {condition.text} > 0, and at one of them it is zero",
             system(
@@ -270,7 +270,7 @@ def _boundaries(search: _Search, at: Chart) -> Iterator[Curve]:
         )
 
 
-def _at_free_lengths(search: _Search, at: Chart) -> Iterator[Curve]:
+def _at_free_lengths(search: _CurveSearch, at: SpringChart) -> Iterator[CriticalCurve]:
     """Stable equilibria at which one spring has its free length, and no other one is shorter than its own."""
     problem = search.problem
     graph = at.equations[0].graph
@@ -281,7 +281,7 @@ def _at_free_lengths(search: _Search, at: Chart) -> Iterator[Curve]:
     values = [excess.value.formula(graph, unknowns) for excess in problem.excesses]
     for k, excess in enumerate(problem.excesses):
         zero, *others = (f.formula(graph, unknowns) for f in excess.boundary)
-        yield Curve(
+        yield CriticalCurve(
             f"point where spring {excess.spring} has its free length{search.where}",
             f"spring {excess.spring} of a stable equilibrium has its free length",
             system(
@@ -296,7 +296,7 @@ def _at_free_lengths(search: _Search, at: Chart) -> Iterator[Curve]:
         )
 
 
-def _short_folds(search: _Search, at: Chart, near: Frame | None = None) -> Iterator[Curve]:
+def _short_folds(search: _CurveSearch, at: SpringChart, near: MirrorFrame | None = None) -> Iterator[CriticalCurve]:
     """The same where one spring is short, in its chart; the other ones may have any length.
 
     Parameters
@@ -308,7 +308,7 @@ def _short_folds(search: _Search, at: Chart, near: Frame | None = None) -> Itera
         semidefinite: list[Formula] = []
         if search.stable:
             semidefinite = [*at.diagonal_times_length(s), *(turned.stiffness for turned in at.turned)]
-        yield Curve(
+        yield CriticalCurve(
             f"{_name(search)} with spring {cone.name} short",
             f"{_reason(search)}; spring {cone.name} is at most {search.short[s]} long",
             system(
@@ -316,7 +316,7 @@ def _short_folds(search: _Search, at: Chart, near: Frame | None = None) -> Itera
                 (0, 1, *search.problem.variables, FIRST + len(search.problem.unknowns)),
                 _dependent(search, at),
                 [
-                    at.springs[s].extent,
+                    at.cones[s].extent,
                     -_excess(search, at, s, near),
                     *([] if near is None else [NEAR - _distance(search, at, near)]),
                     *_far(search, at),
@@ -330,13 +330,13 @@ def _short_folds(search: _Search, at: Chart, near: Frame | None = None) -> Itera
         )
 
 
-def _points_without_length(search: _Search, at: Chart) -> Iterator[Curve]:
+def _points_without_length(search: _CurveSearch, at: SpringChart) -> Iterator[CriticalCurve]:
     """The same as `_cones` for one degree of freedom, where two equations d = 0 leave curves and need no direction."""
     graph, closing = at.equations[0].graph, search.problem.closing
     unknowns = [graph.variable(k) for k in search.problem.variables]
     for cone in search.problem.cones:
         vanishing = [d.formula(graph, unknowns) for d in cone.difference]
-        yield Curve(
+        yield CriticalCurve(
             f"point where spring {cone.name} has no length{search.where}",
             f"an equilibrium is swallowed where spring {cone.name} has no length",
             system(
@@ -350,13 +350,13 @@ def _points_without_length(search: _Search, at: Chart) -> Iterator[Curve]:
         )
 
 
-def _cones(search: _Search, whole: Chart) -> Iterator[Curve]:
+def _cones(search: _CurveSearch, whole: SpringChart) -> Iterator[CriticalCurve]:
     """Equilibria that come to a configuration in which a spring with a free length has none."""
     if len(search.problem.unknowns) - search.problem.closing == 1:
         yield from _points_without_length(search, whole)
         return
     for s, cone in enumerate(search.problem.cones):
-        moving = whole.springs[s].active
+        moving = whole.cones[s].active
         if len(moving) == 1 and search.problem.is_gradient and not search.stable:
             yield _crease(search, cone, *moving)
             continue
@@ -365,7 +365,7 @@ def _cones(search: _Search, whole: Chart) -> Iterator[Curve]:
         unknowns = [graph.variable(k) for k in search.problem.variables]
         # a coordinate that is zero everywhere says nothing
         vanishing = [f for f in (d.formula(graph, unknowns) for d in cone.difference) if f.value != 0]
-        yield Curve(
+        yield CriticalCurve(
             f"point where spring {cone.name} has no length{search.where}",
             f"an equilibrium is swallowed where spring {cone.name} has no length",
             system(
@@ -379,7 +379,7 @@ def _cones(search: _Search, whole: Chart) -> Iterator[Curve]:
         )
 
 
-def _crease(search: _Search, cone: Cone, moving: int) -> Curve:
+def _crease(search: _CurveSearch, cone: SpringCone, moving: int) -> CriticalCurve:
     """All configurations in which a spring that one unknown alone moves has no length, whether it is balanced or not.
 
     That is a curve by itself: other springs without length there do not matter. Where the unknown turns a vector that
@@ -391,7 +391,7 @@ def _crease(search: _Search, cone: Cone, moving: int) -> Curve:
     unknown = Graph().variable(FIRST)
     vanishing = [f.formula(unknown.graph, [unknown] * len(search.ranges)) for f in ((gap,) if drops else (x, y))]
     ranges = () if drops else (search.ranges[moving],)
-    return Curve(
+    return CriticalCurve(
         f"crease where spring {cone.name} has no length{search.where}",
         f"spring {cone.name} has no length, whatever the other unknowns are",
         system([f for f in vanishing if f.value != 0], range(FIRST + len(ranges))),
@@ -400,11 +400,11 @@ def _crease(search: _Search, cone: Cone, moving: int) -> Curve:
     )
 
 
-def _name(search: _Search) -> str:
+def _name(search: _CurveSearch) -> str:
     return ("fold of a stable equilibrium" if search.stable else "fold") + search.where
 
 
-def _reason(search: _Search) -> str:
+def _reason(search: _CurveSearch) -> str:
     if search.problem.closing:
         return "equilibria meet, or a loop folds flat: the Jacobian is singular"
     if search.stable:

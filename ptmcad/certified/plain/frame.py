@@ -13,15 +13,15 @@ from typing import NamedTuple
 
 from ptmcad.certified.plain.angle import Angle, Unknown
 from ptmcad.certified.plain.bounds import TURN, Range
+from ptmcad.certified.plain.cones import Matrix
 from ptmcad.certified.plain.involution import square_of
 from ptmcad.certified.plain.problem import Problem
-from ptmcad.certified.plain.springs import Matrix
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.model.involutions import Involution
 
 
-class Place(NamedTuple):
+class SignedSum(NamedTuple):
     """An unknown as a sum: a sign times an even coordinate, one times an odd one, and quarter turns.
 
     A coordinate that is not in it is -1.
@@ -35,7 +35,7 @@ class Place(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class MirrorFrame:
     """Coordinates about one component of an involution's fixed points.
 
     Attributes
@@ -51,7 +51,7 @@ class Frame:
 
     problem: Problem
     change: Involution
-    places: tuple[Place, ...]
+    places: tuple[SignedSum, ...]
     squares: tuple[TrigonometricPolynomial, ...]
     ranges: tuple[Range, ...]
     reaches: tuple[Fraction, ...]
@@ -130,30 +130,30 @@ class Frame:
         return tuple(tuple(entry(a, b) for b in columns) for a in columns)
 
 
-def frames(problem: Problem, change: Involution, ranges: Sequence[Range]) -> Iterator[Frame]:
+def frames(problem: Problem, change: Involution, ranges: Sequence[Range]) -> Iterator[MirrorFrame]:
     """One for each component of the fixed points; together their odd coordinates reach all configurations."""
     angles = [name not in problem.reals for name in problem.unknowns]
     alone = [k for k, j in enumerate(change.images) if j == k and change.signs[k] < 0 and angles[k]]
     squares = tuple(square_of(cone.difference) for cone in problem.cones)
     for sides in product((0, 2), repeat=len(alone)):
         turned = dict(zip(alone, sides, strict=True))
-        places, evens, reaches = dict[int, Place](), list[Range](), list[Fraction]()
+        places, evens, reaches = dict[int, SignedSum](), list[Range](), list[Fraction]()
         for k, (j, sign, half) in enumerate(zip(change.images, change.signs, change.halves, strict=True)):
             if j < k:
                 continue
             low, high = ranges[k]
             if j > k:
                 least, most = sorted(sign * end for end in ranges[j])
-                places[k] = Place(len(evens), 1, len(reaches), 1, 0)
-                places[j] = Place(len(evens), sign, len(reaches), -sign, 2 * half)
+                places[k] = SignedSum(len(evens), 1, len(reaches), 1, 0)
+                places[j] = SignedSum(len(evens), sign, len(reaches), -sign, 2 * half)
                 evens.append(TURN if angles[k] else ((low + least) / 2, (high + most) / 2))
                 reaches.append(Fraction(0) if angles[k] else Fraction(max(most - low, high - least)) / 2)
             elif sign > 0:
-                places[k] = Place(len(evens), 1, -1, 0, 0)
+                places[k] = SignedSum(len(evens), 1, -1, 0, 0)
                 evens.append(ranges[k])
             else:
-                places[k] = Place(-1, 0, len(reaches), 1, half + turned.get(k, 0))
+                places[k] = SignedSum(-1, 0, len(reaches), 1, half + turned.get(k, 0))
                 reaches.append(Fraction(0) if angles[k] else Fraction(max(-low, high)))
-        yield Frame(
+        yield MirrorFrame(
             problem, change, tuple(places[k] for k in range(len(places))), squares, tuple(evens), tuple(reaches)
         )

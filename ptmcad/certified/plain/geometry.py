@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from ptmcad.certified.plain.cones import ConeShape, shape
 from ptmcad.certified.plain.problem import Problem, Push
 from ptmcad.certified.plain.scaling import common_factors, over
-from ptmcad.certified.plain.springs import Shape, shape
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.certified.plain.turning import Turn, turns
 from ptmcad.question.slice import Axis
@@ -17,7 +17,7 @@ from ptmcad.text.expressions import Expression, constant
 
 
 @dataclass(frozen=True, slots=True)
-class Geometry:
+class FactoredProblem:
     """A problem with its factors.
 
     Attributes
@@ -33,12 +33,12 @@ class Geometry:
     factors: tuple[Expression, ...]
     equations: tuple[TrigonometricPolynomial, ...]
     slopes: tuple[tuple[TrigonometricPolynomial, ...], ...]
-    shapes: tuple[Shape, ...]
+    shapes: tuple[ConeShape, ...]
     turns: tuple[Turn, ...]
     pushes: tuple[Push, ...]
 
 
-def geometry(problem: Problem, axes: tuple[Axis, Axis] | None = None) -> Geometry:
+def geometry(problem: Problem, axes: tuple[Axis, Axis] | None = None) -> FactoredProblem:
     """The same for all charts of a problem.
 
     Parameters
@@ -51,7 +51,7 @@ def geometry(problem: Problem, axes: tuple[Axis, Axis] | None = None) -> Geometr
     if axes is not None and not problem.closing:
         factors, found = common_factors(problem, axes), () if problem.pushes else turns(problem, axes)
     equations = tuple(over(f, g) for f, g in zip(problem.equations, factors, strict=True))
-    return Geometry(
+    return FactoredProblem(
         problem,
         factors,
         equations,

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from itertools import combinations
 from typing import NamedTuple
 
-from ptmcad.certified.plain.springs import Matrix, Spring
+from ptmcad.certified.plain.cones import ConeFormulas, Matrix
 from ptmcad.formulas.graph import Formula
 
 
@@ -22,7 +22,7 @@ class Bent(NamedTuple):
 
     factor: Formula
     products: Matrix
-    spring: Spring
+    spring: ConeFormulas
 
 
 def determinant(matrix: Matrix) -> Formula:

@@ -1,6 +1,6 @@
 """The energy of a problem that an involution keeps, as a smooth function u(e, c, w) next to its fixed points.
 
-Guarantee: the formulas of an `Opening` are derivatives of u, exactly, all over its frame.
+Guarantee: the formulas of an `UnfoldedEnergy` are derivatives of u, exactly, all over its frame.
 
 Everything is written of polynomials in an odd r, as a part that is even plus r times another one, both functions of
 v = r^2. Of a spring's squared length N + r M, with that of its image N - r M, the two lengths have a product that is
@@ -19,7 +19,7 @@ from typing import NamedTuple
 from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Angle, Unknown
 from ptmcad.certified.plain.bounds import Range
-from ptmcad.certified.plain.frame import Frame
+from ptmcad.certified.plain.frame import MirrorFrame
 from ptmcad.certified.plain.involution import image_of
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial
@@ -32,7 +32,7 @@ QUARTER = (0.0, 1.5708)
 _HALF = Fraction(1, 2)
 
 
-class Parts(NamedTuple):
+class EvenOdd(NamedTuple):
     """Of a function the even part, and the odd one over r."""
 
     even: Formula
@@ -52,7 +52,7 @@ class Coordinates:
     coordinate : a variable that stands for v = r^2, or for the cosine of r where that is an angle, and r for its sine.
     """
 
-    frame: Frame
+    frame: MirrorFrame
     lead: int
     graph: Graph
     evens: tuple[Formula, ...]
@@ -115,24 +115,24 @@ class Coordinates:
         reach = self.frame.reaches[odd]
         return self.graph.constant(reach) if reach else 2 * self._near(odd)
 
-    def _wave(self, multiples: Multi) -> Parts:
+    def _wave(self, multiples: Multi) -> EvenOdd:
         """The cosine of a sum of odd angles, and its sine over r."""
         if self.is_turning:
-            before = Parts(self.coordinate, self.graph.constant(-1))
-            wave = Parts(self.graph.constant(1), self.graph.constant(0))
+            before = EvenOdd(self.coordinate, self.graph.constant(-1))
+            wave = EvenOdd(self.graph.constant(1), self.graph.constant(0))
             for _ in range(multiples[0]):  # Chebyshev's polynomials
-                before, wave = wave, Parts(*(2 * self.coordinate * f - g for f, g in zip(wave, before, strict=True)))
+                before, wave = wave, EvenOdd(*(2 * self.coordinate * f - g for f, g in zip(wave, before, strict=True)))
             return wave
         run, rise, near = self.graph.constant(1), self.graph.constant(0), self.graph.constant(1)
         for j, n in enumerate(multiples):
             for _ in range(abs(n)):
                 t = self.w[j] if n > 0 else -self.w[j]
                 run, rise, near = run - self.v * (rise * t), rise + run * t, near * self._near(j)
-        return Parts(2 * (run.squared() * near) - 1, 2 * (run * rise * near))
+        return EvenOdd(2 * (run.squared() * near) - 1, 2 * (run * rise * near))
 
-    def _power(self, powers: Multi) -> Parts:
+    def _power(self, powers: Multi) -> EvenOdd:
         """A product of powers of the unknowns that are no angles."""
-        total = Parts(self.graph.constant(1), self.graph.constant(0))
+        total = EvenOdd(self.graph.constant(1), self.graph.constant(0))
         for place, power in zip(self.frame.places, powers, strict=True):
             if not power:
                 continue
@@ -143,16 +143,16 @@ class Coordinates:
             for k in range(power + 1):
                 term = comb(power, k) * (_to(even, power - k) * _to(odd, k) * _to(self.v, k // 2))
                 some[k % 2] = some[k % 2] + term
-            total = self.times(total, Parts(*some))
+            total = self.times(total, EvenOdd(*some))
         return total
 
-    def times(self, one: Parts, other: Parts) -> Parts:
+    def times(self, one: EvenOdd, other: EvenOdd) -> EvenOdd:
         """A product."""
-        return Parts(
+        return EvenOdd(
             one.even * other.even + self.v * (one.odd * other.odd), one.even * other.odd + one.odd * other.even
         )
 
-    def parts(self, terms: Iterable[tuple[int, TrigonometricPolynomial]]) -> Parts:
+    def parts(self, terms: Iterable[tuple[int, TrigonometricPolynomial]]) -> EvenOdd:
         """Of a sum of multiples of polynomials."""
         size = len(self.w)
         # by odd multiples and powers, and by even multiples: of cos cos, sin cos, cos sin and sin sin
@@ -172,7 +172,7 @@ class Coordinates:
                 entry = known.setdefault((second, powers), {}).setdefault(first, [constant(0)] * 4)
                 for k, value in enumerate((c, d * s, d * t, c * (-s * t))):
                     entry[k] = entry[k] + value * factor
-        total = Parts(self.graph.constant(0), self.graph.constant(0))
+        total = EvenOdd(self.graph.constant(0), self.graph.constant(0))
         for (odds_, powers), by_even in known.items():
             even = odd = self.graph.constant(0)
             for multiples, (cc, sc, cs, ss) in by_even.items():
@@ -181,8 +181,8 @@ class Coordinates:
                 even = even + (expression_formula(self.graph, cc) * cosine + expression_formula(self.graph, sc) * sine)
                 odd = odd + (expression_formula(self.graph, cs) * cosine + expression_formula(self.graph, ss) * sine)
             wave = self._wave(odds_)
-            added = self.times(Parts(even * wave.even, odd * wave.odd), self._power(powers))
-            total = Parts(total.even + added.even, total.odd + added.odd)
+            added = self.times(EvenOdd(even * wave.even, odd * wave.odd), self._power(powers))
+            total = EvenOdd(total.even + added.even, total.odd + added.odd)
         return total
 
 
@@ -214,14 +214,14 @@ class _Spring(NamedTuple):
     image: int
     pull: Formula
     square: TrigonometricPolynomial
-    parts: Parts
+    parts: EvenOdd
     product: Formula
     inverse: Formula
     share: Formula
 
 
 @dataclass(frozen=True, slots=True)
-class Opening:
+class UnfoldedEnergy:
     """The derivatives of u.
 
     Attributes
@@ -241,7 +241,7 @@ class Opening:
     by_ratio: tuple[tuple[Formula, ...], ...]
 
 
-def coordinates(frame: Frame, lead: int) -> Coordinates:
+def coordinates(frame: MirrorFrame, lead: int) -> Coordinates:
     """In a graph of their own."""
     graph, count, size = Graph(), len(frame.places), len(frame.ranges)
     variables = [graph.variable(FIRST + k) for k in range(count + 1)]
@@ -296,7 +296,7 @@ def _lengths(springs: Sequence[_Spring], vectors: Sequence[tuple[Formula, Formul
     return values
 
 
-def opening(at: Coordinates, vectors: Sequence[tuple[Formula, Formula]]) -> Opening:
+def opening(at: Coordinates, vectors: Sequence[tuple[Formula, Formula]]) -> UnfoldedEnergy:
     """The derivatives in some coordinates.
 
     Parameters
@@ -320,7 +320,7 @@ def opening(at: Coordinates, vectors: Sequence[tuple[Formula, Formula]]) -> Open
     def put(f: Formula, *by: Formula) -> Formula:
         return substituted(derivative(f, *by) if by else f, values)
 
-    return Opening(
+    return UnfoldedEnergy(
         put(slope),
         tuple(map(put, g)),
         put(slope, at.coordinate),

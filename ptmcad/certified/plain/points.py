@@ -21,15 +21,15 @@ from ptmcad.certified.distinct import FULL_TURN, distinct
 from ptmcad.certified.parameters import values_at
 from ptmcad.certified.peaks import peaks
 from ptmcad.certified.plain.bounds import Range, ranges
-from ptmcad.certified.plain.chart import Chart, chart, principal_minors
+from ptmcad.certified.plain.chart import SpringChart, chart, principal_minors
 from ptmcad.certified.plain.covering import in_description
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS, Problem, problem_of
 from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.points import BUDGET, MIN_BOX_WIDTHS, PRECISIONS, QUICK_BUDGET, PointCount, boxed
-from ptmcad.certified.search import Boxes, Found, isolate
-from ptmcad.certified.system import Arguments, System, system
+from ptmcad.certified.search import Boxes, SearchResult, isolate
+from ptmcad.certified.system import Arguments, EquationSystem, system
 from ptmcad.errors import DegenerateSliceError
 from ptmcad.formulas.balls import ball, lower, run_arb, upper
 from ptmcad.formulas.graph import Formula
@@ -80,9 +80,9 @@ class PlainCounter:
     slice: Slice
     problem: Problem
     ranges: tuple[Range, ...]
-    all: System
-    stable: System
-    equations: System
+    all: EquationSystem
+    stable: EquationSystem
+    equations: EquationSystem
     hessian: Tape
     conditions: Tape
     pause: Callable[[], None] | None = None
@@ -249,7 +249,7 @@ class PlainCounter:
             return Zeros(none, none, len(found.left()) + len(found.unique))
         return Zeros(found.unique[kept], found.narrow[kept], len(found.left()))
 
-    def _isolated(self, arguments: Arguments, start: Boxes, finest: float, thorough: bool) -> Found:
+    def _isolated(self, arguments: Arguments, start: Boxes, finest: float, thorough: bool) -> SearchResult:
         """The search in boxes no finer than that; of more than three unknowns one of many parts."""
         equations, weights = self.equations.arguments(), np.ones(start.shape[1] // 2)
         most = MANY_BOXES if len(self.problem.unknowns) > MAX_UNKNOWNS else BUDGET
@@ -260,10 +260,10 @@ class PlainCounter:
                 self.pause()
             more = isolate(arguments, equations, found.waiting, (finest, part, MAX_OPEN_BOXES), weights)
             unique, narrow, small = (np.concatenate(pair) for pair in zip(found[:3], more[:3], strict=True))
-            found = Found(unique, narrow, small, more.waiting, found.used + more.used)
+            found = SearchResult(unique, narrow, small, more.waiting, found.used + more.used)
         return found
 
-    def _with_more_digits(self, x: Fraction, y: Fraction, stable: bool, found: Found) -> Found:
+    def _with_more_digits(self, x: Fraction, y: Fraction, stable: bool, found: SearchResult) -> SearchResult:
         """The same with the zeros, if any, in the boxes that floating point left open, where more digits tell them."""
         searched = self.stable if stable else self.all
         for precision, budget in zip(PRECISIONS, ARB_BUDGETS, strict=True):
@@ -428,7 +428,7 @@ def _counter(slice: Slice, problem: Problem, pause: Callable[[], None] | None) -
     return counter
 
 
-def _semidefinite(at: Chart) -> list[Formula]:
+def _semidefinite(at: SpringChart) -> list[Formula]:
     """What is not negative at minima."""
     whole = [at.determinant(at_equilibrium=True)] if len(at.equations) <= MAX_UNKNOWNS else []
     return [*principal_minors(at.matrix_at_equilibrium()), *whole]

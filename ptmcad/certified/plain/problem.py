@@ -39,7 +39,7 @@ FIRST = 2
 
 
 @dataclass(frozen=True, slots=True)
-class Cone:
+class SpringCone:
     """A spring with a free length, or several side by side: K, and the difference d of the ends' coordinates.
 
     Attributes
@@ -62,7 +62,7 @@ class Push:
     Attributes
     ----------
     weights : the derivatives of s by the unknowns, where its vector is s e, e turned by angles or not; as those of a
-        `Cone` with closed loops.
+        `SpringCone` with closed loops.
     """
 
     pull: Expression
@@ -110,7 +110,7 @@ class Problem:
     unknowns: tuple[str, ...]
     reals: tuple[str, ...]
     equations: tuple[TrigonometricPolynomial, ...]
-    cones: tuple[Cone, ...]
+    cones: tuple[SpringCone, ...]
     is_gradient: bool
     inequalities: tuple[Condition, ...] = ()
     stability: tuple[Condition, ...] = ()
@@ -236,7 +236,7 @@ def _with_springs(problem: Problem, slice: Slice, system: CompiledSystem, ring: 
         )
         return (*[(nothing, nothing)] * problem.closing, (x, y))
 
-    cones = tuple(Cone(name, pull, d, weights(d)) for name, pull, d in _pulls(slice, system, ring))
+    cones = tuple(SpringCone(name, pull, d, weights(d)) for name, pull, d in _pulls(slice, system, ring))
     found = excesses(slice.model, system, ring) if slice.count is Count.ADMISSIBLE else ()
     return replace(problem, cones=cones, excesses=tuple(found))
 

@@ -22,11 +22,11 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from ptmcad.certified.plain.bounds import Range
-from ptmcad.certified.plain.chart import Chart, chart, determinant, principal_minors
-from ptmcad.certified.plain.frame import Frame
-from ptmcad.certified.plain.geometry import Geometry
-from ptmcad.certified.plain.opening import Coordinates, Opening, coordinates, opening, stiffness
-from ptmcad.certified.plain.springs import Matrix
+from ptmcad.certified.plain.chart import SpringChart, chart, determinant, principal_minors
+from ptmcad.certified.plain.cones import Matrix
+from ptmcad.certified.plain.frame import MirrorFrame
+from ptmcad.certified.plain.geometry import FactoredProblem
+from ptmcad.certified.plain.opening import Coordinates, UnfoldedEnergy, coordinates, opening, stiffness
 from ptmcad.formulas.graph import Formula
 
 NEAR = Fraction(1, 1024)
@@ -36,7 +36,7 @@ MAX_ODD = 0.0314
 
 
 @dataclass(frozen=True, slots=True)
-class Fold:
+class SymmetricFold:
     """Where minima meet others, in coordinates of their own.
 
     Attributes
@@ -50,14 +50,14 @@ class Fold:
 
     name: str
     reason: str
-    at: Chart
+    at: SpringChart
     equations: tuple[Formula, ...]
     vanishing: tuple[Sequence[Formula], Sequence[Formula]]
     nonnegative: tuple[Formula, ...]
     ranges: tuple[Range, ...]
 
 
-def folds(exact: Geometry, frame: Frame, *, stable: bool, near: bool) -> Iterator[Fold]:
+def folds(exact: FactoredProblem, frame: MirrorFrame, *, stable: bool, near: bool) -> Iterator[SymmetricFold]:
     """Folds about a component of the fixed points, on it and off it.
 
     Parameters
@@ -70,18 +70,18 @@ def folds(exact: Geometry, frame: Frame, *, stable: bool, near: bool) -> Iterato
         yield fold if stable else replace(fold, name=kind, reason="equilibria meet: det H = 0", nonnegative=())
 
 
-def _fixed(exact: Geometry, frame: Frame) -> Iterator[Fold]:
+def _fixed(exact: FactoredProblem, frame: MirrorFrame) -> Iterator[SymmetricFold]:
     """Folds on the component itself."""
     place = coordinates(frame, 0)
     at = chart(exact, unknowns=frame.unknowns(place.evens, (), place.graph))
     there = at.matrix_at_equilibrium()
-    across = [stiffness(place, [spring.vector for spring in at.springs])] if len(frame.odds) == 1 else []
+    across = [stiffness(place, [cone.vector for cone in at.cones])] if len(frame.odds) == 1 else []
     balance = [at.equations[e[0][0]] for e in frame.evens]
     for parting in (False, True) if balance else (True,):
         block, other = (frame.odds, frame.evens) if parting else (frame.evens, frame.odds)
         singular, known = (determinant(frame.block(h, block, at.scales, over=True)) for h in (at.hessian, there))
         zero = across[0] if parting and across else singular
-        yield Fold(
+        yield SymmetricFold(
             f"{'pitchfork' if parting else 'fold'} of a stable equilibrium that is its own image",
             "a minimum parts with two others, or meets two saddles, that are each other's images"
             if parting
@@ -98,15 +98,15 @@ def _fixed(exact: Geometry, frame: Frame) -> Iterator[Fold]:
         )
 
 
-def _moved(exact: Geometry, frame: Frame, lead: int, near: bool) -> Fold:
+def _moved(exact: FactoredProblem, frame: MirrorFrame, lead: int, near: bool) -> SymmetricFold:
     """Folds off it, each for its image, too: where the odd coordinate of number ``lead`` is the largest."""
     place = coordinates(frame, lead)
     at = chart(exact, unknowns=place.unknowns())
     most = MAX_ODD if place.is_turning or frame.reaches[lead] else MAX_ODD / 2
-    opened = opening(place, [spring.vector for spring in at.springs])
+    opened = opening(place, [cone.vector for cone in at.cones])
     matrix = _matrix(place, opened, frame.block(at.hessian, frame.evens, at.scales, over=False))
     balance = [sum((s * at.equations[k] for k, s in e[1:]), start=at.equations[e[0][0]]) for e in frame.evens]
-    return Fold(
+    return SymmetricFold(
         "fold of a stable equilibrium that is not its own image",
         "a minimum meets a saddle: det H = 0 with no negative principal minor; so do their images",
         at,
@@ -117,7 +117,7 @@ def _moved(exact: Geometry, frame: Frame, lead: int, near: bool) -> Fold:
     )
 
 
-def _matrix(place: Coordinates, near: Opening, even: Matrix) -> Matrix:
+def _matrix(place: Coordinates, near: UnfoldedEnergy, even: Matrix) -> Matrix:
     """By the even coordinates, by c, and by w over r each time: symmetric, and singular where equilibria meet."""
     rows = [
         [*row, mixed, *(place.r * f[k] for f in near.by_even)]

@@ -21,7 +21,7 @@ from itertools import product
 
 from ptmcad.certified.plain.covering import in_half_angle
 from ptmcad.certified.plain.divisors import common_divisor, quotient, square_root
-from ptmcad.certified.plain.problem import Condition, Cone, Problem, Push
+from ptmcad.certified.plain.problem import Condition, Problem, Push, SpringCone
 from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial, Vector, waves
 from ptmcad.question.positivity import PROVED, Need, decide
 from ptmcad.question.slice import Axis
@@ -39,7 +39,7 @@ class _Line:
     turn : the multiples of the angles in that sum.
     """
 
-    cone: Cone
+    cone: SpringCone
     turn: Multi
     direction: Pair
     way: TrigonometricPolynomial
@@ -107,7 +107,7 @@ def _rational_norm(direction: Pair, axes: tuple[Axis, Axis]) -> Expression | Non
     return found if found.evaluate(x, y) > 0 else -found
 
 
-def _line(cone: Cone, axes: tuple[Axis, Axis]) -> _Line | None:
+def _line(cone: SpringCone, axes: tuple[Axis, Axis]) -> _Line | None:
     """The line along which a cone's vector stays, if there is one and it is proved to have a direction everywhere.
 
     A line that turns by an odd half of an angle is none of these.

@@ -19,9 +19,9 @@ from itertools import product
 
 from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Unknown
-from ptmcad.certified.plain.problem import Cone, Problem
+from ptmcad.certified.plain.cones import ConeFormulas, Pair
+from ptmcad.certified.plain.problem import Problem, SpringCone
 from ptmcad.certified.plain.scaling import common_factor, divided, largest_factor, over
-from ptmcad.certified.plain.springs import Pair, Spring
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.formulas.graph import Formula
 from ptmcad.question.slice import Axis
@@ -53,7 +53,7 @@ class Turn:
     factor: Expression
     arm: Expression
 
-    def moment(self, springs: Sequence[Spring], unknowns: Sequence[Unknown]) -> Formula:
+    def moment(self, springs: Sequence[ConeFormulas], unknowns: Sequence[Unknown]) -> Formula:
         """What vanishes at equilibria."""
         total, rest = _written(self.slope, unknowns)
         for at, (_, e, _) in zip(springs, self.levers, strict=True):
@@ -61,7 +61,7 @@ class Turn:
             total = total - at.pull * (ux * x + uy * y)
         return expression_formula(rest.graph, self.arm) * total + rest
 
-    def stiffness(self, springs: Sequence[Spring], unknowns: Sequence[Unknown], factor: Formula) -> Formula:
+    def stiffness(self, springs: Sequence[ConeFormulas], unknowns: Sequence[Unknown], factor: Formula) -> Formula:
         """The second derivative along w."""
         total, rest = _written(self.bend, unknowns)
         arm = expression_formula(rest.graph, self.arm)
@@ -113,7 +113,7 @@ def _derivative(f: TrigonometricPolynomial, weights: Sequence[int]) -> Trigonome
     return _along([f.derivative(i) for i in range(len(weights))], weights)
 
 
-def _lever(cone: Cone, weights: Sequence[int]) -> tuple[int, Pair]:
+def _lever(cone: SpringCone, weights: Sequence[int]) -> tuple[int, Pair]:
     """c and e with the fewest terms."""
     x, y = cone.difference
     dx, dy = (_derivative(f, weights) for f in (x, y))

@@ -19,7 +19,7 @@ LEVEL_SHRINKAGE = 0.5
 
 
 @dataclass(slots=True)
-class Headway:
+class SearchProgress:
     """The way to a tolerance, and how much of it is behind."""
 
     tolerance: float

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Unknown
-from ptmcad.certified.plain.problem import Cone
+from ptmcad.certified.plain.problem import SpringCone
 from ptmcad.certified.plain.scaling import over
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.formulas.graph import Formula, Graph, direction, inverse_length, length, meet
@@ -28,7 +28,7 @@ Matrix = tuple[tuple[Formula, ...], ...]
 Pair = tuple[TrigonometricPolynomial, TrigonometricPolynomial]
 
 
-class Spring(NamedTuple):
+class ConeFormulas(NamedTuple):
     """A spring in one configuration, with the vectors w_i by which it is in the equations, over these's factors.
 
     Of open chains w_i is the slope a_i of d by the i-th unknown over the factor of that one's equation.
@@ -88,7 +88,7 @@ class Spring(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Shape:
+class ConeShape:
     """What formulas of a spring are written of, exactly; by each unknown, over the factor of its equation.
 
     Attributes
@@ -110,7 +110,7 @@ class Shape:
     squares: tuple[tuple[TrigonometricPolynomial, ...], ...]
     crosses: tuple[tuple[TrigonometricPolynomial, ...], ...]
 
-    def spring(self, graph: Graph, unknowns: Sequence[Unknown], phi: Formula | None) -> Spring:
+    def spring(self, graph: Graph, unknowns: Sequence[Unknown], phi: Formula | None) -> ConeFormulas:
         """The formulas in a graph.
 
         Parameters
@@ -126,7 +126,7 @@ class Shape:
         ux, uy = (direction(dx, dy), direction(dy, dx)) if phi is None else (phi.cos(), phi.sin())
         vectors = tuple((written(a), written(b)) for a, b in self.weights)
         slopes = ((written(a), written(b)) for a, b in self.slopes)
-        return Spring(
+        return ConeFormulas(
             expression_formula(graph, self.pull),
             (dx, dy),
             (ux, uy),
@@ -143,11 +143,11 @@ class Shape:
         )
 
 
-def shape(cone: Cone, factors: Sequence[Expression]) -> Shape:
+def shape(cone: SpringCone, factors: Sequence[Expression]) -> ConeShape:
     """Of a spring, with the positive factors of the equations."""
     x, y = cone.difference
     weights = tuple((over(a, g), over(b, g)) for (a, b), g in zip(cone.weights, factors, strict=True))
-    return Shape(
+    return ConeShape(
         cone.pull,
         cone.difference,
         weights,
