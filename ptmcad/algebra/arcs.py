@@ -14,8 +14,7 @@ from collections.abc import Callable, Sequence
 
 from flint import arb, fmpq, fmpq_poly, fmpz_poly
 
-from ptmcad.algebra.real_roots import RealRoot, has_root_between, refine
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.real_roots import Interval, RealRoot, has_root_between, refine
 
 NODES = (fmpq(-7, 8), fmpq(0), fmpq(7, 8))
 """Where the arc meets the branch, on the panel as [-1, 1]."""

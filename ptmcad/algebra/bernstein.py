@@ -9,17 +9,17 @@ Reference: Farouki, Comput. Aided Geom. Design 29 (2012).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
-from math import lcm
-from typing import NamedTuple
+from itertools import product
+from typing import Any, NamedTuple
 
 from flint import fmpq, fmpz_mat, fmpz_poly
 
-from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.polynomials import UnivariatePolynomial, integral
+from ptmcad.algebra.real_roots import Interval
 
-Terms = Iterable[tuple[tuple[int, int, int], int]]
+Terms = Iterable[tuple[tuple[Any, ...], Any]]
 """Exponents of three variables, with coefficients."""
 
 
@@ -68,6 +68,13 @@ def halves(table: Table) -> tuple[Table, Table]:
     )
 
 
+def quarters(table: Table) -> Iterator[Table]:
+    """The coefficients over the quarters of the first two variables' ranges, up to positive factors."""
+    for across, up in product(_halving(table.degrees[0]), _halving(table.degrees[1])):
+        transposed = up.transpose()
+        yield table._replace(layers=tuple(across * layer * transposed for layer in table.layers))
+
+
 def sign(table: Table) -> int:
     """1 or -1 when the polynomial is proved to have this sign in the interior of the box; 0 when that is not decided.
 
@@ -101,7 +108,7 @@ def on_lines(tables: Iterable[Table], at: tuple[fmpq, fmpq]) -> UnivariatePolyno
     ----------
     tables : in powers of the variables.
     """
-    product = fmpz_poly([1])
+    total = fmpz_poly([1])
     for table in tables:
         columns = [at[0] ** j for j in range(table.degrees[1] + 1)]
         rows = [fmpq(0)] * (table.degrees[0] + 1)
@@ -109,9 +116,8 @@ def on_lines(tables: Iterable[Table], at: tuple[fmpq, fmpq]) -> UnivariatePolyno
             height = at[1] ** k
             for i in range(len(rows)):
                 rows[i] += sum((layer[i, j] * c * height for j, c in enumerate(columns) if layer[i, j]), fmpq(0))
-        scale = lcm(*(int(c.q) for c in rows))
-        product *= fmpz_poly([_times(c, scale) for c in rows])
-    return product
+        total *= fmpz_poly(integral(rows)[0])
+    return total
 
 
 def _combined(matrix: fmpz_mat, layers: Sequence[fmpz_mat]) -> Iterable[fmpz_mat]:
@@ -124,9 +130,8 @@ def _combined(matrix: fmpz_mat, layers: Sequence[fmpz_mat]) -> Iterable[fmpz_mat
 
 def _substitution(degree: int, interval: Interval) -> fmpz_mat:
     """From coefficients of powers to those over an interval: column i has (low + high s)^i (1 + s)^(degree - i)."""
-    low, high = interval
-    scale = lcm(int(low.q), int(high.q))
-    line, unit = fmpz_poly([_times(low, scale), _times(high, scale)]), fmpz_poly([scale, scale])
+    ends, scale = integral(interval)
+    line, unit = fmpz_poly(ends), fmpz_poly([scale, scale])
     return _columns([line**i * unit ** (degree - i) for i in range(degree + 1)])
 
 
@@ -147,7 +152,3 @@ def _columns(polynomials: Sequence[fmpz_poly]) -> fmpz_mat:
         for row, c in enumerate(p.coeffs()):
             found[row, column] = c
     return found
-
-
-def _times(value: fmpq, scale: int) -> int:
-    return int(value.p) * (scale // int(value.q))

@@ -24,8 +24,7 @@ from typing import Any, NamedTuple
 
 from flint import arb, arb_poly, arb_series, ctx, fmpq, fmpz_poly
 
-from ptmcad.algebra.real_roots import RealRoot, refine
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.real_roots import Interval, RealRoot, refine
 
 DERIVATIVE_BITS = 24
 """Bits of the curve's derivative at the panel's middle that have to be right for the rest to make sense."""
@@ -222,7 +221,7 @@ def _proved(local: Sequence[arb_poly], series: arb_poly, start: arb, wanted: arb
     order = max(series.degree(), 0)
     steepness = abs(local[1][0])
     length, beyond = _length(local, series, steepness, wanted)
-    residual, slope = _along(local, series, length)
+    residual, slope = _along(local, series, length, length)
     # the series solves the equation to its order, so but for rounding the residual starts there
     if (
         len(local) > 2
@@ -308,10 +307,7 @@ def _series(local: Sequence[arb_poly], order: int) -> arb_poly:
         length = min(2 * known, order + 1)
         # the value begins where the known coefficients end, so the slope needs only as many as are new
         new = max(1, length - known)
-        value, slope = local[-1].truncate(length), arb_poly([0])
-        for b in reversed(local[:-1]):
-            slope = (slope * w).truncate(new) + value.truncate(new)
-            value = (value * w).truncate(length) + b.truncate(length)
+        value, slope = _along(local, w, length, new)
         step = (value * _inverse(slope, new - 1)).truncate(length)
         w = _exact(w - step)
         if known == order + 1:
@@ -339,12 +335,12 @@ def _inverse(p: arb_poly, order: int) -> arb_poly:
     return _exact(arb_poly(inverse.coeffs()))
 
 
-def _along(local: Sequence[arb_poly], w: arb_poly, length: int) -> tuple[arb_poly, arb_poly]:
+def _along(local: Sequence[arb_poly], w: arb_poly, length: int, of_slope: int) -> tuple[arb_poly, arb_poly]:
     """The first coefficients of p and of its derivative by v along the approximation."""
     value, slope = local[-1].truncate(length), arb_poly([0])
     for b in reversed(local[:-1]):
-        slope = (slope * w + value).truncate(length)
-        value = (value * w + b).truncate(length)
+        slope = (slope * w).truncate(of_slope) + value.truncate(of_slope)
+        value = (value * w).truncate(length) + b.truncate(length)
     return value, slope
 
 

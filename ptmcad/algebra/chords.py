@@ -49,8 +49,7 @@ def side_of_chord(in_v: Sequence[fmpz_poly], start: fmpq, origin: RealRoot, slop
     minimal = fmpq_poly(origin.polynomial.coeffs())
     coefficients: list[arb] = []
     with ctx.workprec(_BITS):
-        root = refine(origin, fmpq(1, 2**_BITS))
-        ball = arb(root.low).union(arb(root.high))
+        ball = refine(origin, fmpq(1, 2**_BITS)).ball
         for k in range(max(rows, default=-1) + 1):
             row = rows.get(k, {})
             rest = fmpq_poly([row.get(i, fmpq(0)) for i in range(max(row, default=-1) + 1)]) % minimal

@@ -22,7 +22,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
-from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
+from flint import arb_poly, ctx, fmpq, fmpz_poly
 
 from ptmcad.algebra.branches import avoids_zero
 from ptmcad.algebra.polynomials import (
@@ -34,6 +34,7 @@ from ptmcad.algebra.polynomials import (
     univariate,
 )
 from ptmcad.algebra.real_roots import (
+    Interval,
     RealRoot,
     disjoint,
     inside,
@@ -44,7 +45,6 @@ from ptmcad.algebra.real_roots import (
     squarefree_part,
 )
 from ptmcad.algebra.resultants import discriminant
-from ptmcad.algebra.window import Interval
 
 MAX_WORK = 2 * 10**10
 """Of a discriminant: values, times the cube of the degree, times the bits of a coefficient; some twenty seconds."""
@@ -278,8 +278,7 @@ def _undecided(rows: Sequence[UnivariatePolynomial], there: RealRoot, fibre: Int
     """A part of the fibre where a polynomial may be zero over an abscissa that is known in a short interval, as if it
     were a root; None when it is proved to be zero nowhere."""
     with ctx.workprec(BITS):
-        abscissa = arb(there.low).union(arb(there.high))
-        p = arb_poly([arb_poly(row)(abscissa) for row in rows])
+        p = arb_poly([arb_poly(row)(there.ball) for row in rows])
         parts = [fibre]
         while parts:
             low, high = parts.pop()

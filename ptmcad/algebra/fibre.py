@@ -26,7 +26,9 @@ from flint import (
 )
 
 from ptmcad.algebra.groebner import Monomial, shifted
+from ptmcad.algebra.polynomials import integral
 from ptmcad.algebra.quotient import standard_monomials
+from ptmcad.algebra.trigonometric import angle_sum
 from ptmcad.errors import LimitReached
 
 RationalPolynomial = Mapping[Monomial, fmpq]
@@ -83,14 +85,14 @@ def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: WorkLimi
         When it is more work than `most`.
     """
     context = fmpz_mpoly_ctx.get(tuple(f"u{k}" for k in range(unknowns)), Ordering.degrevlex)
-    integral = []
+    polynomials = []
     for equation in equations:
-        common = math.lcm(*(int(c.q) for c in equation.values()))
-        integral.append(context.from_dict({m: int((c * common).p) for m, c in equation.items()}))
+        numerators, _ = integral(equation.values())
+        polynomials.append(context.from_dict(dict(zip(equation, numerators, strict=True))))
     if most is None:
-        found = fmpz_mpoly_vec(integral, context).buchberger_naive()
+        found = fmpz_mpoly_vec(polynomials, context).buchberger_naive()
     else:
-        limited: Any = fmpz_mpoly_vec(integral, context).buchberger_naive(limits=most[1:4])  # a pair
+        limited: Any = fmpz_mpoly_vec(polynomials, context).buchberger_naive(limits=most[1:4])  # a pair
         found, done = limited
         if not done:
             raise LimitReached("the basis of the equations grows beyond what is counted at once")
@@ -176,31 +178,30 @@ def combined_angles(algebra: FibreAlgebra, matrix: Sequence[Sequence[int]], real
     Coordinates of the sums, the real unknowns, the coordinates of the angles.
     """
     size, angles = algebra.dimension, len(matrix)
-    one = fmpq_mat(size, size, [fmpq(int(i == j)) for i in range(size) for j in range(size)])
-    sums: list[fmpq_mat] = []
-    for row in matrix:
-        cosine, sine = one, one * fmpq(0)
-        for k, multiple in enumerate(row):
-            c, s = algebra.multiplication[2 * k], algebra.multiplication[2 * k + 1] * fmpq(-1 if multiple < 0 else 1)
-            for _ in range(abs(multiple)):
-                cosine, sine = cosine * c - sine * s, sine * c + cosine * s
-        sums += [cosine, sine]
+    one = scalar_matrix(size, fmpq(1))
     own, real = algebra.multiplication[: 2 * angles], algebra.multiplication[2 * angles :]
+    turns = list(zip(own[::2], own[1::2], strict=True))
+    sums = [c for row in matrix for c in angle_sum(turns, row, one)]
     basis = tuple((*(0,) * (2 * angles), *m[2 * angles :], *m[: 2 * angles]) for m in algebra.basis)
     return FibreAlgebra(basis, (*sums, *real[:reals], *own), algebra.by_msolve)
 
 
 def evaluate(algebra: FibreAlgebra, p: RationalPolynomial) -> fmpq_mat:
-    """The matrix of multiplication by a polynomial in the unknowns."""
+    """The matrix of multiplication by a polynomial in the unknowns, or in the first of them."""
     size = algebra.dimension
     total = fmpq_mat(size, size)
     for monomial, c in p.items():
-        term = fmpq_mat(size, size, [c if i == j else fmpq(0) for i in range(size) for j in range(size)])
-        for matrix, e in zip(algebra.multiplication, monomial, strict=True):
+        term = scalar_matrix(size, c)
+        for matrix, e in zip(algebra.multiplication, monomial, strict=False):
             for _ in range(e):
                 term = matrix * term
         total = total + term
     return total
+
+
+def scalar_matrix(size: int, value: fmpq) -> fmpq_mat:
+    """A multiple of the identity."""
+    return fmpq_mat(size, size, [value if i == j else fmpq(0) for i in range(size) for j in range(size)])
 
 
 class UnivariateRepresentation(NamedTuple):
@@ -249,7 +250,7 @@ def univariate_representation(algebra: FibreAlgebra, multiple: bool = False) -> 
         radical = characteristic // characteristic.gcd(characteristic.derivative())
         degree = radical.degree()
         if degree < size and different is None:
-            different = hermite_matrix(algebra, evaluate(algebra, {(0,) * count: fmpq(1)})).rank()
+            different = hermite_matrix(algebra, scalar_matrix(size, fmpq(1))).rank()
         if degree not in (size, different):
             continue
         powers = [denominator**i for i in range(size + 1)]
@@ -291,8 +292,7 @@ def _basis_traces(algebra: FibreAlgebra) -> tuple[fmpz_mat, fmpz]:
         rest = shifted(monomial, k, -1)
         step = algebra.multiplication[k]
         products[monomial] = products[rest] * step if any(rest) else step
-        entries = products[monomial].entries()
-        traces.append(sum(entries[:: size + 1], fmpq(0)))
+        traces.append(sum(products[monomial].entries()[:: size + 1], fmpq(0)))
     row, denominator = fmpq_mat(1, size, traces).numer_denom()
     return row, denominator
 

@@ -12,9 +12,9 @@ The bases of this package have about seven elements; the whole computation takes
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from operator import add
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ptmcad.algebra.polynomials import Coefficient, UnknownPolynomial, common_factor
 
@@ -90,6 +90,24 @@ def groebner_basis(generators: Sequence[UnknownPolynomial], order: MonomialOrder
 def shifted(monomial: Monomial, k: int, by: int = 1) -> Monomial:
     """The monomial times the unknown number k to the power ``by``."""
     return (*monomial[:k], monomial[k] + by, *monomial[k + 1 :])
+
+
+def powers_of(factors: Sequence[Any], one: Any) -> Callable[[Monomial], Any]:
+    """The products of powers of factors that commute, by their exponents; each is computed once, from a divisor.
+
+    Parameters
+    ----------
+    one : the empty product; or a vector that matrices, the factors, are applied to.
+    """
+    known: dict[Monomial, Any] = {}
+
+    def power(monomial: Monomial) -> Any:
+        if monomial not in known:
+            k = next((k for k, e in enumerate(monomial) if e), None)
+            known[monomial] = one if k is None else factors[k] * power(shifted(monomial, k, -1))
+        return known[monomial]
+
+    return power
 
 
 def _join(a: Monomial, b: Monomial) -> Monomial:

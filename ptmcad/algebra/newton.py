@@ -49,8 +49,7 @@ class Newton(NamedTuple):
             else:  # the root, or too near to it to tell
                 break
         # by its own means as far as the ball is to be narrow, where Newton's would not be at this precision
-        short = refine(root, fmpq(1, 2 ** (ctx.prec - 8)) * (abs(root.middle) + 1))
-        return arb(short.low).union(arb(short.high))
+        return refine(root, fmpq(1, 2 ** (ctx.prec - 8)) * (abs(root.middle) + 1)).ball
 
     def _narrowed(self, ball: arb) -> arb | None:
         """The root of a ball in one of at most the square root of the precision's unit; None when that fails."""

@@ -103,8 +103,7 @@ class RealField:
 
     def evaluation(self) -> RingEvaluation:
         """In balls, at the root, whose enclosure is about as wide as one of the context's precision."""
-        short = refine(self.root, fmpq(1, 2**ctx.prec) * (abs(self.root.middle) + 1))
-        generator = arb(short.low).union(arb(short.high))
+        generator = refine(self.root, fmpq(1, 2**ctx.prec) * (abs(self.root.middle) + 1)).ball
         return RingEvaluation(lambda p: arb_poly(p)(generator), lambda ball: ball, lambda ball: 1 / ball)
 
 
@@ -197,7 +196,7 @@ class FieldElement:
 
 
 def polynomial_at(field: RealField, at: Sequence[FieldElement], p: Mapping[tuple[int, ...], fmpq]) -> FieldElement:
-    """The value of a polynomial at elements of a field.
+    """The value of a polynomial, in all of them or in the first, at elements of a field.
 
     Parameters
     ----------
@@ -209,7 +208,7 @@ def polynomial_at(field: RealField, at: Sequence[FieldElement], p: Mapping[tuple
         total = ring.embed(fmpq_poly([0]))
         for monomial, c in p.items():
             term = ring.embed(fmpq_poly([c]))
-            for part, exponent in zip(parts, monomial, strict=True):
+            for part, exponent in zip(parts, monomial, strict=False):
                 for _ in range(exponent):
                     term = ring.reduce(term * ring[part])
             total += term

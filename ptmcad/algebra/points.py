@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import prod
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
@@ -82,7 +83,7 @@ def value_at(point: RealPoint, p: RationalPolynomial) -> FieldElement:
 def real_values(algebra: FibreAlgebra, p: RationalPolynomial, bound: fmpq | None = None) -> tuple[RealRoot, ...]:
     """The real numbers, in (-bound, bound), that p takes at complex points of the fibre, in increasing order."""
     factors = evaluate(algebra, p).charpoly().numer().factor()[1]
-    radical = _product([factor for factor, _ in factors])
+    radical = prod((factor for factor, _ in factors), start=fmpz_poly([1]))
     limit = root_bound(radical) if bound is None else bound
     return isolate(radical, -limit, limit)
 
@@ -99,10 +100,3 @@ def _owns(factor: fmpz_poly, root: RealRoot) -> bool:
     if root.is_rational:
         return sign_at(factor, root.low) == 0
     return sign_at(factor, root.low) != sign_at(factor, root.high)
-
-
-def _product(factors: Sequence[fmpz_poly]) -> fmpz_poly:
-    product = fmpz_poly([1])
-    for factor in factors:
-        product *= factor
-    return product

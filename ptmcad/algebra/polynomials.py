@@ -7,7 +7,7 @@ function answers in that of its arguments.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import reduce
 
@@ -68,9 +68,9 @@ def common_factor(polynomials: Iterable[fmpz_mpoly]) -> fmpz_mpoly:
     return ZERO if common is None else common
 
 
-def irreducible_factors(p: Coefficient) -> list[Coefficient]:
-    """The irreducible factors over Q that are not constant, primitive and without multiplicity."""
-    return [factor for factor, _ in factors_with_multiplicity(p)]
+def irreducible_factors(*polynomials: Coefficient) -> list[Coefficient]:
+    """The different irreducible factors over Q that are not constant, primitive and without multiplicity."""
+    return list({str(f): f for p in polynomials for f, _ in factors_with_multiplicity(p)}.values())
 
 
 def factors_with_multiplicity(p: Coefficient) -> list[tuple[Coefficient, int]]:
@@ -96,13 +96,18 @@ def multiplicity(p: Coefficient, factor: Coefficient) -> int:
 
 def _primitive(p: fmpq_mpoly, ring: fmpz_mpoly_ctx) -> fmpz_mpoly:
     """The polynomial over Z without common factor, the coefficient of the highest exponents positive."""
-    terms = [(tuple(map(int, powers)), c) for powers, c in p.terms()]
-    scale = math.lcm(*(int(c.q) for _, c in terms))
-    integers = {powers: int(c.p) * (scale // int(c.q)) for powers, c in terms}
+    integers = dict(zip((tuple(map(int, powers)) for powers in p.monoms()), integral(p.coeffs())[0], strict=True))
     content = math.gcd(*integers.values())
     if integers[max(integers)] < 0:
         content = -content
     return ring.from_dict({powers: c // content for powers, c in integers.items()})
+
+
+def integral(values: Iterable[fmpq]) -> tuple[list[int], int]:
+    """Rational numbers as integers over their least common denominator."""
+    known = [(int(value.p), int(value.q)) for value in values]
+    scale = math.lcm(*(q for _, q in known))
+    return [p * (scale // q) for p, q in known], scale
 
 
 def from_terms(terms: Iterable[tuple[int, int, Fraction]]) -> tuple[fmpz_mpoly, int]:
@@ -159,16 +164,26 @@ def coefficients_in(p: fmpz_mpoly, variable: int) -> tuple[fmpz_poly, ...]:
 
 def univariate(coefficients: tuple[fmpz_poly, ...], at: fmpq) -> fmpz_poly:
     """The integer polynomial proportional, by a positive factor, to sum_j c_j(at) v^j."""
-    values = [fmpq(c(at)) for c in coefficients]
-    scale = math.lcm(*(int(value.q) for value in values))
-    return fmpz_poly([int(value.p) * (scale // int(value.q)) for value in values])
+    return fmpz_poly(integral([fmpq(c(at)) for c in coefficients])[0])
 
 
-def evaluate(p: fmpz_mpoly, x: fmpq, y: fmpq) -> fmpq:
+def evaluate(p: fmpz_mpoly, *at: fmpq) -> fmpq:
     """The exact value at a rational point."""
     if p.is_constant():  # as most parameters of a slice are
         return fmpq(p.coeffs()[0]) if p else fmpq(0)
-    return sum((fmpq(c) * x**i * y**j for (i, j), c in p.terms()), fmpq(0))
+    terms = ((fmpq(c), map(pow, at, map(int, powers))) for powers, c in p.terms())
+    return sum((math.prod(factors, start=c) for c, factors in terms), fmpq(0))
+
+
+def point_values(parameters: Mapping[str, Ratio], at: Sequence[fmpq]) -> dict[str, fmpq]:
+    """Ratios at a rational point.
+
+    Raises
+    ------
+    ZeroDivisionError
+        Where a denominator vanishes there.
+    """
+    return {name: evaluate(above, *at) / evaluate(below, *at) for name, (above, below) in parameters.items()}
 
 
 UnknownPolynomial = dict[tuple[int, ...], fmpz_mpoly]

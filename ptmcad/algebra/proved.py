@@ -7,7 +7,6 @@ so none was lost.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from itertools import combinations
 from time import monotonic
@@ -15,9 +14,10 @@ from time import monotonic
 from flint import fmpq, fmpq_mat
 
 from ptmcad.algebra.fibre import FibreAlgebra, RationalPolynomial, bezout_bound, fibre_of_rules
-from ptmcad.algebra.groebner import Monomial
+from ptmcad.algebra.groebner import Monomial, powers_of
 from ptmcad.algebra.membership import Rules, lies_in_ideal, order_key
 from ptmcad.algebra.msolve import MsolveError, Terms, groebner_basis
+from ptmcad.algebra.polynomials import integral
 from ptmcad.algebra.quotient import standard_monomials
 from ptmcad.errors import LimitReached
 
@@ -73,11 +73,8 @@ def _clock(seconds: float) -> Callable[[], None]:
 
 def _text(p: RationalPolynomial) -> str:
     """An equation for msolve, with integer coefficients."""
-    common = math.lcm(*(int(c.q) for c in p.values()))
-    terms = []
-    for m, c in p.items():
-        powers = "".join(f"*u{k}^{e}" for k, e in enumerate(m) if e)
-        terms.append(f"{(c * common).p}{powers}")
+    powers = ("".join(f"*u{k}^{e}" for k, e in enumerate(m) if e) for m in p)
+    terms = [f"{c}{power}" for c, power in zip(integral(p.values())[0], powers, strict=True)]
     return "+".join(terms).replace("+-", "-")
 
 
@@ -116,14 +113,7 @@ def _check_quotient(equations: Sequence[RationalPolynomial], algebra: FibreAlgeb
     if not algebra.dimension:
         return
     one = fmpq_mat(algebra.dimension, 1, [fmpq(int(i == 0)) for i in range(algebra.dimension)])
-    powers: dict[Monomial, fmpq_mat] = {}
-
-    def value(m: Monomial) -> fmpq_mat:
-        if m not in powers:
-            k = next((k for k, e in enumerate(m) if e), None)
-            powers[m] = one if k is None else algebra.multiplication[k] * value((*m[:k], m[k] - 1, *m[k + 1 :]))
-        return powers[m]
-
+    value = powers_of(algebra.multiplication, one)
     for equation in equations:
         pause()
         total = one * fmpq(0)

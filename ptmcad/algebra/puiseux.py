@@ -215,8 +215,7 @@ def _regular(chart: _PuiseuxChart, beside: Beside) -> list[arb_poly]:
 
 def _is_branch(chart: _PuiseuxChart, tube: SeriesTube, s: arb, root: RealRoot) -> bool:
     """Whether the root over an abscissa is in the tube, which is there the only one in it."""
-    near = refine(root, (tube.reach * s**chart.exponent / 2**_ROOM_BITS).mid().fmpq())
-    height = arb(near.low).union(arb(near.high))
+    height = refine(root, (tube.reach * s**chart.exponent / 2**_ROOM_BITS).mid().fmpq()).ball
     w = (height - chart.along(s)) / s**chart.exponent
     return bool(abs(w - tube.series(s / arb(tube.share))) < tube.reach)
 

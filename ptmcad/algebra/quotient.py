@@ -159,7 +159,12 @@ def element(algebra: QuotientAlgebra, p: UnknownPolynomial) -> Vector:
 
 def norm(algebra: QuotientAlgebra, p: UnknownPolynomial) -> Ratio:
     """The product of p over all complex solutions, as a rational function of the axes."""
-    return determinant([[ratio(c, denominator) for c in row] for row, denominator in multiples(algebra, p)])
+    return determinant(matrix_of(multiples(algebra, p)))
+
+
+def matrix_of(rows: Sequence[Vector]) -> list[list[Ratio]]:
+    """Rows over common denominators as a matrix over Q(x, y)."""
+    return [[ratio(c, denominator) for c in row] for row, denominator in rows]
 
 
 def multiples(algebra: QuotientAlgebra, p: UnknownPolynomial) -> tuple[Vector, ...]:

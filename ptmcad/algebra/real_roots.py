@@ -17,6 +17,9 @@ _LONG_BITS = 1000
 """Bits of coefficients from which on values are not computed exactly where a ball will do."""
 
 
+Interval = tuple[fmpq, fmpq]
+
+
 class RealRoot(NamedTuple):
     """The only root of the squarefree ``polynomial`` in the open interval (low, high), or low itself if low == high."""
 
@@ -32,6 +35,11 @@ class RealRoot(NamedTuple):
     @property
     def middle(self) -> fmpq:
         return (self.low + self.high) / 2
+
+    @property
+    def ball(self) -> arb:
+        """Around the isolating interval."""
+        return arb(self.low).union(arb(self.high))
 
 
 def sign(value: fmpq | fmpz) -> int:
@@ -190,6 +198,11 @@ def is_root_of(divisor: fmpz_poly, root: RealRoot) -> bool:
     return not sign_at(divisor, root.low) if root.is_rational else has_root_between(divisor, root.low, root.high)
 
 
+def vanishes_at(p: fmpz_poly, root: RealRoot) -> bool:
+    """Whether any polynomial has the root."""
+    return not p or is_root_of(p.gcd(root.polynomial), root)
+
+
 def disjoint(roots: Sequence[RealRoot]) -> tuple[RealRoot, ...]:
     """Different real numbers in increasing order, with closed isolating intervals that are pairwise disjoint."""
     ordered = sorted(roots, key=lambda r: (r.low, r.high))
@@ -209,7 +222,7 @@ def disjoint(roots: Sequence[RealRoot]) -> tuple[RealRoot, ...]:
     return tuple(ordered)
 
 
-def inside(roots: Sequence[RealRoot], interval: tuple[fmpq, fmpq]) -> tuple[RealRoot, ...]:
+def inside(roots: Sequence[RealRoot], interval: Interval) -> tuple[RealRoot, ...]:
     """The same roots, in order, all inside an open interval, with closed isolating intervals inside it too."""
     inner = list(roots)
     while inner and inner[0].low <= interval[0]:

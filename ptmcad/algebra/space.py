@@ -13,9 +13,10 @@ from math import gcd
 from flint import fmpq, fmpz_poly
 
 from ptmcad.algebra import orders, resultants
+from ptmcad.algebra.bernstein import over, sign, table_of
 from ptmcad.algebra.polynomials import PLANE, Coefficient, UnivariatePolynomial, coefficients_in, irreducible_factors
+from ptmcad.algebra.real_roots import Interval
 from ptmcad.algebra.resultants import Check, interpolate_rows, nothing
-from ptmcad.algebra.window import Interval
 
 Rows = Sequence[Coefficient]
 """A polynomial in v over Z[u, w]: its coefficients, constant first, the last one not zero."""
@@ -88,33 +89,9 @@ def common_zeros(rows: Rows, check: Check = nothing) -> list[UnivariatePolynomia
 def nowhere_zero(p: Coefficient, box: Sequence[Interval]) -> bool:
     """Whether an element of Z[x, y, z] is proved to have no zero in an open box, by its Bernstein coefficients there.
 
-    False means that the test did not decide. If all Bernstein coefficients are >= 0 and one is positive, then so is p
-    in the interior; with c + d t over 1 + t for a variable between c and d they show as coefficients of powers of t,
-    up to binomials.
+    False means that the test did not decide.
     """
-    table = {tuple(map(int, powers)): int(c) for powers, c in p.terms()}
-    for variable, (low, high) in enumerate(box):
-        scale = int(low.q) * int(high.q)
-        ends = (int(low * scale), int(high * scale), scale)
-        table = _substituted(table, variable, ends)
-    values = table.values()
-    return all(c >= 0 for c in values) or all(c <= 0 for c in values)
-
-
-def _substituted(
-    table: dict[tuple[int, ...], int], variable: int, ends: tuple[int, int, int]
-) -> dict[tuple[int, ...], int]:
-    """(scale (1 + t))^n times the polynomial at (low + high t) / (scale (1 + t)), by exponents."""
-    low, high, scale = ends
-    degree = max(powers[variable] for powers in table)
-    line, unit = fmpz_poly([low, high]), fmpz_poly([scale, scale])
-    images = [line**i * unit ** (degree - i) for i in range(degree + 1)]
-    found: dict[tuple[int, ...], int] = {}
-    for powers, c in table.items():
-        for k, factor in enumerate(images[powers[variable]].coeffs()):
-            place = (*powers[:variable], k, *powers[variable + 1 :])
-            found[place] = found.get(place, 0) + c * int(factor)
-    return {place: c for place, c in found.items() if c}
+    return sign(over(table_of(p.terms()), box)) != 0
 
 
 def _bits(row: Coefficient) -> int:

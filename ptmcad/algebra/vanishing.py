@@ -22,8 +22,7 @@ def vanishing_divisor(
     ----------
     p : in the unknowns; it may have fewer than the algebra.
     """
-    width = len(representation.form)
-    if evaluate(algebra, {(*m, *(0,) * (width - len(m))): c for m, c in p.items()}).det() != 0:
+    if evaluate(algebra, p).det() != 0:
         return None
     degree = max((sum(m) for m in p), default=0)
     minimal = fmpq_poly(representation.minimal)

@@ -16,6 +16,7 @@ from flint import fmpq
 
 from ptmcad.algebra.bases import plan_text
 from ptmcad.algebra.fibre import WorkLimit
+from ptmcad.algebra.polynomials import point_values
 from ptmcad.ask.classification import check_taken, flat_loops
 from ptmcad.ask.engines import is_certified
 from ptmcad.ask.forecast import QUICK, Forecast, curve_text, forecast, seconds_to_discriminant, way_text
@@ -25,7 +26,7 @@ from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, Limi
 from ptmcad.exact.models import ParametricSystem
 from ptmcad.exact.point_system import degree_bound, none_is_stable, solutions_at
 from ptmcad.exact.sizes import sizes
-from ptmcad.exact.stages import SliceProblem, point_values, problem_of, prove_regular
+from ptmcad.exact.stages import SliceProblem, problem_of, prove_regular
 from ptmcad.exact.survey import Survey, survey
 from ptmcad.exact.witness import SHARES, points
 from ptmcad.model import ClosedMechanism, Mechanism, ptm

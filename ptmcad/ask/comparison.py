@@ -15,7 +15,7 @@ from typing import Any
 
 from flint import fmpq
 
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.real_roots import Interval
 from ptmcad.answer.comparison import Change, Comparison
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Cell, Component, Region, RegionMap, Status

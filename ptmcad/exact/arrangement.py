@@ -6,14 +6,14 @@ Guarantee: exact, and that of the slice's region map.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import prod
 from typing import NamedTuple
 
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import disjoint, has_root_between, isolate, squarefree_part
+from ptmcad.algebra.real_roots import Interval, disjoint, has_root_between, isolate, squarefree_part
 from ptmcad.algebra.resultants import Check, nothing
-from ptmcad.algebra.window import Interval
 from ptmcad.answer.arrangement import Arrangement
 from ptmcad.answer.regionmap import Merge, Wall
 from ptmcad.exact.cad.curves import FibredCurve
@@ -118,9 +118,7 @@ def _levels_at(curves: Sequence[FibredCurve], edge: fmpq, stack: StackData, fibr
 
     Not all cells reach the edge along an arc: two walls may end in one point of it.
     """
-    product = UnivariatePolynomial([1])
-    for c in curves:
-        product *= c.fibre(edge)
+    product = prod((c.fibre(edge) for c in curves), start=UnivariatePolynomial([1]))
     roots = disjoint(isolate(squarefree_part(product), *fibre))
     levels = []
     for height in heights_between([(_NO_WALL, r) for r in roots], fibre):

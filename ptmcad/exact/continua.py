@@ -13,10 +13,10 @@ from itertools import product
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import Coefficient, Ratio, evaluate, multiplicity
+from ptmcad.algebra.polynomials import Coefficient, Ratio, common_factor, evaluate, multiplicity, point_values
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.answer.regionmap import Continuum
-from ptmcad.exact.models.system import ParametricSystem, SliceSystem, common_on_slice, polynomial_at
+from ptmcad.exact.models.system import ParametricSystem, SliceSystem, element_on_slice, polynomial_at
 from ptmcad.exact.point_system import DegeneratePoint, point_system
 
 
@@ -40,7 +40,7 @@ def continuum(
             return None
         if not all(_is_infinite(system, parameters, at) for at in _points(curve)):
             return None
-    slopes = (common_on_slice(system, slope, parameters) for slope in _sums(system.equations))
+    slopes = (common_factor(element_on_slice(system, p, parameters).values()) for p in _sums(system.equations))
     is_free = has_minima(system) and any(divmod(slope, curve)[1].is_zero() for slope in slopes)
     return Continuum.PROVED if is_free else Continuum.POSSIBLE
 
@@ -59,12 +59,10 @@ def _sums(equations: Sequence[TrigonometricPolynomial]) -> Iterator[Trigonometri
 
 def _is_infinite(system: ParametricSystem, parameters: Mapping[str, Ratio], at: tuple[fmpq, fmpq]) -> bool:
     """Whether there are infinitely many solutions at a point, complex ones included."""
-    values = {}
-    for name, (numerator, denominator) in parameters.items():
-        below = evaluate(denominator, *at)
-        if not below:
-            return False
-        values[name] = evaluate(numerator, *at) / below
+    try:
+        values = point_values(parameters, at)
+    except ZeroDivisionError:  # a parameter has none there
+        return False
     try:
         point_system(system, values)
     except DegeneratePoint:

@@ -23,11 +23,10 @@ from itertools import combinations
 from math import gcd
 
 from ptmcad.algebra.polynomials import Coefficient, UnivariatePolynomial, coefficients_in, irreducible_factors
-from ptmcad.algebra.real_roots import RealRoot
+from ptmcad.algebra.real_roots import Interval, RealRoot
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.algebra.space import Rows, at_value, common_zeros, discriminant, predicted_work, resultant, rows_in
-from ptmcad.algebra.window import Interval
-from ptmcad.exact.cad.curves import curve
+from ptmcad.exact.cad.curves import curve, deflation
 from ptmcad.exact.cad.projection import predicted_cost, project
 
 MAX_WORK = 5 * 10**10
@@ -74,15 +73,13 @@ def _projected(
     surfaces: Sequence[Coefficient], axis: int, fibre: Interval, check: Check
 ) -> tuple[list[Coefficient], list[UnivariatePolynomial]]:
     """The curves of the first projection, and polynomials of the values of z over which a surface has a whole line."""
-    found: dict[str, Coefficient] = {}
     points: list[UnivariatePolynomial] = []
-    for p in _images(surfaces, axis, fibre, check):
-        found.update((str(factor), factor) for factor in irreducible_factors(p))
+    curves = irreducible_factors(*_images(surfaces, axis, fibre, check))
     for p in surfaces:
         rows = rows_in(p, axis)
         if len(rows) > 1:
             points += common_zeros(rows, check)
-    return list(found.values()), points
+    return curves, points
 
 
 def _images(surfaces: Sequence[Coefficient], axis: int, fibre: Interval, check: Check) -> Iterator[Coefficient]:
@@ -111,5 +108,5 @@ def _not_zero(p: Coefficient) -> list[Coefficient]:
 
 def _deflated(rows: Rows) -> tuple[Rows, int]:
     """The polynomial in the largest power of v of which only powers occur, and that power's exponent."""
-    power = max(1, gcd(*(i for i, row in enumerate(rows) if not row.is_zero())))
+    power = deflation(rows)
     return rows[::power], power

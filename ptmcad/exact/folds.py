@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from flint import fmpq
 
 from ptmcad.algebra.bases import quotient
-from ptmcad.algebra.polynomials import Ratio, evaluate
+from ptmcad.algebra.polynomials import Ratio, point_values
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
 from ptmcad.exact.models.potential import elements_of
@@ -58,10 +58,10 @@ def _folds_at(
     tangent: Sequence[TrigonometricPolynomial], system: ParametricSystem, parameters: Mapping[str, Ratio], at: Point
 ) -> bool | None:
     """Whether some pose, real or complex, has a tangent that is zero; None where a parameter has no value."""
-    below = [evaluate(b, *at) for _, b in parameters.values()]
-    if not all(below):
+    try:
+        values = point_values(parameters, at)
+    except ZeroDivisionError:
         return None
-    values = {name: evaluate(a, *at) / b for (name, (a, _)), b in zip(parameters.items(), below, strict=True)}
     flat = [polynomial_at(system, p, values) for p in tangent]
     circles = [{m: fmpq(c) for m, c in circle.items()} for circle in system.ring.circles]
     found = quotient([e for e in (*at_point(system, values)[0], *flat) if e] + circles, system.ring.width)
@@ -71,15 +71,11 @@ def _folds_at(
 def _branches(mechanism: Mechanism, parameters: Mapping[str, Ratio], at: Sequence[Point]) -> str:
     """What the branches are that meet in flat poses, where they can be named, and how to describe each by itself."""
     for loop in four_bars(mechanism) if len(mechanism.closing) == 1 else ():
-        folds = [loop.fold(_values(parameters, p)) for p in at]
+        folds = [loop.fold(_expressions(parameters, p)) for p in at]
         if folds and folds[0] and len(set(folds)) == 1:
             return loop.named(folds[0])
     return IN_TWO_WAYS
 
 
-def _values(parameters: Mapping[str, Ratio], at: Point) -> dict[str, Expression]:
-    found = {}
-    for name, (above, below) in parameters.items():
-        value = evaluate(above, *at) / evaluate(below, *at)
-        found[name] = constant(to_fraction(value))
-    return found
+def _expressions(parameters: Mapping[str, Ratio], at: Point) -> dict[str, Expression]:
+    return {name: constant(to_fraction(value)) for name, value in point_values(parameters, at).items()}

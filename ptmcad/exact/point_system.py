@@ -5,7 +5,7 @@ Guarantee: exact.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import prod
 from typing import NamedTuple
 
@@ -18,6 +18,7 @@ from ptmcad.algebra.fibre import (
     WorkLimit,
     evaluate,
     hermite_matrix,
+    scalar_matrix,
     univariate_representation,
 )
 from ptmcad.errors import HypothesisError
@@ -43,6 +44,7 @@ class PointSystem(NamedTuple):
     stability: tuple[RationalPolynomial, ...]
     algebra: FibreAlgebra
     is_bounded: bool
+    is_saturated: bool
 
     @property
     def conditions(self) -> tuple[RationalPolynomial, ...]:
@@ -86,7 +88,7 @@ def point_system(
         raise DegeneratePoint(f"infinitely many solutions at {text_of_point(values)}")
     if turns is not None:
         algebra = in_old_angles(system, algebra, turns)
-    return PointSystem(jacobian, inequalities, stability, algebra, not (ring.reals or saturated))
+    return PointSystem(jacobian, inequalities, stability, algebra, not (ring.reals or saturated), saturated)
 
 
 def _product(factors: Sequence[RationalPolynomial]) -> RationalPolynomial:
@@ -106,6 +108,30 @@ def text_of_point(values: Mapping[str, fmpq]) -> str:
     return ", ".join(f"{name}={value}" for name, value in values.items())
 
 
+def point_systems(
+    system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None = None
+) -> Iterator[PointSystem]:
+    """The system of all solutions, and then of those at which no inequality's polynomial vanishes, where there are some.
+
+    One of infinitely many solutions is left out.
+
+    Raises
+    ------
+    DegeneratePoint
+        When the last one has infinitely many.
+    LimitReached
+        When it is more work than `most`.
+    """
+    for saturated in (False, True) if system.inequalities else (False,):
+        try:
+            point = point_system(system, values, saturated, most)
+        except DegeneratePoint:
+            if saturated or not system.inequalities:
+                raise
+            continue
+        yield point
+
+
 def simple_solutions(
     system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None = None
 ) -> tuple[PointSystem, UnivariateRepresentation | None]:
@@ -120,13 +146,7 @@ def simple_solutions(
     LimitReached
         When it is more work than `most`.
     """
-    for saturated in (False, True) if system.inequalities else (False,):
-        try:
-            point = point_system(system, values, saturated, most)
-        except DegeneratePoint:
-            if saturated or not system.inequalities:
-                raise
-            continue
+    for point in point_systems(system, values, most):
         if not point.algebra.dimension:
             return point, None
         representation = univariate_representation(point.algebra)
@@ -158,18 +178,12 @@ def solutions_at(
     LimitReached
         When it is more work than `most`.
     """
-    saturated = saturated and bool(system.inequalities)
     try:
-        point = point_system(system, values, most=most)
+        point = next(point_systems(system, values, most)) if saturated else point_system(system, values, most=most)
     except DegeneratePoint:
-        if not saturated:
-            return None, 0
-        saturated = False  # below: they are left out of the algebra
-        try:
-            point = point_system(system, values, True, most)
-        except DegeneratePoint:
-            return None, 0
-    return _off(point, point.inequalities if saturated else ())
+        return None, 0
+    # of an algebra with an inverse they are left out already
+    return _off(point, point.inequalities if saturated and not point.is_saturated else ())
 
 
 def none_is_stable(system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None = None) -> bool:
@@ -196,10 +210,9 @@ def _off(point: PointSystem, conditions: Sequence[RationalPolynomial]) -> tuple[
     power of p. A basis of the ideal with one more unknown, p's inverse, would say the same, and can take hours.
     """
     algebra = point.algebra
-    width = len(algebra.multiplication)
-    weight = evaluate(algebra, {(0,) * width: fmpq(1)})
+    weight = scalar_matrix(algebra.dimension, fmpq(1))
     for p in conditions:
-        weight = weight * evaluate(algebra, {(*m, *(0,) * (width - len(m))): c for m, c in p.items()})
+        weight = weight * evaluate(algebra, p)
     different = hermite_matrix(algebra, weight).rank()
     power = 1
     while conditions and power < algebra.dimension and weight.rank() > different:

@@ -23,7 +23,7 @@ from ptmcad.answer.words import noun
 from ptmcad.exact.continua import is_free
 from ptmcad.exact.models.potential import elements_of, system_from
 from ptmcad.exact.models.system import ParametricSystem, polynomial_at
-from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
+from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_systems
 from ptmcad.exact.statics import ExactSolution, pose_of, solution_at
 from ptmcad.model import Model
 from ptmcad.model.compile import CompiledSystem, compiled
@@ -119,20 +119,13 @@ def _solutions(
     LimitReached
         When the quotient algebra is more work than `most`.
     """
-    try:
-        point = point_system(system, values, most=most)
-        if not point.algebra.dimension:
-            return point, FibrePoints((), (), 0, 0)
-        found = points(point.algebra, 1 if point.is_bounded else None)
-        if not system.inequalities or found.distinct == found.total:
-            return point, found
-    except DegeneratePoint:
-        if not system.inequalities:
-            raise
-    point = point_system(system, values, True, most)
-    if not point.algebra.dimension:
-        return point, FibrePoints((), (), 0, 0)
-    return point, points(point.algebra, None)
+    for point in point_systems(system, values, most):
+        found = FibrePoints((), (), 0, 0)
+        if point.algebra.dimension:
+            found = points(point.algebra, 1 if point.is_bounded else None)
+        if found.distinct == found.total:
+            break
+    return point, found
 
 
 def _exact_solutions(

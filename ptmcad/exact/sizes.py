@@ -20,13 +20,14 @@ from flint import fmpq, nmod_mat
 
 from ptmcad.algebra.determinants import laplace
 from ptmcad.algebra.fibre import FibreAlgebra, WorkLimit
-from ptmcad.algebra.groebner import Monomial
+from ptmcad.algebra.groebner import Monomial, powers_of
+from ptmcad.algebra.polynomials import point_values
 from ptmcad.algebra.ratios import LinePolynomial, Numerator, degree, numerator, restricted, weighted
 from ptmcad.algebra.residues import primes
 from ptmcad.errors import LimitReached
 from ptmcad.exact.models.system import RationalPolynomial
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
-from ptmcad.exact.stages import Sample, SliceProblem, domain_limits, point_values
+from ptmcad.exact.stages import Sample, SliceProblem, domain_limits
 
 MAX_POINTS = 256
 """On a line; they tell degrees of 60 and more, and tell of more that they are more."""
@@ -162,13 +163,7 @@ def _norm(unknowns: Sequence[nmod_mat], jacobian: Sequence[Sequence[RationalPoly
     """The norm of a determinant modulo a prime."""
     size = unknowns[0].nrows()
     one = nmod_mat(size, size, [int(i == j) for i in range(size) for j in range(size)], prime)
-    powers: dict[tuple[int, ...], nmod_mat] = {}
-
-    def power(m: tuple[int, ...]) -> nmod_mat:
-        if m not in powers:
-            k = next((k for k, e in enumerate(m) if e), None)
-            powers[m] = one if k is None else unknowns[k] * power((*m[:k], m[k] - 1, *m[k + 1 :]))
-        return powers[m]
+    power = powers_of(unknowns, one)
 
     def matrix_of(p: Mapping[tuple[int, ...], fmpq]) -> nmod_mat:
         total = one * 0

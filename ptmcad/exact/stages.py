@@ -5,17 +5,16 @@ Guarantee: no stage decides anything by rounding without an error bound, and non
     SliceProblem -> Variety -> Projection -> Stacks -> SampleCounts -> Neighbours -> Areas
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import Coefficient, Ratio, UnivariatePolynomial, evaluate, from_expression
-from ptmcad.algebra.real_roots import RealRoot, sign_at
+from ptmcad.algebra.polynomials import Coefficient, Ratio, UnivariatePolynomial, from_expression, point_values
+from ptmcad.algebra.real_roots import Interval, RealRoot, sign_at
 from ptmcad.algebra.resultants import Check, nothing
-from ptmcad.algebra.window import Interval
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import HARMLESS, Adjacency, Component, Merge, Segment
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
@@ -217,7 +216,7 @@ def _explained(
     return with_witness(error, system, parameters, window, problem.place) if told is error else told
 
 
-def domain_limits(system: ParametricSystem, parameters: dict[str, Ratio]) -> list[Coefficient]:
+def domain_limits(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> list[Coefficient]:
     """What bounds the slice's domain: lengths and stiffnesses that vary, and the parameters' denominators."""
     names = (*system.positive, *system.nonnegative)
     limits = [*(parameters[name][0] for name in names), *(below for _, below in parameters.values())]
@@ -360,7 +359,7 @@ def _is_below(root: RealRoot, u: fmpq) -> bool:
     return sign_at(root.polynomial, u) == sign_at(root.polynomial, root.high)
 
 
-def count_at(where: str, system: ParametricSystem, parameters: dict[str, Ratio], at: Sample) -> Equilibria:
+def count_at(where: str, system: ParametricSystem, parameters: Mapping[str, Ratio], at: Sequence[fmpq]) -> Equilibria:
     """The equilibria at a sample point, after a check that the geometry exists there.
 
     Parameters
@@ -387,11 +386,6 @@ def count_at(where: str, system: ParametricSystem, parameters: dict[str, Ratio],
         raise DegenerateSliceError(
             f"{error}, a point that should lie off the variety: the slice has a whole area of singular equilibria"
         ) from error
-
-
-def point_values(parameters: dict[str, Ratio], at: Sample) -> dict[str, fmpq]:
-    """The parameters at a point where their denominators do not vanish."""
-    return {name: evaluate(a, *at) / evaluate(b, *at) for name, (a, b) in parameters.items()}
 
 
 def _coefficients(p: UnivariatePolynomial) -> tuple[int, ...]:

@@ -19,8 +19,7 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.real_roots import refine, simplest_between
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.real_roots import Interval, refine, simplest_between
 from ptmcad.answer.boundarysurface import ACCURACY
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.arrangement import Picture

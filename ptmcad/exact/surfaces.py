@@ -14,8 +14,8 @@ from collections.abc import Mapping, Sequence
 
 from ptmcad.algebra.polynomials import Coefficient, Ratio, irreducible_factors
 from ptmcad.algebra.quotient import multiples, multiplication_denominator, quotient_algebra
+from ptmcad.algebra.real_roots import Interval
 from ptmcad.algebra.space import nowhere_zero
-from ptmcad.algebra.window import Interval
 from ptmcad.exact.family import FamilyVariety
 from ptmcad.exact.models.system import ParametricSystem, on_slice
 from ptmcad.exact.stages import domain_limits
@@ -33,21 +33,16 @@ def surfaces_of(
     known : the variety over Q(x, y, z).
     box : the ranges of x, y and z.
     """
-    limits = domain_limits(system, dict(parameters))
+    limits = domain_limits(system, parameters)
     equations = on_slice(system if system.turns is None else system.turns.system, parameters)
     algebra = quotient_algebra(known.basis)
     assert algebra is not None  # it was, when the variety was computed
     given = [known.jacobian_norm[0], *equations.boundary, *limits, *sign_changes(equations, algebra)]
-    found: dict[str, Coefficient] = {}
-    for polynomial in given:
-        found.update((str(factor), factor) for factor in irreducible_factors(polynomial))
-    suspects = [
-        f
-        for f in irreducible_factors(multiplication_denominator(algebra))
-        if str(f) not in found and not nowhere_zero(f, box)
-    ]
+    found = irreducible_factors(*given)
+    everywhere = irreducible_factors(multiplication_denominator(algebra))
+    suspects = [f for f in everywhere if f not in found and not nowhere_zero(f, box)]
     if suspects and settles(equations):
         rows = multiples(algebra, equations.jacobian)
         proved = harmless(equations, rows, known.jacobian_norm, suspects)
         suspects = [f for f in suspects if f not in proved]
-    return (*(f for f in found.values() if not nowhere_zero(f, box)), *suspects)
+    return (*(f for f in found if not nowhere_zero(f, box)), *suspects)

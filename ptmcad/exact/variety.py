@@ -32,13 +32,13 @@ from ptmcad.algebra.polynomials import (
     UnknownPolynomial,
     from_plane,
     irreducible_factors,
-    ratio,
     to_plane,
 )
 from ptmcad.algebra.quotient import (
     QuotientAlgebra,
     Vector,
     bounded_away_from_zero,
+    matrix_of,
     multiples,
     multiplication_denominator,
     norm,
@@ -46,11 +46,19 @@ from ptmcad.algebra.quotient import (
     quotient_algebra,
     trace_form,
 )
-from ptmcad.algebra.window import Interval, nowhere_zero
+from ptmcad.algebra.real_roots import Interval
+from ptmcad.algebra.window import nowhere_zero
 from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, Kind
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError, NothingToCountError
 from ptmcad.exact.continua import continuum
-from ptmcad.exact.models.system import ParametricSystem, SliceSystem, leading_minors, on_slice, saturated
+from ptmcad.exact.models.system import (
+    ParametricSystem,
+    SliceSystem,
+    element_on_slice,
+    leading_minor,
+    on_slice,
+    saturated,
+)
 from ptmcad.text.plane import PlanePolynomial
 
 
@@ -115,7 +123,8 @@ def discriminant_variety(
     for factors, why in ((hidden, NO_POINT), (proved, HARMLESS), (doubtful, "")):
         seen.adopt([f for f in factors if f in unbounded], Kind.INFINITY, why)
     if "sign-curve" in without:
-        for minor in leading_minors(system, parameters) if system.has_index else ():
+        for order in range(1, system.dimension if system.has_index else 1):
+            minor = element_on_slice(system, leading_minor(system, order), parameters)
             seen.adopt(irreducible_factors(norm(algebra, lifted(minor, equations))[0]), Kind.AUXILIARY)
     if "hermite-matrix" in without:
         for part in determinant(trace_form(algebra)):
@@ -219,7 +228,7 @@ def _with_jacobian(equations: SliceSystem) -> Nondegenerate:
             "off a curve of the slice the equations have no solution, real or complex: there is nothing to count"
         )
     rows = multiples(algebra, equations.jacobian)
-    jacobian_norm = determinant([[ratio(c, denominator) for c in row] for row, denominator in rows])
+    jacobian_norm = determinant(matrix_of(rows))
     if jacobian_norm[0].is_zero():
         what = "equilibrium has a singular Hessian" if equations.has_index else "solution has a singular Jacobian"
         raise DegenerateSliceError(

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import Ratio, evaluate
+from ptmcad.algebra.polynomials import Ratio, point_values
 from ptmcad.errors import DegenerateSliceError, HypothesisError, InfiniteSolutionsError, NothingToCountError
 from ptmcad.exact.models.system import ParametricSystem
 from ptmcad.exact.point_system import solutions_at
@@ -43,11 +43,13 @@ def with_witness(
     """
     examples = []
     for at in points(window):
-        if all(evaluate(below, *at) for _, below in parameters.values()):
-            values = {name: evaluate(a, *at) / evaluate(b, *at) for name, (a, b) in parameters.items()}
-            words, solutions = _example(error, system, values)
-            if words:
-                examples.append((solutions, words, at))
+        try:
+            values = point_values(parameters, at)
+        except ZeroDivisionError:
+            continue
+        words, solutions = _example(error, system, values)
+        if words:
+            examples.append((solutions, words, at))
     if not examples:
         return error
     # where the fewest solutions have left to infinity or coincide by chance, the first of such points

@@ -80,6 +80,11 @@ def ball_of(value: Fraction) -> arb:
     return arb(from_fraction(value))
 
 
+def ball_over(low: Fraction, high: Fraction) -> arb:
+    """A ball that contains all numbers between two."""
+    return ball_of(low).union(ball_of(high))
+
+
 def enclosure_of(ball: arb) -> Enclosure:
     """All of the ball, with exact ends."""
     return Enclosure(exact(ball.lower()), exact(ball.upper()))

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
-from flint import arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly, nmod
+from flint import arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.examples import examples
 
 from ptmcad.algebra import number_field
-from ptmcad.algebra.number_field import FieldElement, Modulus, RealField, polynomial_at
+from ptmcad.algebra.number_field import FieldElement, Modulus, RealField, RingEvaluation, polynomial_at
+from ptmcad.algebra.rational_roots import rational_roots
 from ptmcad.algebra.real_roots import isolate
-from ptmcad.exact import stiffness
-from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 NUMBERS = st.fractions(-4, 4, max_denominator=12).map(from_fraction)
 PRIMES = (2, 3, 5, 7, 11, 2**61 - 1)
@@ -96,9 +94,9 @@ def test_zero_rational_and_enclosure_agree_with_residues_over_q(prime: int, monk
 def test_most_elements_are_told_without_a_residue_over_q() -> None:
     field = RealField(Modulus(fmpz_poly([-2, 0, 1])), isolate(fmpz_poly([-2, 0, 1]), fmpq(0), fmpq(2))[0])
     root = field.element(fmpq_poly([0, 1]))
-    asked: list[number_field.Evaluation] = []
+    asked: list[RingEvaluation] = []
 
-    def told(ring: number_field.Evaluation) -> object:
+    def told(ring: RingEvaluation) -> object:
         if ring is field.modulus.residues:
             asked.append(ring)
         return root.expression(ring)
@@ -117,18 +115,17 @@ def test_zero_has_no_inverse() -> None:
         (root * root - field.constant(fmpq(2))).inverse()
 
 
-@given(st.lists(NUMBERS, min_size=3, max_size=3), NUMBERS)
-def test_a_rational_eigenvalue_is_found_modulo_a_prime_too(other: list[fmpq], q: fmpq) -> None:
-    """Eigenvalues q and o, o of degree 3: trace q + o, determinant q o, whose products need no field."""
-    assume(any(other[1:]))
-    prime = 2**61 - 1
-    trace, determinant = [other[0] + q, *other[1:]], [q * c for c in other]
-    found: Callable[..., object] = stiffness._eigenvalue
-    assert found(trace, determinant) == q
-    images = [[nmod(int(c.p), prime) / nmod(int(c.q), prime) for c in cs] for cs in (trace, determinant)]
-    assert found(*images) == nmod(int(q.p), prime) / nmod(int(q.q), prime)
-    wrong = [determinant[0] + 1, *determinant[1:]]
-    assert found(trace, wrong) is None
+@given(st.data(), fields(), NUMBERS)
+def test_a_rational_eigenvalue_is_found_beside_an_irrational_one(
+    data: st.DataObject, field: RealField, q: fmpq
+) -> None:
+    """Eigenvalues q and o: the characteristic polynomial is x^2 - (q + o) x + q o."""
+    assume(field.modulus.degree > 1)
+    other = field.element(fmpq_poly(data.draw(st.lists(NUMBERS, min_size=2, max_size=2).filter(lambda c: c[1] != 0))))
+    rational, one = field.constant(q), field.constant(fmpq(1))
+    assert list(rational_roots([rational * other, -(rational + other)])) == [(to_fraction(q), 1)]
+    assert not list(rational_roots([rational * other + one, -(rational + other)]))
+    assert list(rational_roots([rational * rational, -(rational + rational)])) == [(to_fraction(q), 2)]
 
 
 def test_the_generator_is_enclosed_as_narrowly_as_the_precision_says() -> None:

@@ -12,11 +12,12 @@ from support.signatures import signature
 
 import ptmcad
 from ptmcad.algebra.fibre import evaluate, hermite_matrix
+from ptmcad.algebra.polynomials import point_values
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.checking import check
 from ptmcad.errors import ConfigError, NothingToCountError
 from ptmcad.exact.point_system import point_system, solutions_at
-from ptmcad.exact.stages import point_values, problem_of
+from ptmcad.exact.stages import problem_of
 from ptmcad.question.config import slice_from
 from ptmcad.question.slice import Slice
 from ptmcad.verification import verify

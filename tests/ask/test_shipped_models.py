@@ -22,11 +22,12 @@ from support.shipped_records import LINES_ONLY, OTHER
 from support.signatures import count_by_signature
 
 from ptmcad import RegionMap, Slice, classify, load
+from ptmcad.algebra.polynomials import point_values
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import Merge
 from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.point_system import solutions_at
-from ptmcad.exact.stages import point_values, problem_of, variety_of
+from ptmcad.exact.stages import problem_of, variety_of
 from ptmcad.question.slice import Count
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 

@@ -15,9 +15,10 @@ import pytest
 from flint import fmpq
 
 import ptmcad
+from ptmcad.algebra.polynomials import point_values
 from ptmcad.answer.regionmap import Kind
 from ptmcad.exact.point_system import solutions_at
-from ptmcad.exact.stages import point_values, problem_of, variety_of
+from ptmcad.exact.stages import problem_of, variety_of
 from ptmcad.question.slice import Slice
 
 PAIR = {"x": "real", "y": "real"}

@@ -17,11 +17,12 @@ from flint import fmpq
 from support.programs import needs_msolve, real_solutions
 
 import ptmcad
+from ptmcad.algebra.polynomials import point_values
 from ptmcad.errors import ConfigError
 from ptmcad.exact.models.potential import system_from
 from ptmcad.exact.models.system import at_point, polynomial_at
 from ptmcad.exact.point_system import solutions_at
-from ptmcad.exact.stages import point_values, problem_of
+from ptmcad.exact.stages import problem_of
 from ptmcad.model import ClosedMechanism
 from ptmcad.model.xjoint import second_bar
 from ptmcad.text.flint_numbers import from_fraction

@@ -22,14 +22,14 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.real_roots import (
+    Interval,
     RealRoot,
     has_root_between,
     refine,
-    sign_at,
     simplest_between,
+    vanishes_at,
 )
 from ptmcad.algebra.resultants import Check, nothing
-from ptmcad.algebra.window import Interval
 from ptmcad.answer.regionmap import Reason
 from ptmcad.exact.cad.curves import FibredCurve, max_height_bits
 from ptmcad.exact.cad.points import PointsOver
@@ -205,15 +205,7 @@ def _gap(gap: _OpenGap, curves: Sequence[FibredCurve], end: BaseEnd, points: Poi
 def _meets(curves: Sequence[FibredCurve], end: BaseEnd, edge: fmpq) -> bool:
     """Whether a curve passes through the point of the window's edge over the critical abscissa."""
     assert end.root is not None
-    for c in curves:
-        common = c.trace(edge).gcd(end.root.polynomial)
-        if common.degree() > 0 and (
-            sign_at(common, end.root.low) == 0
-            if end.root.is_rational
-            else sign_at(common, end.root.low) != sign_at(common, end.root.high)
-        ):
-            return True
-    return False
+    return any(vanishes_at(c.trace(edge), end.root) for c in curves)
 
 
 def _between_points(points: PointsOver, gap: _OpenGap, curves: Sequence[FibredCurve], end: BaseEnd) -> list[fmpq]:

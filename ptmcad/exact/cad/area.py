@@ -18,8 +18,7 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.branches import TooFewBits
 from ptmcad.algebra.polynomials import RationalPolynomial
-from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.real_roots import Interval, RealRoot, refine, simplest_between
 from ptmcad.exact.cad.curves import FibredCurve, by_component, max_height_bits
 from ptmcad.exact.cad.panels import Border, PanelEffort, WallPanel, halves, panels
 from ptmcad.exact.cad.stacks import StackData

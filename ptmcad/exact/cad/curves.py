@@ -12,12 +12,11 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import Coefficient, UnivariatePolynomial, coefficients_in, from_plane
-from ptmcad.algebra.real_roots import RealRoot, isolate
+from ptmcad.algebra.real_roots import Interval, RealRoot, isolate
 from ptmcad.algebra.reflected_roots import isolate_reflected
 from ptmcad.algebra.reflections import Reflection, reflection_of
 from ptmcad.algebra.restrictions import Restrictions
 from ptmcad.algebra.resultants import balanced
-from ptmcad.algebra.window import Interval
 from ptmcad.answer.regionmap import Component
 
 _LONG_FIBRE = 16
@@ -105,7 +104,7 @@ def stretched(p: UnivariatePolynomial, unit: int, inflation: int) -> UnivariateP
     return UnivariatePolynomial([c * unit**j for j, c in enumerate(p.coeffs())]).inflate(inflation)
 
 
-def deflation(coefficients: Sequence[UnivariatePolynomial]) -> int:
+def deflation(coefficients: Sequence[UnivariatePolynomial | Coefficient]) -> int:
     """The largest k for which only powers of v^k occur."""
     return max(1, gcd(*(i for i, c in enumerate(coefficients) if c)))
 

@@ -11,8 +11,7 @@ from collections.abc import Callable
 from flint import fmpq
 
 from ptmcad.algebra.branches import avoids
-from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.real_roots import Interval, RealRoot, refine, simplest_between
 from ptmcad.exact.cad.curves import FibredCurve
 
 

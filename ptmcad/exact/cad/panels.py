@@ -14,8 +14,7 @@ from flint import arb, ctx, fmpq
 from ptmcad.algebra.arcs import arc_integral
 from ptmcad.algebra.branches import Integral, TooFewBits, branch_integral
 from ptmcad.algebra.graphs import graph_integral
-from ptmcad.algebra.real_roots import RealRoot, refine, sign_at, simplest_between
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.real_roots import Interval, RealRoot, refine, sign_at, simplest_between
 from ptmcad.exact.cad.curves import FibredCurve
 from ptmcad.exact.cad.horizontals import horizontals
 from ptmcad.exact.cad.stacks import BaseEnd
@@ -195,10 +194,8 @@ def _about_end(
     near, far = ends
 
     def enclosed() -> tuple[arb, fmpq] | None:
-        abscissa = arb(end.value)
-        if end.root is not None:
-            root = refine(end.root, abs(far - near) / fmpq(2) ** ctx.prec)
-            abscissa = arb(root.low).union(arb(root.high))
+        fine = abs(far - near) / fmpq(2) ** ctx.prec
+        abscissa = arb(end.value) if end.root is None else refine(end.root, fine).ball
         beside = Beside(abscissa, near, far)
         return puiseux_integral(border.curve.in_v, beside, lambda u: border.over(u, effort), 2 * effort.order, allowed)
 

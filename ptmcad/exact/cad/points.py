@@ -17,13 +17,21 @@ from functools import cached_property
 from itertools import combinations
 from math import gcd
 
-from flint import arb, ctx, fmpq
+from flint import ctx, fmpq
 
 from ptmcad.algebra.clusters import RootDisc, clusters_over
 from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, is_root_of, isolate, refine, squarefree_part
+from ptmcad.algebra.real_roots import (
+    Interval,
+    RealRoot,
+    disjoint,
+    inside,
+    isolate,
+    refine,
+    squarefree_part,
+    vanishes_at,
+)
 from ptmcad.algebra.resultants import Check, discriminant, nothing, resultant
-from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import FibredCurve, deflation, shortened, stretched
 
 _BITS = (128, 512)
@@ -62,8 +70,7 @@ class PointsOver:
     def _enclosed(self, bits: int) -> list[Interval] | None:
         """Disjoint intervals with one point of the curves each, that hold all of them; None where that is not known."""
         with ctx.workprec(2 * bits + 64):
-            root = refine(self.root, fmpq(1, 1 << bits))
-            abscissa = arb(root.low).union(arb(root.high))
+            abscissa = refine(self.root, fmpq(1, 1 << bits)).ball
             groups = []
             for k, c in enumerate(self.curves):
                 group = clusters_over(c.in_v, abscissa)
@@ -82,14 +89,14 @@ class PointsOver:
     def _are_points(self, k: int, group: Sequence[RootDisc]) -> bool:
         """Whether each disc of a curve is known to hold one root only, as often as it counts."""
         multiple = [c.number for c in group if c.number > 1]
-        return not multiple or (multiple == [2] and _vanishes(self._discriminants[k], self.root))
+        return not multiple or (multiple == [2] and vanishes_at(self._discriminants[k], self.root))
 
     def _meet(self, k: int, m: int) -> bool:
         """Whether two curves have a complex point over the root in common."""
         rows = self.curves[k].in_v, self.curves[m].in_v
         power = gcd(*map(deflation, rows))  # of polynomials in v^k it is the k-th power of that in v
         (first, second), unit, inflation = shortened([r[::power] for r in rows])
-        return _vanishes(stretched(resultant(first, second, self.check), unit, inflation), self.root)
+        return vanishes_at(stretched(resultant(first, second, self.check), unit, inflation), self.root)
 
     @cached_property
     def _known(self) -> dict[int, list[Interval] | None]:
@@ -124,10 +131,6 @@ def _discriminant(c: FibredCurve, check: Check) -> UnivariatePolynomial:
     (shorter,), unit, inflation = shortened([c.in_v[::power]])
     found = stretched(discriminant(shorter, check), unit, inflation)
     return found if power == 1 else found * c.in_v[0] * c.in_v[-1]
-
-
-def _vanishes(p: UnivariatePolynomial, root: RealRoot) -> bool:
-    return not p or is_root_of(p.gcd(root.polynomial), root)
 
 
 def _merged(found: Sequence[RootDisc], same: Sequence[tuple[RootDisc, RootDisc]]) -> list[Interval] | None:

@@ -20,8 +20,7 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.branches import local_coefficients
 from ptmcad.algebra.chords import slope_over
-from ptmcad.algebra.real_roots import RealRoot, refine
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.real_roots import Interval, RealRoot, refine
 from ptmcad.exact.cad.curves import FibredCurve
 from ptmcad.text.balls import exact
 from ptmcad.text.flint_numbers import from_fraction, to_fraction

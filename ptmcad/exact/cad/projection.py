@@ -17,9 +17,8 @@ from math import gcd
 from typing import NamedTuple
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, refine
+from ptmcad.algebra.real_roots import Interval, RealRoot, disjoint, inside, isolate, refine
 from ptmcad.algebra.resultants import Check, discriminant, nothing, resultant
-from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import FibredCurve, base_deflation, deflation, shortened
 
 

@@ -11,8 +11,7 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, sign_at, simplest_between
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.real_roots import Interval, RealRoot, disjoint, inside, isolate, sign_at, simplest_between
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.curves import FibredCurve
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.real_roots import Interval
 from ptmcad.exact.design.cover import Run, Space, measure, refined
 from ptmcad.exact.design.search import Bounded, Place
 

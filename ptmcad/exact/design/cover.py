@@ -18,8 +18,7 @@ from typing import NamedTuple
 from flint import fmpq, fmpz
 
 from ptmcad.algebra.bernstein import Table, halves, over, sign
-from ptmcad.algebra.real_roots import simplest_between
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.real_roots import Interval, simplest_between
 
 Box = tuple[Interval, Interval]
 """Ranges of the two design parameters; that of one which there is not is never looked at."""

@@ -12,8 +12,7 @@ from itertools import groupby, pairwise
 from flint import fmpq
 
 from ptmcad.algebra.bernstein import on_lines
-from ptmcad.algebra.real_roots import disjoint, inside, isolate, refine, simplest_between, squarefree_part
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.real_roots import Interval, disjoint, inside, isolate, refine, simplest_between, squarefree_part
 from ptmcad.exact.design.cover import Space, root_bound
 
 _WIDTH = fmpq(1, 2**80)

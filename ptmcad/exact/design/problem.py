@@ -13,8 +13,8 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.bernstein import Table, table_of
-from ptmcad.algebra.polynomials import PLANE, Coefficient, Ratio, from_plane
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.polynomials import Coefficient, Ratio, from_plane
+from ptmcad.algebra.real_roots import Interval
 from ptmcad.errors import DegenerateSliceError
 from ptmcad.exact.design.cover import Space
 from ptmcad.exact.family import family_variety
@@ -85,9 +85,8 @@ def _space(
         for number, coordinate in zip(axes.order, (value, *design), strict=False):
             point[number] = coordinate
         where = ", ".join(f"{name} = {coordinate}" for name, coordinate in zip(axes.names, point, strict=True))
-        values = {name: _constant(a, point, b) for name, (a, b) in parameters.items()}
         try:
-            return count_at(where, system, values, (fmpq(0), fmpq(0))).counts.working
+            return count_at(where, system, parameters, point).counts.working
         except DegenerateSliceError:
             return None
 
@@ -101,19 +100,3 @@ def _padded(powers: Sequence[int]) -> tuple[int, int, int]:
 
 def _table(terms: Sequence[tuple[tuple[int, int, int], int]], power: int) -> Table:
     return table_of(((i // power, j, k), c) for (i, j, k), c in terms)
-
-
-def _constant(above: Coefficient, point: Sequence[fmpq], below: Coefficient) -> Ratio:
-    """The value of a ratio at a point, as a constant one."""
-    value = _value(above, point) / _value(below, point)
-    return PLANE.constant(int(value.p)), PLANE.constant(int(value.q))
-
-
-def _value(p: Coefficient, point: Sequence[fmpq]) -> fmpq:
-    total = fmpq(0)
-    for powers, c in p.terms():
-        term = fmpq(c)
-        for coordinate, exponent in zip(point, powers, strict=True):
-            term *= coordinate ** int(exponent)
-        total += term
-    return total

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, Protocol
 
 from flint import fmpq
 
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.real_roots import Interval
 from ptmcad.exact.design.cover import Space, certain, longest, refined
 
 Place = tuple[Interval, ...]

@@ -7,8 +7,9 @@ variety leaves these out: one more unknown is the inverse of what is not zero.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import count
+from math import prod
 
 from ptmcad.algebra.polynomials import ONE, Coefficient, Ratio, UnknownPolynomial, irreducible_factors
 from ptmcad.answer.slicevariety import EliminationSystem, Term
@@ -37,7 +38,7 @@ def elimination_system(
     """
     on = on_slice(system, parameters)
     conditions = list(on.inequalities) if excludes else []
-    if (nowhere := _product((*on.boundary, *limits))) != ONE:
+    if (nowhere := prod(irreducible_factors(*on.boundary, *limits), start=ONE)) != ONE:
         conditions.append({(0,) * on.unknowns: nowhere})
     width = on.unknowns
     for condition in conditions:
@@ -48,14 +49,6 @@ def elimination_system(
         unknowns += (next(name for name in names if name not in (*unknowns, *axes)),)
     polynomials = tuple(_terms(p) for p in (*on.equations, on.jacobian))
     return EliminationSystem(unknowns, axes, polynomials)
-
-
-def _product(polynomials: Iterable[Coefficient]) -> Coefficient:
-    """That of the distinct irreducible factors."""
-    total = ONE
-    for factor in {str(f): f for p in polynomials for f in irreducible_factors(p)}.values():
-        total = total * factor
-    return total
 
 
 def _terms(p: UnknownPolynomial) -> tuple[Term, ...]:

@@ -157,28 +157,31 @@ def on_slice(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Slice
     """
     ring = system.ring
     one = _one(parameters)
+
+    def on(p: TrigonometricPolynomial) -> UnknownPolynomial:
+        """The element without denominators, which are noted where they may vanish."""
+        substituted = _substitute(system, p, parameters)
+        boundary.extend(q for q in (lcm(d for _, d in substituted.values()),) if not q.is_constant())
+        return _without_denominators(substituted)
+
     boundary: list[Coefficient] = []
     vanishing: list[Coefficient] = []
     equations: list[UnknownPolynomial] = []
     for equation in system.equations:
-        substituted = _substitute(system, equation, parameters, one)
-        scaled = _without_denominators(substituted)
+        scaled = on(equation)
         common = common_factor(scaled.values())
         equations.append({m: c / common for m, c in scaled.items()})
-        boundary += [q for q in (lcm(d for _, d in substituted.values()), common) if not q.is_constant()]
-        vanishing += [] if common.is_constant() else [common]
+        if not common.is_constant():
+            boundary.append(common)
+            vanishing.append(common)
     equations += [{m: one * c for m, c in circle.items()} for circle in ring.circles]
-    conditions = []
-    asked = system.stability[-1:] if system.definite else system.stability
-    for condition in (*system.inequalities, *asked):
-        substituted = _substitute(system, condition, parameters, one)
-        conditions.append(_without_denominators(substituted))
-        boundary += [q for q in (lcm(d for _, d in substituted.values()),) if not q.is_constant()]
+    inequalities = tuple(map(on, system.inequalities))
+    stability = tuple(map(on, system.stability[-1:] if system.definite else system.stability))
     return SliceSystem(
         tuple(equations),
-        _without_denominators(_substitute(system, determinant(system), parameters, one)),
-        tuple(conditions[: len(system.inequalities)]),
-        tuple(conditions[len(system.inequalities) :]),
+        element_on_slice(system, leading_minor(system, system.dimension), parameters),
+        inequalities,
+        stability,
         tuple(boundary),
         tuple(vanishing),
         ring.width,
@@ -205,15 +208,12 @@ def saturated(equations: SliceSystem, condition: UnknownPolynomial) -> SliceSyst
     )
 
 
-def leading_minors(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> list[UnknownPolynomial]:
-    """The Hessian's proper leading principal minors on a slice, up to factors that vanish only on its ``boundary``.
+def leading_minor(system: ParametricSystem, order: int) -> TrigonometricPolynomial:
+    """A leading principal minor of the Jacobian, or its determinant.
 
-    Their signs, with that of the determinant, tell the index where none of them is zero (Jacobi).
+    Of a Hessian the minors' signs tell the index where none of them is zero (Jacobi).
     """
-    rows = [list(row) for row in system.jacobian]
-    minors = (laplace([row[:k] for row in rows[:k]]) for k in range(1, system.dimension))
-    one = _one(parameters)
-    return [_without_denominators(_substitute(system, system.ring.reduce(m), parameters, one)) for m in minors]
+    return system.ring.reduce(laplace([row[:order] for row in system.jacobian[:order]]))
 
 
 ALONG, OVER = "<along>", "<over>"
@@ -237,7 +237,7 @@ def with_root(
     one = _one(parameters)
 
     def lifted(p: TrigonometricPolynomial, is_condition: bool = False) -> TrigonometricPolynomial:
-        terms = _substitute(system, p, parameters, one)
+        terms = _substitute(system, p, parameters)
         scale = lcm(d for _, d in terms.values())
         found: dict[tuple[int, ...], fmpq] = {}
         for monomial, (numerator, denominator) in terms.items():
@@ -249,9 +249,7 @@ def with_root(
 
     stability = system.stability
     if system.has_index:
-        rows = [list(row) for row in system.jacobian]
-        orders = range(1, system.dimension + 1)
-        stability = tuple(system.ring.reduce(laplace([row[:k] for row in rows[:k]])) for k in orders)
+        stability = tuple(leading_minor(system, order + 1) for order in range(system.dimension))
     root = {(*(0,) * ring.width, k): fmpq(c) for k, c in enumerate(minimal.coeffs())}
     return from_equations(
         ring,
@@ -262,26 +260,22 @@ def with_root(
     )
 
 
-def determinant(system: ParametricSystem) -> TrigonometricPolynomial:
-    """The determinant of the Jacobian, in the system's ring."""
-    return system.ring.reduce(laplace([list(row) for row in system.jacobian]))
-
-
 def _one(parameters: Mapping[str, Ratio]) -> Coefficient:
     """Of the parameters' ring."""
     return next((constant_like(numerator, 1) for numerator, _ in parameters.values()), PLANE.constant(1))
 
 
-def common_on_slice(
+def element_on_slice(
     system: ParametricSystem, p: TrigonometricPolynomial, parameters: Mapping[str, Ratio]
-) -> Coefficient:
-    """The common factor of an element's coefficients on a slice: where it is zero, the element vanishes identically."""
-    return common_factor(_without_denominators(_substitute(system, p, parameters, _one(parameters))).values())
+) -> UnknownPolynomial:
+    """An element of the system's ring on a slice, up to a factor that vanishes only on its ``boundary``."""
+    return _without_denominators(_substitute(system, p, parameters))
 
 
 def _substitute(
-    system: ParametricSystem, p: TrigonometricPolynomial, parameters: Mapping[str, Ratio], one: Coefficient
+    system: ParametricSystem, p: TrigonometricPolynomial, parameters: Mapping[str, Ratio]
 ) -> dict[tuple[int, ...], Ratio]:
+    one = _one(parameters)
     values = [parameters[name] for name in system.ring.parameters]
     result: dict[tuple[int, ...], Ratio] = {}
     for monomial, part in system.ring.split(p).items():

@@ -9,18 +9,19 @@ equations takes minutes for three bars, that of the same equations in the bars' 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import permutations
 from typing import NamedTuple
 
 from ptmcad.algebra.fibre import FibreAlgebra, combined_angles
-from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
+from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing, angle_sum
 from ptmcad.exact.models.system import ParametricSystem, from_equations
 
 MIN_ANGLES = 3
 """With two angles the gain is nothing."""
 MAX_DEGREE, MAX_TERMS = 20, 2_000
 """Of an equation, and of all of them: with more the search alone would take many seconds. Six bars have 8 and 1170."""
-Matrix = tuple[tuple[int, ...], ...]
+Matrix = Sequence[Sequence[int]]
 
 
 class Turns(NamedTuple):
@@ -52,7 +53,9 @@ def with_turns(system: ParametricSystem) -> ParametricSystem:
         improved = False
         for i, j in permutations(range(count), 2):
             for sign in (1, -1):
-                found = tuple(_substituted(system.ring, e, i, j, sign) for e in equations)
+                step = [[int(k == m) + sign * int((k, m) == (i, j)) for m in range(count)] for k in range(count)]
+                images = _images(system.ring, step)
+                found = tuple(system.ring.reduce(e.compose(*images)) for e in equations)
                 if system.has_index:  # derivatives by the new angles
                     found = tuple(e + sign * found[i] if k == j else e for k, e in enumerate(found))
                 if (other := _cost(found)) < cost:
@@ -74,15 +77,7 @@ def _moved(
 ) -> ParametricSystem:
     """The system in new angles, with the equations that are known there."""
     ring = system.ring
-    images = list(ring.context.gens())
-    for k, row in enumerate(matrix):
-        cosine, sine = ring.context.constant(1), ring.context.constant(0)
-        for angle, multiple in zip(ring.angles, row, strict=True):
-            c, s = ring.cos(angle), ring.sin(angle) * (-1 if multiple < 0 else 1)
-            for _ in range(abs(multiple)):
-                cosine, sine = cosine * c - sine * s, sine * c + cosine * s
-        at = len(ring.parameters) + 2 * k
-        images[at], images[at + 1] = cosine, sine
+    images = _images(ring, matrix)
 
     def moved(p: TrigonometricPolynomial) -> TrigonometricPolynomial:
         return ring.reduce(p.compose(*images))
@@ -109,13 +104,10 @@ def _cost(equations: tuple[TrigonometricPolynomial, ...]) -> tuple[int, int]:
     return sum(int(e.total_degree()) for e in equations), sum(len(e) for e in equations)
 
 
-def _substituted(
-    ring: TrigonometricRing, p: TrigonometricPolynomial, i: int, j: int, sign: int
-) -> TrigonometricPolynomial:
-    """p with the angle i replaced by the sum of angle i and sign times angle j."""
-    first, second = ring.angles[i], ring.angles[j]
-    c, s, d, t = ring.cos(first), ring.sin(first), ring.cos(second), ring.sin(second) * sign
-    images = list(ring.context.gens())
-    at = len(ring.parameters) + 2 * i
-    images[at], images[at + 1] = c * d - s * t, s * d + c * t
-    return ring.reduce(p.compose(*images))
+def _images(ring: TrigonometricRing, matrix: Matrix) -> list[TrigonometricPolynomial]:
+    """What stands for each variable of the ring, where the angles are these sums of new ones."""
+    turns = [(ring.cos(angle), ring.sin(angle)) for angle in ring.angles]
+    sums = [c for row in matrix for c in angle_sum(turns, row, ring.context.constant(1))]
+    first = len(ring.parameters)
+    gens = ring.context.gens()
+    return [*gens[:first], *sums, *gens[first + len(sums) :]]

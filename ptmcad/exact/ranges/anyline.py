@@ -32,9 +32,8 @@ from ptmcad.algebra.polynomials import (
     add_ratios,
     coefficients_in,
     from_expression,
-    ratio,
 )
-from ptmcad.algebra.quotient import QuotientAlgebra, multiples, multiplication_denominator, trace_form
+from ptmcad.algebra.quotient import QuotientAlgebra, matrix_of, multiples, multiplication_denominator, trace_form
 from ptmcad.algebra.real_roots import isolate, simplest_between
 from ptmcad.answer.intervals import End, Span
 from ptmcad.errors import ConfigError, DegenerateSliceError, HypothesisError, InfiniteSolutionsError
@@ -138,7 +137,7 @@ def _matrix(algebra: QuotientAlgebra, p: UnknownPolynomial) -> list[list[Ratio]]
     """Of multiplication by a polynomial; of none of its terms zero."""
     if not p:
         return [[(algebra.zero, algebra.one)] * algebra.dimension] * algebra.dimension
-    return [[ratio(c, denominator) for c in row] for row, denominator in multiples(algebra, p)]
+    return matrix_of(multiples(algebra, p))
 
 
 def _lowest(matrix: list[list[Ratio]]) -> Ratio:
@@ -208,7 +207,7 @@ class _Counting(NamedTuple):
 
 
 def _sign(solution: RealPoint, p: RationalPolynomial) -> int:
-    value = value_at(solution, {(*m, *(0,) * (len(solution.unknowns) - len(m))): c for m, c in p.items()})
+    value = value_at(solution, p)
     return 0 if value.is_zero else 1 if is_positive(value) else -1
 
 

@@ -16,7 +16,7 @@ from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.values import values
 from ptmcad.model import Model
 from ptmcad.model.compile import compiled
-from ptmcad.text.balls import ball_of
+from ptmcad.text.balls import ball_of, ball_over
 from ptmcad.text.expressions import Expression, Term
 
 
@@ -34,7 +34,7 @@ class LineSystem:
         return len(self.system.ring.angles)
 
     def _numbers(self, low: Fraction, high: Fraction) -> list[Jet]:
-        value = ball_of(low).union(ball_of(high))
+        value = ball_over(low, high)
         return [_jet(self.parameters[name], value) for name in self.system.ring.parameters]
 
     def at(self, low: Fraction, high: Fraction) -> Instance:
@@ -55,7 +55,7 @@ class LineSystem:
 
     def values_of(self, formulas: Sequence[Formula], low: Fraction, high: Fraction, point: Vector) -> list[arb]:
         """Formulas of the model's for all parameters from low to high, at balls of the unknowns."""
-        known, span = compiled(self.model), ball_of(low).union(ball_of(high))
+        known, span = compiled(self.model), ball_over(low, high)
         unknowns = dict(zip(known.unknowns, point, strict=True))
         return values(formulas, _BallArithmetic(known.names, self.parameters, span, unknowns))
 

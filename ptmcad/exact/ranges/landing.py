@@ -23,7 +23,7 @@ from ptmcad.exact.ranges.equations import LineSystem
 from ptmcad.exact.ranges.meeting import Meeting, parameters_at, value_at, what_meets
 from ptmcad.exact.ranges.tracking import BITS, Reached, bridge, enclose, follow
 from ptmcad.question.line import Line
-from ptmcad.text.balls import ball_of, enclosure_of
+from ptmcad.text.balls import ball_of, ball_over, enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
@@ -138,7 +138,7 @@ def _turned(pose: Sequence[Enclosure], region: Sequence[Enclosure], angles: int)
         for k in range(angles):
             turns = round((float(region[k]) - float(pose[k])) / (2 * pi))
             if turns:
-                ball = ball_of(pose[k].low).union(ball_of(pose[k].high)) + 2 * turns * arb.pi()
+                ball = ball_over(pose[k].low, pose[k].high) + 2 * turns * arb.pi()
                 turned[k] = enclosure_of(ball)
     return tuple(turned)
 

@@ -14,21 +14,19 @@ from flint import fmpq
 from ptmcad.algebra.chords import side_of_chord
 from ptmcad.algebra.numbers import as_interval, fibre_roots, refined, root_of
 from ptmcad.algebra.polynomials import PLANE, UnivariatePolynomial
-from ptmcad.algebra.real_roots import isolate, refine, sign, simplest_between
+from ptmcad.algebra.real_roots import Interval, isolate, refine, sign, simplest_between
 from ptmcad.algebra.resultants import resultant
 from ptmcad.algebra.slopes import tangent_resultant
-from ptmcad.algebra.window import Interval
 from ptmcad.answer.intervals import End
 from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.exact.ranges.strips import RangeEnd, RangeStrip, at_abscissa, bound_over, end_interval
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.enclosure import AlgebraicNumber
+from ptmcad.text.flint_numbers import to_fraction
 
 
 def ends_of(end: End) -> Interval:
     """An interval that holds a limit: of length zero when it is rational."""
-    if isinstance(end, Fraction):
-        return from_fraction(end), from_fraction(end)
-    return as_interval(end)
+    return as_interval(AlgebraicNumber.of(end))
 
 
 def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, width: fmpq) -> End | None:

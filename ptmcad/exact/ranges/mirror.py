@@ -20,7 +20,7 @@ from typing import NamedTuple
 from flint import arb
 
 from ptmcad.algebra.polynomials import Coefficient, UnknownPolynomial, constant_like
-from ptmcad.text.balls import ball_of
+from ptmcad.text.balls import ball_over
 
 Gaussian = tuple[Coefficient, Coefficient]
 """Real and imaginary part, polynomials in the axes."""
@@ -37,7 +37,7 @@ class Mirror(NamedTuple):
 
         None where its direction may be zero there.
         """
-        value = ball_of(low).union(ball_of(high))
+        value = ball_over(low, high)
         x, y = _at(self.x, value), _at(self.y, value)
         if x.contains(0) and y.contains(0):
             return None

@@ -34,7 +34,7 @@ from ptmcad.exact.ranges.tracking import BITS, Reached, at_value, bridge, follow
 from ptmcad.model.compile import compiled
 from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Slice, moved
-from ptmcad.text.balls import ball_of, enclosure_of
+from ptmcad.text.balls import ball_of, ball_over, enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.parsing import number_for
 
@@ -225,7 +225,7 @@ def _descends(family: LineSystem, line: Line) -> bool:
 
 def _ball(enclosure: Enclosure) -> arb:
     with ctx.workprec(BITS):
-        return ball_of(enclosure.low).union(ball_of(enclosure.high))
+        return ball_over(enclosure.low, enclosure.high)
 
 
 def _point(family: LineSystem, reached: Reached) -> PathPoint:

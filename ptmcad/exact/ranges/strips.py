@@ -15,8 +15,7 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import RationalPolynomial, UnivariatePolynomial
-from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine, simplest_between
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.real_roots import Interval, RealRoot, has_root_between, isolate, refine, simplest_between
 from ptmcad.answer.counts import operation_number
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.adjacency import Crossing, cross

@@ -33,7 +33,7 @@ from flint import arb, fmpq
 
 from ptmcad.algebra.chords import slope_over
 from ptmcad.algebra.numbers import algebraic_number, compare
-from ptmcad.algebra.window import Interval
+from ptmcad.algebra.real_roots import Interval
 from ptmcad.answer.intervals import End, Span
 from ptmcad.answer.widths import Maximum, Place
 from ptmcad.exact.cad.stacks import BaseEnd
