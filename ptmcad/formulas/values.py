@@ -1,16 +1,17 @@
 """The values of formulas in any arithmetic with sums and products: each node of the graph is computed once.
 
 Guarantee: exact as far as the arithmetic is; a constant meets it as a fraction. Cosines and sines are those of
-variables only, as in compiled systems.
+variables only, as in compiled systems, but for an arithmetic whose numbers have some: that of `Substitution`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Protocol, TypeVar
 
-from ptmcad.formulas.graph import Formula, Operation
+from ptmcad.formulas.graph import Formula, Graph, Operation, direction, inverse_length, length, meet
 
 V_co = TypeVar("V_co", covariant=True)
 
@@ -18,7 +19,7 @@ V_co = TypeVar("V_co", covariant=True)
 class Arithmetic(Protocol[V_co]):
     """Numbers, or what is computed with as with numbers: it has sums, differences, products and changes of sign.
 
-    One with lengths has a method ``length(x, y)`` as well, of values.
+    One with lengths has a method ``length(x, y)`` as well, of values; and so for other operations on two of them.
     """
 
     def constant(self, value: Fraction, /) -> V_co: ...
@@ -31,35 +32,89 @@ class Arithmetic(Protocol[V_co]):
     def sin(self, number: int, /) -> V_co: ...
 
 
+@dataclass(frozen=True, slots=True)
+class Substitution:
+    """The arithmetic of formulas: with others in the place of some variables, of the same graph or of another one."""
+
+    graph: Graph
+    places: Mapping[int, Formula]
+
+    def constant(self, value: Fraction) -> Formula:
+        return self.graph.constant(value)
+
+    def variable(self, number: int) -> Formula:
+        place = self.places.get(number)
+        return self.graph.variable(number) if place is None else place
+
+    def cos(self, number: int) -> Formula:
+        return self.variable(number).cos()
+
+    def sin(self, number: int) -> Formula:
+        return self.variable(number).sin()
+
+    def divide(self, x: Formula, y: Formula) -> Formula:
+        """Raises `ZeroDivisionError` by the constant zero."""
+        return x / y
+
+    length = staticmethod(length)
+    inverse_length = staticmethod(inverse_length)
+    direction = staticmethod(direction)
+    meet = staticmethod(meet)
+
+
 def values(formulas: Sequence[Formula], arithmetic: Arithmetic[Any]) -> list[Any]:
     """The formulas' values, in their order.
 
     Raises
     ------
-    TypeError
+    AttributeError
         Where a node is none of which the arithmetic has a value: a quotient, or the cosine of a sum.
     """
     known: dict[int, Any] = {}
-    for node in _in_order(formulas):
-        known[node.number] = _value(node, known, arithmetic)
-    return [known[formula.number] for formula in formulas]
+
+    def value(node: Formula) -> Any:
+        if node.number not in known:
+            known[node.number] = _value(node, arithmetic, value)
+        return known[node.number]
+
+    for node in nodes_of(formulas):
+        # a cosine is taken of a variable by its number, so that the variable itself need not have a value
+        if node.operation is not Operation.VARIABLE:
+            value(node)
+    return list(map(value, formulas))
 
 
-def _in_order(formulas: Sequence[Formula]) -> list[Formula]:
-    """All nodes that the formulas need: operands have smaller numbers than what is made of them."""
-    needed: dict[int, Formula] = {}
+def values_by_group(groups: Mapping[str, Sequence[Formula]], arithmetic: Arithmetic[Any]) -> dict[str, list[Any]]:
+    """The values of groups of formulas, each node still computed once."""
+    found = iter(values([formula for group in groups.values() for formula in group], arithmetic))
+    return {name: [next(found) for _ in group] for name, group in groups.items()}
+
+
+def substituted(formula: Formula, places: Mapping[int, Formula]) -> Formula:
+    """The formula with others, of its graph, in the place of variables.
+
+    Raises
+    ------
+    ZeroDivisionError
+        Where something would be divided by the constant zero.
+    """
+    found: Formula = values([formula], Substitution(formula.graph, places))[0]
+    return found
+
+
+def nodes_of(formulas: Iterable[Formula]) -> list[Formula]:
+    """All nodes that the formulas need: operands have smaller numbers than what is made of them, and come first."""
+    found: dict[int, Formula] = {}
     waiting = list(formulas)
     while waiting:
         node = waiting.pop()
-        if node.number not in needed:
-            needed[node.number] = node
-            # a cosine is taken of a variable by its number, so that the variable itself need not have a value
-            if node.operation not in (Operation.COSINE, Operation.SINE):
-                waiting += [operand for operand in (node.a, node.b) if operand is not None]
-    return [needed[number] for number in sorted(needed)]
+        if node.number not in found:
+            found[node.number] = node
+            waiting += [operand for operand in (node.a, node.b) if operand is not None]
+    return [found[number] for number in sorted(found)]
 
 
-def _value(node: Formula, known: dict[int, Any], arithmetic: Any) -> Any:
+def _value(node: Formula, arithmetic: Any, value: Callable[[Formula], Any]) -> Any:
     operation, a, b = node.operation, node.a, node.b
     if node.value is not None:
         return arithmetic.constant(node.value)
@@ -67,22 +122,21 @@ def _value(node: Formula, known: dict[int, Any], arithmetic: Any) -> Any:
         return arithmetic.variable(node.variable)
     assert a is not None
     if operation in (Operation.COSINE, Operation.SINE):
-        if a.operation is not Operation.VARIABLE:
-            raise TypeError("the cosine or sine of what is no variable")
-        return (arithmetic.cos if operation is Operation.COSINE else arithmetic.sin)(a.variable)
-    x = known[a.number]
+        name = "cos" if operation is Operation.COSINE else "sin"
+        if a.operation is Operation.VARIABLE:
+            return getattr(arithmetic, name)(a.variable)
+        return getattr(value(a), name)()
+    x = value(a)
     if operation is Operation.NEGATE:
         return -x
     if operation is Operation.SQUARE:
         return x * x
     assert b is not None
-    y = known[b.number]
+    y = value(b)
     if operation is Operation.ADD:
         return x + y
     if operation is Operation.SUBTRACT:
         return x - y
     if operation is Operation.MULTIPLY:
         return x * y
-    if operation is Operation.LENGTH:
-        return arithmetic.length(x, y)
-    raise TypeError(f"{operation.name.lower()} has no value in this arithmetic")
+    return getattr(arithmetic, operation.name.lower())(x, y)

@@ -10,22 +10,24 @@ length takes off the energy is kept beside them, as that has a root.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Generic, NamedTuple, TypeVar
 
 from ptmcad.errors import ExpressionError
 from ptmcad.formulas.graph import Formula, Graph, length
+from ptmcad.formulas.values import values
 from ptmcad.model.closed import ClosedMechanism, mechanism_in
 from ptmcad.model.description import Mechanism, Model, System
-from ptmcad.model.evaluate import evaluate
+from ptmcad.model.evaluate import Element, Ring, evaluate
 from ptmcad.model.work import split_moments
 from ptmcad.model.xjoint import second_bar
 from ptmcad.text.tree import Tree
 
 Vector = tuple[Formula, Formula]
+E = TypeVar("E", bound=Element)
 
 
 class LinearSpring(NamedTuple):
@@ -64,6 +66,18 @@ class LinearSpring(NamedTuple):
     def force(self) -> Formula:
         """Positive where it pulls."""
         return self.stiffness * (self.length - self.free)
+
+    @property
+    def relaxed_energy(self) -> Formula:
+        """As if its free length were zero."""
+        return self.stiffness * self.square / 2
+
+    @property
+    def energy(self) -> Formula:
+        """Where the free length is the number zero without the length, so that short springs are nothing singular."""
+        if self.free.value == 0:
+            return self.relaxed_energy
+        return self.stiffness * (self.length - self.free).squared() / 2
 
 
 class AngularSpring(NamedTuple):
@@ -112,10 +126,12 @@ class CompiledSystem:
     springs, torsion : in the description's order.
     loads : the point and the force's components.
     smooth : the energy of springs and loads, or the potential, as if no spring had a free length; None of equations.
+    others : its terms that are of no spring between points.
     moments : for each unknown, what its equation lacks of the energy's slope: constant moments; without a potential
         all moments.
     equations : one for each unknown, zero at solutions as if no spring had a free length; with closed loops those that
         close them, and then the energy's slope along them.
+    are_slopes : whether they are the smooth energy's derivatives by the unknowns, less the moments.
     inequalities, stability : a solution counts, and is stable, where all are positive.
     tangent : along closed loops with one degree of freedom, the direction in which unknowns move.
     has_energy : whether that is an energy, and not only a part of what acts, as beside moments without a potential.
@@ -132,8 +148,10 @@ class CompiledSystem:
     torsion: tuple[AngularSpring, ...] = ()
     loads: tuple[tuple[str, Vector], ...] = ()
     smooth: Formula | None = None
+    others: tuple[Formula, ...] = ()
     moments: tuple[Formula, ...] = ()
     equations: tuple[Formula, ...] = ()
+    are_slopes: bool = False
     inequalities: tuple[Formula, ...] = ()
     stability: tuple[Formula, ...] = ()
     tangent: tuple[Formula, ...] = ()
@@ -145,6 +163,42 @@ class CompiledSystem:
         """Their numbers, angles first."""
         return self.angles + self.reals
 
+    @property
+    def lengths(self) -> tuple[Formula, ...]:
+        """Of the springs."""
+        return tuple(spring.length for spring in self.springs)
+
+    @property
+    def forces(self) -> tuple[Formula, ...]:
+        """Of the springs, positive where they pull."""
+        return tuple(spring.force for spring in self.springs)
+
+    @property
+    def free_lengths(self) -> tuple[Formula, ...]:
+        """Of the springs."""
+        return tuple(spring.free for spring in self.springs)
+
+    @property
+    def deflections(self) -> tuple[tuple[Formula, Formula, Formula], ...]:
+        """Of the torsion springs, by cosine and sine, each with the spring's moment."""
+        return tuple((spring.cosine, spring.sine, spring.moment) for spring in self.torsion)
+
+    @property
+    def dead_forces(self) -> tuple[Vector, ...]:
+        """Of the loads."""
+        return tuple(force for _, force in self.loads)
+
+    @property
+    def acting(self) -> dict[int, Formula]:
+        """The moments that are not zero, by the unknowns' places, where the equations are slopes."""
+        return {k: moment for k, moment in enumerate(self.moments) if moment.value != 0 and self.are_slopes}
+
+    @property
+    def work(self) -> Formula:
+        """Of the moments."""
+        parts = (self.graph.variable(self.unknowns[k]) * moment for k, moment in self.acting.items())
+        return sum(parts, self.graph.constant(0))
+
     def energy(self, relaxed: Iterable[int] | None = None) -> Formula | None:
         """With the springs' free lengths; None where there is none.
 
@@ -152,14 +206,67 @@ class CompiledSystem:
         ----------
         relaxed : numbers of the springs whose free length counts, others being zero; all where nothing is said.
         """
-        if self.smooth is None or not self.has_energy:
+        return self.stored(relaxed) if self.has_energy else None
+
+    def stored(self, relaxed: Iterable[int] | None = None) -> Formula | None:
+        """The same, whatever acts beside it."""
+        if self.smooth is None:
             return None
-        total = self.smooth
-        for k in range(len(self.springs)) if relaxed is None else relaxed:
+        counted = set(range(len(self.springs)) if relaxed is None else relaxed)
+        parts = [s.energy if k in counted else s.relaxed_energy for k, s in enumerate(self.springs)]
+        return sum((*parts, *self.others), start=self.graph.constant(0))
+
+    def balance(self, relaxed: Iterable[int]) -> tuple[Formula, ...]:
+        """The equations with the free lengths of some springs."""
+        slack = self.graph.constant(0)
+        for k in relaxed:
             spring = self.springs[k]
-            if spring.free.value != 0:
-                total = total + spring.stiffness * spring.free * (spring.free / 2 - spring.length)
-        return total
+            slack = slack + spring.pull * (spring.free / 2 - spring.length)
+        slopes = [self.graph.derivative(slack, k) for k in self.unknowns]
+        if not self.tangent:
+            return tuple(equation + slope for equation, slope in zip(self.equations, slopes, strict=True))
+        *closed, along = self.equations
+        for towards, slope in zip(self.tangent, slopes, strict=True):
+            along = along + towards * slope
+        return (*closed, along)
+
+    @property
+    def quantities(self) -> dict[str, Formula]:
+        """By name: ``P.x`` and ``P.y`` of a point, ``.length`` and ``.force`` of a spring, of a torsion spring
+        ``.deflection.cos``, ``.deflection.sin`` and ``.moment``."""
+        found: dict[str, Formula] = {}
+        for name, (x, y) in self.points.items():
+            found |= {f"{name}.x": x, f"{name}.y": y}
+        for spring in self.springs:
+            found |= {f"{spring.name}.length": spring.length, f"{spring.name}.force": spring.force}
+        for turned in self.torsion:
+            parts = {"deflection.cos": turned.cosine, "deflection.sin": turned.sine, "moment": turned.moment}
+            found |= {f"{turned.name}.{what}": formula for what, formula in parts.items()}
+        return found
+
+    def values(self, formulas: Sequence[Formula], ring: Ring[E]) -> list[E]:
+        """The formulas' values in a ring that has the parameters and unknowns by their names."""
+        return values(formulas, _ByNames(self.names, ring))
+
+
+@dataclass(frozen=True, slots=True)
+class _ByNames(Generic[E]):
+    """A ring as an arithmetic for formulas."""
+
+    names: tuple[str, ...]
+    ring: Ring[E]
+
+    def constant(self, value: Fraction) -> E:
+        return self.ring.constant(value)
+
+    def variable(self, number: int) -> E:
+        return self.ring.parameter(self.names[number])
+
+    def cos(self, number: int) -> E:
+        return self.ring.cos(self.names[number])
+
+    def sin(self, number: int) -> E:
+        return self.ring.sin(self.names[number])
 
 
 @lru_cache(maxsize=8)
@@ -171,19 +278,24 @@ def compiled(model: Model) -> CompiledSystem:
     ExpressionError
         When a moment that depends on its unknown is too large to be multiplied out.
     """
-    angles, reals = model.angles, model.reals
+    graph, names = Graph(), [*model.variables, *model.angles, *model.reals]
+    mechanism = mechanism_in(model)
+    if mechanism is not None:
+        names += mechanism.followers
+    return compiled_with(model, {name: graph.variable(k) for k, name in enumerate(names)})
+
+
+def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSystem:
+    """The same with formulas of one graph for all names; those for unknowns and followers are variables.
+
+    So parameters may be numbers or functions of others. Names are known of the variables in their places alone.
+    """
     mechanism = mechanism_in(model)
     followers = () if mechanism is None else tuple(mechanism.followers)
-    names = (*model.variables, *angles, *reals, *followers)
-    graph = Graph()
-    ring = _Ring(graph, {name: graph.variable(k) for k, name in enumerate(names)}, {*angles, *followers})
-    first = len(model.variables)
-    known = CompiledSystem(
-        graph,
-        names,
-        tuple(range(first, first + len(angles))),
-        tuple(range(first + len(angles), first + len(angles) + len(reals))),
-    )
+    graph = next((formula.graph for formula in variables.values()), Graph())
+    ring = _Ring(graph, variables, {*model.angles, *followers})
+    angles, reals = (tuple(variables[name].variable for name in some) for some in (model.angles, model.reals))
+    known = CompiledSystem(graph, tuple(variables), angles, reals)
     if mechanism is not None:
         known = _with_mechanism(known, mechanism, ring)
     return _with_equations(known, model, ring)
@@ -228,23 +340,18 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
     torsion = [AngularSpring(t.name, *ring.of((t.stiffness, *t.deflection))) for t in mechanism.torsion]
     loads = [(load.point, (evaluate(load.x, ring), evaluate(load.y, ring))) for load in mechanism.loads]
     split = split_moments(mechanism)
-    energy = ring.constant(Fraction(0))
-    for pulled in springs:
-        energy = energy + pulled.stiffness * pulled.square / 2
-    for turned in torsion:
-        energy = energy + turned.stiffness * (1 - turned.cosine)
+    others = [turned.stiffness * (1 - turned.cosine) for turned in torsion]
     for point, (across, up) in loads:
         x, y = points[point]
-        energy = energy - (across * x + up * y)
-    for tree in split.energies:
-        energy = energy + evaluate(tree, ring)
+        others.append(-(across * x + up * y))
+    others += ring.of(split.energies)
     steady = dict.fromkeys(mechanism.unknowns, ring.constant(Fraction(0)))
     steady |= {moment.unknown: evaluate(moment.value, ring) for moment in split.steady}
     followers = []
     for joint in mechanism.xjoints:
         bars, base = ring.of((joint.bars, joint.length))
         turned_by = second_bar(bars, base, ring.cos(joint.angle), ring.sin(joint.angle))
-        followers.append(Follower(known.names.index(joint.other), *turned_by))
+        followers.append(Follower(ring.variables[joint.other].variable, *turned_by))
     return replace(
         known,
         followers=tuple(followers),
@@ -252,8 +359,9 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
         springs=tuple(springs),
         torsion=tuple(torsion),
         loads=tuple(loads),
-        smooth=energy,
-        moments=tuple(steady[known.names[k]] for k in known.unknowns),
+        smooth=sum((*(spring.relaxed_energy for spring in springs), *others), start=ring.constant(Fraction(0))),
+        others=tuple(others),
+        moments=tuple(steady[name] for name in (*mechanism.angles, *mechanism.reals)),
         has_energy=mechanism.has_potential,
     )
 
@@ -270,10 +378,12 @@ def _with_equations(known: CompiledSystem, model: Model, ring: _Ring) -> Compile
         )
         if model.potential is not None:
             moments = (ring.constant(Fraction(0)),) * len(known.unknowns)
-            known = replace(known, smooth=evaluate(model.potential, ring), moments=moments, has_energy=True)
+            energy = evaluate(model.potential, ring)
+            known = replace(known, smooth=energy, others=(energy,), moments=moments, has_energy=True)
     known = replace(known, has_index=model.has_potential)
     if known.equations:
         return known
     assert known.smooth is not None
     slopes = [known.graph.derivative(known.smooth, k) for k in known.unknowns]
-    return replace(known, equations=tuple(s - m for s, m in zip(slopes, known.moments, strict=True)))
+    equations = tuple(slope - moment for slope, moment in zip(slopes, known.moments, strict=True))
+    return replace(known, equations=equations, are_slopes=True)

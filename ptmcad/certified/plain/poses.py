@@ -54,7 +54,7 @@ NOT_TOLD = (
 NOT_TOLD_OF_LOOPS = NOT_TOLD.replace("or a spring", "a loop is nearly flat, or a spring")
 
 
-def plain_poses(model: Mechanism | ClosedMechanism, parameters: Mapping[str, Fraction], digits: int) -> Poses:
+def plain_poses(model: Model, parameters: Mapping[str, Fraction], digits: int) -> Poses:
     """All equilibria of a mechanism.
 
     Parameters
