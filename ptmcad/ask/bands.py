@@ -16,7 +16,7 @@ from ptmcad.answer.intervals import CertifiedInterval
 from ptmcad.answer.widths import CertifiedRange, CertifiedRow, CertifiedWidths
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.errors import HypothesisError
-from ptmcad.model import ClosedMechanism
+from ptmcad.model.compile import compiled
 from ptmcad.options import Progress
 from ptmcad.question.slice import Slice
 
@@ -44,9 +44,8 @@ def certified_widths(
         if progress is not None:
             progress("rows", k, rows)
     working = operation_number(slice.model, ())
-    if isinstance(
-        slice.model, ClosedMechanism
-    ):  # as without free lengths: a loop is stable somewhere nearly everywhere
+    if not compiled(slice.model).are_slopes:
+        # as without free lengths: a loop is stable somewhere nearly everywhere
         working = max((i.working or 0 for _, row, _ in found for i in row), default=working) or working
     table = tuple(
         CertifiedRow(value, _ranges(row, working), any(i.working is None for i in row), remark)

@@ -17,10 +17,11 @@ from flint import fmpq
 from ptmcad.algebra.bases import plan_text
 from ptmcad.algebra.fibre import WorkLimit
 from ptmcad.algebra.polynomials import point_values
-from ptmcad.ask.classification import check_taken, flat_loops
+from ptmcad.ask.classification import check_flat_loops, check_taken, flat_loops
 from ptmcad.ask.engines import is_certified
 from ptmcad.ask.forecast import QUICK, Forecast, curve_text, forecast, seconds_to_discriminant, way_text
 from ptmcad.ask.forecast import cost_text as in_figures
+from ptmcad.ask.quantities import told_mechanism
 from ptmcad.ask.timed import returns_within
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, LimitReached, shown
 from ptmcad.exact.models import ParametricSystem
@@ -29,7 +30,7 @@ from ptmcad.exact.sizes import sizes
 from ptmcad.exact.stages import SliceProblem, problem_of, prove_regular
 from ptmcad.exact.survey import Survey, survey
 from ptmcad.exact.witness import SHARES, points
-from ptmcad.model import ClosedMechanism, Mechanism, ptm
+from ptmcad.model import ptm
 from ptmcad.model.sizes import terms_of
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
@@ -113,10 +114,7 @@ def check(slice: Slice, sized: bool = True) -> Check:
     at = (sample[0], sample[1])
     if is_certified(slice, "auto"):
         cost, flat = _CERTIFIED, flat_loops(slice)
-        if isinstance(slice.model, ClosedMechanism):
-            from ptmcad.certified.plain.problem import check_loops
-
-            check_loops(slice)  # however long the rest would take
+        check_flat_loops(slice)  # however long the rest would take
         try:
             if not _is_large(slice):
                 _check_certified(slice)
@@ -300,23 +298,23 @@ _TORSION = (
 def asked_text(slice: Slice) -> Iterator[str]:
     """What a slice asks as lines of text, before anything is computed."""
     model = slice.model
-    what = "mechanism" if isinstance(model, Mechanism) else "system"
-    yield f"{what:<12}{model.name}"
+    mechanism = told_mechanism(model)
+    yield f"{'system' if mechanism is None else 'mechanism':<12}{model.name}"
     yield f"{'unknowns':<12}{', '.join(f'{name} ({kind.value})' for name, kind in model.unknowns.items())}"
-    if isinstance(model, Mechanism):
-        turning = sum(moment.unknown in model.angles for moment in model.moments)
+    if mechanism is not None:
+        turning = sum(moment.unknown in model.angles for moment in mechanism.moments)
         parts = {
-            ("bar", "bars"): len(model.bars),
-            ("body", "bodies"): len(model.bodies),
-            ("spring", "springs"): len(model.springs),
-            ("torsion spring", "torsion springs"): len(model.torsion),
-            ("load", "loads"): len(model.loads),
+            ("bar", "bars"): len(mechanism.bars),
+            ("body", "bodies"): len(mechanism.bodies),
+            ("spring", "springs"): len(mechanism.springs),
+            ("torsion spring", "torsion springs"): len(mechanism.torsion),
+            ("load", "loads"): len(mechanism.loads),
             ("moment", "moments"): turning,
-            ("force on a length", "forces on lengths"): len(model.moments) - turning,
+            ("force on a length", "forces on lengths"): len(mechanism.moments) - turning,
         }
         words = (f"{number} {one if number == 1 else many}" for (one, many), number in parts.items() if number)
         yield f"{'parts':<12}{', '.join(words)}"
-        if model.torsion:
+        if mechanism.torsion:
             yield f"{'torsion':<12}{_TORSION}"
     values = {name: e.to_text(slice.axis_names) for name, e in slice.parameters.items() if name not in slice.axis_names}
     fixed = [

@@ -245,13 +245,33 @@ def _certified(slice: Slice, options: Options) -> RegionMap:
         raise LimitReached(f"{stop}; the map to go on from has no more, and is kept", partial=kept_map) from stop
 
 
+def _loops(slice: Slice) -> ClosedMechanism | None:
+    """The model with loops that leave one degree of freedom; None where there is no such loop."""
+    return slice.model if isinstance(slice.model, ClosedMechanism) and slice.model.tangent else None
+
+
 def flat_loops(slice: Slice) -> str:
     """What to say of loops that leave parts of a certified map undecided; empty where nothing is known of any."""
-    if not (isinstance(slice.model, ClosedMechanism) and slice.model.tangent):
+    loops = _loops(slice)
+    if loops is None:
         return ""
     from ptmcad.model.fourbars import may_be_flat
 
-    return may_be_flat(slice.model.mechanism, slice.parameters)
+    return may_be_flat(loops.mechanism, slice.parameters)
+
+
+def check_flat_loops(slice: Slice) -> None:
+    """Refuse loops that can fold flat at all points of the window, before anything that takes long.
+
+    Raises
+    ------
+    DegenerateSliceError
+    """
+    loops = _loops(slice)
+    if loops is not None:
+        from ptmcad.certified.plain.problem import check_loops
+
+        check_loops(loops, slice)
 
 
 def check_resumable(slice: Slice, earlier: RegionMap) -> None:

@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.poses import Poses
 from ptmcad.errors import LimitReached
-from ptmcad.model import Mechanism, Model, System
+from ptmcad.model import Model
+from ptmcad.model.compile import compiled
 from ptmcad.process.memory import loading
 from ptmcad.question.slice import Count
 
@@ -41,8 +42,8 @@ def work_for(model: Model) -> WorkLimit | None:
     """
     from ptmcad.algebra.fibre import WorkLimit
 
-    counted_alike = not isinstance(model, System) or (model.potential is not None and not model.inequalities)
-    if len(model.unknowns) <= FEW or model.reals or not model.has_potential or not counted_alike:
+    system = compiled(model)
+    if len(model.unknowns) <= FEW or model.reals or not system.has_index or system.inequalities:
         return None
     return WorkLimit(*_MAX_WORK) if find_spec("numba") is not None else None
 
@@ -97,7 +98,7 @@ def _clock(tried: str, timeout: float | None) -> Callable[[], None]:
     return pause
 
 
-def poses_by_search(mechanism: Mechanism, point: Mapping[str, Fraction], digits: int) -> Poses:
+def poses_by_search(mechanism: Model, point: Mapping[str, Fraction], digits: int) -> Poses:
     """All equilibria at a point, by the certified engine; UNDECIDED where they were not all told apart."""
     with loading("the certified engine"):
         from ptmcad.certified.plain.poses import plain_poses

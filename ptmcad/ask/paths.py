@@ -27,13 +27,14 @@ from ptmcad.answer.poses import Pose
 from ptmcad.ask.branches import Sample, SolutionsOnLine, short
 from ptmcad.ask.fields.course import Course
 from ptmcad.ask.fields.descent import descent, negatives
+from ptmcad.ask.fields.equations import Floats
 from ptmcad.ask.fields.field import unknowns_of
-from ptmcad.ask.fields.jets import Floats
 from ptmcad.ask.fields.track import Track, followed
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.landing import landing, line_of, merger
 from ptmcad.errors import ConfigError
-from ptmcad.model import ClosedMechanism, Mechanism
+from ptmcad.model import Mechanism, mechanism_in
+from ptmcad.model.compile import compiled
 from ptmcad.options import Progress
 from ptmcad.question.doubles import within_doubles
 from ptmcad.question.line import varying_axis
@@ -63,7 +64,8 @@ def joined_paths(
     Parameters and errors are those of `ptmcad.exact.ranges.path.pose_paths`, and closed loops are refused; ``progress``
     is called as progress("paths: pose", done, total).
     """
-    if isinstance(slice.model, ClosedMechanism):
+    mechanism = mechanism_in(slice.model)
+    if mechanism is None or not compiled(slice.model).are_slopes:
         raise ConfigError(
             "poses of closed loops are not followed where springs have free lengths: leave --path out, and solve tells "
             "the poses at single points",
@@ -85,7 +87,7 @@ def joined_paths(
         raise ConfigError(
             f"{number} is none of the {len(stable)} stable poses at {along} = {begin}, counted from 1", key="--pose"
         )
-    walker = _Walker(slice, line, axis, varying, value, intervals)
+    walker = _Walker(slice, mechanism, line, axis, varying, value, intervals)
     paths = []
     chosen = stable if number is None else [number - 1]
     with within_doubles(slice):
@@ -111,13 +113,15 @@ class _Walker:
     def __init__(
         self,
         slice: Slice,
+        mechanism: Mechanism,
         line: SolutionsOnLine,
         axis: Axis,
         varying: int,
         fixed: Fraction,
         intervals: CertifiedIntervals,
     ):
-        self.slice, self.line, self.axis, self.varying, self.fixed = slice, line, axis, varying, fixed
+        self.slice, self.mechanism, self.line = slice, mechanism, line
+        self.axis, self.varying, self.fixed = axis, varying, fixed
         self.intervals = intervals
         self.moved = moved(slice.model, line.parameters)
         self.known: dict[Fraction, Sample | None] = {}
@@ -244,10 +248,8 @@ class _Walker:
         if 0 not in meeting:
             return stopped
         met = replace(stopped, fate=Fate.VANISH, meeting=meeting, leaving=leaving)
-        model = self.slice.model
-        if self.moved or model.reals or not model.has_potential or not isinstance(model, Mechanism):
-            return met
-        if leaving.count(0) > 1:
+        model = self.mechanism
+        if self.moved or model.reals or not model.has_potential or leaving.count(0) > 1:
             return met
         way = descent(lambda point: track.at(share, point), at)
         target = None if way is None else self._found(after, way[-1])
@@ -271,9 +273,9 @@ class _Walker:
         )
 
     def _point(self, reached: _Reached) -> PathPoint:
-        model, pose = self.slice.model, reached.pose
+        pose = reached.pose
         angles = [_on_turn(angle, float(v)) for angle, v in zip(pose.angles, reached.at, strict=False)]
-        sides = _sides(pose, model.rising) if isinstance(model, Mechanism) else ()
+        sides = _sides(pose, self.mechanism.rising)
         return PathPoint(reached.value, tuple(angles), pose.reals, sides)
 
 

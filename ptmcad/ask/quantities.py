@@ -12,7 +12,8 @@ from enum import Enum
 
 from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
-from ptmcad.model import ClosedMechanism, Mechanism, Model
+from ptmcad.model import Mechanism, Model, mechanism_in
+from ptmcad.model.compile import compiled
 from ptmcad.model.elements import UnknownKind
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import Enclosure
@@ -112,9 +113,11 @@ def quantities(model: Model) -> dict[str, Quantity]:
     found = [unknown(model, name) for name in (*model.angles, *model.reals)]
     if model.has_potential:
         found += [_of_energy(model, kind, OPTION) for kind in (Kind.ENERGY, Kind.STIFFNESS)]
-    if isinstance(model, Mechanism):
-        found += [_of_part(model, kind, n, OPTION) for kind in (Kind.FORCE, Kind.LENGTH) for n in model.spring_numbers]
-        found += [_of_part(model, kind, name, OPTION) for name in model.moving for kind in (Kind.X, Kind.Y)]
+    mechanism = told_mechanism(model)
+    if mechanism is not None:
+        numbers = mechanism.spring_numbers
+        found += [_of_part(model, kind, name, OPTION) for kind in (Kind.FORCE, Kind.LENGTH) for name in numbers]
+        found += [_of_part(model, kind, name, OPTION) for name in mechanism.moving for kind in (Kind.X, Kind.Y)]
     return {q.name: q for q in found if q is not None}
 
 
@@ -156,29 +159,31 @@ def unknown(model: Model, name: str) -> Quantity | None:
 def _of_energy(model: Model, kind: Kind, key: str) -> Quantity:
     if not model.has_potential:
         raise ConfigError(f"solutions of {model.name} have no energy{_there_are(tuple(quantities(model)))}", key=key)
-    return Quantity(kind.value, kind, f"force{_TIMES}length" if isinstance(model, Mechanism) else "")
+    return Quantity(kind.value, kind, f"force{_TIMES}length" if mechanism_in(model) else "")
+
+
+def told_mechanism(model: Model) -> Mechanism | None:
+    """The mechanism of whose parts something is told: none yet whose unknowns loops or X-joints hold."""
+    return mechanism_in(model) if compiled(model).are_slopes else None
 
 
 def _of_part(model: Model, kind: Kind, name: str, key: str) -> Quantity:
-    mechanism = model if isinstance(model, Mechanism) else None
+    mechanism = told_mechanism(model)
+    springs = {} if mechanism is None else mechanism.spring_numbers
     match kind:
         case Kind.ANGLE:
             what, known, unit = "unknown angle", model.angles, "degrees"
         case Kind.FORCE | Kind.LENGTH:
-            what, known, unit = "spring", tuple(mechanism.spring_numbers) if mechanism else (), kind.value
+            what, known, unit = "spring", tuple(springs), kind.value
         case _:
-            what, known, unit = "point", tuple(mechanism.points) if mechanism else (), "length"
-    if isinstance(model, ClosedMechanism) and kind is not Kind.ANGLE:
+            what, known, unit = "point", () if mechanism is None else tuple(mechanism.points), "length"
+    if mechanism is not mechanism_in(model) and kind is not Kind.ANGLE:
         raise ConfigError(f"of closed loops, as {model.name} has, only the unknowns are told yet", key=key)
     if name not in known:
         there = f": they are {', '.join(known)}" if known else ": there are none"
         raise ConfigError(f"{model.name} has no {what} {name[:60]!r}{did_you_mean(name, known) or there}", key=key)
-    shown = f"{kind.value}:{name}"
-    if kind is Kind.ANGLE:
-        return Quantity(shown, kind, unit, number=model.angles.index(name))
-    if mechanism is not None and kind in (Kind.FORCE, Kind.LENGTH):
-        return Quantity(shown, kind, unit, number=mechanism.spring_numbers[name])
-    return Quantity(shown, kind, unit, part=name)
+    number = model.angles.index(name) if kind is Kind.ANGLE else springs.get(name, 0)
+    return Quantity(f"{kind.value}:{name}", kind, unit, part=name, number=number)
 
 
 def _there_are(names: Sequence[str]) -> str:

@@ -97,7 +97,7 @@ def substituted(formula: Formula, places: Mapping[int, Formula]) -> Formula:
 
 
 def evaluated(structure: Any, arithmetic: Arithmetic[Any]) -> Any:
-    """Tuples and mappings, nested in any way, with values in place of their formulas; anything else in them stays.
+    """Tuples, lists and mappings, nested in any way, with values in place of their formulas; anything else in them stays.
 
     Raises
     ------
@@ -115,8 +115,8 @@ def _mapped(structure: Any, of: Callable[[Formula], Any]) -> Any:
         return of(structure)
     if isinstance(structure, Mapping):
         return {key: _mapped(part, of) for key, part in structure.items()}
-    if isinstance(structure, tuple):
-        make = getattr(structure, "_make", tuple)  # of a named tuple its own
+    if isinstance(structure, tuple | list):
+        make = getattr(structure, "_make", type(structure))  # of a named tuple its own
         return make(_mapped(part, of) for part in structure)
     return structure
 

@@ -168,6 +168,42 @@ class CompiledSystem:
         """Their numbers, angles first."""
         return self.angles + self.reals
 
+    @property
+    def lengths(self) -> tuple[Formula, ...]:
+        """Of the springs."""
+        return tuple(spring.length for spring in self.springs)
+
+    @property
+    def forces(self) -> tuple[Formula, ...]:
+        """Of the springs, positive where they pull."""
+        return tuple(spring.force for spring in self.springs)
+
+    @property
+    def free_lengths(self) -> tuple[Formula, ...]:
+        """Of the springs."""
+        return tuple(spring.free for spring in self.springs)
+
+    @property
+    def deflections(self) -> tuple[tuple[Formula, Formula, Formula], ...]:
+        """Of the torsion springs, by cosine and sine, each with the spring's moment."""
+        return tuple((spring.cosine, spring.sine, spring.moment) for spring in self.torsion)
+
+    @property
+    def dead_forces(self) -> tuple[Vector, ...]:
+        """Of the loads."""
+        return tuple(force for _, force in self.loads)
+
+    @property
+    def acting(self) -> dict[int, Formula]:
+        """The moments that are not zero, by the unknowns' places, where the equations are slopes."""
+        return {k: moment for k, moment in enumerate(self.moments) if moment.value != 0 and self.are_slopes}
+
+    @property
+    def work(self) -> Formula:
+        """Of the moments."""
+        parts = (self.graph.variable(self.unknowns[k]) * moment for k, moment in self.acting.items())
+        return sum(parts, self.graph.constant(0))
+
     def energy(self, relaxed: Iterable[int] | None = None) -> Formula | None:
         """With the springs' free lengths; None where there is none.
 
@@ -175,11 +211,29 @@ class CompiledSystem:
         ----------
         relaxed : numbers of the springs whose free length counts, others being zero; all where nothing is said.
         """
-        if self.smooth is None or not self.has_energy:
+        return self.stored(relaxed) if self.has_energy else None
+
+    def stored(self, relaxed: Iterable[int] | None = None) -> Formula | None:
+        """The same, whatever acts beside it."""
+        if self.smooth is None:
             return None
         counted = set(range(len(self.springs)) if relaxed is None else relaxed)
         parts = [s.energy if k in counted else s.relaxed_energy for k, s in enumerate(self.springs)]
         return sum((*parts, *self.others), start=self.graph.constant(0))
+
+    def balance(self, relaxed: Iterable[int]) -> tuple[Formula, ...]:
+        """The equations with the free lengths of some springs."""
+        slack = self.graph.constant(0)
+        for k in relaxed:
+            spring = self.springs[k]
+            slack = slack + spring.pull * (spring.free / 2 - spring.length)
+        slopes = [self.graph.derivative(slack, k) for k in self.unknowns]
+        if not self.tangent:
+            return tuple(equation + slope for equation, slope in zip(self.equations, slopes, strict=True))
+        *closed, along = self.equations
+        for towards, slope in zip(self.tangent, slopes, strict=True):
+            along = along + towards * slope
+        return (*closed, along)
 
     @property
     def quantities(self) -> dict[str, Formula]:
@@ -246,7 +300,7 @@ def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSys
     """
     mechanism = mechanism_in(model)
     followers = () if mechanism is None else tuple(mechanism.followers)
-    graph = next(iter(variables.values())).graph
+    graph = next((formula.graph for formula in variables.values()), Graph())
     ring = _Ring(graph, variables, {*model.angles, *followers})
     angles, reals = (tuple(variables[name].variable for name in some) for some in (model.angles, model.reals))
     known = CompiledSystem(graph, tuple(variables), angles, reals)

@@ -156,11 +156,16 @@ def check_names(model: Model, parameters: Mapping[str, object]) -> None:
 
 def have_free_lengths(model: Model, parameters: Mapping[str, Expression]) -> bool:
     """Whether some spring has a free length that is not zero everywhere; a parameter that is missing is zero."""
+    return bool(relaxed_springs(model, parameters))
+
+
+def relaxed_springs(model: Model, parameters: Mapping[str, Expression]) -> tuple[int, ...]:
+    """The numbers of those springs."""
     mechanism = mechanism_in(model)
     if mechanism is None:
-        return False
+        return ()
     known = _Expressions(parameters)
-    return any(bool(evaluate(spring.free, known).numerator) for spring in mechanism.springs)
+    return tuple(k for k, spring in enumerate(mechanism.springs) if evaluate(spring.free, known).numerator)
 
 
 def moved(model: Model, parameters: Mapping[str, Expression]) -> tuple[str, ...]:

@@ -1,20 +1,20 @@
 """A mechanism as a line drawing, in characters or as SVG: bars, springs, supports and the points' names.
 
-Torsion springs are drawn where their joints are known (`ptmcad.model.joints`).
+Springs between directions are spirals, where their joints are known (`ptmcad.model.joints`).
 
 Floating point throughout: a drawing decides nothing. The pose is any, not an equilibrium.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
-from fractions import Fraction
 from html import escape
-from math import cos, sin
 
-from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.errors import ConfigError
+from ptmcad.formulas.doubles import Doubles
 from ptmcad.model import Mechanism, Support
-from ptmcad.model.evaluate import evaluate
+from ptmcad.model.compile import compiled
 from ptmcad.model.joints import joints_of
 from ptmcad.show.spiral import spirals
 from ptmcad.text.parsing import rational
@@ -23,34 +23,11 @@ WIDTH, HEIGHT = 48, 15
 """Characters of a drawing in text; one is about twice as high as wide."""
 SIDE, MARGIN, TURNS = 360.0, 40.0, 8
 SPIRAL = (4.5, 13.0, 3.0)
-"""Inner and outer radius of a torsion spring, and the gap between two at one joint."""
+"""Inner and outer radius of a spiral, and the gap between two at one joint."""
 _ANGLES = (0.9, 2.1, 0.3, 1.6)
 """Of the pose that is drawn, in turn: no two are alike, so that bars do not hide each other."""
 _SUPPORTS = {Support.PIN: "fixed", Support.SLIDER_X: "slides along x", Support.SLIDER_Y: "slides along y"}
 Place = tuple[float, float]
-
-
-class _Pose:
-    """The floating point numbers, with defaults for parameters and any values for the unknowns."""
-
-    def __init__(self, mechanism: Mechanism):
-        self.values = {name: _default(mechanism, name) for name in mechanism.parameters}
-        self.values |= {name: 0.7 for name in mechanism.reals}
-        self.angles = {name: _ANGLES[n % len(_ANGLES)] for n, name in enumerate(mechanism.angles)}
-
-    def constant(self, value: Fraction) -> float:
-        return float(value)
-
-    def parameter(self, name: str) -> float:
-        if name not in self.values:
-            raise ExpressionError(f"{name} has no value")
-        return self.values[name]
-
-    def cos(self, angle: str) -> float:
-        return cos(self.angles[angle])
-
-    def sin(self, angle: str) -> float:
-        return sin(self.angles[angle])
 
 
 def _default(mechanism: Mechanism, name: str) -> float:
@@ -68,30 +45,39 @@ def approximate_places(mechanism: Mechanism) -> dict[str, Place]:
     ConfigError
         Where a coordinate is too large for floating point.
     """
-    pose = _Pose(mechanism)
+    system = compiled(mechanism)
     try:
-        return {name: (evaluate(x, pose), evaluate(y, pose)) for name, (x, y) in mechanism.points.items()}
+        known = {name: _default(mechanism, name) for name in mechanism.variables}
+        known |= dict.fromkeys(mechanism.reals, 0.7)
+        known |= {name: _ANGLES[n % len(_ANGLES)] for n, name in enumerate(mechanism.angles)}
+        given = {number: known[name] for number, name in enumerate(system.names)}
+        points = Doubles(system.points, math).at(given)
     except OverflowError as error:
         raise ConfigError("a coordinate is too large to be drawn", key="points") from error
+    return {name: (x, y) for name, (x, y) in points.items()}
 
 
 def approximate_text(mechanism: Mechanism) -> str:
-    """The drawing in characters: bars ``#``, springs ``.``, points ``o`` or, with torsion springs, ``@``, and names."""
+    """The drawing in characters: bars ``#``, springs ``.``, points ``o`` or, with spirals, ``@``, and names."""
     canvas = [[" "] * WIDTH for _ in range(HEIGHT)]
     at = {
         name: (round(x * (WIDTH - 6)), round((1 - y) * (HEIGHT - 1)))
         for name, (x, y) in _fitted(approximate_places(mechanism), 2.0 * (HEIGHT - 1) / (WIDTH - 6)).items()
     }
-    lines = [(spring.start, spring.end, ".") for spring in mechanism.springs] + [(*bar, "#") for bar in mechanism.bars]
-    for start, end, character in lines:
-        for column, row in _line(at[start], at[end]):
-            canvas[row][column] = character
+    for pairs, character in ((_spring_ends(mechanism), "."), (mechanism.bars, "#")):
+        for start, end in pairs:
+            for column, row in _line(at[start], at[end]):
+                canvas[row][column] = character
     wound = {joint.point for joint in joints_of(mechanism) if joint is not None}
     for name, (column, row) in at.items():
         for k, character in enumerate(f"{'@' if name in wound else 'o'}{name}"[:6]):
             if k == 0 or canvas[row][column + k] in " .":
                 canvas[row][column + k] = character
     return "\n".join("".join(row).rstrip() for row in canvas).strip("\n")
+
+
+def _spring_ends(mechanism: Mechanism) -> list[tuple[str, str]]:
+    return [(spring.start, spring.end) for spring in mechanism.springs]
 
 
 def _fitted(places: Mapping[str, Place], shape: float) -> dict[str, Place]:
@@ -119,8 +105,8 @@ def approximate_svg(mechanism: Mechanism) -> str:
     parts = [f'<title>{escape(mechanism.name)}</title><rect width="{SIDE:g}" height="{SIDE:g}" fill="white"/>']
     for start, end in mechanism.bars:
         parts.append(_path([at[start], at[end]], "#17365d", 5))
-    for spring in mechanism.springs:
-        parts.append(_path(list(_zigzag(at[spring.start], at[spring.end])), "#1f1f1f", 1))
+    for start, end in _spring_ends(mechanism):
+        parts.append(_path(list(_zigzag(at[start], at[end])), "#1f1f1f", 1))
     joints = joints_of(mechanism)
     for spiral in filter(None, spirals(joints, at, *SPIRAL)):
         parts.append(_path(list(spiral), "#1f1f1f", 1))

@@ -158,7 +158,7 @@ def test_a_page_tells_and_draws_torsion_springs() -> None:
     def told(text: str) -> float:
         return float(text.rstrip("°").replace("−", "-"))
 
-    entries = {round(told(entry["unknowns"][0]), 2): entry["torsion"] for entry in shown["equilibria"]}
+    entries = {round(told(entry["unknowns"][0]), 2): entry["deflections"] for entry in shown["equilibria"]}
     assert len(entries) == len(exact.equilibria) > 2
     for pose in exact.equilibria:
         for spring, (deflection, moment) in zip(pose.torsion, entries[round(float(pose.degrees[0]), 2)], strict=True):
@@ -166,4 +166,4 @@ def test_a_page_tells_and_draws_torsion_springs() -> None:
             assert told(moment) == pytest.approx(float(spring.moment), abs=1e-6)
     plain = data_of(ptmcad.classify(PENDULUM))
     assert "torsion" not in plain["mechanism"]
-    assert not any("torsion" in pose for c in plain["cells"] for pose in c["equilibria"])
+    assert not any("deflections" in pose for c in plain["cells"] for pose in c["equilibria"])

@@ -13,8 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.ask.fields.equations import State, eigenvalues
-from ptmcad.ask.fields.jets import Floats
+from ptmcad.ask.fields.equations import Floats, State, eigenvalues
 
 STEPS = 200
 """Of a descent."""

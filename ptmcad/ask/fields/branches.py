@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.regionmap import Cell, RegionMap
-from ptmcad.ask.fields.equations import State, determinant, eigenvalues, newton_step, state_at
-from ptmcad.ask.fields.jets import Floats
+from ptmcad.ask.fields.equations import Floats, State, determinant, eigenvalues, newton_step, state_at
 from ptmcad.model import Model
 from ptmcad.question.doubles import within_doubles
 from ptmcad.question.slice import Slice

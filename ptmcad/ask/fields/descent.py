@@ -10,8 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ptmcad.ask.fields.equations import State, eigenvalues
-from ptmcad.ask.fields.jets import Floats
+from ptmcad.ask.fields.equations import Floats, State, eigenvalues
 
 STRIDE = 0.05
 """The longest step, in radians or units."""

@@ -1,22 +1,25 @@
-"""A model's equations in floating point, from its description: residuals, Jacobian, energy, stability.
+"""A model's equations at many points at once, in floating point: residuals, Jacobian, energy, stability.
 
-Guarantee: none but that of the description: terms are read off it, and no model is known by name.
+Guarantee: none but that of the compiled system, whose formulas and their derivatives are evaluated in doubles.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from fractions import Fraction
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from itertools import product
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ptmcad.ask.fields.jets import Floats, Jet, cos_sin, unknowns
-from ptmcad.model import ClosedMechanism, Mechanism, Model, System
-from ptmcad.model.energy import points_in, with_springs
-from ptmcad.model.evaluate import evaluate
-from ptmcad.model.work import split_moments
+from ptmcad.formulas.doubles import Doubles
+from ptmcad.formulas.graph import Formula
+from ptmcad.model import Model
+from ptmcad.model.compile import CompiledSystem, compiled
+
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +33,7 @@ class State:
     energy : shape S; None where there is no potential.
     conditions : what is positive at solutions that count.
     stability : without a potential what is positive at stable ones.
-    points : of a mechanism, by name.
+    points : of a mechanism without closed loops, by name.
     lengths, forces : of its springs, in their order; a force is positive where the spring pulls.
     work : of moments, shape S; None where none works.
     """
@@ -40,7 +43,7 @@ class State:
     energy: Floats | None
     conditions: tuple[Floats, ...] = ()
     stability: tuple[Floats, ...] = ()
-    points: Mapping[str, tuple[Floats, Floats]] | None = None
+    points: Mapping[str, Floats] = field(default_factory=dict)
     lengths: tuple[Floats, ...] = ()
     forces: tuple[Floats, ...] = ()
     work: Floats | None = None
@@ -51,27 +54,6 @@ class State:
         return self.energy if self.energy is None or self.work is None else self.energy - self.work
 
 
-@dataclass(frozen=True, slots=True)
-class _Ring:
-    """Numbers and jets, as what trees take values in."""
-
-    values: Mapping[str, Any]
-    jets: Mapping[str, Jet]
-    turns: Mapping[str, tuple[Jet, Jet]]
-
-    def constant(self, value: Fraction) -> Any:
-        return float(value)
-
-    def parameter(self, name: str) -> Any:
-        return self.jets[name] if name in self.jets else self.values[name]
-
-    def cos(self, angle: str) -> Any:
-        return self.turns[angle][0]
-
-    def sin(self, angle: str) -> Any:
-        return self.turns[angle][1]
-
-
 def state_at(model: Model, values: Mapping[str, Any], at: Floats) -> State:
     """The model at values of its parameters (arrays that fit S; a free length that is not there is zero) and points.
 
@@ -79,90 +61,73 @@ def state_at(model: Model, values: Mapping[str, Any], at: Floats) -> State:
     ----------
     at : shape (n, *S): angles in radians, then unknowns on the line.
     """
-    names = (*model.angles, *model.reals)
-    jets = dict(zip(names, unknowns(at), strict=True))
+    system = compiled(model)
     known = dict.fromkeys(model.free_lengths, 0.0) | dict(values)
-    turns = cos_sin(tuple(jets[name] for name in model.angles))
-    ring = _Ring(
-        {name: _shaped(known[name], at[0]) for name in known}, jets, dict(zip(model.angles, turns, strict=True))
-    )
-    # the ring's protocol asks for more than arrays' types tell
-    evaluated: Any = ring
+    given = {k: _shaped(known[name], at[0]) for k, name in enumerate(system.names) if name in known}
+    given |= dict(zip(system.unknowns, at, strict=True))
     with np.errstate(divide="ignore", invalid="ignore"):  # a spring without length has no direction: nan
-        if isinstance(model, Mechanism):
-            return _mechanism(model, evaluated, at)
-        if isinstance(model, ClosedMechanism) and model.tangent and _has_free_lengths(model, evaluated):
-            return _along_loops(model, evaluated, at)
-    assert isinstance(model, System)
-    conditions = tuple(_jet(evaluate(tree, evaluated), at).value for tree in model.inequalities)
-    stability = tuple(_jet(evaluate(tree, evaluated), at).value for tree in model.stability)
-    if model.potential is not None:
-        energy = _jet(evaluate(model.potential, evaluated), at)
-        return State(energy.gradient, energy.hessian, energy.value, conditions)
-    equations = [_jet(evaluate(tree, evaluated), at) for tree in model.equations]
-    residuals = np.stack([e.value for e in equations])
-    return State(residuals, np.stack([e.gradient for e in equations]), None, conditions, stability)
-
-
-def _mechanism(model: Mechanism, ring: Any, at: Floats) -> State:
-    points = {name: (_jet(x, at), _jet(y, at)) for name, (x, y) in points_in(model, ring).items()}
-    energy = _jet(0.0, at)
-    lengths, forces = [], []
-    for spring in model.springs:
-        (x0, y0), (x1, y1) = points[spring.start], points[spring.end]
-        k, free = evaluate(spring.stiffness, ring), evaluate(spring.free, ring)
-        dx, dy = x1 - x0, y1 - y0
-        square = dx * dx + dy * dy
-        if np.any(free):
-            length = square.root()
-            energy = energy + (length - free) * (length - free) * (k / 2)
-            lengths.append(length.value)
-        else:
-            energy = energy + square * (k / 2)
-            lengths.append(np.sqrt(np.maximum(square.value, 0)))
-        forces.append(k * (lengths[-1] - free))
-    energy = with_springs(model, ring, points, energy)
-    work = None
-    residuals, jacobian = energy.gradient, energy.hessian
-    if steady := split_moments(model).steady:
-        residuals, jacobian = residuals.copy(), jacobian.copy()
-        for moment in steady:
-            k = (*model.angles, *model.reals).index(moment.unknown)
-            value = _jet(evaluate(moment.value, ring), at)
-            residuals[k] -= value.value
-            jacobian[k] -= value.gradient
-            work = value.value * at[k] + (0.0 if work is None else work)
-    places = {name: (x.value, y.value) for name, (x, y) in points.items()}
-    potential = energy.value if model.has_potential else None
-    return State(residuals, jacobian, potential, points=places, lengths=tuple(lengths), forces=tuple(forces), work=work)
-
-
-def _has_free_lengths(model: ClosedMechanism, ring: Any) -> bool:
-    return any(np.any(evaluate(spring.free, ring)) for spring in model.mechanism.springs)
-
-
-def _along_loops(model: ClosedMechanism, ring: Any, at: Floats) -> State:
-    """With one degree of freedom left: the loops' equations and the energy's slope along them, T . grad U."""
-    energy = _mechanism(model.mechanism, ring, at)
-    closed = [_jet(evaluate(tree, ring), at) for tree in model.equations[:-1]]
-    tangent = [_jet(evaluate(tree, ring), at) for tree in model.tangent]
-    slope = np.sum([t.value * force for t, force in zip(tangent, energy.residuals, strict=True)], axis=0)
-    bent = np.sum(
-        [t.gradient * f + t.value * row for t, f, row in zip(tangent, energy.residuals, energy.jacobian, strict=True)],
-        axis=0,
+        free = _free_lengths(system).at(given)[""]
+        # a root has no slope at zero, so that there is none where no free length is
+        relaxed = tuple(k for k, length in enumerate(free) if np.any(length))
+        values_of = _formulas(system, relaxed).at(given)
+    found = {name: _stacked(group, at.shape[1:]) for name, group in values_of.items()}
+    residuals, jacobian = found["residuals"], found["jacobian"].reshape(len(at), *at.shape)
+    return State(
+        residuals,
+        jacobian,
+        next(iter(found["energy"]), None),
+        tuple(found["conditions"]),
+        (determinant(jacobian),) if relaxed and system.tangent else tuple(found["stability"]),
+        dict(zip(system.points, found["points"].reshape(-1, 2, *at.shape[1:]), strict=False)),
+        tuple(found["lengths"]),
+        tuple(found["forces"]),
+        next(iter(found["work"]), None),
     )
-    residuals = np.stack([*(g.value for g in closed), slope])
-    jacobian = np.stack([*(g.gradient for g in closed), bent])
-    return State(residuals, jacobian, None, (), (determinant(jacobian),))
 
 
-def _jet(value: Any, at: Floats) -> Jet:
-    """A number as a function that does not change."""
-    if isinstance(value, Jet):
-        return value
-    n, shape = len(at), at.shape[1:]
-    constant = np.broadcast_to(np.asarray(value, dtype=float), shape) + 0.0
-    return Jet(constant, np.zeros((n, *shape)), np.zeros((n, n, *shape)))
+@lru_cache(maxsize=16)
+def _free_lengths(system: CompiledSystem) -> Doubles:
+    return Doubles({"": system.free_lengths}, np)
+
+
+@lru_cache(maxsize=16)
+def _formulas(system: CompiledSystem, relaxed: tuple[int, ...]) -> Doubles:
+    """What a state consists of, with the free lengths of some springs."""
+    equations = system.balance(relaxed)
+    energy = system.energy(relaxed) if system.has_index else None
+    formulas: dict[str, Sequence[Formula]] = dict.fromkeys(("points", "lengths", "forces", "work"), ())
+    formulas |= {
+        "residuals": equations,
+        "jacobian": [
+            system.graph.derivative(equations[i], system.unknowns[j])
+            for i, j in _places(len(equations), symmetric=system.has_index)
+        ],
+        "energy": [] if energy is None else [energy],
+        "conditions": system.inequalities,
+        "stability": system.stability,
+    }
+    if system.are_slopes:
+        formulas |= {
+            "points": [coordinate for point in system.points.values() for coordinate in point],
+            "lengths": system.lengths,
+            "forces": system.forces,
+            "work": [system.work] if system.acting else [],
+        }
+    return Doubles(formulas, np)
+
+
+def _places(size: int, symmetric: bool) -> Iterator[tuple[int, int]]:
+    """Of a matrix's entries; with those above the diagonal in place of those below."""
+    for i, j in product(range(size), repeat=2):
+        yield (min(i, j), max(i, j)) if symmetric else (i, j)
+
+
+def _stacked(values: Sequence[Any], shape: tuple[int, ...]) -> Floats:
+    """Numbers and arrays as one array of shape (number, *shape)."""
+    found = np.empty((len(values), *shape))
+    for row, value in zip(found, values, strict=True):
+        row[...] = value
+    return found
 
 
 def _shaped(value: Any, like: Floats) -> Any:

@@ -17,16 +17,15 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.fields.barrier import barriers
 from ptmcad.ask.fields.branches import Filling, Follower, Places, filled, places_of
-from ptmcad.ask.fields.equations import State, eigenvalues
-from ptmcad.ask.fields.jets import Floats
+from ptmcad.ask.fields.equations import Floats, State, eigenvalues
 from ptmcad.ask.fields.jumps import jumps
 from ptmcad.ask.fields.quantities import OPTION, Valued, quantity_of
 from ptmcad.ask.pixels import grid as grid_of
 from ptmcad.ask.solving import poses_at
 from ptmcad.errors import ConfigError, expect
-from ptmcad.model import Mechanism, Model
+from ptmcad.model import Model
+from ptmcad.model.compile import compiled
 from ptmcad.model.moments import acting
-from ptmcad.model.work import split_moments
 from ptmcad.options import Progress
 from ptmcad.question.slice import Slice
 
@@ -100,9 +99,9 @@ def request_of(slice: Slice, value: str, pose: str) -> Request:
     if quantity.is_barrier:
         if choice.kind != "stable":
             raise ConfigError("a barrier is that of a stable pose: ask for stable:1", key="--pose")
-        model = slice.model
-        if isinstance(model, Mechanism) and (steady := split_moments(model).steady):
-            what = acting(model, [moment.unknown for moment in steady])
+        system = compiled(slice.model)
+        if system.acting:
+            what = acting(slice.model, [system.names[system.unknowns[k]] for k in system.acting])
             raise ConfigError(f"under the {what} a pose's energy is not what a barrier is counted from", key=OPTION)
     return Request(quantity, choice)
 

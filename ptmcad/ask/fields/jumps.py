@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.fields.branches import BATCH, Filling, Flags, Follower, Labels, Places
-from ptmcad.ask.fields.jets import Floats
+from ptmcad.ask.fields.equations import Floats
 
 PARTS = (1, 4, 16, 64)
 """Of the way between two pixels: more are taken while the neighbour's solution is not met."""

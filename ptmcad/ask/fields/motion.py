@@ -25,8 +25,8 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.fields.branches import Follower, Places, filled
 from ptmcad.ask.fields.course import Course, corners_of
 from ptmcad.ask.fields.descent import descent, negatives
+from ptmcad.ask.fields.equations import Floats
 from ptmcad.ask.fields.field import Choice, choice_of, complete, exact_at, unknowns_of
-from ptmcad.ask.fields.jets import Floats
 from ptmcad.ask.fields.track import MIN_STEP, Track, followed
 from ptmcad.ask.location import locate
 from ptmcad.errors import ConfigError, PtmcadError, expect

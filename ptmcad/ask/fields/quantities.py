@@ -12,8 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ptmcad.ask.fields.equations import State, eigenvalues
-from ptmcad.ask.fields.jets import Floats
+from ptmcad.ask.fields.equations import Floats, State, eigenvalues
 from ptmcad.ask.quantities import Kind, Quantity, named, quantities, unit_of, unknown
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.question.slice import Slice

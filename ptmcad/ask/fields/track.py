@@ -10,8 +10,7 @@ from ptmcad.answer.motion import Place
 from ptmcad.ask.fields.branches import parameters_at
 from ptmcad.ask.fields.course import Course
 from ptmcad.ask.fields.descent import negatives, newton
-from ptmcad.ask.fields.equations import State, state_at
-from ptmcad.ask.fields.jets import Floats
+from ptmcad.ask.fields.equations import Floats, State, state_at
 from ptmcad.question.slice import Slice
 
 ALONG = 0.08

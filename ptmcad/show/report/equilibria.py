@@ -14,10 +14,10 @@ from typing import Any, TypeVar
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution
 from ptmcad.answer.words import kind_name
 from ptmcad.errors import ConfigError, PoleError
-from ptmcad.model import Mechanism, Model, System
-from ptmcad.model.energy import points_in, with_springs
-from ptmcad.model.evaluate import evaluate, value_at
-from ptmcad.model.moments import moments_at
+from ptmcad.formulas.graph import Formula
+from ptmcad.formulas.values import evaluated
+from ptmcad.model import Mechanism, Model, mechanism_in
+from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.question.slice import merged
 from ptmcad.show.report.bounds import (
     Bounds,
@@ -43,7 +43,6 @@ _DIGITS = 7
 _DRAWN_DIGITS = 9
 """Of numbers for drawing, or from which the page's script begins: a little more than are shown."""
 
-Point = tuple[Bounds, Bounds]
 Value = TypeVar("Value")
 
 
@@ -73,15 +72,16 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
         and all(name in values for name in model.without_free_lengths)
         and all(abs(v) < MAX_DRAWN for v in (*values.values(), *(potential or {}).values()))
     )
+    system = compiled(model)
     known = dict.fromkeys(model.free_lengths, Fraction(0)) | values
-    moments = moments_at(model, known) if drawn and model.has_potential else {}
-    loads = model.loads if drawn and isinstance(model, Mechanism) else ()
+    here = evaluated(_acting(system) if drawn else {}, _Within(system, known))
+    moments = [float(moment.bounds[0]) for moment in here.get("moments", ())]
     others = {n: v for n, v in distinct_parameters(values, model).items() if n not in cell.sample.names}
     return {
         "parameters": [[n, both(v)] for n, v in others.items()],
-        "loads": [[float(value_at(load.x, known)), float(value_at(load.y, known))] for load in loads],
+        "loads": [[float(x.bounds[0]), float(y.bounds[0])] for x, y in _pairs(here.get("loads", ()))],
         "potential": [[*exponents, float(c)] for exponents, c in (potential or {}).items()] if drawn else [],
-        "moments": [float(moments.get(name, 0)) for name in (*model.angles, *model.reals)] if moments else [],
+        "moments": moments if any(moments) else [],
         "equilibria": _solutions(model, cell, known, potential, polynomial) if drawn else [],
     }
 
@@ -123,21 +123,33 @@ def both(value: Fraction) -> str:
     return f"{text_of(value)} {_plain(value)}".rstrip()
 
 
+def _acting(system: CompiledSystem) -> dict[str, Sequence[Formula]]:
+    """What acts at a sample, whatever the pose."""
+    loads = [component for force in system.dead_forces for component in force]
+    return {
+        "loads": loads if system.are_slopes else [],
+        "moments": system.moments if system.has_index else [],
+    }
+
+
 def _solutions(
     model: Model, cell: Cell, values: Mapping[str, Fraction], potential: Potential | None, polynomial: bool
 ) -> list[dict[str, Any]]:
     """The solutions, the stable ones first, then by energy; all numbers of a kind to the same last place."""
+    system = compiled(model)
     boxes = [_box(s, model) if polynomial else _box_of_angles(s, model) for s in cell.solutions]
-    energies = [
-        _energy(model, box, values) if not polynomial else None if potential is None else energy(potential, box)
-        for box in boxes
-    ]
+    formulas = _formulas(system, with_energy=not polynomial)
+    poses = [evaluated(formulas, _Within(system, values, box)) for box in boxes]
+    energies = [None if potential is None else energy(potential, box) for box in boxes]
+    if not polynomial:
+        energies = [next((total.bounds for total in pose["energy"]), None) for pose in poses]
     known = [bounds for bounds in energies if bounds is not None]
     energy_place = last_place(known, _DIGITS)
     turns = 2 * len(model.angles)
     reals = [box[turns:] for box in boxes]
     real_place = last_place([x for row in reals for x in row], _DIGITS)
-    parts = _parts(model, boxes, values) if isinstance(model, Mechanism) else [{} for _ in boxes]
+    mechanism = mechanism_in(model) if system.are_slopes else None
+    parts = [{} for _ in boxes] if mechanism is None else _parts(mechanism, poses)
     kinds = [kind_of(solution, model) for solution in cell.solutions]
     order = {"stable": 0, "degenerate": len(model.unknowns) + 1}
 
@@ -149,7 +161,7 @@ def _solutions(
     for k in sorted(range(len(boxes)), key=rank):
         box, at = boxes[k], energies[k]
         angles = [degrees(box[n], box[n + 1]) for n in range(0, turns, 2)]
-        unknowns = ["not determined" if a is None else _angle_text(a) for a in angles]
+        unknowns = [_angle_text(angle) for angle in angles]
         entry = {
             "kind": kinds[k],
             "unknowns": unknowns + [decimal_text(x, real_place) for x in reals[k]],
@@ -161,54 +173,53 @@ def _solutions(
     return found
 
 
-def _parts(
-    mechanism: Mechanism, boxes: Sequence[tuple[Bounds, ...]], values: Mapping[str, Fraction]
-) -> list[dict[str, Any]]:
-    """Of each equilibrium the points, the springs' lengths and forces, and what torsion springs do."""
-    nodes = [_nodes(mechanism, box, values) for box in boxes]
-    springs = mechanism.springs
-    lengths = [[square_root(_squared_distance(where[s.start], where[s.end])) for s in springs] for where in nodes]
-    stiffnesses = [exactly(value_at(spring.stiffness, values)) for spring in springs]
-    free = [exactly(-value_at(spring.free, values)) for spring in springs]
-    forces = [
-        [times(k, plus(length, rest)) for k, length, rest in zip(stiffnesses, row, free, strict=True)]
-        for row in lengths
-    ]  # fmt: skip
-    of_points = [x for where in nodes for place in where.values() for x in place]
+def _formulas(system: CompiledSystem, with_energy: bool) -> dict[str, Sequence[Formula]]:
+    """What is told of a pose."""
+    energy = system.energy() if with_energy and system.has_index else None
+    found: dict[str, Sequence[Formula]] = {"energy": [] if energy is None else [energy]}
+    if system.are_slopes:
+        found["points"] = [coordinate for point in system.points.values() for coordinate in point]
+        found |= {"lengths": system.lengths, "forces": system.forces}
+        found["deflections"] = [part for deflection in system.deflections for part in deflection]
+    return found
+
+
+def _parts(mechanism: Mechanism, poses: Sequence[Mapping[str, list[_Bounded]]]) -> list[dict[str, Any]]:
+    """Of each equilibrium the points, and what springs of both sorts do."""
+    lengths, forces = ([[value.bounds for value in pose[name]] for pose in poses] for name in ("lengths", "forces"))
+    of_points = [value.bounds for pose in poses for value in pose["points"]]
     length_place = last_place([length for row in lengths for length in row] + of_points, _DIGITS)
-    force_place = last_place([f for row in forces for f in row], _DIGITS)
-    return [
-        {
-            "nodes": [[_drawn(x) for x in place] for place in where.values()],
-            "places": [
-                f"({decimal_text(where[n][0], length_place)}, {decimal_text(where[n][1], length_place)})"
-                for n in mechanism.moving
-            ],
+    force_place = last_place([force for row in forces for force in row], _DIGITS)
+    turned = _deflections(poses)
+    found = []
+    for pose, long, strong, angles in zip(poses, lengths, forces, turned, strict=True):
+        where = dict(zip(mechanism.points, _pairs(pose["points"]), strict=True))
+        texts = {name: [decimal_text(x.bounds, length_place) for x in where[name]] for name in mechanism.moving}
+        entry: dict[str, Any] = {
+            "nodes": [[_drawn(x.bounds) for x in place] for place in where.values()],
+            "places": [f"({x}, {y})" for x, y in texts.values()],
             "lengths": [decimal_text(length, length_place) for length in long],
             "forces": [decimal_text(force, force_place) for force in strong],
-            **({"torsion": turned} if turned else {}),
         }
-        for where, long, strong, turned in zip(nodes, lengths, forces, _torsion(mechanism, boxes, values), strict=True)
-    ]
+        found.append(entry | ({"deflections": angles} if angles else {}))
+    return found
 
 
-def _torsion(
-    mechanism: Mechanism, boxes: Sequence[tuple[Bounds, ...]], values: Mapping[str, Fraction]
-) -> list[list[tuple[str, str]]]:
-    """Of each equilibrium the deflection and the moment of every torsion spring, as texts."""
-    rings = [_InBounds(mechanism, box, values) for box in boxes]
-    turned = [[tuple(evaluate(t, ring).bounds for t in s.deflection) for s in mechanism.torsion] for ring in rings]
-    stiffnesses = [exactly(value_at(spring.stiffness, values)) for spring in mechanism.torsion]
-    moments = [[times(k, sine) for k, (_, sine) in zip(stiffnesses, row, strict=True)] for row in turned]
-    place = last_place([moment for row in moments for moment in row], _DIGITS)
-    angles = [[degrees(cosine, sine) for cosine, sine in row] for row in turned]
+def _deflections(poses: Sequence[Mapping[str, list[_Bounded]]]) -> list[list[tuple[str, str]]]:
+    """Of each equilibrium the deflections of springs between directions with their moments, as texts."""
+    rows = [[value.bounds for value in pose["deflections"]] for pose in poses]
+    place = last_place([moment for row in rows for moment in row[2::3]], _DIGITS)
     return [
         [
-            ("not determined" if angle is None else _angle_text(angle), decimal_text(moment, place))
-            for angle, moment in zip(of_angles, of_moments, strict=True)
+            (_angle_text(degrees(cosine, sine)), decimal_text(moment, place))
+            for cosine, sine, moment in zip(row[::3], row[1::3], row[2::3], strict=True)
         ]
-        for of_angles, of_moments in zip(angles, moments, strict=True)
+        for row in rows
     ]
+
+
+def _pairs(coordinates: Sequence[_Bounded]) -> list[tuple[_Bounded, _Bounded]]:
+    return list(zip(coordinates[::2], coordinates[1::2], strict=True))
 
 
 def _drawn(value: Bounds) -> float:
@@ -217,7 +228,9 @@ def _drawn(value: Bounds) -> float:
     return int(middle) if middle.is_integer() and abs(middle) < 10**_DRAWN_DIGITS else middle
 
 
-def _angle_text(angle: Bounds) -> str:
+def _angle_text(angle: Bounds | None) -> str:
+    if angle is None:
+        return "not determined"
     text = decimal_text(angle, -4)
     return f"{text.lstrip('−') if text in ('−180.0000', '−0.0000') else text}°"
 
@@ -251,62 +264,46 @@ def _box_of_angles(solution: Solution, model: Model) -> tuple[Bounds, ...]:
     return (*turns, *ends[len(model.angles) :])
 
 
-def _energy(model: Model, box: tuple[Bounds, ...], values: Mapping[str, Fraction]) -> Bounds | None:
-    """Bounds of the energy by the description, with free lengths; None where there is none."""
-    within = _InBounds(model, box, values)
-    if isinstance(model, System):
-        return None if model.potential is None else evaluate(model.potential, within).bounds
-    if not isinstance(model, Mechanism) or not model.has_potential:
-        return None
-    points = points_in(model, within)
-    springs = []
-    for spring in model.springs:
-        start, end = ((x.bounds, y.bounds) for x, y in (points[spring.start], points[spring.end]))
-        stretch = plus(square_root(_squared_distance(start, end)), exactly(-value_at(spring.free, values)))
-        springs.append(times(exactly(value_at(spring.stiffness, values) / 2), power(stretch, 2)))
-    return with_springs(model, within, points, _Bounded(plus(*springs))).bounds
-
-
-def _nodes(mechanism: Mechanism, box: tuple[Bounds, ...], values: Mapping[str, Fraction]) -> dict[str, Point]:
-    """Bounds of the coordinates of all points."""
-    within = _InBounds(mechanism, box, values)
-    return {name: (x.bounds, y.bounds) for name, (x, y) in points_in(mechanism, within).items()}
-
-
 @dataclass(frozen=True, slots=True)
 class _Bounded:
-    """Bounds as an element of a ring."""
+    """Bounds as a number."""
 
     bounds: Bounds
+
+    def __neg__(self) -> _Bounded:
+        return _Bounded(times(exactly(-1), self.bounds))
 
     def __add__(self, other: _Bounded) -> _Bounded:
         return _Bounded(plus(self.bounds, other.bounds))
 
     def __sub__(self, other: _Bounded) -> _Bounded:
-        return _Bounded(plus(self.bounds, times(exactly(-1), other.bounds)))
+        return self + -other
 
     def __mul__(self, other: _Bounded) -> _Bounded:
-        return _Bounded(times(self.bounds, other.bounds))
+        return _Bounded(power(self.bounds, 2) if self is other else times(self.bounds, other.bounds))
 
 
-class _InBounds:
-    """Values within bounds, at a box of cosines and sines."""
+@dataclass(frozen=True, slots=True)
+class _Within:
+    """The arithmetic of bounds, at exact parameters and a box of cosines, sines and unknowns on the line."""
 
-    def __init__(self, model: Model, box: tuple[Bounds, ...], values: Mapping[str, Fraction]):
-        self.box, self.values = dict(zip(coordinates(model), box, strict=True)), values
+    system: CompiledSystem
+    values: Mapping[str, Fraction]
+    box: tuple[Bounds, ...] = ()
 
     def constant(self, value: Fraction) -> _Bounded:
         return _Bounded(exactly(value))
 
-    def parameter(self, name: str) -> _Bounded:
-        return _Bounded(self.box[name] if name in self.box else exactly(self.values[name]))
+    def variable(self, number: int) -> _Bounded:
+        if number in self.system.reals:
+            return _Bounded(self.box[2 * len(self.system.angles) + self.system.reals.index(number)])
+        return self.constant(self.values[self.system.names[number]])
 
-    def cos(self, angle: str) -> _Bounded:
-        return _Bounded(self.box[f"cos_{angle}"])
+    def cos(self, number: int) -> _Bounded:
+        return _Bounded(self.box[2 * self.system.angles.index(number)])
 
-    def sin(self, angle: str) -> _Bounded:
-        return _Bounded(self.box[f"sin_{angle}"])
+    def sin(self, number: int) -> _Bounded:
+        return _Bounded(self.box[2 * self.system.angles.index(number) + 1])
 
-
-def _squared_distance(p: Point, q: Point) -> Bounds:
-    return plus(*(power(plus(a, times(b, exactly(-1))), 2) for a, b in zip(p, q, strict=True)))
+    def length(self, x: _Bounded, y: _Bounded) -> _Bounded:
+        return _Bounded(square_root((x * x + y * y).bounds))

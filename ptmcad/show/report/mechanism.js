@@ -171,7 +171,7 @@ function springTable(cell) {
     const row = body.insertRow();
     const entries = [pose.kind, ...pose.unknowns, ...(energy.length ? [pose.energy] : []), ...(pose.places || [])];
     (pose.lengths || []).forEach((length, k) => entries.push(length, pose.forces[k]));
-    for (const pair of pose.torsion || []) entries.push(...pair);
+    for (const pair of pose.deflections || []) entries.push(...pair);
     entries.forEach((text, k) => {
       const entry = row.insertCell();
       entry.dataset.label = columns[k];

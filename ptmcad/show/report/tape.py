@@ -1,83 +1,24 @@
-"""A model's equations as data for the page's script: one list of operations, from which the script reads all it draws.
+"""A model's equations as data for the page's script: one list of instructions, from which it reads all it draws.
 
-Guarantee: the operations are those of the description, in the order in which it is evaluated, with its constants
-rounded to doubles. No model is known by name, and nothing is computed here.
+Guarantee: the instructions are those of the compiled system's formulas, with constants rounded to doubles. No model is
+known by name, and nothing is computed here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
-from fractions import Fraction
-from math import inf, isfinite
+from collections.abc import Iterable, Sequence
+from math import isfinite
 from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import kind_name
-from ptmcad.model import ClosedMechanism, Mechanism, Model, System
-from ptmcad.model.energy import points_in, with_springs
-from ptmcad.model.evaluate import evaluate
-from ptmcad.model.work import split_moments
-from ptmcad.question.slice import Slice, have_free_lengths
-from ptmcad.text.tree import Tree
+from ptmcad.formulas.graph import Formula
+from ptmcad.formulas.script import MAX_CONSTANT, Instruction, script
+from ptmcad.model.compile import CompiledSystem, Vector, compiled
+from ptmcad.question.slice import Slice, relaxed_springs
 
-MAX_CONSTANT = 10**100
-"""Of constants and coefficients: products of a few stay within the range of doubles."""
 MAX_OPERATIONS = 2000
 """The script runs through them for each step of each solution."""
-
-Operation = tuple[Any, ...]
-"""``("=", number)``, ``("p", parameter)``, ``("c" | "s", angle)``, ``("u", unknown)``, ``("r", operand)`` for a square
-root, or ``("+" | "-" | "*", left, right)`` by the numbers of earlier operations."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Tape:
-    """Operations, each once, as a ring whose elements are their numbers."""
-
-    model: Model
-    names: tuple[str, ...]
-    numbers: dict[Operation, int] = field(default_factory=dict)
-
-    def node(self, *operation: Any) -> _Node:
-        return _Node(self, self.numbers.setdefault(operation, len(self.numbers)))
-
-    def constant(self, value: Fraction) -> _Node:
-        return self.node("=", _double(value))
-
-    def parameter(self, name: str) -> _Node:
-        if name in self.model.reals:
-            return self.node("u", len(self.model.angles) + self.model.reals.index(name))
-        return self.node("p", self.names.index(name)) if name in self.names else self.constant(Fraction(0))
-
-    def cos(self, angle: str) -> _Node:
-        return self.node("c", self.model.angles.index(angle))
-
-    def sin(self, angle: str) -> _Node:
-        return self.node("s", self.model.angles.index(angle))
-
-    def of(self, trees: Sequence[Tree]) -> list[int]:
-        return [evaluate(tree, self).number for tree in trees]
-
-
-@dataclass(frozen=True, slots=True)
-class _Node:
-    """An operation's result."""
-
-    tape: _Tape
-    number: int
-
-    def __add__(self, other: _Node) -> _Node:
-        return self.tape.node("+", self.number, other.number)
-
-    def __sub__(self, other: _Node) -> _Node:
-        return self.tape.node("-", self.number, other.number)
-
-    def __mul__(self, other: _Node) -> _Node:
-        return self.tape.node("*", self.number, other.number)
-
-    def root(self) -> _Node:
-        return self.tape.node("r", self.number)
 
 
 def tape(result: RegionMap) -> dict[str, Any] | None:
@@ -87,20 +28,26 @@ def tape(result: RegionMap) -> dict[str, Any] | None:
     lengths in closed loops, whose roots are in no equation of the description.
     """
     slice = result.slice
-    model = slice.model
-    if isinstance(model, ClosedMechanism) and slice.has_free_lengths:
+    model, system = slice.model, compiled(slice.model)
+    relaxed = relaxed_springs(model, slice.parameters)
+    if relaxed and not system.are_slopes:
         return None
     if not any(cell.solutions for cell in result.cells) or not _fits(slice):
         return None
-    names = tuple(name for name in model.variables if name in slice.parameters)
-    t = _Tape(model, names)
-    found = _mechanism(model, t, slice) if isinstance(model, Mechanism) else _system(model, t)
-    constants = [operation[1] for operation in t.numbers if operation[0] == "="]
-    if len(t.numbers) > MAX_OPERATIONS or not all(map(isfinite, constants)):
+    names = [name for name in model.variables if name in slice.parameters]
+    instructions, places = script(_formulas(system, relaxed), _sources(system, names))
+    constants = [instruction[1] for instruction in instructions if instruction[0] == "="]
+    if len(instructions) > MAX_OPERATIONS or not all(map(isfinite, constants)):
         return None
-    n = len(model.unknowns)
-    return found | {
-        "operations": [list(operation) for operation in t.numbers],
+    n, force = len(model.unknowns), next(iter(places["force"]), None)
+    return {
+        **places,
+        "force": force,
+        "energy": force if system.has_energy else None,
+        "moments": list(zip(system.acting, places["moments"], strict=True)),
+        "points": _pairs(places["points"]),
+        "loads": _pairs(places["loads"]),
+        "operations": instructions,
         "parameters": [
             [[[i, j, float(c)] for i, j, c in side] for side in (e.numerator, e.denominator)]
             for e in (slice.parameters[name] for name in names)
@@ -113,8 +60,36 @@ def tape(result: RegionMap) -> dict[str, Any] | None:
     }
 
 
-def _double(value: Fraction) -> float:
-    return float(value) if abs(value) < MAX_CONSTANT else inf
+def _formulas(system: CompiledSystem, relaxed: Sequence[int]) -> dict[str, Sequence[Formula]]:
+    """What the script draws and follows; what a model does not have is empty."""
+    found: dict[str, Sequence[Formula]] = dict.fromkeys(("force", "equations", "moments", "points", "loads"), ())
+    found |= {"conditions": system.inequalities, "stability": system.stability}
+    force = system.stored(relaxed)
+    if force is None or not system.are_slopes:
+        return found | {"equations": system.equations}
+    return found | {
+        "force": [force],
+        "moments": list(system.acting.values()),
+        "points": _coordinates(system.points.values()),
+        "loads": _coordinates(system.dead_forces),
+    }
+
+
+def _coordinates(vectors: Iterable[Vector]) -> list[Formula]:
+    return [coordinate for vector in vectors for coordinate in vector]
+
+
+def _pairs(places: Sequence[int]) -> list[tuple[int, int]]:
+    return list(zip(places[::2], places[1::2], strict=True))
+
+
+def _sources(system: CompiledSystem, names: Sequence[str]) -> dict[int, Instruction]:
+    """Where the script has variables from; a free length that is not there is zero."""
+    unknowns = {number: ("u", k) for k, number in enumerate(system.unknowns)}
+    return {
+        number: unknowns.get(number, ("p", names.index(name)) if name in names else ("=", 0.0))
+        for number, name in enumerate(system.names)
+    }
 
 
 def _fits(slice: Slice) -> bool:
@@ -130,43 +105,3 @@ def _fits(slice: Slice) -> bool:
 def _only_stable(result: RegionMap) -> bool:
     """Whether the stable solutions alone are known, as in certified maps that count these."""
     return any(cell.total is None or len(cell.solutions) < cell.total for cell in result.cells if cell.solutions)
-
-
-def _system(model: Model, t: _Tape) -> dict[str, Any]:
-    assert isinstance(model, System)
-    return _parts(
-        energy=None if model.potential is None else evaluate(model.potential, t).number,
-        equations=t.of(model.equations),
-        conditions=t.of(model.inequalities),
-        stability=t.of(model.stability),
-    )
-
-
-def _parts(**known: Any) -> dict[str, Any]:
-    """Numbers of operations; what a model does not have is empty."""
-    names = ("equations", "conditions", "stability", "moments", "points", "loads")
-    return {"energy": None, "force": None} | {name: [] for name in names} | known
-
-
-def _mechanism(model: Mechanism, t: _Tape, slice: Slice) -> dict[str, Any]:
-    points = points_in(model, t)
-    half, twice = t.constant(Fraction(1, 2)), t.constant(Fraction(2))
-    energy = t.constant(Fraction(0))
-    for spring in model.springs:
-        (x0, y0), (x1, y1) = points[spring.start], points[spring.end]
-        dx, dy = x1 - x0, y1 - y0
-        square = dx * dx + dy * dy
-        k, free = evaluate(spring.stiffness, t), evaluate(spring.free, t)
-        # a root has no slope at zero, so that there is none where no free length is
-        if have_free_lengths(replace(model, springs=(spring,)), slice.parameters):
-            square = square - twice * free * square.root() + free * free
-        energy = energy + half * k * square
-    energy = with_springs(model, t, points, energy)
-    unknowns = (*model.angles, *model.reals)
-    return _parts(
-        energy=energy.number if model.has_potential else None,
-        force=energy.number,
-        moments=[[unknowns.index(m.unknown), evaluate(m.value, t).number] for m in split_moments(model).steady],
-        points=[[x.number, y.number] for x, y in points.values()],
-        loads=[t.of((load.x, load.y)) for load in model.loads],
-    )
