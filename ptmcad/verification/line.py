@@ -130,7 +130,7 @@ class Line:
             raise NotKnown("there is a degenerate solution at random points")
         if self.model.reals:
             form = random.Random("form")
-            traces = found.form_traces([form.getrandbits(10) for _ in found.point.names])
+            traces = found.form_traces([form.getrandbits(10) for _ in range(found.point.coordinates)])
             norms.append(sum((t * form.getrandbits(10) for t in traces), fmpq(0)))
         return norms
 

@@ -16,14 +16,14 @@ from flint import fmpz_mpoly
 
 from ptmcad.answer.regionmap import Continuum, Kind
 from ptmcad.errors import ExpressionError
-from ptmcad.model import Mechanism, Model, System
+from ptmcad.model import Model
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.text.syntax import names_in
 from ptmcad.verification.claims import PLANE, Claims
-from ptmcad.verification.derivation import has_index
+from ptmcad.verification.derivation import derivation_of, has_index
 from ptmcad.verification.model import equation_factors
 from ptmcad.verification.report import Violation
 from ptmcad.verification.variety import BITS, check_identity, condition_exponents, factors, random_points
@@ -120,11 +120,12 @@ def _check_continuum(claims: Claims, number: int, curve: PlanePolynomial) -> Non
     There are some where the equations are the slopes of a function on a torus, or there is no other.
     """
     model = claims.result.slice.model
-    free = not (model.inequalities if isinstance(model, System) else isinstance(model, Mechanism) and model.moments)
+    true = derivation_of(model)
+    moved = true.from_energy and not all(moment.is_zero() for moment in true.moments)
     alone = len(model.unknowns) == 1
     weights = [row for row in product((-1, 0, 1), repeat=len(model.unknowns)) if any(row)]
     vanishes = any(curve in _vanishing(common) for common in equation_factors(claims, weights))
-    if not vanishes or model.reals or not free or not (alone or has_index(model)):
+    if not vanishes or model.reals or moved or true.inequalities or not (alone or has_index(model)):
         raise Violation(f"component {number} is said to have infinitely many solutions, which is not proved")
 
 

@@ -26,7 +26,7 @@ from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import approximate_text
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.equations import Polynomials, values_at
+from ptmcad.verification.derivation import Derivation
 from ptmcad.verification.inertia import bases, leading_minors, negative_eigenvalues
 from ptmcad.verification.report import Unchecked, Violation
 
@@ -154,16 +154,29 @@ def check_disjoint(n: int, cell: Cell, model: Model) -> None:
 
 
 def _values(polynomials: Sequence[fmpq_mpoly], x: Sequence[arb]) -> list[arb]:
-    """In balls at coordinates, which the ring has the other way round."""
-    return values_at(polynomials, list(reversed(x)))
+    """Values in balls at coordinates."""
+    powers = [[arb(1)] for _ in x]
+    found = []
+    for p in polynomials:
+        total = arb(0)
+        for exponents, c in p.terms():
+            term = arb(c)
+            for known, coordinate, e in zip(powers, x, exponents, strict=True):
+                while len(known) <= e:
+                    known.append(known[-1] * coordinate)
+                if e:
+                    term = term * known[int(e)]
+            total = total + term
+        found.append(total)
+    return found
 
 
-def _jacobian(p: Polynomials, x: Sequence[arb]) -> list[list[arb]]:
+def _jacobian(p: Derivation, x: Sequence[arb]) -> list[list[arb]]:
     """The derivatives of the equations; where solutions are critical points a Hessian."""
     return [_values(row, x) for row in p.jacobian]
 
 
-def _signs(point: Polynomials, solution: Solution, bits: int, start: int) -> str | None:
+def _signs(point: Derivation, solution: Solution, bits: int, start: int) -> str | None:
     """The signs at a solution that counts and is proved to be in the box; None when none is found from a start.
 
     Those of the Hessian's eigenvalues, or of the conditions for stability; where one of these is said to be zero it is
@@ -204,7 +217,7 @@ def _of_conditions(conditions: list[arb], stored: str) -> str | None:
     return signs
 
 
-def _proved(model: Polynomials, solution: Solution, start: int) -> list[arb] | None:
+def _proved(model: Derivation, solution: Solution, start: int) -> list[arb] | None:
     """A box within the stored one that is proved to contain a solution.
 
     Angles are moved along the circles: turned by an angle a, the point (c, s) that Newton's method has reached becomes
@@ -214,11 +227,11 @@ def _proved(model: Polynomials, solution: Solution, start: int) -> list[arb] | N
     ----------
     start : 0 at the box's center; other numbers half way to one of its sides.
     """
-    turning = 2 * len(model.ring.model.angles)
+    turning = 2 * len(model.ring.angles)
     center = _normal([ball_of(x) for x in solution.center], turning)
     # the Jacobian may be singular at the center itself, as at a cusp whose coordinates the box has
     step = arb(from_fraction(solution.radius) / (-2 if start % 2 else 2))
-    aside = [step if start and k == (start - 1) // 2 else arb(0) for k in range(len(model.ring.model.unknowns))]
+    aside = [step if start and k == (start - 1) // 2 else arb(0) for k in range(len(model.unknowns))]
     reached = _iterated(model, _normal(_moved(center, aside, turning), turning))
     if reached is None:
         return None
@@ -226,7 +239,7 @@ def _proved(model: Polynomials, solution: Solution, start: int) -> list[arb] | N
     # the point now has exact circles up to rounding, which its balls contain
     # wide against rounding, narrow against the distance over which the Jacobian varies
     radius = (step * 8 + arb(2) ** (-2 * ctx.prec // 3)).mid()
-    around = _moved(point, [arb(0).union(radius).union(-radius)] * len(model.ring.model.unknowns), turning)
+    around = _moved(point, [arb(0).union(radius).union(-radius)] * len(model.unknowns), turning)
     image = _solve(_jacobian(model, around), _values(model.equations, point))
     if image is None or not all(abs(a) < radius for a in image):
         return None
@@ -237,9 +250,9 @@ def _proved(model: Polynomials, solution: Solution, start: int) -> list[arb] | N
     return around if inside else None
 
 
-def _iterated(model: Polynomials, point: list[arb]) -> tuple[list[arb], arb] | None:
+def _iterated(model: Derivation, point: list[arb]) -> tuple[list[arb], arb] | None:
     """The point that Newton's method reaches, and the length of its last step; None at a singular Jacobian."""
-    turning, step = 2 * len(model.ring.model.angles), arb(1)
+    turning, step = 2 * len(model.ring.angles), arb(1)
     for _ in range(_STEPS + ctx.prec.bit_length()):
         step_by = _solve(_jacobian(model, point), _values(model.equations, point))
         if step_by is None:

@@ -34,11 +34,10 @@ from math import gcd, lcm, prod
 from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpz_poly
 
 from ptmcad.answer.regionmap import HARMLESS, Kind
-from ptmcad.model import ClosedMechanism, System
 from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import Claims, PlaneCurve
-from ptmcad.verification.derivation import coordinates_of
+from ptmcad.verification.derivation import coordinates_of, derivation_of
 from ptmcad.verification.fibre import Fibre
 from ptmcad.verification.report import Violation
 
@@ -214,11 +213,9 @@ def _conditions(claims: Claims) -> dict[int, str]:
     With closed loops or X-joints the conditions for stability are those for a matrix to be definite, the last of them
     its determinant: where that is not zero the matrix does not stop or begin to be definite.
     """
-    model = claims.result.slice.model
-    if not isinstance(model, System):
-        return {}
-    inequalities, stability = len(model.inequalities), len(model.stability)
-    first = max(stability - 1, 0) if isinstance(model, ClosedMechanism) else 0
+    true = derivation_of(claims.model)
+    inequalities, stability = len(true.inequalities), len(true.stability)
+    first = max(stability - 1, 0) if true.is_definite else 0
     return {k: f"inequality {k}" for k in range(inequalities)} | {
         inequalities + k: f"condition {k} for stability" for k in range(first, stability)
     }

@@ -169,13 +169,13 @@ def _check_signs(claims: CertifiedClaims, true: str, said: str, k: int) -> None:
     ------
     Violation, Unproved
     """
-    if claims.result.slice.count is Count.TOTAL and not claims.model.has_potential:
+    if claims.result.slice.count is Count.TOTAL and not claims.describes_equilibria:
         if not said:
             return  # of solutions that are all counted nothing need be said
         if not true and len(said) == form_of(claims.result.slice).conditions_for_stability:
             raise Unproved(f"a condition for stability may be zero at the solution {k}")
     if true != said:
-        if not claims.model.has_potential:
+        if not claims.describes_equilibria:
             raise Violation(f"the conditions for stability at the solution {k} have the signs {true!r}, not {said!r}")
         raise Violation(f"the Hessian at the solution {k} has eigenvalues of signs {true}, not {said!r}")
 

@@ -11,12 +11,11 @@ from functools import cached_property
 from itertools import pairwise
 
 from ptmcad.answer.regionmap import Status
-from ptmcad.model import ClosedMechanism, Mechanism, System
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.verification.certified.sweep import Sweep, sweep
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import shorthands_of, tells_stability
+from ptmcad.verification.derivation import kinds_of_count, shorthands_of
 from ptmcad.verification.report import Violation
 
 MAX_STEPS = 2**40
@@ -137,7 +136,7 @@ def check_form(claims: CertifiedClaims) -> str:
             raise Violation(f"{patch.frame} is not a frame of the lattice")
         if any(len(tube.controls) < 2 for tube in patch.tubes):
             raise Violation(f"a slanted piece in {patch.frame} has no polynomial")
-    needed = _NEEDED[r.slice.count] if r.slice.model.has_potential or r.slice.count.is_of_stable else {"total"}
+    needed = _NEEDED[r.slice.count] if claims.describes_equilibria or r.slice.count.is_of_stable else {"total"}
     for what, items in (("cell", r.cells), ("region", r.regions)):
         for n, item in enumerate(items):
             present = {name for name in _COUNTS if getattr(item, name) is not None}
@@ -164,15 +163,8 @@ def _check_model(slice: Slice) -> None:
         raise Violation(f"the mechanism {slice.mechanism!r} is not known, or its parameters are others")
     if not 1 <= len(model.unknowns) <= MAX_UNKNOWNS:
         raise Violation(f"no certified map is of {len(model.unknowns)} unknowns")
-    without_index = (Count.TOTAL, Count.STABLE) if tells_stability(model) else (Count.TOTAL,)
-    has_springs = tells_stability(model) and isinstance(model, Mechanism | ClosedMechanism)
-    known_count = (
-        has_springs if slice.count is Count.ADMISSIBLE else model.has_potential or slice.count in without_index
-    )
-    if not known_count:
+    if slice.count not in kinds_of_count(model):
         raise Violation(f"no certified map of {model.name!r} counts {slice.count.value}")
-    if isinstance(model, System) and model.potential is None and len(model.equations) != len(model.unknowns):
-        raise Violation(f"there are {len(model.equations)} equations for {len(model.unknowns)} unknowns")
 
 
 def check_components(claims: CertifiedClaims) -> str:
