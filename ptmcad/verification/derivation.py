@@ -2,12 +2,12 @@
 
 Guarantee: exact. Nothing is taken from what the engines derive: points, springs, loads and equations of the description
 are read by `coordinates`, and polynomials are differentiated here. Springs have no free length in energy and equations;
-`Spring` says what each takes off the energy with one.
+`SpringVector` says what each takes off the energy with one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -70,7 +70,7 @@ def kinds_of_count(model: Model) -> set[Count]:
     return {Count.TOTAL, *told, *with_springs, *([Count.INDEX] if has_index(model) else [])}
 
 
-class Spring(NamedTuple):
+class SpringVector(NamedTuple):
     """A spring of the description; with a free length, stiffness times free length times |vector| is off the energy."""
 
     name: str
@@ -82,6 +82,14 @@ class Spring(NamedTuple):
     def squared(self) -> fmpq_mpoly:
         """Its squared length."""
         return squared(self.vector)
+
+
+class Required(NamedTuple):
+    """What has to be positive, or at least not negative, in words and as a polynomial in parameters."""
+
+    what: str
+    value: fmpq_mpoly
+    strict: bool
 
 
 def squared(vector: Vector) -> fmpq_mpoly:
@@ -97,30 +105,32 @@ class Derivation:
     ----------
     unknowns : the angles first; by them all that follows is in order.
     energy : of a mechanism's springs, without free lengths, and its loads, or a potential; None where there is none.
-    moments : generalised forces on the unknowns; they may depend on these (`has_index`).
+    moments : generalised forces by the unknown on which they work; they may depend on others (`apart`).
+    moved : whether there is any.
     equations : each zero at a solution.
     inequalities, stability : positive at a solution that counts, and at a stable one.
     from_energy : whether the equations are the slopes of the energy less the moments: they are not with closed loops.
     springs : of a mechanism; with X-joints in a ring that has the second bars' coordinates as last variables.
+    required : what has to be positive, or not negative, at all parameters, in words that say what it is.
     apart : whether a moment depends on another unknown than its own, so that there is no function of which moments are
         the slopes.
     closing : what bars that close loops keep zero.
-    turning : stiffnesses of the springs between directions.
     """
 
     ring: CoordinateRing
     unknowns: tuple[str, ...]
     has_index: bool
     energy: fmpq_mpoly | None
-    moments: tuple[fmpq_mpoly, ...]
+    moments: Mapping[str, fmpq_mpoly]
     equations: tuple[fmpq_mpoly, ...]
     inequalities: tuple[fmpq_mpoly, ...] = ()
     stability: tuple[fmpq_mpoly, ...] = ()
     from_energy: bool = False
+    moved: bool = False
     apart: bool = False
-    springs: tuple[Spring, ...] = ()
+    springs: tuple[SpringVector, ...] = ()
     closing: tuple[fmpq_mpoly, ...] = ()
-    turning: tuple[fmpq_mpoly, ...] = ()
+    required: tuple[Required, ...] = ()
 
     @cached_property
     def jacobian(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
@@ -133,10 +143,26 @@ class Derivation:
         return sum(2 if unknown in self.ring.angles else 1 for unknown in self.unknowns)
 
     @property
-    def pulling(self) -> tuple[Spring, ...]:
+    def pulling(self) -> tuple[SpringVector, ...]:
         """The springs whose free lengths can be taken off the equations; with others none has one."""
         along = bool(self.closing) and len(self.unknowns) == len(self.closing) + 1
         return self.springs if self.from_energy or along else ()
+
+    def stretched(self, ring: CoordinateRing, length: Callable[[fmpq_mpoly], fmpq_mpoly]) -> fmpq_mpoly:
+        """The energy in a larger ring, of springs with their free lengths.
+
+        Parameters
+        ----------
+        length : by its square.
+        """
+        assert self.energy is not None
+        energy = ring.taken(self.energy, self.ring)
+        for spring in self.springs:
+            stiffness, free, square = (
+                ring.taken(p, self.ring) for p in (spring.stiffness, spring.free, spring.squared)
+            )
+            energy += stiffness * free * (free * fmpq(1, 2) - length(square))
+        return energy
 
     @property
     def is_definite(self) -> bool:
@@ -185,7 +211,7 @@ def _derived(model: Model, numbers: Mapping[str, fmpq]) -> Derivation:
     equations, inequalities, stability = (
         tuple(map(ring.value, trees)) for trees in (model.equations, model.inequalities, model.stability)
     )
-    moments = (ring.context.constant(0),) * len(unknowns)
+    moments = dict.fromkeys(unknowns, ring.context.constant(0))
     if energy is not None:
         equations = ring.gradient(energy, unknowns)
     return Derivation(
@@ -195,10 +221,10 @@ def _derived(model: Model, numbers: Mapping[str, fmpq]) -> Derivation:
 
 def _of_mechanism(model: Model, mechanism: Mechanism, ring: CoordinateRing, unknowns: tuple[str, ...]) -> Derivation:
     parts = _Parts.of(mechanism, ring)
-    forces = dict.fromkeys(unknowns, ring.context.constant(0))
+    moments, kept = dict.fromkeys(unknowns, ring.context.constant(0)), parts.closing
     for unknown, tree in mechanism.moments:
-        forces[unknown] += ring.value(tree)
-    moments, kept = tuple(forces.values()), parts.closing
+        moments[unknown] += ring.value(tree)
+    forces = tuple(moments.values())
     given = Derivation(
         ring,
         unknowns,
@@ -208,16 +234,17 @@ def _of_mechanism(model: Model, mechanism: Mechanism, ring: CoordinateRing, unkn
         (),
         springs=parts.springs,
         closing=kept,
-        turning=parts.turning,
+        required=parts.required,
+        moved=not all(force.is_zero() for force in forces),
         apart=_has_moments_apart(mechanism),
     )
     if mechanism.xjoints:
         joints = [Joint(j.angle, j.other, ring.value(j.length), ring.value(j.bars)) for j in mechanism.xjoints]
         equations, distances, stability = xjoints.conditions(
-            ring, unknowns, joints, _degrees(mechanism), (parts.energy, parts.ring), moments
+            ring, unknowns, joints, _degrees(mechanism), (parts.energy, parts.ring), forces
         )
         return replace(given, equations=equations, inequalities=distances, stability=stability)
-    slopes = tuple(map(fmpq_mpoly.__sub__, ring.gradient(parts.energy, unknowns), moments))
+    slopes = tuple(map(fmpq_mpoly.__sub__, ring.gradient(parts.energy, unknowns), forces))
     if not kept:
         return replace(given, equations=slopes, from_energy=True)
     ways = loops.one_way if len(unknowns) == len(kept) + 1 else loops.several_ways
@@ -230,8 +257,8 @@ class _Parts(NamedTuple):
 
     ring: CoordinateRing
     energy: fmpq_mpoly
-    springs: tuple[Spring, ...]
-    turning: tuple[fmpq_mpoly, ...]
+    springs: tuple[SpringVector, ...]
+    required: tuple[Required, ...]
     closing: tuple[fmpq_mpoly, ...]
 
     @classmethod
@@ -247,18 +274,21 @@ class _Parts(NamedTuple):
             return c - a, d - b
 
         springs = tuple(
-            Spring(s.name, ring.value(s.stiffness), ring.value(s.free), between(s.start, s.end))
+            SpringVector(s.name, ring.value(s.stiffness), ring.value(s.free), between(s.start, s.end))
             for s in mechanism.springs
         )
         energy = sum((s.squared * s.stiffness * fmpq(1, 2) for s in springs), ring.context.constant(0))
         for point, x, y in mechanism.loads:
             energy -= points[point][0] * ring.value(x) + points[point][1] * ring.value(y)
-        turning = tuple(ring.value(torsion.stiffness) for torsion in mechanism.torsion)
-        for stiffness, torsion in zip(turning, mechanism.torsion, strict=True):
-            (cosine, sine), rest = ring.circle(torsion.angle), tuple(map(from_fraction, torsion.rest))
+        required = [Required(f"the stiffness of spring {s.name}", s.stiffness, True) for s in springs]
+        required += [Required(f"the free length of spring {s.name}", s.free, False) for s in springs]
+        for number, torsion in enumerate(mechanism.torsion, 1):
+            stiffness, rest = ring.value(torsion.stiffness), tuple(map(from_fraction, torsion.rest))
+            cosine, sine = ring.circle(torsion.angle)
             energy += stiffness * (1 - cosine * rest[0] - sine * rest[1])
+            required.append(Required(f"the stiffness of torsion spring {number}", stiffness, True))
         closing = tuple(squared(between(bar.start, bar.end)) - ring.value(bar.length) ** 2 for bar in mechanism.closing)
-        return cls(ring, energy, springs, turning, closing)
+        return cls(ring, energy, springs, tuple(required), closing)
 
 
 @lru_cache(maxsize=8)

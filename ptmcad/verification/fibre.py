@@ -22,27 +22,13 @@ from math import prod
 
 from flint import fmpq, fmpq_mat, fmpq_mpoly
 
+from ptmcad.answer.counts import Counts
 from ptmcad.model import Model
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.algebra import Monomial, NotFinite, algebra
 from ptmcad.verification.coordinates import CoordinateRing
 from ptmcad.verification.derivation import Derivation, derivation_at
 from ptmcad.verification.inertia import bases, determinant, leading_minors, negative_eigenvalues
-
-
-@dataclass(frozen=True, slots=True)
-class Counts:
-    """Numbers of the real solutions that count.
-
-    Attributes
-    ----------
-    stable : None where nothing says what a stable solution is.
-    index : numbers by the number of negative eigenvalues of the Hessian; None without a potential.
-    """
-
-    total: int
-    stable: int | None
-    index: tuple[int, ...] | None
 
 
 @dataclass(frozen=True)

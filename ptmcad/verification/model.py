@@ -73,7 +73,7 @@ def check_system(claims: Claims) -> str:
     number = 0
     if true.energy is not None and true.has_index:
         work = ring.normal(true.energy - parsed(system.potential, "potential"))
-        if fault := fault_in_work(ring, true.unknowns, work, true.moments, varying=True):
+        if fault := fault_in_work(ring, work, true.moments, varying=True):
             where = f"in its slope by {fault}" if fault != START else f"by {ring.text(work)}"
             raise Violation(f"the stored potential differs from the mechanism's {where}")
         number += 1
@@ -118,9 +118,9 @@ def _pairs(system: System, true: Derivation) -> Iterator[tuple[str, str, fmpq_mp
 
 def _check_free_lengths(claims: Claims, true: Derivation) -> None:
     """No spring has a free length on the slice; of one that is no parameter there it is zero."""
-    for spring in true.springs:
-        if any(not numerator.is_zero() for numerator, _ in _on_slice(claims, true, spring.free).values()):
-            raise Violation(f"the spring {spring.name} has a free length, so that the map is of another mechanism")
+    for what, value, strict in true.required:
+        if not (strict or all(numerator.is_zero() for numerator, _ in _on_slice(claims, true, value).values())):
+            raise Violation(f"{what} is not zero, so that the map is of another mechanism")
 
 
 def equation_factors(claims: Claims, weights: Sequence[Sequence[int]] = ()) -> list[fmpz_mpoly]:

@@ -121,11 +121,16 @@ def _check_continuum(claims: Claims, number: int, curve: PlanePolynomial) -> Non
     """
     model = claims.result.slice.model
     true = derivation_of(model)
-    moved = true.from_energy and not all(moment.is_zero() for moment in true.moments)
     alone = len(model.unknowns) == 1
     weights = [row for row in product((-1, 0, 1), repeat=len(model.unknowns)) if any(row)]
     vanishes = any(curve in _vanishing(common) for common in equation_factors(claims, weights))
-    if not vanishes or model.reals or moved or true.inequalities or not (alone or has_index(model)):
+    if (
+        not vanishes
+        or model.reals
+        or (true.from_energy and true.moved)
+        or true.inequalities
+        or not (alone or has_index(model))
+    ):
         raise Violation(f"component {number} is said to have infinitely many solutions, which is not proved")
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping
 
 from flint import fmpq, fmpq_mpoly, fmpz
 
@@ -14,9 +14,8 @@ START = "at zero"
 
 def fault_in_work(
     ring: CoordinateRing,
-    unknowns: Sequence[str],
     work: fmpq_mpoly,
-    moments: Sequence[fmpq_mpoly],
+    moments: Mapping[str, fmpq_mpoly],
     *,
     varying: bool = False,
 ) -> str:
@@ -27,24 +26,23 @@ def fault_in_work(
     varying : whether it is the work of the moments without their constant parts: of a force along a line that is the
         one without the unknown.
     """
-    for unknown, moment in zip(unknowns, moments, strict=True):
+    coordinates = _coordinates(ring, moments)
+    for unknown, moment in moments.items():
         slope = ring.normal(ring.by(work, unknown))
         missing = ring.normal(moment - slope)
         if varying:
-            of_unknowns = [n for k, n in enumerate(missing.degrees()) if ring.names[k] in _coordinates(ring, unknowns)]
+            of_unknowns = [n for k, n in enumerate(missing.degrees()) if ring.names[k] in coordinates]
             line = unknown not in ring.angles
             steady = not line or slope.subs({ring.names.index(unknown): 0}).is_zero()
         else:
             of_unknowns, steady = [len(missing)], True
         if not steady or max(of_unknowns, default=0) > 0:
             return unknown
-    zeros: dict[str | int, int | fmpz | fmpq] = {
-        ring.names.index(name): value for name, value in _coordinates(ring, unknowns).items()
-    }
+    zeros: dict[str | int, int | fmpz | fmpq] = {ring.names.index(name): value for name, value in coordinates.items()}
     return "" if work.subs(zeros).is_zero() else START
 
 
-def _coordinates(ring: CoordinateRing, unknowns: Sequence[str]) -> dict[str, int]:
+def _coordinates(ring: CoordinateRing, unknowns: Iterable[str]) -> dict[str, int]:
     """The variables by which unknowns are in a ring, and what they are where all unknowns are zero."""
     found = {name: 0 for name in unknowns if name in ring.names}
     for angle in ring.angles:

@@ -67,10 +67,7 @@ def _undecided_parts(slice: Slice, window: Window) -> list[str]:
     undecided: list[str] = []
     model, true = slice.model, derivation_of(slice.model)
     known = {name: 0 * axis(0) for name in model.free_lengths} | dict(slice.parameters)
-    asked = [(f"the stiffness of spring {s.name}", s.stiffness, True) for s in true.springs]
-    asked += [(f"the free length of spring {s.name}", s.free, False) for s in true.springs]
-    asked += [(f"the stiffness of torsion spring {n}", t, True) for n, t in enumerate(true.turning, 1)]
-    for what, polynomial, strict in asked:
+    for what, polynomial, strict in true.required:
         terms = terms_of(polynomial, true.ring.names)
         right = model.positive if strict else (*model.positive, *model.nonnegative)
         if terms in [((1, 1, (name,)),) for name in right]:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from flint import fmpq, fmpq_mpoly
 
@@ -21,7 +21,7 @@ from ptmcad.verification.certified.decimals import in_quotients
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.coordinates import CoordinateRing, turned
-from ptmcad.verification.derivation import Derivation, Spring, derivation_of
+from ptmcad.verification.derivation import Derivation, derivation_of
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.work import fault_in_work
 
@@ -59,10 +59,9 @@ def check_potential(claims: Claims) -> str:
         raise Violation("moments are stated beside the potential where one depends on another unknown only")
     if not stated and (system.potential or len(system.gradient) != len(true.equations)):
         raise Violation(f"there are {len(true.equations)} equations and no potential")
-    text = _Text(true, true.springs if stated else ())
-    reasons = [_compared_energy(text, system.potential, true)] if stated else []
-    on = dict(zip(true.unknowns, true.moments, strict=True))
-    moments = [on[unknown] for unknown in unknowns] if stated and true.apart else []
+    text = _Text(true, stated)
+    reasons = [_compared(text, "potential", system.potential, text.energy, text.work)] if stated else []
+    moments = [true.moments[unknown] for unknown in unknowns] if stated and true.apart else []
     parts: list[tuple[str, Sequence[str], Sequence[fmpq_mpoly]]] = [
         ("equation", system.gradient, () if stated else true.equations),
         ("moment", system.moments, moments),
@@ -84,7 +83,7 @@ def check_potential(claims: Claims) -> str:
 
 
 def _compared(
-    text: _Text, what: str, stored: str, true: fmpq_mpoly, moments: Sequence[fmpq_mpoly] | None = None
+    text: _Text, what: str, stored: str, true: fmpq_mpoly, moments: Mapping[str, fmpq_mpoly] | None = None
 ) -> str:
     """Why a text was not compared with what it has to be; empty when they are equal.
 
@@ -106,22 +105,10 @@ def _compared(
     if moments is None or text.has_lengths(difference):
         differs = not difference.is_zero()
     else:
-        differs = bool(fault_in_work(text.ring, text.unknowns, -difference, moments))
+        differs = bool(fault_in_work(text.ring, -difference, moments))
     if differs:
         raise Violation(f"the stored {what} differs from the mechanism's by {text.ring.text(difference)}")
     return ""
-
-
-def _compared_energy(text: _Text, stored: str, true: Derivation) -> str:
-    """The same of an energy, with the springs' free lengths and the work of moments that have one."""
-    assert true.energy is not None
-    energy = text.ring.taken(true.energy, true.ring)
-    for spring, length in zip(text.springs, text.lengths, strict=True):
-        stiffness, free = (text.ring.taken(p, true.ring) for p in (spring.stiffness, spring.free))
-        energy += stiffness * free * (free * fmpq(1, 2) - length)
-    nothing = text.ring.context.constant(0)
-    moments = [nothing if true.apart else text.ring.taken(m, true.ring) for m in true.moments]
-    return _compared(text, "potential", stored, text.reduced(energy), moments)
 
 
 class _Text:
@@ -130,23 +117,30 @@ class _Text:
     Attributes
     ----------
     ring : with a variable for each spring's length, and one for each angle outside of cosines and sines.
-    squares : the squares of the springs' lengths, in normal form.
     names, outside : of parameters and unknowns what they stand for; and which may stand outside of cosines and sines.
-    lengths : the variables of the springs' lengths; springs that are equally long have the first one's.
+    energy : with the springs' free lengths, where it is stated.
+    work : the moments by the unknown on which they work, where their work is stated with the energy.
+    squares : the squares of the springs' lengths in normal form, each once.
     """
 
-    def __init__(self, true: Derivation, springs: Sequence[Spring]):
-        first = tuple(f"length {n}" for n in range(len(springs)))
-        self.springs, self.unknowns = springs, true.unknowns
+    def __init__(self, true: Derivation, stated: bool):
+        number = len(true.springs) if stated else 0
+        first = tuple(f"length {n}" for n in range(number))
         self.ring = CoordinateRing((*first, *true.ring.names, *true.ring.angles), true.ring.angles)
         parameters = true.ring.names[true.coordinates :]
         self.names = {name: self.ring.elements[name] for name in (*parameters, *true.unknowns)}
-        moved = [
-            u for u, moment in zip(true.unknowns, true.moments, strict=True) if not (true.apart or moment.is_zero())
-        ]
-        self.outside = {*parameters, *moved} | set(true.unknowns) - set(true.ring.angles)
-        self.squares = [self.ring.normal(self.ring.taken(spring.squared, true.ring)) for spring in springs]
-        self.lengths = [self.length(square) for square in self.squares]
+        moved = true.moved and not true.apart
+        self.outside = self.names.keys() - (() if moved else true.ring.angles)
+        self.lengths, self.squares = [self.ring.elements[name] for name in first], list[fmpq_mpoly]()
+        nothing = self.ring.context.constant(0)
+        self.work = {u: nothing if true.apart else self.ring.taken(true.moments[u], true.ring) for u in true.unknowns}
+        self.energy = self.reduced(true.stretched(self.ring, self._new_length)) if stated else nothing
+
+    def _new_length(self, square: fmpq_mpoly) -> fmpq_mpoly:
+        normal = self.ring.normal(square)
+        if normal not in self.squares:
+            self.squares.append(normal)
+        return self.lengths[self.squares.index(normal)]
 
     def length(self, square: fmpq_mpoly) -> fmpq_mpoly:
         """The length whose square is given.
@@ -156,16 +150,16 @@ class _Text:
         ValueError
             When no spring has it.
         """
-        return self.ring.elements[f"length {self.squares.index(self.reduced(square))}"]
+        return self.lengths[self.squares.index(self.reduced(square))]
 
     def has_lengths(self, p: fmpq_mpoly) -> bool:
         """Whether some length is in a polynomial."""
-        return any(degree > 0 for degree in p.degrees()[: len(self.springs)])
+        return any(degree > 0 for degree in p.degrees()[: len(self.lengths)])
 
     def reduced(self, p: fmpq_mpoly) -> fmpq_mpoly:
         """The normal form: at most the first power of each length and of each cosine."""
-        for n, square in enumerate(self.squares):
-            p = divmod(p, self.ring.elements[f"length {n}"] ** 2 - square)[1]
+        for length, square in zip(self.lengths, self.squares, strict=False):
+            p = divmod(p, length**2 - square)[1]
         return self.ring.normal(p)
 
     def value(self, what: str, text: str) -> fmpq_mpoly:

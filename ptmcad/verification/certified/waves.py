@@ -13,7 +13,7 @@ from typing import NamedTuple
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.model import Model
-from ptmcad.question.slice import Axis, Slice
+from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import Expression
 from ptmcad.verification.certified.lines import Line, line_of
 from ptmcad.verification.certified.parallel import Parameters
@@ -57,8 +57,8 @@ class Cone(NamedTuple):
     line: Line | None
 
 
-class Excess(NamedTuple):
-    """What tells whether a spring is longer than its free length.
+class Margin(NamedTuple):
+    """What is positive where a spring is longer than its free length.
 
     Attributes
     ----------
@@ -215,8 +215,8 @@ def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[
     inequalities, stability = (list(map(ring.waves, some)) for some in (true.inequalities, true.stability))
     multiples: list[_Polynomials] = []
     if true.energy is not None and true.from_energy:
-        potential, moments = ring.waves(true.energy), dict(zip(true.unknowns, true.moments, strict=True))
-        equations = [_less(_by(potential, k), ring.waves(moments[unknowns[k]])) for k in everything]
+        potential = ring.waves(true.energy)
+        equations = [_less(_by(potential, k), ring.waves(true.moments[unknowns[k]])) for k in everything]
     else:
         whole = list(map(ring.waves, true.equations))
         equations = [_divided(e, inequalities) for e in whole]
@@ -241,15 +241,17 @@ def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[
 
 
 @lru_cache(maxsize=8)
-def excesses_of(model: Model) -> tuple[Excess, ...]:
-    """Those of all springs of a mechanism, of which none has a negative free length."""
+def margins_of(model: Model, count: Count) -> tuple[Margin, ...]:
+    """What a kind of count asks of stable solutions: of all springs, of which none has a negative free length."""
+    if count is not Count.ADMISSIBLE:
+        return ()
     true = derivation_of(model)
     ring, found = _Exponentials(model, true.ring), []
     for spring in true.springs:
         across, up, free, squared = (
             _kept(ring.waves(f)) for f in (*spring.vector, spring.free, spring.squared - spring.free**2)
         )
-        found.append(Excess(spring.name, (across, up), next(iter(free.values()), ()), squared))
+        found.append(Margin(spring.name, (across, up), next(iter(free.values()), ()), squared))
     return tuple(found)
 
 
