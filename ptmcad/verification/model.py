@@ -8,19 +8,19 @@ an exact map have no free length.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from fractions import Fraction
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
-from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly
+from flint import fmpq_mpoly
 
 from ptmcad.answer.regionmap import System
 from ptmcad.text.expressions import constant
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import fraction_of
-from ptmcad.verification.claims import PLANE, Claims
+from ptmcad.verification.claims import Claims
 from ptmcad.verification.coordinates import CoordinateRing
 from ptmcad.verification.derivation import Derivation, coordinates_of, derivation_of, parameters_of
+from ptmcad.verification.plane import PLANE, polynomial
 from ptmcad.verification.report import Violation
 from ptmcad.verification.work import START, fault_in_work
 
@@ -123,21 +123,18 @@ def _check_free_lengths(claims: Claims, true: Derivation) -> None:
             raise Violation(f"{what} is not zero, so that the map is of another mechanism")
 
 
-def equation_factors(claims: Claims, weights: Sequence[Sequence[int]] = ()) -> list[fmpz_mpoly]:
-    """For each equation on the slice, or sum of some by weights, the common factor of its coefficients in Z[x, y]."""
+def equation_factors(claims: Claims, weights: Sequence[Sequence[int]] = ()) -> list[fmpq_mpoly]:
+    """For each equation on the slice, or sum of some by weights, the common factor of its coefficients in Q[x, y]."""
     true = derivation_of(claims.model)
     found = []
     sums = [sum((w * e for w, e in zip(row, true.equations, strict=True)), 0 * true.equations[0]) for row in weights]
     for equation in sums or true.equations:
-        common = _PLANE.constant(0)
+        common = PLANE.constant(0)
         for a, b in _on_slice(claims, true, true.ring.normal(equation)).values():
             if not a.is_zero():
                 common = common.gcd(a / a.gcd(b))
-        found.append(PLANE.from_dict({m: int(c) for m, c in _integral(common).items()}))
+        found.append(common)
     return found
-
-
-_PLANE: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("u", "v"), Ordering.lex)
 
 
 def _on_slice(claims: Claims, true: Derivation, p: fmpq_mpoly) -> dict[tuple[int, ...], _Ratio]:
@@ -145,24 +142,13 @@ def _on_slice(claims: Claims, true: Derivation, p: fmpq_mpoly) -> dict[tuple[int
     nothing = constant(0)
     width = true.coordinates
     parameters = [claims.result.slice.parameters.get(name, nothing) for name in true.ring.names[width:]]
-    values = [(_polynomial(e.numerator), _polynomial(e.denominator)) for e in parameters]
+    values = [(polynomial(e.numerator), polynomial(e.denominator)) for e in parameters]
     sums: dict[tuple[int, ...], _Ratio] = {}
     for powers, c in p.terms():
-        numerator, denominator = _PLANE.constant(c), _PLANE.constant(1)
+        numerator, denominator = PLANE.constant(c), PLANE.constant(1)
         for value, e in zip(values, powers[width:], strict=False):  # X-joints' second bars come last
             if e:
                 numerator, denominator = numerator * value[0] ** e, denominator * value[1] ** e
-        a, b = sums.get(powers[:width], (_PLANE.constant(0), _PLANE.constant(1)))
+        a, b = sums.get(powers[:width], (PLANE.constant(0), PLANE.constant(1)))
         sums[powers[:width]] = (a * denominator + numerator * b, b * denominator)
     return sums
-
-
-def _polynomial(terms: Iterable[tuple[int, int, Fraction]]) -> fmpq_mpoly:
-    return _PLANE.from_dict({(i, j): from_fraction(c) for i, j, c in terms})
-
-
-def _integral(p: fmpq_mpoly) -> dict[tuple[int, int], int]:
-    scale = 1
-    for c in p.coeffs():
-        scale = scale * int(c.q)
-    return {(int(m[0]), int(m[1])): int((c * scale).p) for m, c in p.to_dict().items()}

@@ -7,12 +7,7 @@ the norms of conditions (these up to the probability of `ptmcad.verification.var
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from fractions import Fraction
 from itertools import product
-from math import lcm
-
-from flint import fmpz_mpoly
 
 from ptmcad.answer.regionmap import Continuum, Kind
 from ptmcad.errors import ExpressionError
@@ -22,11 +17,12 @@ from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.text.syntax import names_in
-from ptmcad.verification.claims import PLANE, Claims
+from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import derivation_of, has_index
 from ptmcad.verification.model import equation_factors
+from ptmcad.verification.plane import factors, polynomial
 from ptmcad.verification.report import Violation
-from ptmcad.verification.variety import BITS, check_identity, condition_exponents, factors, random_points
+from ptmcad.verification.variety import BITS, check_identity, condition_exponents, random_points
 
 
 def auxiliary(model: Model) -> tuple[str, ...]:
@@ -123,7 +119,7 @@ def _check_continuum(claims: Claims, number: int, curve: PlanePolynomial) -> Non
     true = derivation_of(model)
     alone = len(model.unknowns) == 1
     weights = [row for row in product((-1, 0, 1), repeat=len(model.unknowns)) if any(row)]
-    vanishes = any(curve in _vanishing(common) for common in equation_factors(claims, weights))
+    vanishes = any(curve in factors(common) for common in equation_factors(claims, weights))
     if (
         not vanishes
         or model.reals
@@ -143,17 +139,12 @@ def _needed(claims: Claims) -> dict[PlanePolynomial, str]:
         if name in bounding:
             parts.append(e.numerator)
         for terms in parts:
-            for factor in _expression_factors(terms):
+            for factor in factors(polynomial(terms)):
                 needed[factor] = f"it bounds the domain of {name}"
     for k, common in enumerate(equation_factors(claims)):
-        for factor in _vanishing(common):
+        for factor in factors(common):
             needed.setdefault(factor, f"equation {k} vanishes on it")
     return needed
-
-
-def _vanishing(common: fmpz_mpoly) -> list[PlanePolynomial]:
-    """The curves on which an equation vanishes, by the common factor of its coefficients."""
-    return [] if common.is_constant() else factors(common)
 
 
 def _of_conditions(claims: Claims, seed: str) -> dict[PlanePolynomial, str]:
@@ -168,10 +159,3 @@ def _of_conditions(claims: Claims, seed: str) -> dict[PlanePolynomial, str]:
             if e > 0 and of_jacobian < 1:
                 found.setdefault(c.polynomial, f"the norm of condition {k} vanishes on it")
     return found
-
-
-def _expression_factors(terms: Sequence[tuple[int, int, Fraction]]) -> list[PlanePolynomial]:
-    if not any(i or j for i, j, _ in terms):
-        return []
-    scale = lcm(*(c.denominator for _, _, c in terms))
-    return factors(PLANE.from_dict({(i, j): int(c * scale) for i, j, c in terms}))

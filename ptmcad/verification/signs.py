@@ -11,21 +11,17 @@ values on two edges, the number of its roots in a fibre, all of them simple, is 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from enum import Enum
-from fractions import Fraction
-from math import lcm
 
-from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_mpoly
+from flint import fmpq, fmpq_mpoly
 
 from ptmcad.text.expressions import Expression
-from ptmcad.verification.claims import PLANE, PlaneCurve
+from ptmcad.verification.claims import PlaneCurve
+from ptmcad.verification.plane import factored, polynomial
 from ptmcad.verification.window import RUNS, Interval, point_in_window
 
 MAX_DEGREE = 30
 """The sum of the degrees in the two axes up to which a function of both is looked at."""
-
-_RATIONAL: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("u", "v"), Ordering.lex)
 
 Window = tuple[Interval, Interval]
 
@@ -40,7 +36,7 @@ class Sign(Enum):
 
 def has_no_pole(e: Expression, window: Window) -> Sign:
     """Whether the denominator, as it is stored, has no zero in the open window."""
-    denominator = _polynomial(e.denominator)
+    denominator = polynomial(e.denominator)
     return _sign(denominator * _side(denominator, window), window, strict=True)
 
 
@@ -48,35 +44,23 @@ def is_in_domain(e: Expression, window: Window, strict: bool) -> Sign:
     """Whether a function without a pole is positive, or not negative, in the open window."""
     if not e.numerator:
         return Sign.WRONG if strict else Sign.PROVED
-    denominator = _polynomial(e.denominator)
-    return _sign(_polynomial(e.numerator) * _side(denominator, window), window, strict)
+    denominator = polynomial(e.denominator)
+    return _sign(polynomial(e.numerator) * _side(denominator, window), window, strict)
 
 
-def _polynomial(terms: Iterable[tuple[int, int, Fraction]]) -> fmpz_mpoly:
-    """A positive multiple."""
-    terms = tuple(terms)
-    scale = lcm(*(c.denominator for _, _, c in terms))
-    return PLANE.from_dict({(i, j): int(c * scale) for i, j, c in terms})
-
-
-def _value(p: fmpz_mpoly, u: fmpq, v: fmpq) -> fmpq:
-    return sum((fmpq(c) * u ** int(i) * v ** int(j) for (i, j), c in p.terms()), fmpq(0))
-
-
-def _side(p: fmpz_mpoly, window: Window) -> int:
+def _side(p: fmpq_mpoly, window: Window) -> int:
     """The sign at the window's middle, where it has one."""
     (u0, u1), (v0, v1) = window
-    return -1 if _value(p, (u0 + u1) / 2, (v0 + v1) / 2) < 0 else 1
+    return -1 if p((u0 + u1) / 2, (v0 + v1) / 2) < 0 else 1
 
 
-def _sign(p: fmpz_mpoly, window: Window, strict: bool) -> Sign:
+def _sign(p: fmpq_mpoly, window: Window, strict: bool) -> Sign:
     """Whether a polynomial that is not zero is positive, or not negative, in the open window."""
-    parts = list(_factors(p))
-    relevant = [f for f, multiplicity in parts if strict or multiplicity % 2]
+    relevant = [PlaneCurve.of(0, f, 0) for f, multiplicity in factored(p) if strict or multiplicity % 2]
     if any(min(f.degrees) > 0 and sum(f.degrees) > MAX_DEGREE for f in relevant):
         (u0, u1), (v0, v1) = window
         grid = [fmpq(k, 32) for k in range(1, 32)]
-        values = (_value(p, u0 + (u1 - u0) * s, v0 + (v1 - v0) * t) for s in grid for t in grid)
+        values = (p(u0 + (u1 - u0) * s, v0 + (v1 - v0) * t) for s in grid for t in grid)
         return Sign.WRONG if any(value < 0 for value in values) else Sign.UNCHECKED
     met = {point_in_window(f, *window, isolated=strict) for f in relevant}
     if RUNS in met or _generic_value(p, window) < 0:
@@ -84,24 +68,12 @@ def _sign(p: fmpz_mpoly, window: Window, strict: bool) -> Sign:
     return Sign.PROVED if met <= {None} else Sign.UNCHECKED
 
 
-def _factors(p: fmpz_mpoly) -> Iterator[tuple[PlaneCurve, int]]:
-    """Irreducible factors over Q with their multiplicities.
-
-    Not over Z: python-flint sorts those factors by coefficients as machine integers.
-    """
-    rational = _RATIONAL.from_dict({(int(i), int(j)): c for (i, j), c in p.terms()})
-    for factor, multiplicity in rational.factor()[1]:
-        terms = [(int(i), int(j), c) for (i, j), c in factor.terms()]
-        scale = lcm(*(int(c.q) for _, _, c in terms))
-        yield PlaneCurve(0, tuple((i, j, int(c.p) * (scale // int(c.q))) for i, j, c in terms)), int(multiplicity)
-
-
-def _generic_value(p: fmpz_mpoly, window: Window) -> fmpq:
+def _generic_value(p: fmpq_mpoly, window: Window) -> fmpq:
     """The value at a point where it is not zero."""
     (u0, u1), (v0, v1) = window
     for k in range(2, 200):
         for m in range(2, 200):
-            value = _value(p, u0 + (u1 - u0) / k, v0 + (v1 - v0) / m)
+            value = p(u0 + (u1 - u0) / k, v0 + (v1 - v0) / m)
             if value != 0:
                 return value
     raise ArithmeticError("a polynomial of low degree is zero at 39204 points of a grid")
