@@ -97,7 +97,7 @@ def substituted(formula: Formula, places: Mapping[int, Formula]) -> Formula:
 
 
 def evaluated(structure: Any, arithmetic: Arithmetic[Any]) -> Any:
-    """Tuples, lists and mappings, nested in any way, with values in place of their formulas; anything else in them stays.
+    """Tuples, lists and mappings, nested in any way, with values for formulas; anything else stays.
 
     Raises
     ------

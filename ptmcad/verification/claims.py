@@ -10,7 +10,7 @@ from fractions import Fraction
 from functools import cached_property
 from math import gcd, lcm
 
-from flint import Ordering, arb, fmpq, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
+from flint import arb, fmpq, fmpz_poly
 
 from ptmcad.answer.regionmap import CriticalValue, RegionMap
 from ptmcad.errors import PoleError
@@ -23,8 +23,6 @@ from ptmcad.verification.derivation import has_index
 from ptmcad.verification.fibre import Fibre, fibre
 from ptmcad.verification.report import Violation
 from ptmcad.verification.sturm import roots_between, roots_within
-
-PLANE: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(("u", "v"), Ordering.lex)
 
 
 @dataclass(frozen=True)
@@ -75,10 +73,6 @@ class PlaneCurve:
     def deflated(self, k: int, m: int) -> tuple[tuple[int, int, int], ...]:
         """The terms with u for u^k and v for v^m."""
         return tuple((i // k, j // m, c) for i, j, c in self.terms)
-
-    def flint(self) -> fmpz_mpoly:
-        """The polynomial in FLINT's ring."""
-        return PLANE.from_dict({(i, j): c for i, j, c in self.terms})
 
 
 def _scaled(values: list[fmpq]) -> fmpz_poly:

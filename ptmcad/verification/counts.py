@@ -9,10 +9,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
+from ptmcad.answer.counts import Counts
 from ptmcad.model import Model
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.fibre import Counts, Fibre
+from ptmcad.verification.fibre import Fibre
 from ptmcad.verification.report import Violation
 
 

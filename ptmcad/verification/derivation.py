@@ -1,32 +1,34 @@
-"""What solutions of a model satisfy, derived here once more from its description.
+"""What solutions of a model satisfy, derived here once more from its description: all that the checks know of a model.
 
-That is the potential of a mechanism from its points, springs and loads, or what the record of a system lists.
-
-Guarantee: nothing is taken from what the engines derive; the description's trees are read here by a walk of its own, in
-whatever numbers or polynomials the caller has for parameters, real unknowns, cosines and sines. Springs have no free
-length, unless their lengths are asked for.
+Guarantee: exact. Nothing is taken from what the engines derive: points, springs, loads and equations of the description
+are read by `coordinates`, and polynomials are differentiated here. Springs have no free length in energy and equations;
+`SpringVector` says what each takes off the energy with one.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import lru_cache
-from math import prod
-from typing import Any, NamedTuple
+from functools import cached_property, lru_cache
+from typing import NamedTuple
 
-from flint import Ordering, fmpq, fmpq_mpoly_ctx
+from flint import fmpq, fmpq_mpoly
 
-from ptmcad.model import ClosedMechanism, Kind, Mechanism, Model, System
+from ptmcad.model import Kind, Mechanism, Model, System, mechanism_in
+from ptmcad.question.slice import Count
 from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Tree, names_of
+from ptmcad.text.tree import names_of
 from ptmcad.verification import loops, xjoints
+from ptmcad.verification.coordinates import CoordinateRing, circle_names
+from ptmcad.verification.xjoints import Joint
+
+Vector = tuple[fmpq_mpoly, fmpq_mpoly]
 
 
 def parameters_of(model: Model) -> tuple[str, ...]:
     """The parameters of a model's polynomials: no free lengths of springs, which would bring in roots."""
-    return model.without_free_lengths if isinstance(model, Mechanism | ClosedMechanism) else model.variables
+    return model.variables if mechanism_in(model) is None else model.without_free_lengths
 
 
 def shorthands_of(model: Model) -> tuple[str, ...]:
@@ -39,40 +41,21 @@ def coordinates_of(model: Model) -> tuple[str, ...]:
     return tuple(f"{function}_{angle}" for angle in model.angles for function in ("cos", "sin")) + model.reals
 
 
-class Formulas(NamedTuple):
-    """What solutions of a model satisfy.
-
-    Attributes
-    ----------
-    energy : whose derivatives by the angles and the real unknowns, less the moments, are zero at a solution; None where
-        there are equations.
-    equations : each zero at a solution; none where there is an energy.
-    inequalities, stability : positive at a solution that counts, and at a stable one.
-    moments : generalised forces on the angles and the real unknowns; they may depend on these (`has_index`).
-    """
-
-    energy: Any | None
-    equations: tuple[Any, ...] = ()
-    inequalities: tuple[Any, ...] = ()
-    stability: tuple[Any, ...] = ()
-    moments: tuple[Any, ...] = ()
-
-    def moment(self, k: int) -> Any:
-        """The generalised force on the unknown number k, angles first."""
-        return self.moments[k] if self.moments else fmpq(0)
-
-
 def has_index(model: Model) -> bool:
-    """Whether solutions are critical points, near each of a function, so that the matrix of derivatives is a Hessian.
-
-    A moment that no unknown but its own is in is the slope of such a function; with one that depends on another unknown
-    nothing may be stored of indices and of what is stable.
-    """
+    """Whether solutions are critical points, near each of a function: then the matrix of derivatives is a Hessian."""
     if isinstance(model, System):
         return model.potential is not None
     assert isinstance(model, Mechanism)
-    unknowns = {*model.angles, *model.reals}
-    return all(unknowns.intersection(names_of(tree)) <= {unknown} for unknown, tree in model.moments)
+    return not _has_moments_apart(model)
+
+
+def _has_moments_apart(mechanism: Mechanism) -> bool:
+    """Whether some moment depends on another unknown than its own.
+
+    Others are slopes of a function; with such a one nothing may be stored of indices and of what is stable.
+    """
+    unknowns = {*mechanism.angles, *mechanism.reals}
+    return any(unknowns.intersection(names_of(tree)) - {unknown} for unknown, tree in mechanism.moments)
 
 
 def tells_stability(model: Model) -> bool:
@@ -80,242 +63,236 @@ def tells_stability(model: Model) -> bool:
     return has_index(model) or (isinstance(model, System) and bool(model.stability))
 
 
-@dataclass(frozen=True, slots=True)
-class Configuration:
-    """Values of parameters and real unknowns, and cosine and sine of each angle, in numbers that can be added and
-    multiplied together.
+def kinds_of_count(model: Model) -> set[Count]:
+    """What may be counted: springs are longer than their free lengths at poses of mechanisms alone."""
+    told = [Count.STABLE] if tells_stability(model) else []
+    with_springs = [Count.ADMISSIBLE] if told and mechanism_in(model) is not None else []
+    return {Count.TOTAL, *told, *with_springs, *([Count.INDEX] if has_index(model) else [])}
+
+
+class SpringVector(NamedTuple):
+    """A spring of the description; with a free length, stiffness times free length times |vector| is off the energy."""
+
+    name: str
+    stiffness: fmpq_mpoly
+    free: fmpq_mpoly
+    vector: Vector
+
+    @property
+    def squared(self) -> fmpq_mpoly:
+        """Its squared length."""
+        return squared(self.vector)
+
+
+class Required(NamedTuple):
+    """What has to be positive, or at least not negative, in words and as a polynomial in parameters."""
+
+    what: str
+    value: fmpq_mpoly
+    strict: bool
+
+
+def squared(vector: Vector) -> fmpq_mpoly:
+    """The squared length of a vector."""
+    return vector[0] * vector[0] + vector[1] * vector[1]
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """What solutions of a model satisfy, as polynomials in the coordinates, and in parameters without numbers.
+
+    Attributes
+    ----------
+    unknowns : the angles first; by them all that follows is in order.
+    energy : of a mechanism's springs, without free lengths, and its loads, or a potential; None where there is none.
+    moments : generalised forces by the unknown on which they work; they may depend on others (`apart`).
+    moved : whether there is any.
+    equations : each zero at a solution.
+    inequalities, stability : positive at a solution that counts, and at a stable one.
+    from_energy : whether the equations are the slopes of the energy less the moments: they are not with closed loops.
+    springs : of a mechanism; with X-joints in a ring that has the second bars' coordinates as last variables.
+    required : what has to be positive, or not negative, at all parameters, in words that say what it is.
+    apart : whether a moment depends on another unknown than its own, so that there is no function of which moments are
+        the slopes.
+    closing : what bars that close loops keep zero.
     """
 
-    parameters: Mapping[str, Any]
-    circles: Mapping[str, tuple[Any, Any]]
+    ring: CoordinateRing
+    unknowns: tuple[str, ...]
+    has_index: bool
+    energy: fmpq_mpoly | None
+    moments: Mapping[str, fmpq_mpoly]
+    equations: tuple[fmpq_mpoly, ...]
+    inequalities: tuple[fmpq_mpoly, ...] = ()
+    stability: tuple[fmpq_mpoly, ...] = ()
+    from_energy: bool = False
+    moved: bool = False
+    apart: bool = False
+    springs: tuple[SpringVector, ...] = ()
+    closing: tuple[fmpq_mpoly, ...] = ()
+    required: tuple[Required, ...] = ()
 
-    def value(self, tree: Tree) -> Any:
-        """The value of a tree of the description."""
-        match tree:
-            case Number(number):
-                return from_fraction(number)
-            case Name(name):
-                return self.parameters[name]
-            case Negative(operand):
-                return -self.value(operand)
-            case Chain(first, steps):
-                total = self.value(first)
-                for step in steps:
-                    one = self.value(step.operand)
-                    match step.operator:
-                        case "+":
-                            total = total + one
-                        case "-":
-                            total = total - one
-                        case "*":
-                            total = total * one
-                        case _:
-                            total = total * (1 / one)
-                return total
-            case Power(base, exponent):
-                number = self.value(base)
-                return prod([number] * int(self.value(exponent)), start=fmpq(1))
-            case Call(function, argument):
-                return self.circle(argument)[0 if function == "cos" else 1]
+    @cached_property
+    def jacobian(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
+        """The equations' derivatives by the unknowns; where solutions are critical points a Hessian."""
+        return tuple(self.ring.gradient(e, self.unknowns) for e in self.equations)
 
-    def circle(self, argument: Tree) -> tuple[Any, Any]:
-        """Cosine and sine of a sum of multiples of angles."""
-        if isinstance(argument, Name):
-            return self.circles[argument.name]
-        cosine, sine = fmpq(1), fmpq(0)
-        for angle, multiple in _multiples(argument).items():
-            if multiple.denominator != 1 or (multiple and not angle):
-                raise NotImplementedError("the checker knows sums of whole multiples of angles, such as 2*a - b, only")
-            if not angle:
-                continue
-            c, s = self.circles[angle]
-            for _ in range(abs(int(multiple))):
-                turned = s if multiple > 0 else -s
-                cosine, sine = cosine * c - sine * turned, sine * c + cosine * turned
-        return cosine, sine
+    @property
+    def coordinates(self) -> int:
+        """The number of coordinates, which are the first variables."""
+        return sum(2 if unknown in self.ring.angles else 1 for unknown in self.unknowns)
 
-    def points(self, mechanism: Mechanism) -> dict[str, tuple[Any, Any]]:
-        """The coordinates of all points."""
-        return {name: (self.value(x), self.value(y)) for name, (x, y) in mechanism.points.items()}
+    @property
+    def pulling(self) -> tuple[SpringVector, ...]:
+        """The springs whose free lengths can be taken off the equations; with others none has one."""
+        along = bool(self.closing) and len(self.unknowns) == len(self.closing) + 1
+        return self.springs if self.from_energy or along else ()
 
+    def stretched(self, ring: CoordinateRing, length: Callable[[fmpq_mpoly], fmpq_mpoly]) -> fmpq_mpoly:
+        """The energy in a larger ring, of springs with their free lengths.
 
-def formulas(configuration: Configuration, model: Model) -> Formulas:
-    """What solutions satisfy, in the configuration's numbers."""
-    if isinstance(model, Mechanism):
-        return Formulas(potential(configuration, model), moments=_moments(configuration, model))
-    assert isinstance(model, System)
-    if isinstance(model, ClosedMechanism):
-        return _with_loops(configuration, model)
-    value = configuration.value
-    return Formulas(
-        None if model.potential is None else value(model.potential),
-        tuple(map(value, model.equations)),
-        tuple(map(value, model.inequalities)),
-        tuple(map(value, model.stability)),
-    )
+        Parameters
+        ----------
+        length : by its square.
+        """
+        assert self.energy is not None
+        energy = ring.taken(self.energy, self.ring)
+        for spring in self.springs:
+            stiffness, free, square = (
+                ring.taken(p, self.ring) for p in (spring.stiffness, spring.free, spring.squared)
+            )
+            energy += stiffness * free * (free * fmpq(1, 2) - length(square))
+        return energy
+
+    @property
+    def is_definite(self) -> bool:
+        """Whether the conditions for stability are those for a matrix to be definite, the last one its determinant."""
+        return self.energy is not None and not self.from_energy
+
+    def generators(self) -> list[fmpq_mpoly]:
+        """Of the ideal of all solutions."""
+        return [*(e for e in self.equations if not e.is_zero()), *self.ring.relations]
+
+    def along_loops(self, p: fmpq_mpoly) -> fmpq_mpoly:
+        """The derivative along closed loops with one degree of freedom left."""
+        return loops.along(self.ring, self.unknowns, self.closing, self.ring.gradient(p, self.unknowns))
 
 
-def _moving(configuration: Configuration, model: ClosedMechanism) -> Configuration:
-    """The same with derivatives by the unknowns, angles first."""
-    size = len(model.unknowns)
-    values = {name: loops.constant(value, size) for name, value in configuration.parameters.items()}
-    for k, name in enumerate(model.reals, len(model.angles)):
-        values[name] = loops.line(k, configuration.parameters[name], size)
-    circles = {a: loops.circle(k, *configuration.circles[a], size) for k, a in enumerate(model.angles)}
-    return Configuration(values, circles)
+def derivation_at(model: Model, values: Mapping[str, Fraction]) -> Derivation:
+    """At rational values of the parameters; no spring has a free length there."""
+    numbers = {name: from_fraction(values[name]) for name in parameters_of(model)}
+    return _derived(model, dict.fromkeys(model.free_lengths, fmpq(0)) | numbers)
 
 
-def along_loops(configuration: Configuration, model: ClosedMechanism) -> list[tuple[Any, Any]]:
-    """Of each spring's vector the derivative along closed loops with one degree of freedom left."""
-    moving, nothing = _moving(configuration, model), loops.constant(fmpq(0), len(model.unknowns))
-    points = moving.points(model.mechanism)
-    kept = loops.distances(model.mechanism, points, moving.value)
-    found = []
-    for spring in model.mechanism.springs:
-        vector = [points[spring.end][i] - points[spring.start][i] + nothing for i in (0, 1)]
-        across, up = loops.turned(kept, vector)
-        found.append((across, up))
-    return found
-
-
-def _with_loops(configuration: Configuration, model: ClosedMechanism) -> Formulas:
-    """Of a mechanism with closed loops, from the mechanism itself."""
-    size, moving = len(model.unknowns), _moving(configuration, model)
-    if model.mechanism.xjoints:
-        return _with_xjoints(moving, model)
-    if model.multipliers:
-        return _stationary(moving, model)
-    equations, stability = loops.conditions(
-        model.mechanism,
-        potential(moving, model.mechanism) + loops.constant(fmpq(0), size),
-        moving.points(model.mechanism),
-        moving.value,
-        [m + loops.constant(fmpq(0), size) for m in _moments(moving, model.mechanism)],
-    )
-    return Formulas(None, equations, (), (stability,))
-
-
-def _stationary(moving: Configuration, model: ClosedMechanism) -> Formulas:
-    """With a tension for each closing bar."""
-    nothing = loops.constant(fmpq(0), len(model.unknowns))
-    equations, stability = loops.stationary(
-        model.mechanism,
-        potential(moving, model.mechanism) + nothing,
-        moving.points(model.mechanism),
-        moving.value,
-        [moving.parameters[name] for name in model.multipliers],
-        [m + nothing for m in _moments(moving, model.mechanism)],
-    )
-    return Formulas(None, equations, (), stability)
-
-
-def _with_xjoints(first: Configuration, model: ClosedMechanism) -> Formulas:
-    """Of a mechanism with X-joints, from the mechanism itself; the first bars' angles are known."""
-    mechanism, joints = model.mechanism, model.mechanism.xjoints
-    nothing = loops.constant(fmpq(0), len(model.unknowns))
-    equations, distances, stability = xjoints.conditions(
-        [model.angles.index(joint.angle) for joint in joints],
-        _in_units(first, mechanism),
-        _powers(mechanism),
-        [(first.value(joint.length) + nothing, first.value(joint.bars) + nothing) for joint in joints],
-        [first.circles[joint.angle] for joint in joints],
-        [m + nothing for m in _moments(first, mechanism)],
-    )
-    return Formulas(None, equations, distances, stability)
-
-
-def _in_units(first: Configuration, mechanism: Mechanism) -> xjoints.Units:
-    """The energy as a polynomial in the units of the second bars."""
-    count = len(mechanism.xjoints)
-    none = xjoints.Units({}, count)
-    lifted = {a: (none + c, none + s) for a, (c, s) in first.circles.items()}
-    second = {joint.other: xjoints.unit_circle(k, count) for k, joint in enumerate(mechanism.xjoints)}
-    known = {name: none + value for name, value in first.parameters.items()}
-    energy: Any = potential(Configuration(known, lifted | second), mechanism)
-    found: xjoints.Units = none + energy
-    return found
+def derivation_of(model: Model) -> Derivation:
+    """In the coordinates of the unknowns, and in all parameters."""
+    return _known(model, mechanism_in(model))
 
 
 @lru_cache(maxsize=8)
-def _powers(mechanism: Mechanism) -> tuple[int, ...]:
-    """Of the units in the energy, with a variable for everything else."""
-    names = (*parameters_of(mechanism), *coordinates_of(mechanism))
-    ring: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(names, Ordering.lex)
-    known = {name: ring.gen(k) for k, name in enumerate(names)}
-    circles = {a: (known[f"cos_{a}"], known[f"sin_{a}"]) for a in mechanism.angles}
-    return xjoints.powers_in(_in_units(Configuration(known, circles), mechanism))
+def _known(model: Model, _mechanism: Mechanism | None) -> Derivation:
+    """Of models that are equal as systems the mechanisms may be different ones."""
+    return _derived(model, {})
 
 
-def _moments(configuration: Configuration, mechanism: Mechanism) -> tuple[Any, ...]:
-    """The generalised forces on the unknowns; none where the description has none."""
-    if not mechanism.moments:
-        return ()
-    unknowns = mechanism.angles + mechanism.reals
-    total: list[Any] = [fmpq(0)] * len(unknowns)
+def _ring_of(model: Model, numbers: Mapping[str, fmpq]) -> CoordinateRing:
+    """The coordinates of the unknowns come first, then parameters without numbers."""
+    coordinates = (name for angle in model.angles for name in circle_names(angle))
+    parameters = (name for name in model.variables if name not in numbers)
+    return CoordinateRing((*coordinates, *model.reals, *parameters), model.angles, numbers)
+
+
+def _derived(model: Model, numbers: Mapping[str, fmpq]) -> Derivation:
+    ring, unknowns = _ring_of(model, numbers), model.angles + model.reals
+    if (mechanism := mechanism_in(model)) is not None:
+        return _of_mechanism(model, mechanism, ring, unknowns)
+    assert isinstance(model, System)
+    energy = None if model.potential is None else ring.value(model.potential)
+    equations, inequalities, stability = (
+        tuple(map(ring.value, trees)) for trees in (model.equations, model.inequalities, model.stability)
+    )
+    moments = dict.fromkeys(unknowns, ring.context.constant(0))
+    if energy is not None:
+        equations = ring.gradient(energy, unknowns)
+    return Derivation(
+        ring, unknowns, has_index(model), energy, moments, equations, inequalities, stability, energy is not None
+    )
+
+
+def _of_mechanism(model: Model, mechanism: Mechanism, ring: CoordinateRing, unknowns: tuple[str, ...]) -> Derivation:
+    parts = _Parts.of(mechanism, ring)
+    moments, kept = dict.fromkeys(unknowns, ring.context.constant(0)), parts.closing
     for unknown, tree in mechanism.moments:
-        k = unknowns.index(unknown)
-        total[k] = total[k] + configuration.value(tree)
-    return tuple(total)
+        moments[unknown] += ring.value(tree)
+    forces = tuple(moments.values())
+    given = Derivation(
+        ring,
+        unknowns,
+        has_index(model),
+        parts.energy,
+        moments,
+        (),
+        springs=parts.springs,
+        closing=kept,
+        required=parts.required,
+        moved=not all(force.is_zero() for force in forces),
+        apart=_has_moments_apart(mechanism),
+    )
+    if mechanism.xjoints:
+        joints = [Joint(j.angle, j.other, ring.value(j.length), ring.value(j.bars)) for j in mechanism.xjoints]
+        equations, distances, stability = xjoints.conditions(
+            ring, unknowns, joints, _degrees(mechanism), (parts.energy, parts.ring), forces
+        )
+        return replace(given, equations=equations, inequalities=distances, stability=stability)
+    slopes = tuple(map(fmpq_mpoly.__sub__, ring.gradient(parts.energy, unknowns), forces))
+    if not kept:
+        return replace(given, equations=slopes, from_energy=True)
+    ways = loops.one_way if len(unknowns) == len(kept) + 1 else loops.several_ways
+    equations, stability = ways(ring, unknowns, kept, slopes)
+    return replace(given, equations=equations, stability=stability)
 
 
-def potential(configuration: Configuration, mechanism: Mechanism, length: Callable[[Any], Any] | None = None) -> Any:
-    """Half the stiffness times the squared length of each spring, without free lengths, less the work of the loads.
+class _Parts(NamedTuple):
+    """What a mechanism's description has in a ring, to which the coordinates of X-joints' second bars are added."""
 
-    Parameters
-    ----------
-    length : the length by its square; if it is given, lengths are those beyond the free lengths.
-    """
-    points = configuration.points(mechanism)
-    energy: Any = fmpq(0)
-    for load in mechanism.loads:
-        for force, coordinate in zip((load.x, load.y), points[load.point], strict=True):
-            energy = energy - coordinate * configuration.value(force)
-    for spring in mechanism.springs:
-        across, up = (points[spring.end][i] - points[spring.start][i] for i in (0, 1))
-        square = across * across + up * up
-        if length is not None:
-            stretch = length(square) - configuration.value(spring.free)
-            square = stretch * stretch
-        energy = energy + square * (configuration.value(spring.stiffness) * fmpq(1, 2))
-    for torsion in mechanism.torsion:
-        cosine, sine = configuration.circle(torsion.angle)
-        at_rest = [from_fraction(value) for value in torsion.rest]
-        difference = cosine * at_rest[0] + sine * at_rest[1]
-        energy = energy + configuration.value(torsion.stiffness) * (fmpq(1) - difference)
-    return energy
+    ring: CoordinateRing
+    energy: fmpq_mpoly
+    springs: tuple[SpringVector, ...]
+    required: tuple[Required, ...]
+    closing: tuple[fmpq_mpoly, ...]
 
+    @classmethod
+    def of(cls, mechanism: Mechanism, base: CoordinateRing) -> _Parts:
+        """The springs, the energy and what is kept zero."""
+        followers = tuple(mechanism.followers)
+        more = (name for angle in followers for name in circle_names(angle))
+        ring = CoordinateRing((*base.names, *more), base.angles + followers, base.numbers) if followers else base
+        points = {name: (ring.value(x), ring.value(y)) for name, (x, y) in mechanism.points.items()}
 
-def _multiples(tree: Tree) -> dict[str, Fraction]:
-    """The angles of a sum, each with its factor; what is no multiple of an angle has the empty name."""
-    match tree:
-        case Number(number):
-            return {"": number}
-        case Name(name):
-            return {name: Fraction(1)}
-        case Negative(operand):
-            return {name: -multiple for name, multiple in _multiples(operand).items()}
-        case Chain(first, steps):
-            total = _multiples(first)
-            for step in steps:
-                total = _joined(total, step.operator, _multiples(step.operand))
-            return total
-        case Power(base, exponent):
-            return {"": _number(_multiples(base)) ** int(_number(_multiples(exponent)))}
-        case Call():
-            raise NotImplementedError("the checker knows no angle that is a cosine or sine")
+        def between(start: str, end: str) -> Vector:
+            (a, b), (c, d) = points[start], points[end]
+            return c - a, d - b
+
+        springs = tuple(
+            SpringVector(s.name, ring.value(s.stiffness), ring.value(s.free), between(s.start, s.end))
+            for s in mechanism.springs
+        )
+        energy = sum((s.squared * s.stiffness * fmpq(1, 2) for s in springs), ring.context.constant(0))
+        for point, x, y in mechanism.loads:
+            energy -= points[point][0] * ring.value(x) + points[point][1] * ring.value(y)
+        required = [Required(f"the stiffness of spring {s.name}", s.stiffness, True) for s in springs]
+        required += [Required(f"the free length of spring {s.name}", s.free, False) for s in springs]
+        for number, torsion in enumerate(mechanism.torsion, 1):
+            stiffness, rest = ring.value(torsion.stiffness), tuple(map(from_fraction, torsion.rest))
+            cosine, sine = ring.circle(torsion.angle)
+            energy += stiffness * (1 - cosine * rest[0] - sine * rest[1])
+            required.append(Required(f"the stiffness of torsion spring {number}", stiffness, True))
+        closing = tuple(squared(between(bar.start, bar.end)) - ring.value(bar.length) ** 2 for bar in mechanism.closing)
+        return cls(ring, energy, springs, tuple(required), closing)
 
 
-def _joined(left: dict[str, Fraction], operator: str, right: dict[str, Fraction]) -> dict[str, Fraction]:
-    if operator in "+-":
-        sign = 1 if operator == "+" else -1
-        return left | {name: left.get(name, Fraction(0)) + sign * multiple for name, multiple in right.items()}
-    if operator == "*" and left.keys() == {""}:
-        left, right = right, left
-    factor = _number(right) if operator == "*" else 1 / _number(right)
-    return {name: multiple * factor for name, multiple in left.items()}
-
-
-def _number(multiples: dict[str, Fraction]) -> Fraction:
-    if multiples.keys() != {""}:
-        raise NotImplementedError("the checker knows no products of angles")
-    return multiples[""]
+@lru_cache(maxsize=8)
+def _degrees(mechanism: Mechanism) -> tuple[int, ...]:
+    """Of the energy in the coordinates of each second bar, whatever the parameters are."""
+    parts = _Parts.of(mechanism, _ring_of(mechanism, {}))
+    return tuple(xjoints.degree(parts.ring, joint.other, parts.energy) for joint in mechanism.xjoints)

@@ -20,28 +20,15 @@ from functools import cached_property
 from itertools import pairwise, product
 from math import prod
 
-from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpq_mpoly_ctx
+from flint import fmpq, fmpq_mat, fmpq_mpoly
 
+from ptmcad.answer.counts import Counts
 from ptmcad.model import Model
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.algebra import Monomial, NotFinite, algebra
-from ptmcad.verification.equations import Polynomials, equations_at
+from ptmcad.verification.coordinates import CoordinateRing
+from ptmcad.verification.derivation import Derivation, derivation_at
 from ptmcad.verification.inertia import bases, determinant, leading_minors, negative_eigenvalues
-
-
-@dataclass(frozen=True, slots=True)
-class Counts:
-    """Numbers of the real solutions that count.
-
-    Attributes
-    ----------
-    stable : None where nothing says what a stable solution is.
-    index : numbers by the number of negative eigenvalues of the Hessian; None without a potential.
-    """
-
-    total: int
-    stable: int | None
-    index: tuple[int, ...] | None
 
 
 @dataclass(frozen=True)
@@ -51,14 +38,14 @@ class Fibre:
     Attributes
     ----------
     basis : the standard monomials.
-    tables : the matrix of multiplication by each variable; columns are images of the basis.
+    tables : the matrix of multiplication by each variable, last to first; columns are images of the basis.
     saturated : whether solutions at which an inequality's polynomial vanishes, which do not count, are left out; then
-        the first variable is the inverse of the inequalities' product.
+        the last variable is the inverse of the inequalities' product.
     """
 
     basis: tuple[Monomial, ...]
     tables: tuple[fmpq_mat, ...]
-    point: Polynomials
+    point: Derivation
     saturated: bool = False
 
     @property
@@ -84,8 +71,8 @@ class Fibre:
 
     @property
     def _own(self) -> tuple[fmpq_mat, ...]:
-        """The matrices of multiplication by the model's coordinates, last to first."""
-        return self.tables[len(self.tables) - len(self.point.names) :]
+        """The matrices of multiplication by the model's coordinates."""
+        return self.tables[::-1][: self.point.coordinates]
 
     @cached_property
     def jacobian_entries(self) -> list[list[fmpq_mat]]:
@@ -164,7 +151,7 @@ class Fibre:
         """
         positive = [self.matrix(p) for p in self.point.inequalities if counted]
         number = self._number(positive)
-        for table, x in zip(reversed(self._own), map(from_fraction, center), strict=True):
+        for table, x in zip(self._own, map(from_fraction, center), strict=True):
             off = table - _identity(self.dimension) * x
             inside = _identity(self.dimension) * from_fraction(radius) ** 2 - off * off
             # where no solution is lost, all that are left are on this side
@@ -246,7 +233,7 @@ class Fibre:
     def form_traces(self, form: Sequence[int]) -> list[fmpq]:
         """Traces of the powers 1, 2, ..., dimension of a linear form in the coordinates."""
         matrix = fmpq_mat(self.dimension, self.dimension)
-        for c, table in zip(form, self._own, strict=True):
+        for c, table in zip(reversed(form), self._own, strict=True):
             matrix = matrix + table * fmpq(c)
         # Newton's identities: powers of the matrix would have entries of many more digits than their traces
         coefficients = [fmpq(c) for c in reversed(matrix.charpoly().coeffs())]
@@ -270,33 +257,26 @@ def fibre(model: Model, values: Mapping[str, Fraction]) -> Fibre:
     NotFinite
         When there are infinitely many complex solutions.
     """
-    point = equations_at(model, values)
+    point = derivation_at(model, values)
     if not point.inequalities:
-        return Fibre(*algebra(point.generators(), point.names), point)
+        return Fibre(*algebra(point.generators(), point.coordinates), point)
     try:
-        found = Fibre(*algebra(point.generators(), point.names), point)
+        found = Fibre(*algebra(point.generators(), point.coordinates), point)
         if found.norm() != 0 and all(found.matrix(p).det() != 0 for p in point.inequalities):
             return found
     except NotFinite:
         pass
-    return Fibre(*algebra(*_saturated(point)), point, saturated=True)
+    return Fibre(*algebra(_saturated(point), point.coordinates + 1), point, saturated=True)
 
 
-def _saturated(point: Polynomials) -> tuple[list[fmpq_mpoly], tuple[str, ...]]:
+def _saturated(point: Derivation) -> list[fmpq_mpoly]:
     """Generators of the ideal of the solutions at which no inequality's polynomial vanishes.
 
-    The inverse of their product is one more variable, the first one.
+    The inverse of their product is one more variable, the last one.
     """
-    names = ("", *point.names)
-    ring: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(names, Ordering.degrevlex)
-
-    def lifted(p: fmpq_mpoly) -> fmpq_mpoly:
-        return ring.from_dict({(0, *m): c for m, c in p.to_dict().items()})
-
-    inverse = ring.gen(0)
-    for p in point.inequalities:
-        inverse = inverse * lifted(p)
-    return [*map(lifted, point.generators()), inverse - 1], names
+    ring = CoordinateRing((*point.ring.names, ""), point.ring.angles)
+    product = prod((ring.taken(p, point.ring) for p in point.inequalities), start=ring.elements[""])
+    return [*(ring.taken(p, point.ring) for p in point.generators()), product - 1]
 
 
 def _identity(n: int) -> fmpq_mat:

@@ -20,6 +20,7 @@ from math import lcm, prod
 
 from flint import fmpq, fmpz, fmpz_poly
 
+from ptmcad.answer.counts import Counts
 from ptmcad.answer.intervals import End, Span, lower, upper
 from ptmcad.errors import PoleError
 from ptmcad.model import Model
@@ -28,7 +29,7 @@ from ptmcad.text.expressions import Expression
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.verification.algebra import NotFinite
 from ptmcad.verification.counts import not_positive
-from ptmcad.verification.fibre import Counts, fibre
+from ptmcad.verification.fibre import fibre
 from ptmcad.verification.sturm import isolating_intervals, squarefree
 
 FRESH = 3
@@ -54,7 +55,7 @@ class Gap(Span):
     @property
     def working(self) -> int:
         """The number by which an operation range is found."""
-        return self.counts.total if self.counts.stable is None else self.counts.stable
+        return self.counts.working
 
 
 @dataclass(frozen=True)
@@ -130,7 +131,7 @@ class Line:
             raise NotKnown("there is a degenerate solution at random points")
         if self.model.reals:
             form = random.Random("form")
-            traces = found.form_traces([form.getrandbits(10) for _ in found.point.names])
+            traces = found.form_traces([form.getrandbits(10) for _ in range(found.point.coordinates)])
             norms.append(sum((t * form.getrandbits(10) for t in traces), fmpq(0)))
         return norms
 

@@ -12,8 +12,9 @@ from itertools import pairwise
 from ptmcad.answer.regionmap import Cell, Merge, Status
 from ptmcad.question.slice import Count
 from ptmcad.text.numerals import approximate_text
+from ptmcad.verification.certified.counted import names_in
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import has_index, parameters_of, shorthands_of, tells_stability
+from ptmcad.verification.derivation import kinds_of_count, parameters_of, shorthands_of
 from ptmcad.verification.report import Violation
 
 
@@ -33,15 +34,12 @@ def check_shape(claims: Claims) -> str:
         raise Violation(f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others")
     if r.slice.count not in _KEYS:
         raise Violation(f"an exact map has no {r.slice.count.value} counts by which its regions could be distinguished")
-    untold = (r.slice.count is Count.INDEX and not has_index(model)) or (
-        r.slice.count is Count.STABLE and not tells_stability(model)
-    )
-    if untold:
+    if r.slice.count not in kinds_of_count(model):
         raise Violation(f"{model.name} has no {r.slice.count.value} counts by which regions could be distinguished")
     if any(a.low >= a.high for a in r.slice.axes) or r.base not in (0, 1):
         raise Violation("the window is empty")
-    if any(c.admissible is not None for c in r.cells) or any(g.admissible is not None for g in r.regions):
-        raise Violation("an exact map has counts of admissible equilibria")
+    if further := {name for item in (*r.cells, *r.regions) for name in names_in(item)} - {*_KEYS.values()}:
+        raise Violation(f"an exact map has counts of {further.pop()} equilibria")
     if not r.stacks:
         if r.status is Status.EXACT or r.critical_values or r.cells or r.adjacencies or r.non_adjacencies or r.regions:
             raise Violation("there are no stacks")

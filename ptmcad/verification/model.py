@@ -8,18 +8,21 @@ an exact map have no free length.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz, fmpz_mpoly
+from flint import fmpq_mpoly
 
 from ptmcad.answer.regionmap import System
-from ptmcad.model import ClosedMechanism, Mechanism
+from ptmcad.text.expressions import constant
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import fraction_of
-from ptmcad.verification.claims import PLANE, Claims
-from ptmcad.verification.derivation import Configuration, coordinates_of, parameters_of
-from ptmcad.verification.equations import Polynomials, Ring, equations_of
+from ptmcad.verification.claims import Claims
+from ptmcad.verification.coordinates import CoordinateRing
+from ptmcad.verification.derivation import Derivation, coordinates_of, derivation_of, parameters_of
+from ptmcad.verification.plane import PLANE, polynomial
 from ptmcad.verification.report import Violation
+from ptmcad.verification.work import START, fault_in_work
 
 _FACTOR = r"(?:[0-9]{1,4000}(?:/[1-9][0-9]{0,3999})?|[A-Za-z][A-Za-z_0-9]{0,44}(?:\^[0-9]{1,2})?)"
 _SUM = re.compile(rf"-?{_FACTOR}(?:\*{_FACTOR})*(?: [+-] {_FACTOR}(?:\*{_FACTOR})*)*", re.ASCII)
@@ -28,9 +31,8 @@ _Ratio = tuple[fmpq_mpoly, fmpq_mpoly]
 """Numerator and denominator."""
 
 
-def _parsed(ring: Ring, text: str, what: str) -> fmpq_mpoly:
+def _parsed(ring: CoordinateRing, names: Mapping[str, fmpq_mpoly], text: str, what: str) -> fmpq_mpoly:
     """A sum of monomials such as ``-1/2*L1^2*k3 + rho*cos_th1``."""
-    names = {name: ring.variable(name) for name in ring.names}
     total = ring.context.constant(0)
     if len(text) > 100_000 or _SUM.fullmatch(text) is None:
         raise Violation(f"the {what} is not a sum of monomials: {text[:60]}")
@@ -60,50 +62,36 @@ def check_system(claims: Claims) -> str:
         raise Violation(f"the unknowns are {system.unknowns}, not {unknowns}")
     if len(set(unknowns) | set(parameters_of(model))) != len(unknowns) + len(parameters_of(model)):
         raise Violation("a parameter has the name of a coordinate, so that no text can be understood")
-    true = equations_of(model)
+    true = derivation_of(model)
+    ring = true.ring
+    names = dict(zip((*unknowns, *ring.names[len(unknowns) :]), ring.context.gens(), strict=True))
+    parsed = partial(_parsed, ring, names)
     _check_sizes(system, true)
-    for k, (text, relation) in enumerate(zip(system.relations, true.ring.relations(), strict=True)):
-        if _parsed(true.ring, text, f"relation {k}") != relation:
-            raise Violation(f"relation {k} is {relation}, not {text[:60]}")
+    for k, (text, relation) in enumerate(zip(system.relations, ring.relations, strict=True)):
+        if parsed(text, f"relation {k}") != relation:
+            raise Violation(f"relation {k} is {ring.text(relation)}, not {text[:60]}")
     number = 0
     if true.energy is not None and true.has_index:
-        _check_potential(true, true.energy - _parsed(true.ring, system.potential, "potential"))
+        work = ring.normal(true.energy - parsed(system.potential, "potential"))
+        if fault := fault_in_work(ring, work, true.moments, varying=True):
+            where = f"in its slope by {fault}" if fault != START else f"by {ring.text(work)}"
+            raise Violation(f"the stored potential differs from the mechanism's {where}")
         number += 1
     for what, text, expected in _pairs(system, true):
-        difference = true.ring.normal(_parsed(true.ring, text, what) - expected)
+        difference = ring.normal(parsed(text, what) - expected)
         if not difference.is_zero():
-            raise Violation(f"the stored {what} differs from the mechanism's by {str(difference)[:80]}")
+            raise Violation(f"the stored {what} differs from the mechanism's by {ring.text(difference)}")
         number += 1
-    _check_free_lengths(claims, true.ring)
+    _check_free_lengths(claims, true)
     return f"{number} polynomials in {len(unknowns)} unknowns and {len(parameters_of(model))} parameters"
 
 
-def _check_potential(true: Polynomials, less: fmpq_mpoly) -> None:
-    """What the stored potential lacks is work whose slopes are the moments but for constant parts.
-
-    No moment has to be integrated for that. The work is zero where all unknowns are.
-    """
-    ring, model = true.ring, true.ring.model
-    work = ring.normal(less)
-    for unknown, moment in zip(model.angles + model.reals, true.moments, strict=True):
-        slope = ring.by(work, unknown)
-        missing = ring.normal(moment - slope)
-        # of a force along a line the constant part is the one without the unknown
-        steady = slope.subs({unknown: 0}).is_zero() if unknown in model.reals else True
-        if not steady or max(missing.degrees()[: len(coordinates_of(model))]) > 0:
-            raise Violation(f"the stored potential differs from the mechanism's in its slope by {unknown}")
-    values = [1, 0] * len(model.angles) + [0] * len(model.reals)
-    at_zero: dict[str | int, int | fmpz | fmpq] = dict(zip(coordinates_of(model), values, strict=True))
-    if not (left := work.subs(at_zero)).is_zero():
-        raise Violation(f"the stored potential differs from the mechanism's by {str(left)[:80]}")
-
-
-def _check_sizes(system: System, true: Polynomials) -> None:
+def _check_sizes(system: System, true: Derivation) -> None:
     n = len(true.equations)
     if (len(system.gradient), [len(row) for row in system.hessian]) != (n, [n] * n):
         raise Violation(f"{n} unknowns have {n} equations and a {n} x {n} matrix of derivatives")
     for what, stored, expected in (
-        ("relations", system.relations, true.ring.relations()),
+        ("relations", system.relations, true.ring.relations),
         ("inequalities", system.inequalities, true.inequalities),
         ("conditions for stability", system.stability, true.stability),
     ):
@@ -113,7 +101,7 @@ def _check_sizes(system: System, true: Polynomials) -> None:
         raise Violation("equations are given, or a moment depends on another unknown, so there is no potential")
 
 
-def _pairs(system: System, true: Polynomials) -> Iterator[tuple[str, str, fmpq_mpoly]]:
+def _pairs(system: System, true: Derivation) -> Iterator[tuple[str, str, fmpq_mpoly]]:
     """Each stored polynomial: what it is, its text, and what is true."""
     first, second = "equation {}", "Jacobian's entry {},{}"
     if true.has_index:
@@ -128,61 +116,39 @@ def _pairs(system: System, true: Polynomials) -> Iterator[tuple[str, str, fmpq_m
         yield f"condition {k} for stability", text, p
 
 
-def _check_free_lengths(claims: Claims, ring: Ring) -> None:
+def _check_free_lengths(claims: Claims, true: Derivation) -> None:
     """No spring has a free length on the slice; of one that is no parameter there it is zero."""
-    model = claims.model.mechanism if isinstance(claims.model, ClosedMechanism) else claims.model
-    if not isinstance(model, Mechanism):
-        return
-    known = ring.configuration({})
-    zero = {name: ring.context.constant(0) for name in model.free_lengths}
-    within = Configuration({**known.parameters, **zero}, {})
-    for spring in model.springs:
-        free = ring.context.constant(0) + within.value(spring.free)
-        if any(not numerator.is_zero() for numerator, _ in _on_slice(claims, ring, free).values()):
-            raise Violation(f"the spring {spring.name} has a free length, so that the map is of another mechanism")
+    for what, value, strict in true.required:
+        if not (strict or all(numerator.is_zero() for numerator, _ in _on_slice(claims, true, value).values())):
+            raise Violation(f"{what} is not zero, so that the map is of another mechanism")
 
 
-def equation_factors(claims: Claims, weights: Sequence[Sequence[int]] = ()) -> list[fmpz_mpoly]:
-    """For each equation on the slice, or sum of some by weights, the common factor of its coefficients in Z[x, y]."""
-    true = equations_of(claims.model)
+def equation_factors(claims: Claims, weights: Sequence[Sequence[int]] = ()) -> list[fmpq_mpoly]:
+    """For each equation on the slice, or sum of some by weights, the common factor of its coefficients in Q[x, y]."""
+    true = derivation_of(claims.model)
     found = []
     sums = [sum((w * e for w, e in zip(row, true.equations, strict=True)), 0 * true.equations[0]) for row in weights]
     for equation in sums or true.equations:
-        common = _PLANE.constant(0)
-        for a, b in _on_slice(claims, true.ring, true.ring.normal(equation)).values():
+        common = PLANE.constant(0)
+        for a, b in _on_slice(claims, true, true.ring.normal(equation)).values():
             if not a.is_zero():
                 common = common.gcd(a / a.gcd(b))
-        found.append(PLANE.from_dict({m: int(c) for m, c in _integral(common).items()}))
+        found.append(common)
     return found
 
 
-_PLANE: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("u", "v"), Ordering.lex)
-
-
-def _on_slice(claims: Claims, ring: Ring, p: fmpq_mpoly) -> dict[tuple[int, ...], _Ratio]:
-    """The coefficients, functions of the axes, of a polynomial in the coordinates."""
-    expressions = claims.result.slice.parameters
-
-    def polynomial(terms: object) -> fmpq_mpoly:
-        return _PLANE.from_dict({(i, j): from_fraction(c) for i, j, c in terms})  # type: ignore[attr-defined]
-
-    names = parameters_of(ring.model)
-    values = [(polynomial(expressions[n].numerator), polynomial(expressions[n].denominator)) for n in names]
-    width = len(coordinates_of(ring.model))
+def _on_slice(claims: Claims, true: Derivation, p: fmpq_mpoly) -> dict[tuple[int, ...], _Ratio]:
+    """The coefficients, functions of the axes, of a polynomial in the coordinates; free lengths not named are zero."""
+    nothing = constant(0)
+    width = true.coordinates
+    parameters = [claims.result.slice.parameters.get(name, nothing) for name in true.ring.names[width:]]
+    values = [(polynomial(e.numerator), polynomial(e.denominator)) for e in parameters]
     sums: dict[tuple[int, ...], _Ratio] = {}
-    for exponents, c in p.to_dict().items():
-        powers = [int(e) for e in exponents]
-        numerator, denominator = _PLANE.constant(c), _PLANE.constant(1)
-        for value, e in zip(values, powers[width:], strict=True):
-            numerator, denominator = numerator * value[0] ** e, denominator * value[1] ** e
-        unknown = tuple(powers[:width])
-        a, b = sums.get(unknown, (_PLANE.constant(0), _PLANE.constant(1)))
-        sums[unknown] = (a * denominator + numerator * b, b * denominator)
+    for powers, c in p.terms():
+        numerator, denominator = PLANE.constant(c), PLANE.constant(1)
+        for value, e in zip(values, powers[width:], strict=False):  # X-joints' second bars come last
+            if e:
+                numerator, denominator = numerator * value[0] ** e, denominator * value[1] ** e
+        a, b = sums.get(powers[:width], (PLANE.constant(0), PLANE.constant(1)))
+        sums[powers[:width]] = (a * denominator + numerator * b, b * denominator)
     return sums
-
-
-def _integral(p: fmpq_mpoly) -> dict[tuple[int, int], int]:
-    scale = 1
-    for c in p.coeffs():
-        scale = scale * int(c.q)
-    return {(int(m[0]), int(m[1])): int((c * scale).p) for m, c in p.to_dict().items()}

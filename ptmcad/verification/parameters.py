@@ -7,26 +7,22 @@ the norms of conditions (these up to the probability of `ptmcad.verification.var
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from fractions import Fraction
 from itertools import product
-from math import lcm
-
-from flint import fmpz_mpoly
 
 from ptmcad.answer.regionmap import Continuum, Kind
 from ptmcad.errors import ExpressionError
-from ptmcad.model import Mechanism, Model, System
+from ptmcad.model import Model
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.text.syntax import names_in
-from ptmcad.verification.claims import PLANE, Claims
-from ptmcad.verification.derivation import has_index
+from ptmcad.verification.claims import Claims
+from ptmcad.verification.derivation import derivation_of, has_index
 from ptmcad.verification.model import equation_factors
+from ptmcad.verification.plane import factors, polynomial
 from ptmcad.verification.report import Violation
-from ptmcad.verification.variety import BITS, check_identity, condition_exponents, factors, random_points
+from ptmcad.verification.variety import BITS, check_identity, condition_exponents, random_points
 
 
 def auxiliary(model: Model) -> tuple[str, ...]:
@@ -120,11 +116,17 @@ def _check_continuum(claims: Claims, number: int, curve: PlanePolynomial) -> Non
     There are some where the equations are the slopes of a function on a torus, or there is no other.
     """
     model = claims.result.slice.model
-    free = not (model.inequalities if isinstance(model, System) else isinstance(model, Mechanism) and model.moments)
+    true = derivation_of(model)
     alone = len(model.unknowns) == 1
     weights = [row for row in product((-1, 0, 1), repeat=len(model.unknowns)) if any(row)]
-    vanishes = any(curve in _vanishing(common) for common in equation_factors(claims, weights))
-    if not vanishes or model.reals or not free or not (alone or has_index(model)):
+    vanishes = any(curve in factors(common) for common in equation_factors(claims, weights))
+    if (
+        not vanishes
+        or model.reals
+        or (true.from_energy and true.moved)
+        or true.inequalities
+        or not (alone or has_index(model))
+    ):
         raise Violation(f"component {number} is said to have infinitely many solutions, which is not proved")
 
 
@@ -137,17 +139,12 @@ def _needed(claims: Claims) -> dict[PlanePolynomial, str]:
         if name in bounding:
             parts.append(e.numerator)
         for terms in parts:
-            for factor in _expression_factors(terms):
+            for factor in factors(polynomial(terms)):
                 needed[factor] = f"it bounds the domain of {name}"
     for k, common in enumerate(equation_factors(claims)):
-        for factor in _vanishing(common):
+        for factor in factors(common):
             needed.setdefault(factor, f"equation {k} vanishes on it")
     return needed
-
-
-def _vanishing(common: fmpz_mpoly) -> list[PlanePolynomial]:
-    """The curves on which an equation vanishes, by the common factor of its coefficients."""
-    return [] if common.is_constant() else factors(common)
 
 
 def _of_conditions(claims: Claims, seed: str) -> dict[PlanePolynomial, str]:
@@ -162,10 +159,3 @@ def _of_conditions(claims: Claims, seed: str) -> dict[PlanePolynomial, str]:
             if e > 0 and of_jacobian < 1:
                 found.setdefault(c.polynomial, f"the norm of condition {k} vanishes on it")
     return found
-
-
-def _expression_factors(terms: Sequence[tuple[int, int, Fraction]]) -> list[PlanePolynomial]:
-    if not any(i or j for i, j, _ in terms):
-        return []
-    scale = lcm(*(c.denominator for _, _, c in terms))
-    return factors(PLANE.from_dict({(i, j): int(c * scale) for i, j, c in terms}))

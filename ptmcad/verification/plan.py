@@ -16,9 +16,9 @@ from math import gcd
 
 from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, Kind, PlanStep, RegionMap
 from ptmcad.errors import ConfigError
-from ptmcad.model import Model, System
+from ptmcad.model import Model
 from ptmcad.verification.claims import Claims, PlaneCurve
-from ptmcad.verification.derivation import has_index
+from ptmcad.verification.derivation import derivation_of, has_index
 from ptmcad.verification.report import Violation
 from ptmcad.verification.window import plainly_outside
 
@@ -116,7 +116,8 @@ def _expected(result: RegionMap) -> Iterator[PlanStep]:
 def _general(model: Model) -> Iterator[tuple[str, str, str]]:
     """What a plan says of every slice of a model: names, subjects and reasons."""
     equations = not has_index(model)
-    kept = bool(model.reals) or (isinstance(model, System) and bool(model.inequalities or model.stability))
+    true = derivation_of(model)
+    kept = bool(model.reals or true.inequalities or true.stability)
     for saving, what, why in _GENERAL:
         if saving == "sign-curve" and (equations or len(model.unknowns) < 2):
             continue

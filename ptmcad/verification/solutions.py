@@ -1,39 +1,37 @@
 """Checks of the solutions: each stored box contains a solution that counts, with the stored signs.
 
-In each box Newton's method is started from the center; around the point it reaches, a smaller box X within the stored
-one is proved to contain a solution by the interval Newton operator: m - F'(X)^-1 F(m) inside X (Moore; Krawczyk). The
-signs of the Hessian's leading minors, of inequalities and of conditions for stability are then certain on X, or
-precision is doubled. Where that finds nothing, as in a box much larger than the distance over which the equations bend,
-nothing is said yet: trace forms count the solutions in the box, and tell the signs.
+Each stored box, in the coordinates of the unknowns, is tested by Krawczyk's image (`certified.narrow`). Where it has
+one solution, the signs of the Hessian's leading minors, of inequalities and of conditions for stability are those on a
+narrower box, or precision is doubled. Where that shows nothing, as of a box much larger than the distance over which
+the equations bend, trace forms count the solutions in the box, and tell the signs.
 
 Guarantee: boxes that pass are disjoint and contain at least one solution each. As their number is the total that the
 signatures of `ptmcad.verification.counts` give, each contains exactly one and together they contain all. No box has a
-real solution that does not count: inequalities hold in all of it, or trace forms count one real solution in it; where
-neither tells, that is listed as not checked. Conditions for stability that are said to be zero are so: trace forms give
+real solution that does not count: it has one real solution by the test, or trace forms count one; where neither tells,
+that is listed as not checked. Conditions for stability that are said to be zero are so: trace forms give
 the number of solutions at which one is, and in the other boxes it is not. A box is refused on such a count alone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations, islice, product
+from itertools import combinations, islice
 
-from flint import arb, arb_mat, ctx, fmpq_mpoly
+from flint import arb, ctx, fmpq_mpoly
 
 from ptmcad.answer.regionmap import Cell, Solution
 from ptmcad.model import Model
-from ptmcad.text.balls import ball_of
-from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import approximate_text
+from ptmcad.verification.certified.field import Matrix
+from ptmcad.verification.certified.narrow import narrowed, precisions, tested
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.equations import Polynomials, values_at
+from ptmcad.verification.derivation import Derivation
 from ptmcad.verification.inertia import bases, leading_minors, negative_eigenvalues
 from ptmcad.verification.report import Unchecked, Violation
 
-BITS = (64, 128, 256, 512, 1024, 2048, 4096)
-_ATTEMPTS = 3
-"""Precisions with which Newton's method looks for a solution, before trace forms count those in the box."""
-_STEPS = 8
+_NARROWINGS = 4
+"""Images of a box that a solution is proved to be in, until signs on it are certain."""
+_BASES = 2
 
 
 def check_solutions(claims: Claims) -> str:
@@ -45,8 +43,7 @@ def check_solutions(claims: Claims) -> str:
         check_disjoint(n, cell, claims.model)
         for k, solution in enumerate(cell.solutions):
             try:
-                _check_signs(claims, cell, solution)
-                undecided += not _is_alone(claims, cell, solution)
+                undecided += not _check_signs(claims, cell, solution)
             except Violation as violation:
                 center = ", ".join(map(approximate_text, solution.center))
                 radius = approximate_text(solution.radius)
@@ -62,63 +59,49 @@ def check_solutions(claims: Claims) -> str:
     return f"{number} boxes"
 
 
-def _check_signs(claims: Claims, cell: Cell, solution: Solution) -> None:
-    """The box holds a solution that counts with these signs.
+def _check_signs(claims: Claims, cell: Cell, solution: Solution) -> bool:
+    """The box holds a solution that counts with these signs; whether it is proved that no other real one is in it.
 
     Raises
     ------
     Violation
     """
-    true = signs_of(claims, cell, solution)
+    true, alone = _signs_in(claims, cell, solution)
     if true != solution.signs:
         what = "Hessian" if claims.describes_equilibria else "list of conditions for stability"
         are = "eigenvalues of signs" if claims.describes_equilibria else "the signs"
         raise Violation(f"the {what} at the solution in it has {are} {true!r}, not {solution.signs[:10]!r}")
+    return alone
 
 
 def signs_of(claims: Claims, cell: Cell, solution: Solution) -> str:
-    """The signs at the one solution that counts in a box: by Newton's method, else by trace forms.
+    """The signs at the one solution that counts in a box.
 
     Raises
     ------
     Violation
         When there is none, or several.
     """
-    tried = product(range(1 + 2 * len(claims.model.unknowns)), _precisions(solution)[:_ATTEMPTS])
+    return _signs_in(claims, cell, solution)[0]
+
+
+def _signs_in(claims: Claims, cell: Cell, solution: Solution) -> tuple[str, bool]:
+    """The same by a test of the box, else by trace forms; and whether no other real solution is in it."""
     fibre = claims.fibre_at(*cell.sample)
-    found = (_signs(fibre.point, solution, bits, start) for start, bits in tried)
-    if (signs := next((signs for signs in found if signs is not None), None)) is not None:
-        return signs
+    for bits in precisions(solution):
+        with ctx.workprec(bits):
+            signs = _tested(fibre.point, solution)
+        if signs is not None:
+            return signs, True
     number, place = fibre.within(solution.center, solution.radius, counted=True)
     if number != 1:
         raise Violation(f"{number or 'no'} solution{'s' * (number > 1)} found in it")
-    return fibre.signs(place)
-
-
-def _is_alone(claims: Claims, cell: Cell, solution: Solution) -> bool:
-    """Whether a box that holds a solution that counts is proved to hold no other real one.
-
-    Raises
-    ------
-    Violation
-        When it does.
-    """
-    fibre = claims.fibre_at(*cell.sample)
     if not fibre.point.inequalities:
-        return True  # all real solutions count, and have as many boxes that do not meet
-    with ctx.workprec(_precisions(solution)[0]):
-        around = [ball_of(x) + arb(0, ball_of(solution.radius)) for x in solution.center]
-        if all(p > 0 for p in _values(fibre.point.inequalities, around)):
-            return True
-    number, _ = fibre.within(solution.center, solution.radius, counted=False)
-    if number > 1:
-        raise Violation(f"{number} real solutions are in it")
-    return not fibre.saturated
-
-
-def _precisions(solution: Solution) -> list[int]:
-    """Precisions with which more is known than that a solution is in a box."""
-    return [bits for bits in BITS if bits > int(1 / solution.radius).bit_length() * 3 // 2] or [BITS[-1]]
+        return fibre.signs(place), True  # all real solutions count, and have as many boxes that do not meet
+    real, _ = fibre.within(solution.center, solution.radius, counted=False)
+    if real > 1:
+        raise Violation(f"{real} real solutions are in it")
+    return fibre.signs(place), not fibre.saturated
 
 
 def _check_index(claims: Claims, n: int, cell: Cell) -> None:
@@ -154,39 +137,60 @@ def check_disjoint(n: int, cell: Cell, model: Model) -> None:
 
 
 def _values(polynomials: Sequence[fmpq_mpoly], x: Sequence[arb]) -> list[arb]:
-    """In balls at coordinates, which the ring has the other way round."""
-    return values_at(polynomials, list(reversed(x)))
+    """Values in balls at coordinates."""
+    powers = [[arb(1)] for _ in x]
+    found = []
+    for p in polynomials:
+        total = arb(0)
+        for exponents, c in p.terms():
+            term = arb(c)
+            for known, coordinate, e in zip(powers, x, exponents, strict=True):
+                while len(known) <= e:
+                    known.append(known[-1] * coordinate)
+                if e:
+                    term = term * known[int(e)]
+            total = total + term
+        found.append(total)
+    return found
 
 
-def _jacobian(p: Polynomials, x: Sequence[arb]) -> list[list[arb]]:
-    """The derivatives of the equations; where solutions are critical points a Hessian."""
-    return [_values(row, x) for row in p.jacobian]
-
-
-def _signs(point: Polynomials, solution: Solution, bits: int, start: int) -> str | None:
-    """The signs at a solution that counts and is proved to be in the box; None when none is found from a start.
+def _tested(point: Derivation, solution: Solution) -> str | None:
+    """The signs at the only solution in a box, which counts; None where that is not proved at this precision.
 
     Those of the Hessian's eigenvalues, or of the conditions for stability; where one of these is said to be zero it is
     left to `_check_zeros`.
     """
-    with ctx.workprec(bits):
-        found = _proved(point, solution, start)
-        if found is None or not all(p > 0 for p in _values(point.inequalities, found)):
+    system = (*point.equations, *point.ring.relations)
+    slopes = [[p.derivative(k) for k in range(point.coordinates)] for p in system]
+
+    def function(x: Sequence[arb]) -> tuple[list[arb], Matrix]:
+        return _values(system, x), [_values(row, x) for row in slopes]
+
+    found = tested(function, solution)
+    for _ in range(_NARROWINGS):
+        if found is None or not found.holds:
             return None
-        if point.has_index:
-            return _of_hessian(_jacobian(point, found), BITS.index(bits))
-        return _of_conditions(_values(point.stability, found), solution.signs)
+        if all(p > 0 for p in _values(point.inequalities, found.within)):
+            signs = (
+                _of_hessian([_values(row, found.within) for row in point.jacobian])
+                if point.has_index
+                else _of_conditions(_values(point.stability, found.within), solution.signs)
+            )
+            if signs is not None:
+                return signs
+        found = narrowed(function, found)
+    return None
 
 
-def _of_hessian(hessian: list[list[arb]], attempt: int) -> str | None:
+def _of_hessian(hessian: Matrix) -> str | None:
     """The signs of a symmetric matrix's eigenvalues, positive ones first; None when they are not certain."""
     size = len(hessian)
-    basis = next(islice(bases(size), attempt, None))
-    minors = leading_minors(hessian, basis, size)
-    if any(m.contains(0) for m in minors):
-        return None
-    negative = negative_eigenvalues(1 if m > 0 else -1 for m in minors)
-    return "+" * (size - negative) + "-" * negative
+    for basis in islice(bases(size), _BASES):
+        minors = leading_minors(hessian, basis, size)
+        if not any(m.contains(0) for m in minors):
+            negative = negative_eigenvalues(1 if m > 0 else -1 for m in minors)
+            return "+" * (size - negative) + "-" * negative
+    return None
 
 
 def _of_conditions(conditions: list[arb], stored: str) -> str | None:
@@ -202,78 +206,3 @@ def _of_conditions(conditions: list[arb], stored: str) -> str | None:
         else:
             signs += "+" if value > 0 else "-"
     return signs
-
-
-def _proved(model: Polynomials, solution: Solution, start: int) -> list[arb] | None:
-    """A box within the stored one that is proved to contain a solution.
-
-    Angles are moved along the circles: turned by an angle a, the point (c, s) that Newton's method has reached becomes
-    (c cos a - s sin a, s cos a + c sin a), so that c^2 + s^2 = 1 holds by construction.
-
-    Parameters
-    ----------
-    start : 0 at the box's center; other numbers half way to one of its sides.
-    """
-    turning = 2 * len(model.ring.model.angles)
-    center = _normal([ball_of(x) for x in solution.center], turning)
-    # the Jacobian may be singular at the center itself, as at a cusp whose coordinates the box has
-    step = arb(from_fraction(solution.radius) / (-2 if start % 2 else 2))
-    aside = [step if start and k == (start - 1) // 2 else arb(0) for k in range(len(model.ring.model.unknowns))]
-    reached = _iterated(model, _normal(_moved(center, aside, turning), turning))
-    if reached is None:
-        return None
-    point, step = reached
-    # the point now has exact circles up to rounding, which its balls contain
-    # wide against rounding, narrow against the distance over which the Jacobian varies
-    radius = (step * 8 + arb(2) ** (-2 * ctx.prec // 3)).mid()
-    around = _moved(point, [arb(0).union(radius).union(-radius)] * len(model.ring.model.unknowns), turning)
-    image = _solve(_jacobian(model, around), _values(model.equations, point))
-    if image is None or not all(abs(a) < radius for a in image):
-        return None
-    inside = all(
-        abs(x - from_fraction(center)) <= from_fraction(solution.radius)
-        for x, center in zip(around, solution.center, strict=True)
-    )
-    return around if inside else None
-
-
-def _iterated(model: Polynomials, point: list[arb]) -> tuple[list[arb], arb] | None:
-    """The point that Newton's method reaches, and the length of its last step; None at a singular Jacobian."""
-    turning, step = 2 * len(model.ring.model.angles), arb(1)
-    for _ in range(_STEPS + ctx.prec.bit_length()):
-        step_by = _solve(_jacobian(model, point), _values(model.equations, point))
-        if step_by is None:
-            return None
-        point = [x.mid() for x in _moved(point, [-a.mid() for a in step_by], turning)]
-        point = _normal(point, turning)
-        step = max(abs(a.mid()) for a in step_by)
-        if step < arb(2) ** (8 - ctx.prec):
-            break
-    return point, step
-
-
-def _normal(point: list[arb], turning: int) -> list[arb]:
-    """The coordinates with those of angles on the unit circle in their direction, in balls that contain it."""
-    found = []
-    for c, s in zip(point[:turning:2], point[1:turning:2], strict=True):
-        length = (c * c + s * s).sqrt()
-        found += [c / length, s / length]
-    return found + point[turning:]
-
-
-def _moved(point: list[arb], by: list[arb], turning: int) -> list[arb]:
-    """The coordinates after a step of each unknown."""
-    moved = []
-    for k, angle in enumerate(by[: turning // 2]):
-        c, s = point[2 * k], point[2 * k + 1]
-        moved += [c * angle.cos() - s * angle.sin(), s * angle.cos() + c * angle.sin()]
-    return moved + [x + step for x, step in zip(point[turning:], by[turning // 2 :], strict=True)]
-
-
-def _solve(matrix: list[list[arb]], right: list[arb]) -> list[arb] | None:
-    """The solutions of a linear system for every matrix in the balls; None when some of them may be singular."""
-    try:
-        x = arb_mat(matrix).solve(arb_mat([[r] for r in right]))
-    except ZeroDivisionError:
-        return None
-    return [x[i, 0] for i in range(len(right))]

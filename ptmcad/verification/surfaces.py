@@ -18,9 +18,8 @@ from ptmcad.answer.regionmap import Kind, RegionMap
 from ptmcad.errors import HypothesisError, shown
 from ptmcad.text.numerals import text_of
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification.claims import PlaneCurve
+from ptmcad.verification.plane import factors, polynomial
 from ptmcad.verification.report import Check
-from ptmcad.verification.variety import factors
 
 _DRAWN = 10
 """Values that are tried, where members have no map."""
@@ -60,8 +59,8 @@ def _difference(found: FamilyMap, alone: RegionMap, value: Fraction) -> str:
     names = alone.slice.axis_names
     cut = {f for terms in found.surfaces for f in _cut(terms, value)}
     known = {c.polynomial for c in alone.components}
-    for polynomial in sorted(cut - known, key=lambda p: p.terms):
-        return f"has no curve {polynomial.text(names)[:60]} = 0, as the surfaces have"
+    for curve in sorted(cut - known, key=lambda p: p.terms):
+        return f"has no curve {curve.text(names)[:60]} = 0, as the surfaces have"
     for c in alone.components:
         if c.kind is Kind.CRITICAL and c.polynomial not in cut:
             return f"has a critical curve {c.polynomial.text(names)[:60]} = 0 that lies on no surface"
@@ -74,8 +73,8 @@ def _cut(terms: SpaceTerms, value: Fraction) -> list[PlanePolynomial]:
     plane: dict[tuple[int, int], int] = defaultdict(int)
     for (i, j, k), c in terms:
         plane[i, j] += c * value.numerator**k * value.denominator ** (degree - k)
-    polynomial = PlanePolynomial.of((*powers, c) for powers, c in plane.items())
-    return factors(PlaneCurve.of(0, polynomial, 0).flint()) if polynomial.total_degree > 0 else []
+    cut = polynomial((*powers, c) for powers, c in plane.items())
+    return [] if cut.is_constant() else factors(cut)
 
 
 def _fingerprint(found: FamilyMap) -> str:

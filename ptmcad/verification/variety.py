@@ -31,18 +31,17 @@ from functools import cached_property, partial, reduce
 from itertools import permutations
 from math import gcd, lcm, prod
 
-from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpz_poly
+from flint import fmpq, fmpq_mat
 
 from ptmcad.answer.regionmap import HARMLESS, Kind
-from ptmcad.model import ClosedMechanism, System
 from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification.claims import Claims, PlaneCurve
-from ptmcad.verification.derivation import coordinates_of
+from ptmcad.verification.claims import Claims
+from ptmcad.verification.derivation import coordinates_of, derivation_of
 from ptmcad.verification.fibre import Fibre
+from ptmcad.verification.plane import factors, polynomial
 from ptmcad.verification.report import Violation
 
-_RATIONAL: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("u", "v"), Ordering.lex)
 POINTS, BITS = 12, 48
 FRESH_POINTS = 10
 """Of these, points at least that no exponent was read off at."""
@@ -62,39 +61,12 @@ def check_irreducible(claims: Claims) -> str:
             raise Violation(f"component {n} is a constant: {text}")
         if PlanePolynomial.of(c.polynomial.terms) != c.polynomial:
             raise Violation(f"component {n} is not primitive with a positive first coefficient: {text}")
-        if not _is_irreducible(c.polynomial):
+        if factors(polynomial(c.polynomial.terms)) != [c.polynomial]:
             raise Violation(f"component {n} is not irreducible: {text}")
         if c.polynomial in seen:
             raise Violation(f"component {n} is stored twice: {text}")
         seen.add(c.polynomial)
     return f"{len(seen)} components"
-
-
-def _is_irreducible(p: PlanePolynomial) -> bool:
-    return factors(PlaneCurve.of(0, p, 0).flint()) == [p]
-
-
-def factors(p: object) -> list[PlanePolynomial]:
-    """Irreducible factors over Q, each once."""
-    terms = list(p.to_dict().items())  # type: ignore[attr-defined]
-    if not any(m[0] for m, _ in terms) or not any(m[1] for m, _ in terms):
-        k = 0 if any(m[0] for m, _ in terms) else 1
-        row = {int(m[k]): int(c) for m, c in terms}
-        line = fmpz_poly([row.get(i, 0) for i in range(max(row) + 1)])
-        return [
-            PlanePolynomial.of((i, 0, int(c)) if k == 0 else (0, i, int(c)) for i, c in enumerate(f.coeffs()))
-            for f, _ in line.factor()[1]
-        ]
-    # Not over Z: python-flint sorts those factors by coefficients as machine integers.
-    rational = _RATIONAL.from_dict({(int(m[0]), int(m[1])): c for m, c in terms})
-    found = []
-    for f, _ in rational.factor()[1]:
-        coefficients = f.to_dict()
-        scale = lcm(*(int(c.q) for c in coefficients.values()))
-        found.append(
-            PlanePolynomial.of((int(m[0]), int(m[1]), int(c.p) * (scale // int(c.q))) for m, c in coefficients.items())
-        )
-    return found
 
 
 @dataclass(frozen=True)
@@ -138,11 +110,11 @@ def random_points(claims: Claims, seed: str, bits: int) -> Iterator[FibrePoint]:
     nothing can be concluded: it is drawn again from one bit more, so that a point is found whatever the degrees are.
     """
     source, forms = random.Random(f"{bits} {seed}"), random.Random(f"form {bits} {seed}")
-    polynomials = [PlaneCurve.of(n, c.polynomial, 0).flint() for n, c in enumerate(claims.result.components)]
+    components = [polynomial(c.polynomial.terms) for c in claims.result.components]
     width = len(coordinates_of(claims.result.slice.model))
     while True:
         x, y = (source.getrandbits(bits) - 2 ** (bits - 1) for _ in range(2))
-        values = tuple(int(p(x, y)) for p in polynomials)
+        values = tuple(int(p(x, y).p) for p in components)
         if 0 in values:
             bits += 1
         else:
@@ -214,11 +186,9 @@ def _conditions(claims: Claims) -> dict[int, str]:
     With closed loops or X-joints the conditions for stability are those for a matrix to be definite, the last of them
     its determinant: where that is not zero the matrix does not stop or begin to be definite.
     """
-    model = claims.result.slice.model
-    if not isinstance(model, System):
-        return {}
-    inequalities, stability = len(model.inequalities), len(model.stability)
-    first = max(stability - 1, 0) if isinstance(model, ClosedMechanism) else 0
+    true = derivation_of(claims.model)
+    inequalities, stability = len(true.inequalities), len(true.stability)
+    first = max(stability - 1, 0) if true.is_definite else 0
     return {k: f"inequality {k}" for k in range(inequalities)} | {
         inequalities + k: f"condition {k} for stability" for k in range(first, stability)
     }

@@ -23,6 +23,10 @@ HALVINGS = 4
 """Times that the window's sides are halved before a curve may be used although it has no point in the window."""
 
 
+RUNS = "runs through the window"
+Interval = tuple[fmpq, fmpq]
+
+
 def check_left_out(claims: Claims) -> str:
     """A component that is left out has no point in the open window, or is checked with the variety."""
     result = claims.result
@@ -33,45 +37,50 @@ def check_left_out(claims: Claims) -> str:
         if c.left_out != NO_POINT:
             raise Violation(f"component {n} is left out for a reason that cannot be checked: {c.left_out[:60]}")
         number += 1
-        hit = _point_in_window(PlaneCurve.of(n, c.polynomial, result.base), claims)
+        curve = PlaneCurve.of(n, c.polynomial, result.base)
+        if min(curve.degrees) > 0 and _nowhere_zero(curve, claims.base, claims.height):
+            continue
+        hit = point_in_window(curve, claims.base, claims.height)
         if hit is not None:
             raise Violation(f"component {n} is left out, but {hit}: {c.polynomial.text(result.slice.axis_names)[:60]}")
     return f"{number} components"
 
 
-def _point_in_window(curve: PlaneCurve, claims: Claims) -> str | None:
-    """What is known of a point of the curve in the open window; None when there is none."""
-    runs = "runs through the window"
+def point_in_window(curve: PlaneCurve, base: Interval, height: Interval, isolated: bool = True) -> str | None:
+    """What is known of a point of the curve in the open window; None when there is none.
+
+    Parameters
+    ----------
+    isolated : whether points through which it does not run are asked for, too.
+    """
     if curve.degrees[1] == 0:
-        return runs if roots_between(curve.in_v[0], *claims.base) else None
+        return RUNS if roots_between(curve.in_v[0], *base) else None
     if curve.degrees[0] == 0:
-        return runs if roots_between(curve.in_u[0], *claims.height) else None
-    if _nowhere_zero(curve, claims):
-        return None
+        return RUNS if roots_between(curve.in_u[0], *height) else None
     product = fmpz_poly([1])
     singular = []
-    for f, origin in projection_of_one(curve, claims.height):
+    for f, origin in projection_of_one(curve, height):
         product = product * (f // f.gcd(product))
         if "edge" not in origin:
             singular.append(f)
-    if any(roots_between(curve.over(u), *claims.height) for u in separated_points(product, *claims.base)):
-        return runs
+    if any(roots_between(curve.over(u), *height) for u in separated_points(product, *base)):
+        return RUNS
     # no branch runs through the window; what is left are isolated points, over roots of the discriminant
-    for f in singular:
-        for a, b in isolating_intervals(f, *claims.base):
+    for f in singular if isolated else ():
+        for a, b in isolating_intervals(f, *base):
             place = CriticalValue(tuple(int(c) for c in f.coeffs()), to_fraction(a), to_fraction(b), "")
-            if Heights((curve,), place).between(*claims.height):
+            if Heights((curve,), place).between(*height):
                 return f"it has an isolated point near {short(a)}"
     return None
 
 
-def _nowhere_zero(curve: PlaneCurve, claims: Claims) -> bool:
+def _nowhere_zero(curve: PlaneCurve, base: Interval, height: Interval) -> bool:
     """Whether the curve is proved to have no point in the open window; False may mean undecided.
 
     With u = (a + b x)/(1 + x), v = (c + d y)/(1 + y) an open box becomes the quadrant x, y > 0, on which a polynomial
     whose coefficients have one sign has no zero. A box that is not settled is cut in four; Sturm settles the cuts.
     """
-    waiting, done = [(*claims.base, *claims.height)], 0
+    waiting, done = [(*base, *height)], 0
     rows = [fmpq_poly(row) for row in curve.in_v]
     while waiting:
         done += 1

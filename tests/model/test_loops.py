@@ -27,7 +27,7 @@ from ptmcad.model.derivative import derivative
 from ptmcad.model.evaluate import evaluate
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.syntax import parse
-from ptmcad.verification.equations import equations_at
+from ptmcad.verification.derivation import coordinates_of, derivation_at
 
 FOUR_BAR: dict[str, Any] = {
     "name": "four_bar",
@@ -182,7 +182,7 @@ def test_two_derivations_are_equal(mechanism: dict[str, Any]) -> None:
     model = ptmcad.Mechanism(mechanism)
     assert isinstance(model, ClosedMechanism)
     values = {n: Fraction(3 + k, 5 + 2 * k) for k, n in enumerate(model.variables)}
-    theirs, system = equations_at(model, values), system_from(model)
+    theirs, system = derivation_at(model, values), system_from(model)
     numbers = {n: from_fraction(v) for n, v in values.items()}
     ours = [*at_point(system, numbers)[0], *(polynomial_at(system, p, numbers) for p in system.stability)]
     assert not system.inequalities
@@ -202,7 +202,7 @@ def test_two_derivations_are_equal(mechanism: dict[str, Any]) -> None:
                     term *= x**e
                 total += term
             mine.append(total)
-        checked = [p(*(place[name] for name in theirs.names)) for p in (*theirs.equations, *theirs.stability)]
+        checked = [p(*(place[name] for name in coordinates_of(model))) for p in (*theirs.equations, *theirs.stability)]
         assert checked == mine
 
 

@@ -26,7 +26,7 @@ from ptmcad.exact.stages import problem_of
 from ptmcad.model import ClosedMechanism
 from ptmcad.model.xjoint import second_bar
 from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.verification.equations import equations_at
+from ptmcad.verification.derivation import coordinates_of, derivation_at
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs" / "mechanisms"
 
@@ -82,7 +82,7 @@ def test_two_derivations_agree(mechanism: dict[str, Any]) -> None:
     model = ptmcad.Mechanism(mechanism)
     assert isinstance(model, ClosedMechanism)
     values = {n: Fraction(30 + 7 * k, 5 + 2 * k) for k, n in enumerate(model.variables)}
-    theirs, system = equations_at(model, values), system_from(model)
+    theirs, system = derivation_at(model, values), system_from(model)
     numbers = {n: from_fraction(v) for n, v in values.items()}
     ours = [*at_point(system, numbers)[0]]
     ours += [polynomial_at(system, p, numbers) for p in (*system.inequalities, *system.stability[:2])]
@@ -102,7 +102,7 @@ def test_two_derivations_agree(mechanism: dict[str, Any]) -> None:
                 total += term
             mine.append(total)
         given = (*theirs.equations, *theirs.inequalities, *theirs.stability[:2])
-        assert [p(*(place[name] for name in theirs.names)) for p in given] == mine
+        assert [p(*(place[name] for name in coordinates_of(model))) for p in given] == mine
 
 
 def energy(unknowns: tuple[np.ndarray, ...], F: float, G: float) -> np.ndarray:

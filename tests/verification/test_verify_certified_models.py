@@ -364,7 +364,7 @@ SOME: dict[str, tuple[str, Callable[[RegionMap], RegionMap], str]] = {
     ),
     "all that solve the equations": ("reaction", lambda r: unconditional(r, "3*x^2 - 2*a*x + 1"), "counts and sol"),
     "all that live or not": ("switch", lambda r: unconditional(r, ""), "counts and solutions"),
-    "one more equation": ("cubic", lambda r: with_model(r, equations=r.slice.model.equations * 2), "form"),
+    "one more equation": ("cubic", lambda r: with_model(r, equations=r.slice.model.equations * 2), "equations"),
     "admissible": ("truss", lambda r: replace(r, slice=replace(r.slice, count=Count.ADMISSIBLE)), "form"),
     "stable roots": ("cubic", lambda r: replace(r, slice=replace(r.slice, count=Count.STABLE)), "form"),
     "a moment that turns": (

@@ -6,13 +6,41 @@ Guarantee: data only.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
 from ptmcad.answer.counts import MorseIndex
 from ptmcad.answer.regionmap import Cell
+from ptmcad.question.slice import Count
 from ptmcad.verification.certified.boxes import Box, Floats
+
+NAMES = ("total", "stable", "index", "admissible")
+_NEEDED = {
+    Count.STABLE: {"stable"},
+    Count.ADMISSIBLE: {"stable", "admissible"},
+    Count.TOTAL: {"total", "stable", "index"},
+    Count.INDEX: {"total", "stable", "index"},
+}
+
+
+def needed_for(count: Count, with_index: bool) -> set[str]:
+    """The names of the counts that a certified map has; without an index all solutions, or stable ones alone."""
+    return _NEEDED[count] if with_index or count.is_of_stable else {"total"}
+
+
+def names_in(item: object) -> set[str]:
+    """The names of the counts that a cell or a region has."""
+    return {name for name in NAMES if getattr(item, name) is not None}
+
+
+def contradiction_in(cell: Cell) -> str:
+    """What counts of a cell cannot be; empty where they can."""
+    if any(getattr(cell, name) < 0 for name in names_in(cell) - {"index"}):
+        return "a negative count"
+    if cell.admissible is not None and cell.stable is not None and cell.admissible > cell.stable:
+        return f"{cell.admissible} admissible equilibria among {cell.stable} stable ones"
+    return ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +55,11 @@ class Counts:
     def __str__(self) -> str:
         parts = [("total", self.total), ("stable", self.stable), ("index", self.index), ("admissible", self.admissible)]
         return ", ".join(f"{name} {value}" for name, value in parts if value is not None)
+
+
+def with_further(counts: Counts, count: Count, number: Callable[[], int]) -> Counts:
+    """The counts, and the number of those stable solutions of which a kind of count asks more."""
+    return replace(counts, admissible=number()) if count is Count.ADMISSIBLE else counts
 
 
 def stored(cell: Cell) -> Counts:

@@ -32,8 +32,8 @@ Vector = tuple[arb, arb]
 _ANY = arb(0, 1)
 
 
-class Spring(NamedTuple):
-    """A spring in balls.
+class ConeBalls(NamedTuple):
+    """A spring with a free length, or several that are one, in balls.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ class Jet:
 
     values: list[arb]
     smooth: list[arb]
-    springs: tuple[Spring, ...]
+    cones: tuple[ConeBalls, ...]
     conditions: list[arb]
     derivatives: Callable[[], list[arb]]
 
@@ -107,29 +107,29 @@ class Jet:
         """The derivatives, which points and most boxes that are discarded do without."""
         n = len(self.values)
         found = [self._derivatives[n * i : n * i + n] for i in range(n)]
-        for s in self.springs:
+        for s in self.cones:
             if s.turns is not None:
                 _take_off(found, s, s.turns, self._bends(s))
         return found
 
-    def _bends(self, s: Spring) -> list[Vector]:
+    def _bends(self, s: ConeBalls) -> list[Vector]:
         """The derivatives of a spring's weights by the unknowns, row by row."""
         n = len(self.values)
         rows = self._derivatives[n * n * (2 * s.number + 1) : n * n * (2 * s.number + 3)]
         return list(zip(rows[::2], rows[1::2], strict=True))
 
     @property
-    def short(self) -> list[Spring]:
+    def short(self) -> list[ConeBalls]:
         """The springs that may have no length; if there are any, the Jacobian is not known."""
-        return [s for s in self.springs if s.is_short]
+        return [s for s in self.cones if s.is_short]
 
-    def balances(self, s: Spring) -> list[arb]:
+    def balances(self, s: ConeBalls) -> list[arb]:
         """Numbers that are zero at every solution, whatever the direction of a spring.
 
         With r_i what the equations are without it, a solution has r_i = K u.w_i for a unit vector u; for two unknowns
         adj(A) r = K det(A) u, A having the rows w_i and w_j.
         """
-        others = [other for other in self.springs if other.number != s.number]
+        others = [other for other in self.cones if other.number != s.number]
         rest = [value - sum((o.part[k] for o in others), arb(0)) for k, value in enumerate(self.smooth)]
         found = []
         for i, j in combinations(range(len(rest)), 2):
@@ -138,7 +138,7 @@ class Jet:
             found.append(square(x) + square(y) - square(s.pull * (ai * bj - aj * bi)))
         return found
 
-    def bends_down(self, s: Spring) -> bool:
+    def bends_down(self, s: ConeBalls) -> bool:
         """Whether the Hessian has a negative eigenvalue wherever the one short spring has a length.
 
         Its trace is at most that of the rest plus K sum |g_ii| - K m/|d|, with m the least value of the sum of
@@ -186,14 +186,14 @@ class Field:
         self.sides = sides
         self._with_determinant = with_determinant
         self.form, self.values, self._conditions = form, dict(values), len(conditions)
-        self._springs: list[_Pulling] = []
+        self._pulling: list[_Pulling] = []
         first, derivatives = list[Waves](form.equations), list[Waves](form.jacobian)
         for cone in form.cones:
             pull = ball(cone.pull, values)
             # one that pulls nothing at a point has its sides there, too, as all other choices of them have
             if cone.name in sides or not (pull == 0):  # noqa: SIM201 (not exactly zero: != asks for no zero in a ball)
                 line = _pointed(cone, values, sides[cone.name]) if cone.name in sides else None
-                self._springs.append(_Pulling(pull, _shape(form, cone), line))
+                self._pulling.append(_Pulling(pull, _shape(form, cone), line))
                 first += chain(cone.vector, *cone.slopes, *(cone.weights if form.closing else ()))
                 derivatives += chain(*cone.bends)
         first += conditions
@@ -205,7 +205,7 @@ class Field:
     @property
     def circles(self) -> tuple[bool, ...]:
         """Of each unknown, whether the equations are the same after a full turn: not where half of it turns a line."""
-        lines = [s.line for s in self._springs if s.line is not None]
+        lines = [s.line for s in self._pulling if s.line is not None]
         return tuple(c and not any(line.twice[k] % 2 for line in lines) for k, c in enumerate(self.form.is_circle))
 
     def _waves(self, at: Sequence[arb]) -> arb_mat:
@@ -230,19 +230,19 @@ class Field:
         n, waves = self.form.size, self._waves(at)
         rows = self._first(waves)
         smooth, place = rows[:n], n
-        values, springs, ahead = list(smooth), list[Spring](), list[arb]()
+        values, cones, ahead = list(smooth), list[ConeBalls](), list[arb]()
         length = 2 + (4 if self.form.closing else 2) * n
-        for number, pulling in enumerate(self._springs):
+        for number, pulling in enumerate(self._pulling):
             line = None if pulling.line is None else pulling.line.at(at)
             new = _spring(number, pulling, rows[place : place + length], n, line)
             if line is not None:
                 ahead.append(line.unit[0] * rows[place] + line.unit[1] * rows[place + 1])
             for k in new.shape.equations:
                 values[k] = values[k] - new.part[k]
-            springs.append(new)
+            cones.append(new)
             place += length
         conditions = [*ahead, *rows[place:]]
-        jet = Jet(values, smooth, tuple(springs), conditions, partial(self._derivatives, waves))
+        jet = Jet(values, smooth, tuple(cones), conditions, partial(self._derivatives, waves))
         if self._with_determinant:
             ordered = [[row[k] for k in self.form.closing] for row in jet.jacobian]
             conditions.append(arb(0, inf) if jet.short else determinant(ordered))
@@ -340,7 +340,7 @@ def _shape(form: Form, cone: Cone) -> _Shape:
     return _Shape(equations, entries)
 
 
-def _spring(number: int, pulling: _Pulling, rows: list[arb], n: int, line: _Pointed | None) -> Spring:
+def _spring(number: int, pulling: _Pulling, rows: list[arb], n: int, line: _Pointed | None) -> ConeBalls:
     """A spring from its vector, n slopes, and with closed loops n weights.
 
     Parameters
@@ -360,10 +360,10 @@ def _spring(number: int, pulling: _Pulling, rows: list[arb], n: int, line: _Poin
     for i in shape.equations:
         x, y = weights[i]
         part[i] = pull * (_ANY * size(x, y) if turns is None else turns.unit[0] * x + turns.unit[1] * y)
-    return Spring(number, pull, q, slopes, weights, part, turns, shape)
+    return ConeBalls(number, pull, q, slopes, weights, part, turns, shape)
 
 
-def _take_off(jacobian: Matrix, s: Spring, turns: _Turns, bends: Sequence[Vector]) -> None:
+def _take_off(jacobian: Matrix, s: ConeBalls, turns: _Turns, bends: Sequence[Vector]) -> None:
     """Take a spring's part off the Jacobian."""
     n, (u, v) = len(jacobian), turns.unit
     is_gradient = s.weights is s.slopes
@@ -392,4 +392,4 @@ def unit(value: arb) -> arb:
     return value if value.rad() < 1 else _ANY
 
 
-__all__ = ["Field", "Jet", "Matrix", "Spring", "size", "value_of"]
+__all__ = ["ConeBalls", "Field", "Jet", "Matrix", "size", "value_of"]

@@ -7,17 +7,16 @@ so that a cosine and a sine that are parameters of their own may be told by thei
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from fractions import Fraction
 from typing import NamedTuple
 
-from ptmcad.verification.certified.terms import Terms
+from flint import fmpq_mpoly
 
-Polynomial = dict[tuple[str, ...], Fraction]
-"""In the parameters: factors by the names of each product, in order."""
-Vanishes = Callable[[Polynomial], bool]
-"""Whether a polynomial is zero all over the slice."""
+from ptmcad.verification.certified.terms import Terms, terms_of
+
+Vanishes = Callable[[fmpq_mpoly], bool]
+"""Whether a polynomial in the parameters is zero all over the slice."""
 Multi = tuple[int, ...]
-Coordinate = Mapping[tuple[Multi, Multi, int], Terms]
+Coordinate = Mapping[tuple[Multi, Multi, int], fmpq_mpoly]
 """One of a vector, as waves."""
 
 
@@ -33,9 +32,31 @@ class Line(NamedTuple):
     twice: Multi
 
 
+class _Complex(NamedTuple):
+    """A polynomial in the parameters, by its real and its imaginary part."""
+
+    real: fmpq_mpoly
+    imag: fmpq_mpoly
+
+    def plus(self, other: _Complex) -> _Complex:
+        return _Complex(self.real + other.real, self.imag + other.imag)
+
+    def times(self, other: _Complex) -> _Complex:
+        return _Complex(
+            self.real * other.real - self.imag * other.imag, self.real * other.imag + self.imag * other.real
+        )
+
+    @property
+    def conjugate(self) -> _Complex:
+        return _Complex(self.real, -self.imag)
+
+    def vanishes(self, vanishes: Vanishes) -> bool:
+        return vanishes(self.real) and vanishes(self.imag)
+
+
 def line_of(vector: tuple[Coordinate, Coordinate], vanishes: Vanishes) -> Line | None:
     """The line along which a vector stays at all points of a slice, if there is one."""
-    parts = {key: part for key, part in _exponentials(vector).items() if not _is_zero(part, vanishes)}
+    parts = {key: part for key, part in _exponentials(vector).items() if not part.vanishes(vanishes)}
     if not parts:
         return None
     first, last = min(turned for turned, _ in parts), max(turned for turned, _ in parts)
@@ -48,100 +69,42 @@ def line_of(vector: tuple[Coordinate, Coordinate], vanishes: Vanishes) -> Line |
         paired.append((part, other))
     # with d = s e^(i n.q) e a pair is z e and z* e: their sum is along e, or zero, and then i times one of them is
     part, other = paired[0]
-    e = _plus(part, other)
-    if _is_zero(e, vanishes):
-        e = _Complex(_scaled(part.imag, Fraction(-1)), part.real)
-    minus = Fraction(-1)
+    e = part.plus(other)
+    if e.vanishes(vanishes):
+        e = _Complex(-part.imag, part.real)
     for part, other in paired:
-        one, two = _times(other, _conjugate(e)), _times(_conjugate(part), e)
-        if not _is_zero(_plus(one, _Complex(_scaled(two.real, minus), _scaled(two.imag, minus))), vanishes):
+        one, two = other.times(e.conjugate), part.conjugate.times(e)
+        if not (vanishes(one.real - two.real) and vanishes(one.imag - two.imag)):
             return None
-    return Line(_simplest(_Complex(*({} if vanishes(f) else f for f in e))), twice)
-
-
-class _Complex(NamedTuple):
-    """A polynomial in the parameters, by its real and its imaginary part."""
-
-    real: Polynomial
-    imag: Polynomial
-
-
-def _is_zero(z: _Complex, vanishes: Vanishes) -> bool:
-    return vanishes(z.real) and vanishes(z.imag)
+    return Line(_simplest(*(0 * f if vanishes(f) else f for f in e)), twice)
 
 
 def _exponentials(vector: tuple[Coordinate, Coordinate]) -> dict[tuple[Multi, Multi], _Complex]:
     """Twice the coefficients of e^(i m.q) h^r in d_x + i d_y, by m and r; none is zero."""
-    across, up = vector
     found: dict[tuple[Multi, Multi], _Complex] = {}
-    for turned, raised in {(turned, raised) for turned, raised, _ in (*across, *up)}:
-        ax, bx, ay, by = (_polynomial(f.get((turned, raised, sine), ())) for f in (across, up) for sine in (0, 1))
-        for sign in (1, -1):
-            part = _Complex(_sum(ax, _scaled(by, Fraction(sign))), _sum(ay, _scaled(bx, Fraction(-sign))))
-            key = tuple(sign * m for m in turned), raised
-            part = _plus(part, found[key]) if key in found else part  # what does not turn is there twice
-            if part.real or part.imag:
-                found[key] = part
-    return found
+    for k, coordinate in enumerate(vector):
+        for (turned, raised, sine), c in coordinate.items():
+            for sign in (1, -1):
+                # a cosine has both of its halves with one sign, a sine has -i and i
+                turn = (k - sine) % 4 if sign > 0 else (k + sine) % 4
+                part = _turned(c, turn)
+                key = tuple(sign * m for m in turned), raised
+                found[key] = found[key].plus(part) if key in found else part
+    return {key: part for key, part in found.items() if not (part.real.is_zero() and part.imag.is_zero())}
 
 
-def _simplest(vector: _Complex) -> tuple[Terms, Terms]:
+def _turned(c: fmpq_mpoly, quarters: int) -> _Complex:
+    """A polynomial times a power of i."""
+    zero = 0 * c
+    return (_Complex(c, zero), _Complex(zero, c), _Complex(-c, zero), _Complex(zero, -c))[quarters]
+
+
+def _simplest(p: fmpq_mpoly, q: fmpq_mpoly) -> tuple[Terms, Terms]:
     """A vector in the same direction, or against it, without what both coordinates have in common, if that is all."""
-    p, q = vector
     one: Terms = ((1, 1, ()),)
-    if not p or not q:
-        return (one, ()) if p else ((), one)
-    name = next(iter(p))
-    if p.keys() == q.keys() and all(p[n] * q[name] == q[n] * p[name] for n in p):
-        ratio = q[name] / p[name]
-        return ((ratio.denominator, 1, ()),), ((ratio.numerator, 1, ()),)
-    return _terms(p), _terms(q)
-
-
-def _terms(p: Polynomial) -> Terms:
-    return tuple((c.numerator, c.denominator, names) for names, c in p.items())
-
-
-def _conjugate(z: _Complex) -> _Complex:
-    return _Complex(z.real, _scaled(z.imag, Fraction(-1)))
-
-
-def _plus(z: _Complex, w: _Complex) -> _Complex:
-    return _Complex(_sum(z.real, w.real), _sum(z.imag, w.imag))
-
-
-def _times(z: _Complex, w: _Complex) -> _Complex:
-    return _Complex(
-        _sum(_product(z.real, w.real), _scaled(_product(z.imag, w.imag), Fraction(-1))),
-        _sum(_product(z.real, w.imag), _product(z.imag, w.real)),
-    )
-
-
-def _polynomial(terms: Terms) -> Polynomial:
-    found: Polynomial = {}
-    for p, q, names in terms:
-        key = tuple(sorted(names))
-        found[key] = found.get(key, Fraction(0)) + Fraction(p, q)
-    return _kept(found)
-
-
-def _scaled(f: Polynomial, factor: Fraction) -> Polynomial:
-    return {key: c * factor for key, c in f.items()}
-
-
-def _sum(f: Polynomial, g: Polynomial) -> Polynomial:
-    return _kept({key: f.get(key, Fraction(0)) + g.get(key, Fraction(0)) for key in f.keys() | g.keys()})
-
-
-def _product(f: Polynomial, g: Polynomial) -> Polynomial:
-    found: Polynomial = {}
-    for a, factor in f.items():
-        for b, other in g.items():
-            key = tuple(sorted(a + b))
-            found[key] = found.get(key, Fraction(0)) + factor * other
-    return _kept(found)
-
-
-def _kept(f: Polynomial) -> Polynomial:
-    """Without terms that are zero."""
-    return {key: c for key, c in f.items() if c}
+    if p.is_zero() or q.is_zero():
+        return ((), one) if p.is_zero() else (one, ())
+    ratio = q.leading_coefficient() / p.leading_coefficient()
+    if q == p * ratio:
+        return ((int(ratio.q), 1, ()),), ((int(ratio.p), 1, ()),)
+    return terms_of(p), terms_of(q)

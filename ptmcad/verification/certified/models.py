@@ -19,7 +19,7 @@ from ptmcad.model import Model
 from ptmcad.question.slice import Count, Point, Slice
 from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import MIN_HALF_WIDTH, Box, Floats, Unproved, Zero, is_same
-from ptmcad.verification.certified.counted import Counted, Counts, Where
+from ptmcad.verification.certified.counted import Counted, Counts, Where, with_further
 from ptmcad.verification.certified.field import Field, Matrix, value_of
 from ptmcad.verification.certified.kinks import Sides, sides
 from ptmcad.verification.certified.narrow import Function, judged, only
@@ -28,7 +28,7 @@ from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import Spent, zeros
 from ptmcad.verification.certified.spectrum import inertia
 from ptmcad.verification.certified.terms import evaluated
-from ptmcad.verification.certified.waves import Excess, Form
+from ptmcad.verification.certified.waves import Form, Margin
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
 
@@ -52,11 +52,11 @@ class ModelCounting:
 
     Attributes
     ----------
-    excesses : of the springs, where admissible solutions are counted.
+    margins : of what is asked of stable solutions, where some of them are counted besides.
     """
 
     form: Form
-    excesses: tuple[Excess, ...] = ()
+    margins: tuple[Margin, ...] = ()
 
     def at(self, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> Counted:
         """At a point of the window."""
@@ -87,18 +87,16 @@ class ModelCounting:
         return Counted(self._counts(numbers, found, count), found, values)
 
     def _counts(self, values: Mapping[str, arb], found: Sequence[Zero], count: Count) -> Counts:
-        """The counts, with the number of admissible solutions where these are asked for.
+        """The counts, with the number of stable solutions with margins where these are asked for.
 
         Raises
         ------
         Unproved
-            When a spring may be as long as its free length at a stable solution.
+            When a margin may be zero at a stable solution.
         """
-        counts = counts_of(self.form, found, count)
-        if count is not Count.ADMISSIBLE:
-            return counts
         stable = (zero for zero in found if "-" not in zero.signs)
-        return replace(counts, admissible=sum(_is_admissible(self.excesses, values, zero) for zero in stable))
+        counts = counts_of(self.form, found, count)
+        return with_further(counts, count, lambda: sum(_has_margins(self.margins, values, zero) for zero in stable))
 
     def _once(self, found: Sequence[Zero]) -> list[Zero]:
         """Solutions on all sides; at both ends of a box of angles one may be there on two sides."""
@@ -284,9 +282,9 @@ def _start(field: Field) -> Box:
     return (0.0,) * len(widths), widths
 
 
-def _is_admissible(excesses: Sequence[Excess], values: Mapping[str, arb], zero: Zero) -> bool:
+def _has_margins(margins: Sequence[Margin], values: Mapping[str, arb], zero: Zero) -> bool:
     """Whether every spring is longer than its free length at a solution."""
-    found = [value_of(excess.squared, values, zero.within) for excess in excesses]
+    found = [value_of(margin.squared, values, zero.within) for margin in margins]
     if any(value < 0 for value in found):
         return False
     if all(value > 0 for value in found):
@@ -295,7 +293,7 @@ def _is_admissible(excesses: Sequence[Excess], values: Mapping[str, arb], zero: 
 
 
 def counts_of(form: Form, found: Sequence[Zero], count: Count) -> Counts:
-    """The counts that follow from the solutions but that of admissible ones; Euler's sum is checked where it holds.
+    """The counts that follow from the solutions and their signs; Euler's sum is checked where it holds.
 
     Raises
     ------

@@ -25,7 +25,6 @@ from ptmcad.verification.report import Violation
 NARROW = Fraction(1, 2**20)
 """Half the width of a box up to which one test is tried before a search."""
 _MIN_BITS, _SPARE_BITS = 128, 64
-_DOUBLINGS = 2
 _NARROWINGS = 8
 _MAX_BITS = 2**16
 """Beyond, a box stays open: its number of digits is the maker's choice."""
@@ -56,19 +55,21 @@ def judged(function_at: Callable[[], Function], solution: Solution) -> Judgement
     ----------
     function_at : makes the equations with the precision that is set.
     """
-    if solution.radius > NARROW:
-        return None
-    size = max((abs(c) for c in solution.center), default=Fraction(0)) + 1
-    bits = max(_MIN_BITS, _SPARE_BITS + 2 * int(size / solution.radius).bit_length())
-    for _ in range(_DOUBLINGS + 1):
-        if bits > _MAX_BITS:
-            break
+    for bits in precisions(solution):
         with ctx.workprec(bits):
-            found = _judged(function_at(), solution)
+            found = tested(function_at(), solution)
         if found is not None:
             return found
-        bits *= 2
     return None
+
+
+def precisions(solution: Solution) -> list[int]:
+    """Bits with which a test may show something of a stored box; none where it is too wide."""
+    if solution.radius > NARROW:
+        return []
+    size = max((abs(c) for c in solution.center), default=Fraction(0)) + 1
+    bits = max(_MIN_BITS, _SPARE_BITS + 2 * int(size / solution.radius).bit_length())
+    return [times * bits for times in (1, 2, 4) if times * bits <= _MAX_BITS]
 
 
 def only(found: Sequence[Zero], solution: Solution, k: int) -> Zero:
@@ -93,7 +94,8 @@ def only(found: Sequence[Zero], solution: Solution, k: int) -> Zero:
     return held[0]
 
 
-def _judged(function: Function, solution: Solution) -> Judgement | None:
+def tested(function: Function, solution: Solution) -> Judgement | None:
+    """What one test shows of a stored box at the precision that is set; None where nothing."""
     given, radius = [ball_of(c) for c in solution.center], ball_of(solution.radius)
     middle = [x.mid() for x in given]
     lost = max((x.rad() for x in given), key=float)
@@ -120,6 +122,15 @@ def _judged(function: Function, solution: Solution) -> Judgement | None:
         if found is None:
             break
     return None
+
+
+def narrowed(function: Function, found: Judgement) -> Judgement:
+    """The same with a narrower box of the solution, where one more image is narrower."""
+    image = _image(function, [x.mid() for x in found.within], [x.rad() for x in found.within])
+    if image is None:
+        return found
+    within = tuple((x.mid() + step).intersection(x) for x, step in zip(found.within, image[0], strict=True))
+    return Judgement(True, within, image[1])
 
 
 def _image(function: Function, middle: list[arb], reach: list[arb]) -> tuple[list[arb], Matrix] | None:

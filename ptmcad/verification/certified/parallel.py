@@ -5,8 +5,7 @@ Guarantee: exact; factors are polynomials over Q in the parameters that are prov
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from math import prod
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
@@ -14,7 +13,6 @@ from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
-from ptmcad.verification.certified.lines import Polynomial
 from ptmcad.verification.signs import Sign, Window, has_no_pole, is_in_domain
 
 Coordinate = Mapping[Any, fmpq_mpoly]
@@ -26,18 +24,13 @@ class Parameters:
 
     Parameters
     ----------
-    names : of the variables; those without a value are zero.
+    values : by name; a variable without one is zero.
+    context : the ring, whose variables are the parameters.
     """
 
-    def __init__(
-        self,
-        names: Sequence[str],
-        values: Mapping[str, Expression],
-        axes: tuple[Axis, Axis],
-        context: fmpq_mpoly_ctx,
-    ):
-        self.context, self.names = context, tuple(names)
-        self.values = [values.get(name, constant(0)) for name in names]
+    def __init__(self, values: Iterable[tuple[str, Expression]], axes: tuple[Axis, Axis], context: fmpq_mpoly_ctx):
+        self.context, known = context, dict(values)
+        self.values = [known.get(name, constant(0)) for name in context.names()]
         across, up = ((from_fraction(axis.low), from_fraction(axis.high)) for axis in axes)
         self.window: Window = (across, up)
 
@@ -67,16 +60,9 @@ class Parameters:
         sign = next(signs, None)
         return None if sign is None else p * sign
 
-    def vanish(self, f: Coordinate) -> bool:
-        """Whether factors of waves are zero all over the slice."""
-        return not any(self._expression(p).numerator for p in f.values())
-
-    def vanishes(self, p: Polynomial) -> bool:
-        """Whether a polynomial in the parameters, by their names, is."""
-        total = constant(0)
-        for names, c in p.items():
-            total = total + prod((self.values[self.names.index(name)] for name in names), start=constant(c))
-        return not total.numerator
+    def vanishes(self, p: fmpq_mpoly) -> bool:
+        """Whether a polynomial in the parameters is zero all over the slice."""
+        return not self._expression(p).numerator
 
     def _expression(self, p: fmpq_mpoly) -> Expression:
         total = constant(0)

@@ -11,17 +11,16 @@ from fractions import Fraction
 from flint import arb
 
 from ptmcad.errors import ExpressionError
-from ptmcad.model import ClosedMechanism, Kind, Mechanism
+from ptmcad.model import Kind
 from ptmcad.question.slice import Slice
 from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.text.parsing import parse
-from ptmcad.text.tree import Name, to_text
 from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.terms import evaluated, power
+from ptmcad.verification.certified.terms import evaluated, power, terms_of
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.derivation import derivation_of
 from ptmcad.verification.parameters import auxiliary, written
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.signs import Sign, Window, has_no_pole, is_in_domain
@@ -66,19 +65,15 @@ def check_domain(claims: Claims) -> str:
 def _undecided_parts(slice: Slice, window: Window) -> list[str]:
     """The stiffnesses and free lengths written in springs of which it could not be decided that they make sense."""
     undecided: list[str] = []
-    model = slice.model.mechanism if isinstance(slice.model, ClosedMechanism) else slice.model
-    if not isinstance(model, Mechanism):
-        return []
+    model, true = slice.model, derivation_of(slice.model)
     known = {name: 0 * axis(0) for name in model.free_lengths} | dict(slice.parameters)
-    asked = [(f"the stiffness of spring {s.name}", s.stiffness, True) for s in model.springs]
-    asked += [(f"the free length of spring {s.name}", s.free, False) for s in model.springs]
-    asked += [(f"the stiffness of torsion spring {n}", t.stiffness, True) for n, t in enumerate(model.torsion, 1)]
-    right = ({*model.positive}, {*model.positive, *model.nonnegative})  # as parameters, or nothing is
-    for what, tree, strict in asked:
-        if isinstance(tree, Name) and tree.name in right[not strict]:
-            continue
+    for what, polynomial, strict in true.required:
+        terms = terms_of(polynomial, true.ring.names)
+        right = model.positive if strict else (*model.positive, *model.nonnegative)
+        if terms in [((1, 1, (name,)),) for name in right]:
+            continue  # as a parameter, or nothing is
         try:
-            sign = is_in_domain(parse(to_text(tree), known), window, strict)
+            sign = is_in_domain(evaluated(terms, known) + 0 * axis(0), window, strict)
         except ExpressionError:  # too long to be multiplied out
             sign = Sign.UNCHECKED
         if sign is Sign.WRONG:

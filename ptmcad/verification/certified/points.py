@@ -17,7 +17,7 @@ from ptmcad.verification.certified.boxes import Unproved, Zero
 from ptmcad.verification.certified.counted import Counted, Places, differs, stored
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.waves import excesses_of, form_of
+from ptmcad.verification.certified.waves import form_of, margins_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Unchecked, Violation
 
@@ -77,8 +77,8 @@ def check_points(
 
 def counting_of(claims: Claims) -> ModelCounting:
     """How the solutions of the map's model are counted."""
-    asked = claims.result.slice.count is Count.ADMISSIBLE
-    return ModelCounting(form_of(claims.result.slice), excesses_of(claims.model) if asked else ())
+    slice = claims.result.slice
+    return ModelCounting(form_of(slice), margins_of(slice.model, slice.count))
 
 
 def check_cell(claims: CertifiedClaims, counting: ModelCounting, cell: Cell, places: Places | None = None) -> int:
@@ -169,13 +169,13 @@ def _check_signs(claims: CertifiedClaims, true: str, said: str, k: int) -> None:
     ------
     Violation, Unproved
     """
-    if claims.result.slice.count is Count.TOTAL and not claims.model.has_potential:
+    if claims.result.slice.count is Count.TOTAL and not claims.describes_equilibria:
         if not said:
             return  # of solutions that are all counted nothing need be said
         if not true and len(said) == form_of(claims.result.slice).conditions_for_stability:
             raise Unproved(f"a condition for stability may be zero at the solution {k}")
     if true != said:
-        if not claims.model.has_potential:
+        if not claims.describes_equilibria:
             raise Violation(f"the conditions for stability at the solution {k} have the signs {true!r}, not {said!r}")
         raise Violation(f"the Hessian at the solution {k} has eigenvalues of signs {true}, not {said!r}")
 

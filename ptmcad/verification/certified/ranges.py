@@ -99,13 +99,13 @@ class _Chart:
 class _Equation:
     """An equation with balls for its coefficients, and the slopes of the springs by its unknown."""
 
-    def __init__(self, smooth: Row, springs: Sequence[tuple[arb, Row, Row]] = ()):
-        self.smooth, self.springs = smooth, springs
+    def __init__(self, smooth: Row, cones: Sequence[tuple[arb, Row, Row]] = ()):
+        self.smooth, self.cones = smooth, cones
 
     def monomials(self, chart: _Chart) -> Monomials:
         """All of it; the springs' parts have either sign."""
         total = chart.monomials(self.smooth)
-        for pull, right, above in self.springs:
+        for pull, right, above in self.cones:
             across, up = chart.monomials(right), chart.monomials(above)
             for powers in across.keys() | up.keys():
                 reach = pull * size(across.get(powers, _ZERO), up.get(powers, _ZERO))
@@ -204,7 +204,7 @@ class _Bounds:
         matrix, rest, parts = [], [], []
         for equation in (self.equations[k] for k in chosen):
             terms = chart.monomials(equation.smooth)
-            slopes = [(chart.monomials(across), chart.monomials(up)) for _, across, up in equation.springs]
+            slopes = [(chart.monomials(across), chart.monomials(up)) for _, across, up in equation.cones]
             if not _present(terms) <= {none, *units} or any(not _present(f) <= {none} for pair in slopes for f in pair):
                 return None
             matrix.append([terms.get(unit, _ZERO) for unit in units])
@@ -212,7 +212,7 @@ class _Bounds:
             parts.append([(across.get(none, _ZERO), up.get(none, _ZERO)) for across, up in slopes])
         springs = [
             (pull, [vectors[c][0] for vectors in parts], [vectors[c][1] for vectors in parts])
-            for c, (pull, _, _) in enumerate(self.equations[chosen[0]].springs)
+            for c, (pull, _, _) in enumerate(self.equations[chosen[0]].cones)
         ]
         return matrix, rest, springs
 

@@ -124,7 +124,7 @@ def _excluded(jet: Jet, box: Box, minima: bool) -> bool:
     short = jet.short
     if minima and not short and is_no_minimum(jet.jacobian):
         return True
-    for s in jet.springs if max(box[1]) < 1 else ():
+    for s in jet.cones if max(box[1]) < 1 else ():
         change = sum((abs(a) + abs(b)).upper() * r for (a, b), r in zip(s.slopes, box[1], strict=True))
         if not s.length > _NEAR * change and any(not b.contains(0) for b in jet.balances(s)):
             return True

@@ -11,25 +11,18 @@ from functools import cached_property
 from itertools import pairwise
 
 from ptmcad.answer.regionmap import Status
-from ptmcad.model import ClosedMechanism, Mechanism, System
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import approximate_text, text_of
+from ptmcad.verification.certified.counted import NAMES, contradiction_in, names_in, needed_for
 from ptmcad.verification.certified.sweep import Sweep, sweep
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import shorthands_of, tells_stability
+from ptmcad.verification.derivation import kinds_of_count, shorthands_of
 from ptmcad.verification.report import Violation
 
 MAX_STEPS = 2**40
 MAX_UNKNOWNS = 3
 SLACK = 4
 """Columns and rows of lattice squares of a frame that rounding may concern, for each of its parts."""
-_NEEDED = {
-    Count.STABLE: {"stable"},
-    Count.ADMISSIBLE: {"stable", "admissible"},
-    Count.TOTAL: {"total", "stable", "index"},
-    Count.INDEX: {"total", "stable", "index"},
-}
-_COUNTS = ("total", "stable", "index", "admissible")
 
 
 class CertifiedClaims(Claims):
@@ -137,20 +130,16 @@ def check_form(claims: CertifiedClaims) -> str:
             raise Violation(f"{patch.frame} is not a frame of the lattice")
         if any(len(tube.controls) < 2 for tube in patch.tubes):
             raise Violation(f"a slanted piece in {patch.frame} has no polynomial")
-    needed = _NEEDED[r.slice.count] if r.slice.model.has_potential or r.slice.count.is_of_stable else {"total"}
+    needed = needed_for(r.slice.count, claims.describes_equilibria)
     for what, items in (("cell", r.cells), ("region", r.regions)):
         for n, item in enumerate(items):
-            present = {name for name in _COUNTS if getattr(item, name) is not None}
-            if present != needed:
+            if (present := names_in(item)) != needed:
                 raise Violation(f"{what} {n} has the counts {sorted(present)}, not {sorted(needed)}")
     for n, cell in enumerate(r.cells):
         if cell.stack is not None:
             raise Violation(f"cell {n} of a certified map has a stack")
-        for name in (*needed - {"index"},):
-            if getattr(cell, name) < 0:
-                raise Violation(f"cell {n} has a negative count")
-        if cell.admissible is not None and cell.stable is not None and cell.admissible > cell.stable:
-            raise Violation(f"cell {n} has {cell.admissible} admissible equilibria among {cell.stable} stable ones")
+        if wrong := contradiction_in(cell):
+            raise Violation(f"cell {n} has {wrong}")
     number = sum(len(patch.tubes) for patch in r.cover.patches)
     slanted = f"{number} slanted pieces, " if number else ""
     return f"{len(r.cover.rectangles)} rectangles, {slanted}{len(r.cells)} cells, {len(r.regions)} regions"
@@ -164,15 +153,8 @@ def _check_model(slice: Slice) -> None:
         raise Violation(f"the mechanism {slice.mechanism!r} is not known, or its parameters are others")
     if not 1 <= len(model.unknowns) <= MAX_UNKNOWNS:
         raise Violation(f"no certified map is of {len(model.unknowns)} unknowns")
-    without_index = (Count.TOTAL, Count.STABLE) if tells_stability(model) else (Count.TOTAL,)
-    has_springs = tells_stability(model) and isinstance(model, Mechanism | ClosedMechanism)
-    known_count = (
-        has_springs if slice.count is Count.ADMISSIBLE else model.has_potential or slice.count in without_index
-    )
-    if not known_count:
+    if slice.count not in kinds_of_count(model):
         raise Violation(f"no certified map of {model.name!r} counts {slice.count.value}")
-    if isinstance(model, System) and model.potential is None and len(model.equations) != len(model.unknowns):
-        raise Violation(f"there are {len(model.equations)} equations for {len(model.unknowns)} unknowns")
 
 
 def check_components(claims: CertifiedClaims) -> str:
@@ -207,7 +189,7 @@ def check_regions(claims: CertifiedClaims) -> str:
             raise Violation(f"region {number} is said to have cells {region.cells}, not {members}")
         if len(members) > 1:
             raise Violation(f"region {number} joins cells {members}, which are not proved to be connected")
-        for name in _COUNTS:
+        for name in NAMES:
             values = {getattr(r.cells[n], name) for n in members}
             if values != {getattr(region, name)}:
                 raise Violation(f"region {number}: {name} is {getattr(region, name)}, in its cells {values}")

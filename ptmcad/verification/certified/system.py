@@ -13,20 +13,17 @@ from __future__ import annotations
 
 import ast
 import re
-from functools import cached_property, lru_cache
-from typing import Any
+from collections.abc import Mapping, Sequence
 
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz
+from flint import fmpq, fmpq_mpoly
 
-from ptmcad.answer.regionmap import System
-from ptmcad.model import ClosedMechanism, Mechanism, Model
-from ptmcad.text.tree import names_of
 from ptmcad.verification.certified.decimals import in_quotients
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import Configuration, formulas, potential
-from ptmcad.verification.loops import distances
+from ptmcad.verification.coordinates import CoordinateRing, turned
+from ptmcad.verification.derivation import Derivation, derivation_of
 from ptmcad.verification.report import Unchecked, Violation
+from ptmcad.verification.work import fault_in_work
 
 _LARGE_TEXT = 100_000
 """Letters beyond which a text is not checked."""
@@ -45,90 +42,54 @@ class _TooLarge(Violation):
 
 def check_potential(claims: Claims) -> str:
     """The unknowns, and the potential or the equations in them."""
-    system, model = claims.result.system, claims.result.slice.model
-    unknowns = tuple(model.unknowns)
+    system, slice = claims.result.system, claims.result.slice
+    unknowns = tuple(slice.model.unknowns)
     if system.unknowns != unknowns:
         raise Violation(f"the unknowns are {system.unknowns}, not {unknowns}")
-    bars = 0
-    if (
-        isinstance(model, ClosedMechanism)
-        and form_of(claims.result.slice).closing
-        and claims.result.slice.has_free_lengths
-    ):
-        bars, model = len(model.mechanism.closing), model.mechanism
-    of_mechanism = isinstance(model, Mechanism)
-    if bars and len(system.relations) != bars:
-        raise Violation(f"there are {bars} loops that are closed, and {len(system.relations)} relations")
-    if (system.relations and not bars) or system.hessian or ((model.has_potential or of_mechanism) and system.gradient):
+    true = derivation_of(slice.model)
+    if len(true.equations) != len(unknowns):
+        raise Violation(f"there are {len(true.equations)} equations for {len(unknowns)} unknowns")
+    closed = bool(form_of(slice).closing) and slice.has_free_lengths
+    if closed and len(system.relations) != len(true.closing):
+        raise Violation(f"there are {len(true.closing)} loops that are closed, and {len(system.relations)} relations")
+    stated = true.energy is not None and (true.from_energy or closed)
+    if (system.relations and not closed) or system.hessian or (stated and system.gradient):
         raise Violation("a certified map has no relations, and its gradient and Hessian follow from the potential")
-    if system.moments and (model.has_potential or not of_mechanism):
+    if system.moments and not (stated and true.apart):
         raise Violation("moments are stated beside the potential where one depends on another unknown only")
-    text = _Text(model)
-    if model.has_potential:
-        pairs = [("potential", system.potential, _energy(model))]
-    elif isinstance(model, Mechanism):
-        pairs = _with_moments(text, system)
-    else:
-        equations = formulas(text.configuration, model).equations
-        if system.potential or len(system.gradient) != len(equations):
-            raise Violation(f"there are {len(equations)} equations and no potential")
-        pairs = [(f"equation {k}", t, e) for k, (t, e) in enumerate(zip(system.gradient, equations, strict=True))]
-    pairs += _conditions(text, system)
-    if bars:
-        assert isinstance(model, Mechanism)
-        kept = distances(model, text.configuration.points(model), text.configuration.value)
-        pairs += [(f"relation {k}", t, r) for k, (t, r) in enumerate(zip(system.relations, kept, strict=True))]
-    unchecked = [reason for what, stored, true in pairs if (reason := _compared(text, what, stored, true))]
-    if unchecked:
-        return Unchecked(unchecked[0])
-    what = "the potential" if model.has_potential else "the equations"
-    what = "the potential and the moments" if system.moments else what
-    return f"{what} in {len(unknowns)} unknowns and {len(model.variables)} parameters"
-
-
-def _with_moments(text: _Text, system: System) -> list[tuple[str, str, fmpq_mpoly]]:
-    """The stored energy and what is taken off its slopes, where a moment has no potential; each with what it has to be.
-
-    Raises
-    ------
-    Violation
-        When there is not one moment for each unknown.
-    """
-    model = text.model
-    assert isinstance(model, Mechanism)
-    if len(system.moments) != len(model.unknowns):
-        raise Violation(f"there are moments on {len(model.unknowns)} unknowns, not {len(system.moments)}")
-    true = dict.fromkeys(model.unknowns, text.ring.constant(0))
-    for unknown, tree in model.moments:
-        true[unknown] = true[unknown] + text.configuration.value(tree)
-    named = zip(system.moments, true.items(), strict=True)
-    return [
-        ("potential", system.potential, _energy(model)),
-        *((f"moment on {unknown}", stored, value) for stored, (unknown, value) in named),
+    if not stated and (system.potential or len(system.gradient) != len(true.equations)):
+        raise Violation(f"there are {len(true.equations)} equations and no potential")
+    text = _Text(true, stated)
+    reasons = [_compared(text, "potential", system.potential, text.energy, text.work)] if stated else []
+    moments = [true.moments[unknown] for unknown in unknowns] if stated and true.apart else []
+    parts: list[tuple[str, Sequence[str], Sequence[fmpq_mpoly]]] = [
+        ("equation", system.gradient, () if stated else true.equations),
+        ("moment", system.moments, moments),
+        ("inequality", system.inequalities, true.inequalities),
+        ("condition for stability", system.stability, () if closed else true.stability),
+        ("relation", system.relations, true.closing if closed else ()),
     ]
+    for what, stored, polynomials in parts:
+        if len(stored) != len(polynomials):
+            raise Violation(f"there are {len(polynomials)} of the kind {what}, not {len(stored)}")
+        named = zip(stored, polynomials, strict=True)
+        reasons += [
+            _compared(text, f"{what} {k}", one, text.ring.taken(p, true.ring)) for k, (one, p) in enumerate(named)
+        ]
+    if any(reasons):
+        return Unchecked(next(filter(None, reasons)))
+    what = "the equations" if not stated else "the potential and the moments" if true.apart else "the potential"
+    return f"{what} in {len(unknowns)} unknowns and {len(slice.model.variables)} parameters"
 
 
-def _conditions(text: _Text, system: System) -> list[tuple[str, str, fmpq_mpoly]]:
-    """The stored inequalities and conditions for stability, with what each of them has to be.
-
-    Raises
-    ------
-    Violation
-        When there are not as many as in the description.
-    """
-    true = ((), ()) if isinstance(text.model, Mechanism) else formulas(text.configuration, text.model)[2:4]
-    pairs = []
-    for what, stored, values in zip(
-        ("inequality", "condition for stability"), (system.inequalities, system.stability), true, strict=True
-    ):
-        if len(stored) != len(values):
-            raise Violation(f"there are {len(values)} of the kind {what}, not {len(stored)}")
-        pairs += [(f"{what} {k}", one, value) for k, (one, value) in enumerate(zip(stored, values, strict=True))]
-    return pairs
-
-
-def _compared(text: _Text, what: str, stored: str, true: fmpq_mpoly) -> str:
+def _compared(
+    text: _Text, what: str, stored: str, true: fmpq_mpoly, moments: Mapping[str, fmpq_mpoly] | None = None
+) -> str:
     """Why a text was not compared with what it has to be; empty when they are equal.
+
+    Parameters
+    ----------
+    moments : of which the text lacks the work.
 
     Raises
     ------
@@ -141,8 +102,12 @@ def _compared(text: _Text, what: str, stored: str, true: fmpq_mpoly) -> str:
         raise Violation(f"the stored {what} has too many parts within each other") from None
     except _TooLarge as large:
         return str(large)
-    if not (text.is_less_work(difference) if text.varying else difference.is_zero()):
-        raise Violation(f"the stored {what} differs from the mechanism's by {text.shown(difference)}")
+    if moments is None or text.has_lengths(difference):
+        differs = not difference.is_zero()
+    else:
+        differs = bool(fault_in_work(text.ring, -difference, moments))
+    if differs:
+        raise Violation(f"the stored {what} differs from the mechanism's by {text.ring.text(difference)}")
     return ""
 
 
@@ -151,51 +116,33 @@ class _Text:
 
     Attributes
     ----------
-    outside : the names that may stand outside of cosines and sines.
-    squares : the squares of the springs' lengths, each once, in normal form.
-    varying : the moments that depend on their own unknown, by unknown; none where one depends on another, as
-        moments are stated then.
+    ring : with a variable for each spring's length, and one for each angle outside of cosines and sines.
+    names, outside : of parameters and unknowns what they stand for; and which may stand outside of cosines and sines.
+    energy : with the springs' free lengths, where it is stated.
+    work : the moments by the unknown on which they work, where their work is stated with the energy.
+    squares : the squares of the springs' lengths in normal form, each once.
     """
 
-    def __init__(self, model: Model):
-        self.model = model
-        springs = len(model.springs) if isinstance(model, Mechanism) else 0
-        kinds = [(f"cos {a}", f"sin {a}") for a in model.angles]
-        names = [f"l{n}" for n in range(springs)] + [name for pair in kinds for name in pair]
-        names += [f"unknown {n}" for n in model.unknowns] + [f"parameter {n}" for n in model.variables]
-        # plain names for the ring: those of a description may be any
-        self._shown = [re.sub(r"^(cos|sin) (.*)", r"\1(\2)", name).removeprefix("unknown ") for name in names]
-        ring = tuple(f"x{k}" for k in range(len(names)))
-        self.ring: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(ring, Ordering.lex)
-        self._gen = {name: self.ring.gen(k) for k, name in enumerate(names)}
-        circles = {a: (self._gen[f"cos {a}"], self._gen[f"sin {a}"]) for a in model.angles}
-        known = {n: self._gen[f"parameter {n}"] for n in model.variables}
-        self.names = known | {n: self._gen[f"unknown {n}"] for n in model.unknowns}
-        self.configuration = Configuration(known | {n: self.names[n] for n in model.reals}, circles)
-        moments = dict(model.moments) if isinstance(model, Mechanism) and model.has_potential else {}
-        self.varying = {u: self.configuration.value(tree) for u, tree in moments.items() if u in names_of(tree)}
-        moved = set(moments)
-        self.outside = {*known, *model.reals, *moved}
-        self.circles = [c * c + s * s - 1 for c, s in circles.values()]
+    def __init__(self, true: Derivation, stated: bool):
+        number = len(true.springs) if stated else 0
+        first = tuple(f"length {n}" for n in range(number))
+        self.ring = CoordinateRing((*first, *true.ring.names, *true.ring.angles), true.ring.angles)
+        parameters = true.ring.names[true.coordinates :]
+        self.names = {name: self.ring.elements[name] for name in (*parameters, *true.unknowns)}
+        moved = true.moved and not true.apart
+        self.outside = self.names.keys() - (() if moved else true.ring.angles)
+        self.lengths, self.squares = [self.ring.elements[name] for name in first], list[fmpq_mpoly]()
+        nothing = self.ring.context.constant(0)
+        self.work = {u: nothing if true.apart else self.ring.taken(true.moments[u], true.ring) for u in true.unknowns}
+        self.energy = self.reduced(true.stretched(self.ring, self._new_length)) if stated else nothing
 
-    def shown(self, p: fmpq_mpoly) -> str:
-        """The beginning of a polynomial's text."""
-        text = re.sub(r"x([0-9]+)", lambda m: self._shown[int(m[1])].removeprefix("parameter "), str(p)[:400])
-        return text[:80]
+    def _new_length(self, square: fmpq_mpoly) -> fmpq_mpoly:
+        normal = self.ring.normal(square)
+        if normal not in self.squares:
+            self.squares.append(normal)
+        return self.lengths[self.squares.index(normal)]
 
-    @cached_property
-    def squares(self) -> list[fmpq_mpoly]:
-        found: list[fmpq_mpoly] = []
-        if isinstance(self.model, Mechanism):
-            points = self.configuration.points(self.model)
-            for spring in self.model.springs:
-                across, up = (points[spring.end][i] - points[spring.start][i] for i in (0, 1))
-                square = self.on_circles(self.ring.constant(0) + across * across + up * up)
-                if square not in found:
-                    found.append(square)
-        return found
-
-    def length(self, square: Any) -> fmpq_mpoly:
+    def length(self, square: fmpq_mpoly) -> fmpq_mpoly:
         """The length whose square is given.
 
         Raises
@@ -203,44 +150,17 @@ class _Text:
         ValueError
             When no spring has it.
         """
-        return self._gen[f"l{self.squares.index(self.reduced(square))}"]
+        return self.lengths[self.squares.index(self.reduced(square))]
 
-    def on_circles(self, p: fmpq_mpoly) -> fmpq_mpoly:
-        """At most the first power of each cosine."""
-        for circle in self.circles:
-            p = divmod(p, circle)[1]
-        return p
+    def has_lengths(self, p: fmpq_mpoly) -> bool:
+        """Whether some length is in a polynomial."""
+        return any(degree > 0 for degree in p.degrees()[: len(self.lengths)])
 
-    def reduced(self, p: Any) -> fmpq_mpoly:
+    def reduced(self, p: fmpq_mpoly) -> fmpq_mpoly:
         """The normal form: at most the first power of each length and of each cosine."""
-        p = self.ring.constant(0) + p
-        for n, square in enumerate(self.squares):
-            p = divmod(p, self._gen[f"l{n}"] ** 2 - square)[1]
-        return self.on_circles(p)
-
-    def is_less_work(self, p: fmpq_mpoly) -> bool:
-        """Whether a normal form is minus the work of the varying moments from where all unknowns are zero.
-
-        That is told by its slopes; no moment is integrated.
-        """
-        springs = len(self.squares)
-        if any(degree > 0 for degree in p.degrees()[:springs]):
-            return False
-        place: dict[str | int, int | fmpz | fmpq] = {str(self.names[name]): 0 for name in self.model.unknowns}
-        for angle in self.model.angles:
-            place |= {str(self._gen[f"cos {angle}"]): 1, str(self._gen[f"sin {angle}"]): 0}
-        slopes = {
-            u: self.on_circles(self._slope(p, u) + self.varying.get(u, fmpq(0))).is_zero() for u in self.model.unknowns
-        }
-        return all(slopes.values()) and bool(p.subs(place).is_zero())
-
-    def _slope(self, p: fmpq_mpoly, unknown: str) -> fmpq_mpoly:
-        """The derivative by an unknown, also where it stands outside of cosines and sines."""
-        slope = p.derivative(str(self.names[unknown]))
-        if unknown in self.model.angles:
-            c, s = self._gen[f"cos {unknown}"], self._gen[f"sin {unknown}"]
-            slope += c * p.derivative(str(s)) - s * p.derivative(str(c))
-        return slope
+        for length, square in zip(self.lengths, self.squares, strict=False):
+            p = divmod(p, length**2 - square)[1]
+        return self.ring.normal(p)
 
     def value(self, what: str, text: str) -> fmpq_mpoly:
         """What a text stands for.
@@ -259,17 +179,18 @@ class _Text:
         ----------
         inside : of a cosine or a sine, where all angles may stand.
         """
+        constant = self.ring.context.constant
         match node:
             case ast.Constant(value=int(number)) if not isinstance(number, bool):
-                return _bounded(self.ring.constant(number))
-            case ast.Name(id=name) if _plain(name) in self.outside or (inside and _plain(name) in self.names):
+                return _bounded(constant(number))
+            case ast.Name(id=name) if _plain(name) in (self.names if inside else self.outside):
                 return self.names[_plain(name)]
             case ast.UnaryOp(op=ast.USub(), operand=inner):
                 return -self._value(inner, inside)
             case ast.BinOp(left=base, op=ast.Pow(), right=ast.Constant(value=int(exponent))) if (
                 0 <= exponent <= _MAX_DEGREE
             ):
-                power, factor = self.ring.constant(1), self._value(base, inside)
+                power, factor = constant(1), self._value(base, inside)
                 for _ in range(exponent):
                     power = _product(power, factor)
                 return power
@@ -283,7 +204,7 @@ class _Text:
                     case ast.Mult():
                         return _product(a, b)
                     case ast.Div() if b.is_constant() and not b.is_zero():
-                        return _product(a, self.ring.constant(1 / b.coeffs()[0]))
+                        return _product(a, constant(1 / b.coeffs()[0]))
             case ast.Call(func=ast.Name(id=name), args=[inner], keywords=[]):
                 return self._call(_plain(name), inner, node)
         raise Violation(f"the stored potential has a part that is no formula: {_shown(node)}")
@@ -298,48 +219,26 @@ class _Text:
                 ) from None
         if name not in ("cos", "sin"):
             raise Violation(f"the stored potential has a part that is no formula: {_shown(node)}")
-        cosine, sine = self.ring.constant(1), self.ring.constant(0)
+        circle = self.ring.context.constant(1), self.ring.context.constant(0)
         for angle, multiple in self._angles(inner, node).items():
-            c, s = self._gen[f"cos {angle}"], self._gen[f"sin {angle}"]
-            for _ in range(abs(multiple)):
-                turned = s if multiple > 0 else -s
-                cosine, sine = (
-                    _product(cosine, c) - _product(sine, turned),
-                    _product(sine, c) + _product(cosine, turned),
-                )
-        return cosine if name == "cos" else sine
+            circle = turned(circle, self.ring.circles[angle], multiple, _product)
+        return circle[0 if name == "cos" else 1]
 
     def _angles(self, inner: ast.expr, node: ast.expr) -> dict[str, int]:
         """The whole multiples of angles of which a text is the sum."""
         rest, found = self._value(inner, inside=True), {}
-        for angle in self.model.angles:
-            unknown = self.names[angle]
-            c = rest.derivative(unknown.context().variable_to_index(str(unknown)))
+        for angle in self.ring.angles:
+            c = rest.derivative(self.ring.names.index(angle))
             if not c.is_constant():
                 break
             multiple = fmpq(0) if c.is_zero() else c.coeffs()[0]
             if multiple.q != 1 or abs(multiple) > _MAX_DEGREE:
                 break
             found[angle] = int(multiple.p)
-            rest = rest - multiple * unknown
+            rest = rest - multiple * self.names[angle]
         if not rest.is_zero():
             raise Violation(f"the stored potential has a part that is no formula: {_shown(node)}")
         return found
-
-
-@lru_cache(maxsize=8)
-def _energy(model: Model) -> fmpq_mpoly:
-    """The potential of a system, or of a mechanism whose springs have free lengths, with the moments that have one."""
-    text = _Text(model)
-    if not isinstance(model, Mechanism):
-        given: Any = formulas(text.configuration, model).energy
-        return text.reduced(given)
-    energy: Any = text.ring.constant(0) + potential(text.configuration, model, text.length)
-    for unknown, tree in model.moments if model.has_potential else ():
-        if unknown in text.varying:
-            continue
-        energy = energy - text.configuration.value(tree) * text.names[unknown]
-    return text.reduced(energy)
 
 
 def _plain(name: str) -> str:

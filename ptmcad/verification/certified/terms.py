@@ -7,13 +7,13 @@ A power is no product of balls that have nothing to do with one another, which w
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cache
 from math import prod
 from typing import Any
 
-from flint import arb
+from flint import arb, fmpq_mpoly
 
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction
@@ -21,6 +21,15 @@ from ptmcad.text.flint_numbers import from_fraction
 Terms = tuple[tuple[int, int, tuple[str, ...]], ...]
 """A polynomial: numerator and denominator of each coefficient, and the parameters, with repetitions, next to it."""
 _ZERO, _ONE = arb(0), arb(1)
+
+
+def terms_of(p: fmpq_mpoly, names: Sequence[str] = ()) -> Terms:
+    """Those of a polynomial in parameters, which are the first variables; by the ring's names, or others."""
+    names = names or p.context().names()
+    return tuple(
+        (int(c.p), int(c.q), tuple(n for n, power in zip(names, powers, strict=False) for _ in range(int(power))))
+        for powers, c in p.terms()
+    )
 
 
 def evaluated(terms: Terms, values: Mapping[str, Any]) -> Any:

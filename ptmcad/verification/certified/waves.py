@@ -8,17 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from ptmcad.model import ClosedMechanism, Mechanism, Model
-from ptmcad.question.slice import Axis, Slice
+from ptmcad.model import Model
+from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import Expression
 from ptmcad.verification.certified.lines import Line, line_of
 from ptmcad.verification.certified.parallel import Parameters
-from ptmcad.verification.certified.terms import Terms
-from ptmcad.verification.derivation import Configuration, along_loops, formulas, has_index
+from ptmcad.verification.certified.terms import Terms, terms_of
+from ptmcad.verification.coordinates import CoordinateRing, circle_names
+from ptmcad.verification.derivation import Derivation, derivation_of
 
 Multi = tuple[int, ...]
 """For each unknown the multiple of an angle, or the power of a real unknown."""
@@ -56,8 +57,8 @@ class Cone(NamedTuple):
     line: Line | None
 
 
-class Excess(NamedTuple):
-    """What tells whether a spring is longer than its free length.
+class Margin(NamedTuple):
+    """What is positive where a spring is longer than its free length.
 
     Attributes
     ----------
@@ -121,35 +122,40 @@ class Form(NamedTuple):
         return self.is_gradient and all(self.is_circle) and not (self.cones or self.inequalities)
 
 
-class _Ring:
-    """Polynomials in the parameters, the real unknowns, the imaginary unit and the exponentials of the angles."""
+class _Exponentials:
+    """Polynomials in the parameters, the real unknowns, the imaginary unit and the exponentials of the angles.
 
-    def __init__(self, model: Model):
-        self.unknowns, self.parameters = tuple(model.unknowns), tuple(model.variables)
+    Parameters
+    ----------
+    ring : of what is read as waves.
+    """
+
+    def __init__(self, model: Model, ring: CoordinateRing):
+        self.unknowns = tuple(model.unknowns)
+        parameters = tuple(model.variables) or ("no parameter",)  # a ring has a variable
         turns = [f"{way} {angle}" for angle in model.angles for way in ("exp", "inverse")]
-        names = [f"p {n}" for n in self.parameters] + [f"h {n}" for n in model.reals] + ["i", *turns]
+        names = [*parameters, *model.reals, "imaginary unit", *turns]
         self.context: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(tuple(f"x{k}" for k in range(len(names))), Ordering.lex)
         places = {name: k for k, name in enumerate(names)}
-        gen = self.context.gen
-        self.i = gen(places["i"])
-        exponentials = {a: (gen(places[f"exp {a}"]), gen(places[f"inverse {a}"])) for a in model.angles}
-        self.squares = [self.i * self.i + 1, *(e * f - 1 for e, f in exponentials.values())]
-        half = fmpq(1, 2)
-        self.configuration = Configuration(
-            {n: gen(places[f"p {n}"]) for n in self.parameters} | {n: gen(places[f"h {n}"]) for n in model.reals},
-            {a: ((e + f) * half, -self.i * (e - f) * half) for a, (e, f) in exponentials.items()},
-        )
-        self.reals = {n: places[f"h {n}"] for n in model.reals}
+        known = dict(zip(names, self.context.gens(), strict=True))
+        half, i = fmpq(1, 2), known["imaginary unit"]
+        self.squares = [i * i + 1]
+        for angle in model.angles:
+            e, f = known[f"exp {angle}"], known[f"inverse {angle}"]
+            self.squares.append(e * f - 1)
+            known |= dict(zip(circle_names(angle), ((e + f) * half, -i * (e - f) * half), strict=True))
+        self.images = [known[name] for name in ring.names]
+        self.reals = {n: places[n] for n in model.reals}
         self.turns = {a: (places[f"exp {a}"], places[f"inverse {a}"]) for a in model.angles}
-        self.unit = places["i"]
-        self.numbers: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(self.parameters or ("none",), Ordering.lex)
+        self.unit = places["imaginary unit"]
+        self.numbers: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(parameters, Ordering.lex)
 
-    def waves(self, value: Any) -> _Polynomials:
-        """The waves of a real element, which may be a number of its own."""
-        p: fmpq_mpoly = self.context.constant(0) + value
+    def waves(self, value: fmpq_mpoly) -> _Polynomials:
+        """Those of a polynomial in coordinates and parameters."""
+        p = value.compose(*self.images, ctx=self.context)
         for square in self.squares:
             p = divmod(p, square)[1]
-        zero, count = (0,) * len(self.unknowns), len(self.parameters)
+        zero, count = (0,) * len(self.unknowns), self.numbers.nvars()
         found = []
         for exponents, c in p.terms():
             powers = [int(e) for e in exponents]
@@ -162,7 +168,7 @@ class _Ring:
                     turned[k] = powers[ahead] - powers[back]
             # the real part of the exponential of i w is cos w, and that of i times it is -sin w
             sine = powers[self.unit]
-            factor = self.numbers.from_dict({tuple(powers[:count]) or (0,): -c if sine else c})
+            factor = self.numbers.from_dict({(*powers[:count],): -c if sine else c})
             found.append(((tuple(turned), tuple(raised), sine), factor))
         return _collected(found)
 
@@ -202,65 +208,50 @@ def form_of(slice: Slice) -> Form:
 
 @lru_cache(maxsize=8)
 def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[Axis, Axis]) -> Form:
-    ring = _Ring(model)
-    parameters = Parameters(ring.parameters, dict(values), axes, ring.numbers)
-    unknowns = tuple(model.unknowns)
-    given = formulas(ring.configuration, model)
+    true = derivation_of(model)
+    ring = _Exponentials(model, true.ring)
+    unknowns = ring.unknowns
     everything = range(len(unknowns))
-    inequalities, stability = ([ring.waves(c) for c in some] for some in (given.inequalities, given.stability))
+    inequalities, stability = (list(map(ring.waves, some)) for some in (true.inequalities, true.stability))
     multiples: list[_Polynomials] = []
-    if given.energy is None:
-        whole = [ring.waves(e) for e in given.equations]
+    if true.energy is not None and true.from_energy:
+        potential = ring.waves(true.energy)
+        equations = [_less(_by(potential, k), ring.waves(true.moments[unknowns[k]])) for k in everything]
+    else:
+        whole = list(map(ring.waves, true.equations))
         equations = [_divided(e, inequalities) for e in whole]
         multiples = [e for e, f in zip(whole, equations, strict=True) if e != f]
-    else:
-        potential = ring.waves(given.energy)
-        order = model.angles + model.reals
-        equations = [_less(_by(potential, k), ring.waves(given.moment(order.index(unknowns[k])))) for k in everything]
     jacobian = [_by(e, k) for e in equations for k in everything]
-    cones: tuple[Cone, ...] = ()
-    closing: tuple[int, ...] = ()
-    if isinstance(model, Mechanism):
-        cones = tuple(_cones(ring, model, parameters))
-    elif isinstance(model, ClosedMechanism) and not (model.multipliers or model.mechanism.xjoints):
-        along = [[ring.waves(f) for f in pair] for pair in along_loops(ring.configuration, model)]
-        cones = tuple(_cones(ring, model.mechanism, parameters, along))
-        closing = tuple(unknowns.index(name) for name in model.angles + model.reals) if cones else ()
+    cones = tuple(_cones(ring, true, Parameters(values, axes, ring.numbers)))
+    closing = tuple(map(unknowns.index, true.unknowns)) if cones and true.closing else ()
     if closing:
         stability = []  # the determinant of the whole Jacobian
-
-    def kept(some: Iterable[_Polynomials]) -> tuple[Waves, ...]:
-        return tuple(_kept(f, ring.parameters) for f in some)
-
     return Form(
         unknowns,
         tuple(name in model.angles for name in unknowns),
-        has_index(model),
-        kept(equations),
-        kept(jacobian),
+        true.has_index,
+        _rows(equations),
+        _rows(jacobian),
         cones,
-        kept(inequalities),
-        kept(stability),
-        kept(multiples),
+        _rows(inequalities),
+        _rows(stability),
+        _rows(multiples),
         closing,
     )
 
 
 @lru_cache(maxsize=8)
-def excesses_of(model: Model) -> tuple[Excess, ...]:
-    """Those of all springs of a mechanism, of which none has a negative free length."""
-    assert isinstance(model, Mechanism | ClosedMechanism)
-    mechanism = model if isinstance(model, Mechanism) else model.mechanism
-    ring, found = _Ring(model), []
-    points = ring.configuration.points(mechanism)
-    for spring in mechanism.springs:
-        vector = [points[spring.end][i] - points[spring.start][i] for i in (0, 1)]
-        free = ring.configuration.value(spring.free)
-        across, up, length, squared = (
-            _kept(ring.waves(f), ring.parameters)
-            for f in (*vector, free, vector[0] * vector[0] + vector[1] * vector[1] - free * free)
+def margins_of(model: Model, count: Count) -> tuple[Margin, ...]:
+    """What a kind of count asks of stable solutions: of all springs, of which none has a negative free length."""
+    if count is not Count.ADMISSIBLE:
+        return ()
+    true = derivation_of(model)
+    ring, found = _Exponentials(model, true.ring), []
+    for spring in true.springs:
+        across, up, free, squared = (
+            _kept(ring.waves(f)) for f in (*spring.vector, spring.free, spring.squared - spring.free**2)
         )
-        found.append(Excess(spring.name, (across, up), next(iter(length.values()), ()), squared))
+        found.append(Margin(spring.name, (across, up), next(iter(free.values()), ()), squared))
     return tuple(found)
 
 
@@ -278,45 +269,32 @@ def _divided(f: _Polynomials, inequalities: Iterable[_Polynomials]) -> _Polynomi
     return found
 
 
-def _cones(
-    ring: _Ring, mechanism: Mechanism, parameters: Parameters, along: Sequence[list[_Polynomials]] = ()
-) -> Iterable[Cone]:
-    """The springs with a free length; those that are parallel all over a slice as one.
-
-    Parameters
-    ----------
-    along : of each spring the derivative of its vector along closed loops, where there are any.
-    """
-    points = ring.configuration.points(mechanism)
+def _cones(ring: _Exponentials, true: Derivation, parameters: Parameters) -> Iterable[Cone]:
+    """The springs with a free length; those that are parallel all over a slice as one."""
     everything = range(len(ring.unknowns))
     sides: list[_Side] = []
-    for n, spring in enumerate(mechanism.springs):
-        pull = ring.waves(ring.configuration.value(spring.stiffness) * ring.configuration.value(spring.free))
-        vector = [ring.waves(points[spring.end][i] - points[spring.start][i]) for i in (0, 1)]
-        if parameters.vanish(pull) or not any(_by(d, k) for d in vector for k in everything):
+    for spring in true.pulling:
+        pull = ring.waves(spring.stiffness * spring.free)
+        vector = list(map(ring.waves, spring.vector))
+        if all(map(parameters.vanishes, pull.values())) or not any(_by(d, k) for d in vector for k in everything):
             continue
-        new = (spring.name, pull, vector, along[n] if along else [])
+        along = [ring.waves(true.along_loops(d)) for d in spring.vector] if true.closing else []
+        new = (spring.name, pull, vector, along)
         for k, side in enumerate(sides):
             if joined := _joined(side, new, parameters):
                 sides[k] = joined
                 break
         else:
             sides.append(new)
-    for name, pull, vector, turned in sides:
+    for name, pull, vector, along in sides:
         slopes = [[_by(d, k) for d in vector] for k in everything]
         nothing: list[_Polynomials] = [{}, {}]
-        weights = [*[nothing] * (len(ring.unknowns) - 1), turned] if along else slopes
+        weights = [*[nothing] * (len(ring.unknowns) - 1), along] if along else slopes
         bends = [[_by(d, j) for d in weight] for weight in weights for j in everything]
-        strength = _kept(pull, ring.parameters)
-
-        def pair(found: list[_Polynomials]) -> tuple[Waves, Waves]:
-            across, up = (_kept(f, ring.parameters) for f in found)
-            return across, up
-
-        ((_, terms),) = strength.items()
-        derivatives = [tuple(map(pair, some)) for some in (slopes, weights, bends)]
-        line = line_of(pair(vector), parameters.vanishes)
-        yield Cone(name, terms, pair(vector), derivatives[0], derivatives[1], derivatives[2], line)
+        ((_, strength),) = _kept(pull).items()
+        pairs = [tuple(map(_pair, some)) for some in (slopes, weights, bends)]
+        line = line_of((vector[0], vector[1]), parameters.vanishes)
+        yield Cone(name, strength, _pair(vector), pairs[0], pairs[1], pairs[2], line)
 
 
 def _joined(one: _Side, other: _Side, parameters: Parameters) -> _Side | None:
@@ -333,15 +311,14 @@ def _joined(one: _Side, other: _Side, parameters: Parameters) -> _Side | None:
     return None
 
 
-def _kept(f: _Polynomials, parameters: tuple[str, ...]) -> Waves:
-    def terms(p: fmpq_mpoly) -> Terms:
-        return tuple(
-            (
-                int(c.p),
-                int(c.q),
-                tuple(n for n, power in zip(parameters, powers, strict=False) for _ in range(int(power))),
-            )
-            for powers, c in p.terms()
-        )
+def _kept(f: _Polynomials) -> Waves:
+    return {key: terms_of(p) for key, p in f.items()}
 
-    return {key: terms(p) for key, p in f.items()}
+
+def _rows(some: Iterable[_Polynomials]) -> tuple[Waves, ...]:
+    return tuple(map(_kept, some))
+
+
+def _pair(vector: Sequence[_Polynomials]) -> tuple[Waves, Waves]:
+    across, up = map(_kept, vector)
+    return across, up

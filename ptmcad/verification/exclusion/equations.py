@@ -22,7 +22,7 @@ from ptmcad.verification.exclusion.formulas import Formulas
 Pair = tuple[int, int]
 
 
-class Spring(NamedTuple):
+class ConeFormulas(NamedTuple):
     """A spring with a free length: its pull, its vector, and the vector's derivatives.
 
     Attributes
@@ -82,7 +82,7 @@ class Equations:
         # a bar that is short makes its own equation small, and all that is next to it: nothing is lost by dividing
         self._common = [self._in_all(i) for i in range(n)]
         self.factors = [f.product(self.parameters[name] for name in names) for names in self._common]
-        self.springs = [s for s in map(self._spring, form.cones) if f.constant(s.pull) != 0]
+        self.cones = [s for s in map(self._spring, form.cones) if f.constant(s.pull) != 0]
         self.smooth = [self.waves(row) for row in self._turned(form.equations)]
         entries = [self.waves(row) for row in self._turned_twice(form.jacobian)]
         self.jacobian = [entries[n * i : n * i + n] for i in range(n)]
@@ -144,7 +144,7 @@ class Equations:
             total = f.add(total, part)
         return total
 
-    def _spring(self, cone: Cone) -> Spring:
+    def _spring(self, cone: Cone) -> ConeFormulas:
         slopes, weights = (
             [self._turned([vector[k] for vector in some]) for k in (0, 1)] for some in (cone.slopes, cone.weights)
         )
@@ -155,12 +155,12 @@ class Equations:
             return tuple(zip(across, up, strict=True))
 
         vector = self.waves(cone.vector[0]), self.waves(cone.vector[1])
-        return Spring(self.terms(cone.pull), vector, pairs(slopes), pairs(weights), pairs(bends), cone)
+        return ConeFormulas(self.terms(cone.pull), vector, pairs(slopes), pairs(weights), pairs(bends), cone)
 
     def equations(self, directions: Mapping[int, Pair], without: int | None = None) -> list[int]:
         """The equations, with the directions of the springs; without the part of one, what balances it."""
         f = self.list
-        some = [(k, s) for k, s in enumerate(self.springs) if k != without]
+        some = [(k, s) for k, s in enumerate(self.cones) if k != without]
         return [
             f.subtract(smooth, f.sum(f.multiply(s.pull, f.dot(directions[k], s.weights[i])) for k, s in some))
             for i, smooth in enumerate(self.smooth)
@@ -177,7 +177,7 @@ class Equations:
         """
         f, n = self.list, self.form.size
         rows = [list(row) for row in self.jacobian]
-        for k, s in enumerate(self.springs):
+        for k, s in enumerate(self.cones):
             if k == left_out:
                 continue
             u = directions[k]
@@ -198,19 +198,19 @@ class Equations:
         """Those of all springs, from their vectors; of those on one line each, on the side that is looked at."""
         return {
             k: self._pointed(s) if s.name in self.sides else self.list.direction(*s.vector)
-            for k, s in enumerate(self.springs)
+            for k, s in enumerate(self.cones)
         }
 
-    def _ahead(self, s: Spring) -> Pair:
+    def _ahead(self, s: ConeFormulas) -> Pair:
         """The vector along which such a spring points, on its side, before its line turns."""
         x, y = (self.list.multiply(self.list.number(self.sides[s.name]), self.terms(t)) for t in s.line.vector)
         return x, y
 
-    def _spin(self, s: Spring, j: int) -> Fraction:
+    def _spin(self, s: ConeFormulas, j: int) -> Fraction:
         """How fast such a line turns along the j-th vector of the basis."""
         return Fraction(sum(a * b for a, b in zip(s.line.twice, self.basis[j], strict=True)), 2)
 
-    def _with_line(self, s: Spring, vector: Pair) -> Pair:
+    def _with_line(self, s: ConeFormulas, vector: Pair) -> Pair:
         """A vector turned as such a line is."""
         f, (x, y), twice = self.list, vector, s.line.twice
         if not any(twice):
@@ -219,7 +219,7 @@ class Equations:
         across, up = f.cosine(angle), f.sine(angle)
         return f.subtract(f.multiply(x, across), f.multiply(y, up)), f.dot((x, y), (up, across))
 
-    def _pointed(self, s: Spring) -> Pair:
+    def _pointed(self, s: ConeFormulas) -> Pair:
         f, (x, y) = self.list, self._ahead(s)
         p, q = f.constant(x), f.constant(y)
         if p is not None and q is not None and (p == 0 or q == 0):
@@ -228,7 +228,7 @@ class Equations:
 
     def ahead(self, k: int) -> int:
         """What is positive where a spring on one line is on its side."""
-        s = self.springs[k]
+        s = self.cones[k]
         return self.list.dot(self._with_line(s, self._ahead(s)), s.vector)
 
     def without(self, k: int) -> list[int]:
@@ -237,7 +237,7 @@ class Equations:
 
     def _adjugates(self, k: int) -> Iterator[tuple[Pair, int]]:
         """For each two unknowns adj(A) r and K det(A), with the weights of a spring as rows of A."""
-        f, s, rest = self.list, self.springs[k], self.without(k)
+        f, s, rest = self.list, self.cones[k], self.without(k)
         for i, j in combinations(range(self.form.size), 2):
             (ai, bi), (aj, bj) = s.weights[i], s.weights[j]
             x, y = f.cross((bj, bi), (rest[j], rest[i])), f.cross((ai, aj), (rest[i], rest[j]))
@@ -255,7 +255,7 @@ class Equations:
 
     def outweighs(self, k: int, i: int) -> int:
         """(K |g|)^2 - r^2 for the i-th unknown: not negative where a spring without length balances the rest."""
-        f, s = self.list, self.springs[k]
+        f, s = self.list, self.cones[k]
         return f.subtract(
             f.multiply(f.power(s.pull, 2), f.dot(s.weights[i], s.weights[i])), f.power(self.without(k)[i], 2)
         )
@@ -266,7 +266,7 @@ class Equations:
         There K u.g_i = r_i, so that (u x g_i)(u x g_j) = g_i.g_j - r_i r_j/K^2, with nothing of the direction; the
         slopes g_i are the weights w_i here, as they are without closed loops.
         """
-        f, s, n = self.list, self.springs[k], self.form.size
+        f, s, n = self.list, self.cones[k], self.form.size
         cosines = [f.divide(r, s.pull) for r in self.without(k)]
         rows = self.hessian(self.directions(), without=k)
         length = f.length(*s.vector)
@@ -291,7 +291,7 @@ class Equations:
         that sum over all unit vectors u is the smaller eigenvalue of the sum of the g_i g_i^T, at least its determinant
         over its trace.
         """
-        f, s, n = self.list, self.springs[k], self.form.size
+        f, s, n = self.list, self.cones[k], self.form.size
         length = f.length(*s.vector)
         slopes = [(f.multiply(c, g[0]), f.multiply(c, g[1])) for c, g in zip(self.factors, s.slopes, strict=True)]
         gram = f.sum(f.power(f.cross(g, h), 2) for g, h in combinations(slopes, 2))
@@ -311,7 +311,7 @@ class Equations:
             values |= {n: e.evaluate(*at) for n, e in self.claims.result.slice.parameters.items()}
         except ExpressionError:
             return Fraction(1)
-        factors = (evaluated(terms, values) for row in self.springs[k].cone.vector for terms in row.values())
+        factors = (evaluated(terms, values) for row in self.cones[k].cone.vector for terms in row.values())
         return sum(map(abs, factors), Fraction(0)) or Fraction(1)
 
 

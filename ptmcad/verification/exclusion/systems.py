@@ -16,14 +16,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from flint import arb
 
-from ptmcad.question.slice import Count
 from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import Floats
 from ptmcad.verification.certified.kinks import sides
 from ptmcad.verification.certified.parameters import over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.waves import Waves, excesses_of, form_of
+from ptmcad.verification.certified.waves import Waves, form_of, margins_of
 from ptmcad.verification.exclusion.equations import Equations, Pair, bases
 from ptmcad.verification.exclusion.formulas import Tape, shortened
 
@@ -182,7 +181,7 @@ class _Systems:
         self.conditions: list[Waves] = [*self.form.inequalities, *stable]
         self.asked = [self.model.waves(c) for c in self.conditions]
         self.positive, self.turning, self.where = self.asked, list[int](), ""
-        self.excesses = self._excesses() if self.count is Count.ADMISSIBLE else []
+        self.margins = self._margins()
 
     def all(self) -> Iterator[System]:
         """All of them, for springs on one line each on all sides of length zero."""
@@ -203,8 +202,8 @@ class _Systems:
         m = self.model
         for side in sides(self.form):
             m.sides = side
-            straight = [k for k, s in enumerate(m.springs) if s.name in side]
-            self.turning = [k for k in range(len(m.springs)) if k not in straight]
+            straight = [k for k, s in enumerate(m.cones) if s.name in side]
+            self.turning = [k for k in range(len(m.cones)) if k not in straight]
             self.positive = [*self.asked, *map(m.ahead, straight)]
             self.where = "".join(f", {name} {'ahead' if sign > 0 else 'behind'}" for name, sign in side.items())
             yield
@@ -224,7 +223,7 @@ class _Systems:
             if self.minima:
                 signs += [*self._minors(rows), *(entry for _, diagonal in balanced for entry in diagonal)]
                 signs += [m.bend(k) for k in springs] if self.form.size > 1 else []
-        long = [f.subtract(f.length(*m.springs[k].vector), self._short(k)) for k in springs] if charted else []
+        long = [f.subtract(f.length(*m.cones[k].vector), self._short(k)) for k in springs] if charted else []
         others = [e for e in dict.fromkeys(at_solutions) if e not in equations]
         last = [d for d in dict.fromkeys(degenerate) if d != determinant]
         yield self._system("folds", equations, [determinant, *others, *last], [*dict.fromkeys(signs), *long])
@@ -232,14 +231,14 @@ class _Systems:
             yield self._short_folds(k)
             yield self._cone(k)
         signs = list(dict.fromkeys([*signs, determinant] if self.minima else signs))
-        # with admissible ones all minima are counted, so that folds ask for no excess
+        # where margins are asked for, all minima are counted, too, so that folds ask for none
         for k, c in enumerate(self.positive):
             if k < len(self.conditions) and not any(any(key[0]) or any(key[1]) for key in self.conditions[k]):
                 yield self._system(f"boundary {k}", [c], [], [], unknowns=0)
             else:
                 yield self._system(f"boundary {k}", [*equations, c], others, [n for n in signs if n != c])
-        for k, (_, as_long) in enumerate(self.excesses):
-            taut = [value for j, (value, _) in enumerate(self.excesses) if j != k]
+        for k, (_, as_long) in enumerate(self.margins):
+            taut = [value for j, (value, _) in enumerate(self.margins) if j != k]
             yield self._system(f"free length {k}", [*equations, *as_long], others, [*dict.fromkeys([*signs, *taut])])
 
     def _minors(self, rows: Sequence[Sequence[int]]) -> list[int]:
@@ -258,7 +257,7 @@ class _Systems:
         with closed loops.
         """
         m, f, n = self.model, self.model.list, self.form.size
-        s, angle = m.springs[k], self.model.list.variable(n + 2)
+        s, angle = m.cones[k], self.model.list.variable(n + 2)
         u: Pair = f.cosine(angle), f.sine(angle)
         directions = m.directions() | {k: u}
         rows = m.hessian(directions, without=k)
@@ -279,7 +278,7 @@ class _Systems:
     def _cone(self, k: int) -> System:
         """Configurations in which one spring has no length, and some direction of it balances the other forces."""
         m, f, n = self.model, self.model.list, self.form.size
-        s, name = m.springs[k], f"cones of {m.springs[k].name}"
+        s, name = m.cones[k], f"cones of {m.cones[k].name}"
         if n > 2:
             angle = f.variable(n + 2)
             equations = m.equations(m.directions() | {k: (f.cosine(angle), f.sine(angle))})
@@ -291,12 +290,12 @@ class _Systems:
             return self._system(name, s.vector, [m.without(k)[i]], signs)
         return self._system(name, s.vector, m.balances(k), self.positive)
 
-    def _excesses(self) -> list[tuple[int, tuple[int, ...]]]:
+    def _margins(self) -> list[tuple[int, tuple[int, ...]]]:
         """By how much each spring is longer than its free length, and what is zero where it is not."""
         m, f = self.model, self.model.list
         found: list[tuple[int, tuple[int, ...]]] = []
-        for excess in excesses_of(self.claims.model):
-            free, vector = m.terms(excess.free), (m.waves(excess.vector[0]), m.waves(excess.vector[1]))
+        for margin in margins_of(self.claims.model, self.count):
+            free, vector = m.terms(margin.free), (m.waves(margin.vector[0]), m.waves(margin.vector[1]))
             value = f.subtract(f.length(*vector), free)
             found.append((value, vector if f.constant(free) == 0 else (value,)))
         return found

@@ -13,6 +13,7 @@ from flint import arb, arb_poly, arb_series, ctx, fmpq
 
 from forger.consistency import drop, put, swapped, with_plan
 from forger.maps import named
+from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import (
     HARMLESS,
     NO_POINT,
@@ -42,7 +43,7 @@ from ptmcad.verification.branches import Effort, _along
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
 from ptmcad.verification.disks import PrecisionTooLow, _series
-from ptmcad.verification.fibre import Counts, Fibre
+from ptmcad.verification.fibre import Fibre
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.model import check_system
 from ptmcad.verification.parameters import check_boundary, check_text
