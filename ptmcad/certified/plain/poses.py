@@ -32,7 +32,7 @@ from ptmcad.certified.tape import Tape, record
 from ptmcad.model import ClosedMechanism, Mechanism, Model, ptm
 from ptmcad.model.evaluate import value_at
 from ptmcad.model.fourbars import flat_everywhere
-from ptmcad.question.domain import prove_slice
+from ptmcad.question.domain import proved
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.balls import bounded, enclosed
 from ptmcad.text.enclosure import Enclosure
@@ -67,8 +67,7 @@ def plain_poses(model: Mechanism | ClosedMechanism, parameters: Mapping[str, Fra
     ConfigError, GeometryError
         As `ptmcad.certified.plain.points.plain_counter` does, or where a parameter is not what its kind asks for.
     """
-    slice = point_slice(model, parameters)
-    prove_slice(slice)
+    slice = proved(point_slice(model, parameters))
     mechanism, count, reason = model, Count.INDEX, NOT_TOLD
     if isinstance(model, ClosedMechanism):
         mechanism, count, reason = model.mechanism, Count.TOTAL, NOT_TOLD_OF_LOOPS

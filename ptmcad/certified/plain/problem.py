@@ -20,13 +20,12 @@ from ptmcad.certified.plain.ends import Vector, springs_of
 from ptmcad.certified.plain.excesses import Excess, excesses
 from ptmcad.certified.plain.parallel import shares
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
-from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError
-from ptmcad.model import ClosedMechanism, Kind, Mechanism, System
+from ptmcad.errors import ConfigError, DegenerateSliceError
+from ptmcad.model import ClosedMechanism, Mechanism, System
 from ptmcad.model.energy import points_in, with_springs
 from ptmcad.model.evaluate import evaluate
 from ptmcad.model.fourbars import closed_by, flat_everywhere
 from ptmcad.model.work import split_moments
-from ptmcad.question.domain import fault, unproved
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.numerals import text_of
@@ -154,14 +153,15 @@ class Problem:
 def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
     """The problem of a slice's model.
 
+    Guarantee: no K of a spring is negative anywhere in the window of a slice that `ptmcad.question.domain.proved` has
+    returned. Only then is a spring without length, whose energy has a peak there, no stable equilibrium that is not
+    counted.
+
     Raises
     ------
     ConfigError
         When the plain formulas do not take the model: more than ``most`` unknowns; or when a condition on solutions
         holds nowhere.
-    GeometryError
-        When it is not proved that k l0 is nowhere negative in the window: only then is a spring without length, whose
-        energy has a peak there, no stable equilibrium that is not counted.
     DegenerateSliceError
         When a closed loop is proved to fold flat all over the window; the message says what its branches are.
     """
@@ -182,7 +182,7 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
     if isinstance(model, System):
         return _of_system(model, ring)
     assert isinstance(model, Mechanism)
-    cones = _checked(model, _cones(model, ring), slice.axes)
+    cones = _joined(_cones(model, ring), slice.axes)
     equations = list(_gradient(_energy(model, ring), ring))
     for unknown, tree in split_moments(model).steady:
         k = ring.unknowns.index(unknown)
@@ -197,14 +197,10 @@ def _asked(slice: Slice, mechanism: Mechanism, ring: Harmonics, problem: Problem
     return replace(problem, excesses=tuple(excesses(mechanism, ring)))
 
 
-def _checked(mechanism: Mechanism, cones: Iterable[Cone], axes: tuple[Axis, Axis]) -> tuple[Cone, ...]:
-    """The cones of a mechanism, no K of which is negative anywhere in the window; those side by side are one."""
+def _joined(cones: Iterable[Cone], axes: tuple[Axis, Axis]) -> tuple[Cone, ...]:
+    """The cones of a mechanism; those side by side are one."""
     found: list[Cone] = []
     for cone in cones:
-        asked = f"stiffness times free length of spring {cone.name}", Kind.FREE_LENGTH, cone.pull, axes
-        if problem := fault(*asked) or unproved(*asked):
-            number = next(n for n, s in enumerate(mechanism.springs, 1) if cone.name in (s.name, s.start + s.end))
-            raise GeometryError(problem, part=f"springs.{number}")
         for k, other in enumerate(found):
             # each of K |d| and K' |d'| alone has a cone, and where both are short at once neither direction would be
             # balanced by the rest; but K f |e| and K' g |e| are one
@@ -255,7 +251,7 @@ def _of_loops(model: ClosedMechanism, ring: Harmonics, axes: tuple[Axis, Axis]) 
     bars = len(model.equations) - 1
     cones = tuple(
         replace(cone, weights=(*[(nothing, nothing)] * bars, (along(cone.difference[0]), along(cone.difference[1]))))
-        for cone in _checked(model.mechanism, _cones(model.mechanism, ring), axes)
+        for cone in _joined(_cones(model.mechanism, ring), axes)
     )
     *closed, slope = (evaluate(tree, ring) for tree in model.equations)
     return Problem(ring.unknowns, ring.reals, (*closed, slope.scaled(sign)), cones, False, closing=bars)

@@ -24,7 +24,8 @@ from ptmcad.certified.plain.divisors import common_divisor, quotient, square_roo
 from ptmcad.certified.plain.ends import Vector
 from ptmcad.certified.plain.problem import Condition, Cone, Problem, Push
 from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial, waves
-from ptmcad.question.positivity import PROVED, Need, decide
+from ptmcad.question.positivity import Need, decide
+from ptmcad.question.signs import PROVED
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 
