@@ -24,6 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from types import TracebackType
+from typing import NamedTuple
 
 MAX_MESSAGE = 1000
 """Characters of a message."""
@@ -87,6 +88,42 @@ class PtmcadWarning(UserWarning):
     """Something went wrong that the answer does not suffer from; the command line prints it as a line."""
 
 
+class Place(NamedTuple):
+    """Where something stands: file, line (from 1) and dotted key path, or an option; each may be unknown.
+
+    Guarantee: every message about a record, an option or an argument names its place by this class alone.
+
+    >>> print(Place("axes", "a.yaml").below("rho", 3))
+    a.yaml:3: axes.rho
+    """
+
+    key: str | None = None
+    file: str | None = None
+    line: int | None = None
+
+    def __str__(self) -> str:
+        file = "" if self.file is None else shown(self.file, _MAX_PLACE)
+        if self.file is not None and self.line is not None:
+            file = f"{file}:{self.line}"
+        key = "" if self.key is None else shown(self.key, _MAX_PLACE)
+        return ": ".join(filter(None, (file, key)))
+
+    def below(self, key: str, line: int | None = None) -> Place:
+        """The place of an entry under this one."""
+        path = key if self.key is None else f"{self.key}.{key}"
+        return Place(path, self.file, self.line if line is None else line)
+
+    def error(self, message: str) -> ConfigError:
+        """A `ConfigError` that names this place."""
+        return ConfigError(message, **self._asdict())
+
+    def located(self, error: ExpressionError, text: str) -> ConfigError:
+        """What is wrong with an expression that stands here, with the part of its text that is meant."""
+        at = error.position
+        where = "" if at is None or len(text) < 2 else f" (character {at + 1} of {excerpt(text, at)})"
+        return self.error(f"{error.message}{where}")
+
+
 class ConfigError(PtmcadError):
     """The input is wrong.
 
@@ -98,14 +135,13 @@ class ConfigError(PtmcadError):
 
     Attributes
     ----------
+    place : the key, the file and the line.
     faults : this one, and the others that were found with it.
     """
 
     def __init__(self, message: str, *, key: str | None = None, file: str | None = None, line: int | None = None):
         self.message = message
-        self.key = key
-        self.file = file
-        self.line = line
+        self.key, self.file, self.line = self.place = Place(key, file, line)
         self._others: tuple[ConfigError, ...] = ()
         super().__init__(message)
 
@@ -121,13 +157,7 @@ class ConfigError(PtmcadError):
         return (self, *self._others)
 
     def __str__(self) -> str:
-        place = ""
-        if self.file is not None:
-            file = shown(self.file, _MAX_PLACE)
-            place = file if self.line is None else f"{file}:{self.line}"
-        if self.key is not None:
-            key = shown(self.key, _MAX_PLACE)
-            place = f"{place}: {key}" if place else key
+        place = str(self.place)
         return shown(f"{place}: {self.message}" if place else self.message)
 
 
@@ -179,8 +209,8 @@ class Faults:
     ) -> bool:
         if not isinstance(error, ConfigError) or len(self.found) >= MAX_FAULTS:
             return False
-        known = {_said(fault) for fault in self.found}
-        self.found += [fault for fault in error.faults if _said(fault) not in known]
+        known = {(fault.place, fault.message) for fault in self.found}
+        self.found += [fault for fault in error.faults if (fault.place, fault.message) not in known]
         if len(self.found) >= MAX_FAULTS:
             self.check()
         return True
@@ -196,15 +226,7 @@ class Faults:
         if self.found:
             files = [fault.file for fault in self.found]
             found = sorted(self.found, key=lambda fault: (files.index(fault.file), fault.line or 0))
-            raise ConfigError.of([_alone(fault) for fault in found])
-
-
-def _said(fault: ConfigError) -> tuple[str | None, int | None, str | None, str]:
-    return fault.file, fault.line, fault.key, fault.message
-
-
-def _alone(fault: ConfigError) -> ConfigError:
-    return ConfigError(fault.message, key=fault.key, file=fault.file, line=fault.line)
+            raise ConfigError.of([fault.place.error(fault.message) for fault in found])
 
 
 class ExpressionError(PtmcadError):

@@ -21,7 +21,7 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.ask.quantities import Quantity, of_pose, quantity, unit_of
 from ptmcad.ask.solving import poses_at
 from ptmcad.options import Progress
-from ptmcad.question.line import has_free_lengths, restricted, varying_axis
+from ptmcad.question.line import has_free_lengths, on_line, varying_axis
 from ptmcad.question.slice import Slice
 
 SAMPLES = 24
@@ -115,7 +115,7 @@ class SolutionsOnLine:
 
     def __init__(self, slice: Slice, varying: int, value: Fraction, digits: int = DIGITS):
         self.model, self.digits = slice.model, digits
-        self.parameters = {name: restricted(e, varying, value) for name, e in slice.parameters.items()}
+        self.parameters = on_line(slice, varying, value)
         self.undecided: list[Fraction] = []
         self._known: dict[Fraction, Sample | None] = {}
 

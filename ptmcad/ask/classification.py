@@ -214,7 +214,7 @@ def check_taken(slice: Slice) -> None:
 
     Raises
     ------
-    ConfigError, DegenerateSliceError, GeometryError
+    ConfigError, DegenerateSliceError
         As the engine does.
     """
     if slice.model != ptm():

@@ -23,7 +23,7 @@ from ptmcad.exact.slicevariety import slice_variety
 from ptmcad.exact.stages import problem_of, projection_of, stacks_of, variety_of
 from ptmcad.model import Model
 from ptmcad.question.config import point_from_mapping, slice_from
-from ptmcad.question.domain import prove_slice
+from ptmcad.question.domain import proved
 from ptmcad.question.slice import Point, Slice, without_free_lengths
 from ptmcad.text.expressions import constant
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
@@ -80,8 +80,7 @@ def open_cad(question: Question) -> tuple[Point, ...]:
     """
     slice = slice_from(question)
     without_free_lengths(slice.model, slice.parameters, "an open CAD is")
-    prove_slice(slice)
-    problem = problem_of(slice)
+    problem = problem_of(proved(slice))
     variety = variety_of(problem)
     stacks = stacks_of(problem, variety, projection_of(problem, variety))
     return tuple(Point(slice.axis_names, to_fraction(x), to_fraction(y)) for x, y in stacks.points)

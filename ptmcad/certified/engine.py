@@ -37,7 +37,7 @@ from ptmcad.cover.subdivision import rectangle_array
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import DEFAULTS, Options
 from ptmcad.process.handover import LAST_SECONDS, leave_if_asked
-from ptmcad.question.domain import prove_slice
+from ptmcad.question.domain import proved
 from ptmcad.question.slice import Slice
 from ptmcad.text.bounds import percent
 from ptmcad.version import __version__
@@ -95,8 +95,7 @@ def certified_map(slice: Slice, options: Options = DEFAULTS) -> RegionMap:
         raise ConfigError(
             f"the certified engine computes in floats: an axis may reach {float(MAX_AXIS_END):g}, no more"
         )
-    prove_slice(slice)
-    return _MapSearch(slice, options).run()
+    return _MapSearch(proved(slice), options).run()
 
 
 class _MapSearch:

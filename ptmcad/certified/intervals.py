@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.intervals import CertifiedChange, CertifiedInterval, CertifiedIntervals
 from ptmcad.process.memory import loading
-from ptmcad.question.domain import prove
-from ptmcad.question.line import restricted, varying_axis
+from ptmcad.question.domain import proved
+from ptmcad.question.line import on_line, varying_axis
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import Enclosure
 
@@ -42,9 +42,8 @@ def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits:
     with loading("the certified engine"):
         from ptmcad.certified.line import line_counts
     varying, other, value = varying_axis(slice, along, at)
-    on_line = {name: restricted(e, varying, value) for name, e in slice.parameters.items()}
-    prove(slice.model, on_line, (slice.axes[varying], Axis(other, value, value)))
-    line = replace(slice, axes=(slice.axes[varying], Axis(other, value, value)), parameters=on_line)
+    axes = slice.axes[varying], Axis(other, value, value)
+    line = proved(replace(slice, axes=axes, parameters=on_line(slice, varying, value)))
     found = line_counts(line, 0, value, 64 + 4 * digits)
     ends = {gap.low: Enclosure(gap.low, gap.high) for gap in found.gaps}
     ends |= {gap.high: Enclosure(gap.low, gap.high) for gap in found.gaps}

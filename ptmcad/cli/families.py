@@ -134,7 +134,7 @@ def _changes(common: Common, options: Options, wanted: Wanted) -> Changes | None
 def _at(error: PtmcadError, place: str) -> PtmcadError:
     """The same error, saying at which member."""
     if isinstance(error, ConfigError):
-        return ConfigError(f"{error.message} (at {place})", key=error.key, file=error.file, line=error.line)
+        return error.place.error(f"{error.message} (at {place})")
     return type(error)(f"{error} (at {place})")
 
 

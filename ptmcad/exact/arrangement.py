@@ -36,7 +36,7 @@ from ptmcad.exact.stages import (
     variety_of,
 )
 from ptmcad.exact.variety import Known
-from ptmcad.question.domain import prove_slice
+from ptmcad.question.domain import proved
 from ptmcad.question.slice import Slice, without_free_lengths
 
 _NO_WALL = Wall(0, 0)
@@ -77,8 +77,7 @@ def picture_of(slice: Slice, known: Known | None = None, check: Check = nothing,
         When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.
     """
     without_free_lengths(slice.model, slice.parameters, "an arrangement is")
-    prove_slice(slice)
-    problem = problem_of(slice)._replace(known=known)
+    problem = problem_of(proved(slice))._replace(known=known)
     variety = variety_of(problem, base=base)
     projection = projection_of(problem, variety, check=check)
     stacks = stacks_of(problem, variety, projection)

@@ -32,7 +32,7 @@ from ptmcad.exact.stages import (
 )
 from ptmcad.exact.variety import Known
 from ptmcad.options import DEFAULTS, Options
-from ptmcad.question.domain import prove_slice
+from ptmcad.question.domain import proved
 from ptmcad.question.slice import Slice, without_free_lengths
 
 AREA_TOLERANCE = Fraction(1, 10_000)
@@ -84,8 +84,7 @@ def exact_map(slice: Slice, options: Options = DEFAULTS, known: Known | None = N
     """
     without_free_lengths(slice.model, slice.parameters, "an exact map is")
     clock = _Clock(options)
-    prove_slice(slice)
-    problem = problem_of(slice)._replace(known=known)
+    problem = problem_of(proved(slice))._replace(known=known)
     reached: PartialMap | None = None
     try:
         for reached in _stages(problem, options, clock):

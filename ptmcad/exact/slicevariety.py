@@ -7,7 +7,7 @@ from ptmcad.errors import A_SLICE, expect
 from ptmcad.exact.assembly import versions
 from ptmcad.exact.models.elimination import elimination_system
 from ptmcad.exact.stages import domain_limits, problem_of, variety_of
-from ptmcad.question.domain import prove_slice
+from ptmcad.question.domain import proved
 from ptmcad.question.slice import Slice, without_free_lengths
 
 
@@ -27,8 +27,7 @@ def slice_variety(slice: Slice, without: frozenset[str] = frozenset()) -> SliceV
     """
     expect(slice, Slice, "slice", A_SLICE)
     without_free_lengths(slice.model, slice.parameters, "the discriminant variety is")
-    prove_slice(slice)
-    problem = problem_of(slice)
+    problem = problem_of(proved(slice))
     variety = variety_of(problem, without)
     return SliceVariety(
         slice,

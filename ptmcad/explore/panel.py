@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from ptmcad.ask.members import Common, in_common
-from ptmcad.errors import ConfigError, ExpressionError, shown
+from ptmcad.errors import ConfigError, ExpressionError, Place, shown
 from ptmcad.model import Kind, Model
 from ptmcad.options import Options
 from ptmcad.question.config.binding import bound, member_name
@@ -21,7 +21,7 @@ from ptmcad.question.config.record import Record
 from ptmcad.question.config.resolution import slice_of, written_in
 from ptmcad.question.config.scalars import number_of
 from ptmcad.question.slice import Slice
-from ptmcad.text.entry import Place, Scalar, Sequence
+from ptmcad.text.entry import Scalar, Sequence
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import rational
 from ptmcad.text.syntax import names_in

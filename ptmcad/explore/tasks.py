@@ -124,7 +124,7 @@ class Tasks:
         parameters = {name: e.evaluate(*place) for name, e in slice.parameters.items()}
         for name, value in parameters.items():
             kind = slice.model.kind(name)
-            if (kind.is_positive and value <= 0) or (kind.may_vanish and value < 0):
+            if kind.excludes(value):
                 raise ConfigError(f"{name} is {value} there, where the geometry ends")
         return point_view(poses_at(slice.model, parameters, DIGITS), at)
 

@@ -34,6 +34,15 @@ class Kind(Enum):
         """Whether zero makes sense, but nothing below."""
         return self in (Kind.BASE, Kind.FREE_LENGTH)
 
+    @property
+    def demand(self) -> str:
+        """What a value has to be that makes sense; empty where each does."""
+        return "positive" if self.is_positive else "not negative" if self.may_vanish else ""
+
+    def excludes(self, value: Fraction) -> bool:
+        """Whether a value makes no sense."""
+        return value < 0 if self.may_vanish else self.is_positive and value <= 0
+
 
 class UnknownKind(Enum):
     """Where an unknown lives."""

@@ -7,7 +7,7 @@ Division is by constants only: a coordinate is a polynomial.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -89,24 +89,27 @@ def value_at(tree: Tree, parameters: Mapping[str, Fraction]) -> Fraction:
     ExpressionError
         As `evaluate`; also for an angle.
     """
-    return evaluate(tree, _Numbers(parameters))
+    return value_among(tree, parameters, Fraction)
 
 
-class _Numbers:
-    """The rational numbers as a ring with parameters."""
+def value_among(tree: Tree, parameters: Mapping[str, E], constant: Callable[[Fraction], E]) -> E:
+    """The same where parameters have values of any kind; ``constant`` makes one of a number."""
+    return evaluate(tree, _Values(parameters, constant))
 
-    def __init__(self, parameters: Mapping[str, Fraction]):
+
+class _Values(Generic[E]):
+    """A ring of values of parameters."""
+
+    def __init__(self, parameters: Mapping[str, E], constant: Callable[[Fraction], E]):
         self.parameters = parameters
+        self.constant = constant
 
-    def constant(self, value: Fraction) -> Fraction:
-        return value
-
-    def parameter(self, name: str) -> Fraction:
+    def parameter(self, name: str) -> E:
         if name not in self.parameters:
             raise ExpressionError(f"{name} has no value")
         return self.parameters[name]
 
-    def cos(self, angle: str) -> Fraction:
+    def cos(self, angle: str) -> E:
         raise ExpressionError(f"the cosine and sine of {angle} are no parameters")
 
     sin = cos

@@ -48,8 +48,6 @@ def moments_at(model: Model, parameters: Mapping[str, Fraction]) -> dict[str, Fr
     ExpressionError
         When a moment depends on another unknown.
     """
-    if not isinstance(model, Mechanism):
-        return {}
     known = dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters)
     found = {unknown: value_at(tree, known) for unknown, tree in split_moments(model).steady}
     return {unknown: value for unknown, value in found.items() if value}

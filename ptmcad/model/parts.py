@@ -42,22 +42,26 @@ class Part(NamedTuple):
 
 
 def parts(model: Model) -> Iterator[Part]:
-    """The stiffnesses and free lengths of a mechanism's springs, and the lengths of bars that close loops, that are no
-    parameters of such a kind themselves."""
+    """What has a value with a sign in a description and is no parameter of such a kind itself."""
+    return (part for part in written_parts(model) if not _is_known(model, part))
+
+
+def written_parts(model: Model) -> Iterator[Part]:
+    """The stiffnesses and free lengths of a mechanism's springs, and the lengths of bars that close loops."""
     mechanism = mechanism_in(model)
     if mechanism is None:
         return
     for n, spring in enumerate(mechanism.springs, 1):
-        yield from _unless_known(model, Part(f"springs.{n}.k", Kind.STIFFNESS, spring.stiffness))
-        yield from _unless_known(model, Part(f"springs.{n}.free", Kind.FREE_LENGTH, spring.free))
+        yield Part(f"springs.{n}.k", Kind.STIFFNESS, spring.stiffness)
+        yield Part(f"springs.{n}.free", Kind.FREE_LENGTH, spring.free)
     for n, torsion in enumerate(mechanism.torsion, 1):
-        yield from _unless_known(model, Part(f"torsion.{n}.k", Kind.STIFFNESS, torsion.stiffness))
+        yield Part(f"torsion.{n}.k", Kind.STIFFNESS, torsion.stiffness)
     for n, closing in enumerate(mechanism.closing, 1):
-        yield from _unless_known(model, Part(f"closing.{n}.length", Kind.LENGTH, closing.length))
+        yield Part(f"closing.{n}.length", Kind.LENGTH, closing.length)
     for joint in mechanism.xjoints:
-        yield from _unless_known(model, Part(f"x-joint.{joint.name}.base", Kind.LENGTH, joint.length))
+        yield Part(f"x-joint.{joint.name}.base", Kind.LENGTH, joint.length)
         key, off = f"x-joint.{joint.name}.bars", total(joint.bars, negative(joint.length))
-        yield from _unless_known(model, Part(key, Kind.LENGTH, joint.bars))
+        yield Part(key, Kind.LENGTH, joint.bars)
         yield Part(
             key,
             Kind.LENGTH,
@@ -68,13 +72,13 @@ def parts(model: Model) -> Iterator[Part]:
 
 def fault_of_number(part: Part, value: Fraction) -> str:
     """What is wrong with a number that a spring is given, in words; empty where nothing is."""
-    if value > 0 or (not value and part.kind.may_vanish):
+    if not part.kind.excludes(value):
         return ""
     number = value_text(value)
     is_what = number if part.text == number else f"{part.text} = {number}"
     if part.meaning:
         return f"{part.meaning}, but {part.text} = {number}"
-    return f"a {part.kind.noun} is {'not negative' if part.kind.may_vanish else 'positive'}, but this is {is_what}"
+    return f"a {part.kind.noun} is {part.kind.demand}, but this is {is_what}"
 
 
 def check_numbers(model: Model, faults: Faults) -> None:
@@ -87,9 +91,9 @@ def check_numbers(model: Model, faults: Faults) -> None:
                 raise ConfigError(problem, key=part.key)
 
 
-def _unless_known(model: Model, part: Part) -> Iterator[Part]:
-    if isinstance(part.tree, Name):
-        kind = model.kind(part.tree.name)
-        if kind.is_positive or (kind.may_vanish and part.kind.may_vanish):
-            return
-    yield part
+def _is_known(model: Model, part: Part) -> bool:
+    """Whether it is a parameter of which as much is asked."""
+    if not isinstance(part.tree, Name):
+        return False
+    kind = model.kind(part.tree.name)
+    return kind.is_positive or (kind.may_vanish and part.kind.may_vanish)

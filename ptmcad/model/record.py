@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.errors import ConfigError, ExpressionError, Faults
+from ptmcad.errors import ConfigError, ExpressionError, Faults, Place
 from ptmcad.model.angles import angle_name
 from ptmcad.model.bodies import bodies
 from ptmcad.model.description import Mechanism
@@ -23,7 +23,7 @@ from ptmcad.model.sizes import check_sizes
 from ptmcad.model.work import split_moments
 from ptmcad.model.xjoints import second_angles, xjoints
 from ptmcad.text.codec import Codec, Key, choice, converted, listed, named, part, reading, record
-from ptmcad.text.entry import Place, as_written, from_python
+from ptmcad.text.entry import as_written, from_python
 from ptmcad.text.node import MAX_ENTRIES, Node
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Name, Negative, Number, Tree

@@ -12,7 +12,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
-from ptmcad.model.description import Mechanism
+from ptmcad.model.description import Mechanism, Model
 from ptmcad.model.elements import Moment
 from ptmcad.model.evaluate import evaluate
 from ptmcad.model.proofs import Monomial, Polynomial, Ring
@@ -37,14 +37,16 @@ class Split(NamedTuple):
 
 
 @lru_cache(maxsize=8)
-def split_moments(mechanism: Mechanism) -> Split:
-    """The constant parts of the moments, and the energies of which the rest are slopes.
+def split_moments(mechanism: Model) -> Split:
+    """The constant parts of the moments, and the energies of which the rest are slopes; a system has none of these.
 
     Raises
     ------
     ExpressionError
         When a moment that depends on its unknown is too large to be multiplied out.
     """
+    if not isinstance(mechanism, Mechanism):
+        return Split((), ())
     if not mechanism.has_potential:
         return Split(mechanism.moments, ())
     steady, energies = [], []

@@ -20,7 +20,7 @@ Bounds = tuple[Fraction, Fraction]
 
 
 @dataclass(frozen=True, slots=True)
-class Condition:
+class Inequality:
     """An inequality that a design satisfies: ``difference`` is at least zero.
 
     >>> condition = condition_of("L1 + L2 <= 3")
@@ -49,7 +49,7 @@ class Condition:
         return low - most, high - least
 
 
-def condition_of(text: str) -> Condition:
+def condition_of(text: str) -> Inequality:
     """The condition of a text such as ``a + b <= 3``.
 
     Raises
@@ -61,7 +61,7 @@ def condition_of(text: str) -> Condition:
     if found is None:
         raise ExpressionError(f"{text[:60]!r} is no inequality such as {FIRST} + {SECOND} <= 3")
     left, right = parse(found[1].strip()), parse(found[3].strip())
-    return Condition(" ".join(text.split()), (right, left) if found[2] == "<=" else (left, right))
+    return Inequality(" ".join(text.split()), (right, left) if found[2] == "<=" else (left, right))
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,22 +2,26 @@
 
 So does each stiffness and free length that is an expression of parameters, written where a spring has it.
 
-Guarantee: `prove` returns only when all of them are, by proof, what they need to be: hypotheses (H1) and (H2) of
-docs/soundness.md. Nothing is concluded from not having found a counterexample.
+Guarantee: `proved` returns only when all of them are, by proof, what they need to be: hypotheses (H1) and (H2) of
+docs/soundness.md. Nothing is concluded from not having found a counterexample. What is proved is proved once: the
+slice that is returned carries it, as one does that was read from a record, and it is looked up there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 from ptmcad.errors import ExpressionError, GeometryError
 from ptmcad.model import Kind, Model
 from ptmcad.model.parts import Part, fault_of_number, parts
-from ptmcad.question.positivity import Axes, Need, Undecided, Witness, decide, named, number, place
+from ptmcad.question.positivity import Axes, Need, decide, middle_of, named, number, place, window_of
+from ptmcad.question.signs import PROVED, Judgement, Subject, Undecided, Witness
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.parsing import value_in_axes
 
+_NOTHING: Mapping[Subject, Judgement] = {}
 MAX_DEGREE = 32
 """Of a parameter in the two axes; F3 = F^24 takes a minute and a half, and a dense polynomial far more."""
 
@@ -30,46 +34,85 @@ def need(kind: Kind, expression: Expression) -> Need:
     return Need.NOT_NEGATIVE if kind.may_vanish else Need.NO_POLE
 
 
-def fault(name: str, kind: Kind, expression: Expression, axes: Axes, max_work: int | None = None) -> str:
-    """What a point of the window contradicts, in words; empty when there is no such point, or none was found.
+def sign_of(subject: Subject, axes: Axes, max_work: int | None = None) -> Judgement:
+    """The sign of a subject: a pole or a point that contradicts it, or else what is proved.
 
     Parameters
     ----------
     max_work : see `ptmcad.question.positivity.decide`.
     """
-    pole = decide(expression, axes, Need.NO_POLE, max_work)
-    if isinstance(pole, Witness):
-        return f"division by zero inside the window: the denominator of {name} vanishes {_pole_place(pole, axes)}"
-    verdict = decide(expression, axes, need(kind, expression), max_work)
-    if isinstance(verdict, Witness):
-        value = number(verdict.value)
-        least = "not be negative" if need(kind, expression) is Need.NOT_NEGATIVE else "be positive"
-        return (
-            f"a {kind.noun} must {least} in the whole window, but {name} is {value} {place(verdict, axes)}: "
-            "narrow the window"
-        )
-    return ""
-
-
-def unproved(name: str, kind: Kind, expression: Expression, axes: Axes, max_work: int | None = None) -> str:
-    """What is not proved of a parameter, in words; empty when all is.
-
-    Parameters
-    ----------
-    max_work : see `ptmcad.question.positivity.decide`.
-    """
-    for asked in dict.fromkeys((Need.NO_POLE, need(kind, expression))):
-        verdict = decide(expression, axes, asked, max_work)
-        if isinstance(verdict, Undecided):
-            return (
-                f"it is not proved that {name} is {asked.value} in the whole window: its sign is not decided "
+    found = Judgement(subject, window_of(axes), PROVED)
+    for asked in dict.fromkeys((Need.NO_POLE, need(subject.kind, subject.value))):
+        verdict = decide(subject.value, axes, asked, max_work)
+        if isinstance(verdict, Witness):
+            return found._replace(verdict=verdict, problem=_refutation(subject, asked, verdict, axes), is_final=True)
+        if isinstance(verdict, Undecided) and not found.problem:
+            problem = (
+                f"it is not proved that {subject.text} is {asked.value} in the whole window: its sign is not decided "
                 f"{place(verdict, axes)}; narrow the window or simplify the expression"
             )
-    return ""
+            found = found._replace(verdict=verdict, problem=problem, is_final=False)
+    return found
 
 
-def prove(model: Model, parameters: Mapping[str, Expression], axes: Axes) -> None:
-    """Prove of every parameter that it is in the whole open window what it needs to be, and of what springs are given.
+def _refutation(subject: Subject, asked: Need, witness: Witness, axes: Axes) -> str:
+    name = subject.text
+    if asked is Need.NO_POLE:
+        where = place(witness, axes)
+        if witness.other is not None:
+            where = f"between {named(witness.other, axes)} and {named(witness.point, axes)}"
+        return f"division by zero inside the window: the denominator of {name} vanishes {where}"
+    least = "not be negative" if asked is Need.NOT_NEGATIVE else "be positive"
+    return (
+        f"a {subject.kind.noun} must {least} in the whole window, but {name} is {number(witness.value)} "
+        f"{place(witness, axes)}: narrow the window"
+    )
+
+
+def sign_of_part(
+    model: Model,
+    part: Part,
+    parameters: Mapping[str, Expression],
+    axes: Axes,
+    max_work: int | None = None,
+    known: Mapping[Subject, Judgement] = _NOTHING,
+) -> Judgement:
+    """The same of what a spring is given; free lengths that a slice does not name are zero.
+
+    Parameters
+    ----------
+    known : signs in this window that need not be proved again.
+    """
+    window = window_of(axes)
+    subject = Subject(part.text, part.kind, constant(0), part.key)
+    try:
+        value = value_in_axes(part.tree, {**dict.fromkeys(model.free_lengths, constant(0)), **parameters})
+    except ExpressionError as error:
+        return Judgement(subject, window, Undecided(()), f"cannot be judged: {error.message}")
+    subject = subject._replace(value=value)
+    if value.is_constant:
+        problem = fault_of_number(part, value.constant())
+        verdict = Witness(middle_of(window), value.constant()) if problem else PROVED
+        return Judgement(subject, window, verdict, problem)
+    if value.degree > MAX_DEGREE:
+        problem = f"{part.text} has degree {value.degree} in the axes: at most {MAX_DEGREE} can be computed"
+        return Judgement(subject, window, Undecided(()), problem)
+    return known.get(subject) or sign_of(subject, axes, max_work)
+
+
+def signs_of(slice: Slice) -> Iterator[Judgement]:
+    """The signs of all parameters of a slice, and of what its springs are given: as it carries them, or proved here."""
+    window, final = window_of(slice.axes), dict[Subject, Judgement]()
+    final.update((sign.subject, sign) for sign in slice.signs if sign.is_final and sign.window == window)
+    for name, value in slice.parameters.items():
+        subject = Subject(name, slice.model.kind(name), value)
+        yield final.get(subject) or sign_of(subject, slice.axes)
+    for part in parts(slice.model):
+        yield sign_of_part(slice.model, part, slice.parameters, slice.axes, known=final)
+
+
+def proved(slice: Slice) -> Slice:
+    """The slice, which carries the proof that every subject is in the whole open window what it needs to be.
 
     Raises
     ------
@@ -77,56 +120,10 @@ def prove(model: Model, parameters: Mapping[str, Expression], axes: Axes) -> Non
         With the parameter, or the part of the description, and the place where it is not, or where that could not be
         decided.
     """
-    for name, expression in parameters.items():
-        kind = model.kind(name)
-        problem = fault(name, kind, expression, axes) or unproved(name, kind, expression, axes)
-        if problem:
-            raise GeometryError(problem, parameter=name)
-    for part in parts(model):
-        problem = fault_of_part(model, part, parameters, axes) or unproved_of_part(model, part, parameters, axes)
-        if problem:
-            raise GeometryError(problem, part=part.key)
-
-
-def fault_of_part(
-    model: Model, part: Part, parameters: Mapping[str, Expression], axes: Axes, max_work: int | None = None
-) -> str:
-    """The same as `fault` of what a spring is given: a stiffness or a free length that is written there."""
-    try:
-        value = value_of_part(model, part, parameters)
-    except ExpressionError as error:
-        return f"cannot be judged: {error.message}"
-    if value.is_constant:
-        return fault_of_number(part, value.constant())
-    if value.degree > MAX_DEGREE:
-        return f"{part.text} has degree {value.degree} in the axes: at most {MAX_DEGREE} can be computed"
-    return fault(part.text, part.kind, value, axes, max_work)
-
-
-def unproved_of_part(
-    model: Model, part: Part, parameters: Mapping[str, Expression], axes: Axes, max_work: int | None = None
-) -> str:
-    """The same as `unproved` of what a spring is given, of which `fault_of_part` has found nothing."""
-    return unproved(part.text, part.kind, value_of_part(model, part, parameters), axes, max_work)
-
-
-def value_of_part(model: Model, part: Part, parameters: Mapping[str, Expression]) -> Expression:
-    """What a spring is given, as a function of the axes; free lengths that a slice does not name are zero.
-
-    Raises
-    ------
-    ExpressionError
-        When it is too large.
-    """
-    return value_in_axes(part.tree, {**dict.fromkeys(model.free_lengths, constant(0)), **parameters})
-
-
-def prove_slice(slice: Slice) -> None:
-    """The same for a slice."""
-    prove(slice.model, slice.parameters, slice.axes)
-
-
-def _pole_place(pole: Witness, axes: Axes) -> str:
-    if pole.other is None:
-        return place(pole, axes)
-    return f"between {named(pole.other, axes)} and {named(pole.point, axes)}"
+    found = []
+    for sign in signs_of(slice):
+        if sign.problem:
+            name, part = sign.subject.text, sign.subject.part
+            raise GeometryError(sign.problem, parameter="" if part else name, part=part)
+        found.append(sign)
+    return replace(slice, signs=tuple(found))

@@ -74,7 +74,7 @@ def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:
     """
     varying, other, value = varying_axis(slice, along, at)
     try:
-        parameters = {n: restricted(e, varying, value) for n, e in slice.parameters.items()}
+        parameters = on_line(slice, varying, value)
     except ExpressionError as error:
         raise ConfigError(str(error), key=f"at {other}") from error
     parameters = without_free_lengths(
@@ -86,17 +86,26 @@ def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:
     return Line(slice.axes[varying], {other: value}, parameters, slice.model)
 
 
-def restricted(expression: Expression, varying: int, value: Fraction) -> Expression:
-    """A rational function of the slice on the line where the other axis has a value, in the first axis."""
+def on_line(slice: Slice, varying: int, value: Fraction) -> dict[str, Expression]:
+    """The parameters of a slice on the line where the other axis has a value, in the first axis.
 
-    def on_line(terms: tuple[tuple[int, int, Fraction], ...]) -> Expression:
+    Raises
+    ------
+    ExpressionError
+        When one has a pole all along the line.
+    """
+    return {name: _restricted(expression, varying, value) for name, expression in slice.parameters.items()}
+
+
+def _restricted(expression: Expression, varying: int, value: Fraction) -> Expression:
+    def along(terms: tuple[tuple[int, int, Fraction], ...]) -> Expression:
         total = constant(0)
         for term in terms:
             powers, c = term[:2], term[2]
             total = total + axis(0) ** powers[varying] * (c * value ** powers[1 - varying])
         return total
 
-    return on_line(expression.numerator) / on_line(expression.denominator)
+    return along(expression.numerator) / along(expression.denominator)
 
 
 def has_free_lengths(slice: Slice, along: str, at: Mapping[str, Any]) -> bool:
@@ -110,7 +119,6 @@ def has_free_lengths(slice: Slice, along: str, at: Mapping[str, Any]) -> bool:
         return False
     try:
         value = rational(at[other])
-        on_line = {name: restricted(e, varying, value) for name, e in slice.parameters.items()}
-        return have_free_lengths(slice.model, on_line)
+        return have_free_lengths(slice.model, on_line(slice, varying, value))
     except ExpressionError:
         return False

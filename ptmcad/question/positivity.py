@@ -21,6 +21,7 @@ from math import comb, lcm
 from typing import NamedTuple
 
 from ptmcad.cover.tubes import halved
+from ptmcad.question.signs import PROVED, Box, Corner, Interval, Undecided, Verdict, Witness
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, Term, polynomial_value
 from ptmcad.text.numerals import approximate_text
@@ -36,9 +37,6 @@ A reader answers at once and knows no time limit; an engine, which does, asks ag
 MAX_SHOWN = 10**40
 """Numerators and denominators from here on are shown rounded."""
 
-Point = tuple[Fraction, Fraction]
-Interval = tuple[Fraction, Fraction]
-Box = tuple[Interval, Interval]
 Axes = tuple[Axis, Axis]
 
 
@@ -49,39 +47,6 @@ class Need(Enum):
     NOT_NEGATIVE = "not negative"
     NO_POLE = "without a pole"
     """its denominator, as it is written, is not zero"""
-
-
-class Proved(Enum):
-    """The function is what was asked for at every point of the open window."""
-
-    PROVED = "proved"
-
-
-class Witness(NamedTuple):
-    """A point of the open window at which the function is not what was asked for.
-
-    Attributes
-    ----------
-    value : of the function there, or of its denominator when a pole is the matter.
-    distance : 0, or, when the value is a zero at a point with irrational coordinates, how far in each coordinate the
-        zero may be from ``point``.
-    other : for a pole, a point at which the denominator has the other sign, if one was found.
-    """
-
-    point: Point
-    value: Fraction
-    distance: Fraction = Fraction(0)
-    other: Point | None = None
-
-
-class Undecided(NamedTuple):
-    """Neither: a dip to zero or below may be hidden in these boxes, and nowhere else."""
-
-    boxes: tuple[Box, ...]
-
-
-Verdict = Proved | Witness | Undecided
-PROVED = Proved.PROVED
 
 
 @lru_cache(maxsize=256)
@@ -97,8 +62,8 @@ def decide(expression: Expression, axes: Axes, need: Need, max_work: int | None 
     For `Need.POSITIVE` and `Need.NOT_NEGATIVE` the verdict holds where the denominator, as it is written, is not zero;
     ask for `Need.NO_POLE` too.
     """
-    window = _window(axes)
-    middle = _middle(window)
+    window = window_of(axes)
+    middle = middle_of(window)
     denominator = polynomial_value(expression.denominator, *middle)
     if denominator == 0:
         return Witness(middle, denominator) if need is Need.NO_POLE else Undecided((window,))
@@ -126,10 +91,10 @@ def place(verdict: Witness | Undecided, axes: Axes) -> str:
         )
     if isinstance(verdict, Witness):
         return f"at {named(verdict.point, axes)}"
-    return f"near {named(_middle(verdict.boxes[0]), axes)}"
+    return f"near {named(middle_of(verdict.boxes[0]), axes)}"
 
 
-def named(point: Point, axes: Axes) -> str:
+def named(point: Corner, axes: Axes) -> str:
     """A point in words, numbers of many digits rounded."""
     return ", ".join(f"{axis.name} = {number(value)}" for axis, value in zip(axes, point, strict=True))
 
@@ -145,7 +110,7 @@ def number(value: Fraction) -> str:
 def _decided(terms: tuple[Term, ...], window: Box, strict: bool, max_work: int | None) -> Verdict:
     """Whether a polynomial is positive, or not negative, in the open window."""
     if not terms:
-        return Witness(_middle(window), Fraction(0)) if strict else PROVED
+        return Witness(middle_of(window), Fraction(0)) if strict else PROVED
     found = _by_halving(terms, window, strict)
     return _by_algebra(terms, window, strict, found, max_work) if isinstance(found, Undecided) else found
 
@@ -216,7 +181,7 @@ def _inner_ends(interval: Interval, window: Interval, degree: int) -> list[slice
     return ends + ([slice(degree, None)] if interval[1] < window[1] else [])
 
 
-def _inner_corners(part: _Part, window: Box) -> Iterator[tuple[Point, Fraction]]:
+def _inner_corners(part: _Part, window: Box) -> Iterator[tuple[Corner, Fraction]]:
     """Corners of the box inside of the window, with the polynomial's values; an axis that does not occur is halved."""
     places = []
     for k in (0, 1):
@@ -325,10 +290,10 @@ def _times(terms: tuple[Term, ...], side: int) -> tuple[Term, ...]:
     return tuple((i, j, side * c) for i, j, c in terms)
 
 
-def _window(axes: Axes) -> Box:
+def window_of(axes: Axes) -> Box:
     return (axes[0].low, axes[0].high), (axes[1].low, axes[1].high)
 
 
-def _middle(box: Box) -> Point:
+def middle_of(box: Box) -> Corner:
     (x0, x1), (y0, y1) = box
     return (x0 + x1) / 2, (y0 + y1) / 2

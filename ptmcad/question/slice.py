@@ -12,10 +12,12 @@ from enum import Enum
 from fractions import Fraction
 from typing import Any, TypeVar
 
-from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.model import Mechanism, Model, mechanism_in
-from ptmcad.model.evaluate import evaluate
+from ptmcad.errors import ConfigError
+from ptmcad.model import Kind, Model
+from ptmcad.model.evaluate import value_among
+from ptmcad.model.parts import written_parts
 from ptmcad.model.work import split_moments
+from ptmcad.question.signs import Judgement
 from ptmcad.text.expressions import Expression, constant
 
 NOTHING_ADMISSIBLE = "admissible asks that every spring is longer than its free length, and none has a free length here"
@@ -70,6 +72,7 @@ class Slice:
     text : each parameter as the user wrote it, for reports; and any of k, l0, l0_1, l0_2 and l0_3 that such a text
         names, even where it is not among the parameters. An axis has only the text of the parameter that it is.
     units : of ``length`` and ``force``, where they are declared; nothing but text depends on them.
+    signs : what is proved of these parameters in this window, and what is not (`ptmcad.question.domain`).
     """
 
     name: str
@@ -81,6 +84,7 @@ class Slice:
     reference: Mapping[str, Any] = field(default_factory=dict)
     text: Mapping[str, str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
+    signs: tuple[Judgement, ...] = field(default=(), compare=False, repr=False)
 
     @property
     def axis_names(self) -> tuple[str, str]:
@@ -161,39 +165,19 @@ def have_free_lengths(model: Model, parameters: Mapping[str, Expression]) -> boo
 
 def relaxed_springs(model: Model, parameters: Mapping[str, Expression]) -> tuple[int, ...]:
     """The numbers of those springs."""
-    mechanism = mechanism_in(model)
-    if mechanism is None:
-        return ()
-    known = _Expressions(parameters)
-    return tuple(k for k, spring in enumerate(mechanism.springs) if evaluate(spring.free, known).numerator)
+    known = dict.fromkeys(model.parameters, constant(0)) | dict(parameters)
+    free = (part.tree for part in written_parts(model) if part.kind is Kind.FREE_LENGTH)
+    return tuple(k for k, tree in enumerate(free) if value_among(tree, known, constant).numerator)
 
 
 def moved(model: Model, parameters: Mapping[str, Expression]) -> tuple[str, ...]:
     """The unknowns on which a moment, or a force on a length, does work that is in no stored energy."""
-    if not isinstance(model, Mechanism):
-        return ()
-    known = _Expressions(parameters)
+    known = dict.fromkeys(model.parameters, constant(0)) | dict(parameters)
     # a moment that depends on another unknown is none of the axes alone
     steady = split_moments(model).steady
-    return tuple(m.unknown for m in steady if not model.has_potential or evaluate(m.value, known).numerator)
-
-
-class _Expressions:
-    """The rational functions of the axes as a ring with parameters."""
-
-    def __init__(self, parameters: Mapping[str, Expression]):
-        self.parameters = parameters
-
-    def constant(self, value: Fraction) -> Expression:
-        return constant(value)
-
-    def parameter(self, name: str) -> Expression:
-        return self.parameters[name] if name in self.parameters else constant(0)
-
-    def cos(self, angle: str) -> Expression:
-        raise ExpressionError(f"{angle} is an unknown")
-
-    sin = cos
+    return tuple(
+        m.unknown for m in steady if not model.has_potential or value_among(m.value, known, constant).numerator
+    )
 
 
 def without_free_lengths(

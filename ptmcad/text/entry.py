@@ -9,36 +9,13 @@ from collections.abc import Callable, Iterator, Mapping
 from decimal import Decimal
 from typing import Any, NamedTuple
 
-from ptmcad.errors import ConfigError, ExpressionError, excerpt, quoted
+from ptmcad.errors import Place, quoted
 from ptmcad.text.numerals import exactly, text_of
 
 MAX_DEPTH = 20
 """Levels of lists and mappings."""
 _NULLS = frozenset({"", "~", "null", "Null", "NULL"})
 _BOOLEANS = frozenset({"true", "false", "yes", "no", "on", "off", "y", "n"})
-
-
-class Place(NamedTuple):
-    """Where something stands: file, line (from 1) and dotted key path; each may be unknown."""
-
-    key: str | None = None
-    file: str | None = None
-    line: int | None = None
-
-    def error(self, message: str) -> ConfigError:
-        """A `ConfigError` that names this place."""
-        return ConfigError(message, key=self.key, file=self.file, line=self.line)
-
-    def located(self, error: ExpressionError, text: str) -> ConfigError:
-        """What is wrong with an expression that stands here, with the part of its text that is meant."""
-        at = error.position
-        where = "" if at is None or len(text) < 2 else f" (character {at + 1} of {excerpt(text, at)})"
-        return self.error(f"{error.message}{where}")
-
-    def below(self, key: str, line: int | None = None) -> Place:
-        """The place of an entry under this one."""
-        path = key if self.key is None else f"{self.key}.{key}"
-        return Place(path, self.file, self.line if line is None else line)
 
 
 class Scalar(NamedTuple):

@@ -12,8 +12,8 @@ from enum import Enum
 from fractions import Fraction
 from typing import Any, NamedTuple, TypeVar
 
-from ptmcad.errors import ConfigError, ExpressionError, Faults
-from ptmcad.text.entry import Place, Scalar, Sequence, Tree, Written, as_written, plain_data
+from ptmcad.errors import ConfigError, ExpressionError, Faults, Place
+from ptmcad.text.entry import Scalar, Sequence, Tree, Written, as_written, plain_data
 from ptmcad.text.numerals import fraction_of
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.textfile import json_data

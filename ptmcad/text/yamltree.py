@@ -14,9 +14,9 @@ from typing import Any
 
 import yaml
 
-from ptmcad.errors import ConfigError, shown
+from ptmcad.errors import ConfigError, Place, shown
 from ptmcad.text import textfile
-from ptmcad.text.entry import MAX_DEPTH, Place, Scalar, Sequence, Tree, Written
+from ptmcad.text.entry import MAX_DEPTH, Scalar, Sequence, Tree, Written
 
 MAX_BYTES = 200_000
 MAX_VALUES = 10_000

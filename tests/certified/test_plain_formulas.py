@@ -14,6 +14,7 @@ from support.records import TRUSS
 
 import ptmcad
 from ptmcad.answer.regionmap import Status
+from ptmcad.certified.engine import certified_map
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain import rational
 from ptmcad.certified.plain.bounds import ranges
@@ -266,8 +267,10 @@ def test_what_the_plain_formulas_do_not_take_is_refused_by_name() -> None:
     with pytest.raises(ConfigError, match="up to 3 unknowns"):
         plain_counter(slice_from_mapping({"name": "four", "system": four, "axes": {"a": [1, 2], "b": [1, 2]}}))
     upwards = slice_from_mapping(PENDULUM)
-    with pytest.raises(GeometryError, match="stiffness times free length of spring AP is -1/2 at"):
-        plain_counter(replace(upwards, parameters={**upwards.parameters, "l0": constant(Fraction(-1, 2))}))
+    with pytest.raises(
+        GeometryError, match="a free length must not be negative in the whole window, but l0 is -1/2 at"
+    ):
+        certified_map(replace(upwards, parameters={**upwards.parameters, "l0": constant(Fraction(-1, 2))}))
 
 
 def test_equations_without_a_potential_are_counted() -> None:

@@ -13,7 +13,10 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.model import ptm
 from ptmcad.question.config import load, point_from_mapping, slice_from_mapping, slice_from_options
+from ptmcad.question.config.designs import design_from
+from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Count
+from ptmcad.text.entry import plain_data
 from ptmcad.text.expressions import axis, constant
 
 CONFIGS = sorted((Path(__file__).resolve().parents[2] / "configs").glob("*.yaml"))
@@ -368,3 +371,18 @@ def test_a_value_for_all_springs_that_none_takes_is_refused_at_points_too(
         point_from_mapping(given | {shorthand: "2"})
     assert caught.value.key == shorthand
     assert point_from_mapping(given | {shorthand: "2", names[2]: f"{shorthand}/2"})[names[2]] == 1
+
+
+@pytest.mark.parametrize("name", ["four-bar-free", "two-dof-tensegrity"])
+def test_springs_of_mechanisms_with_loops_may_be_asked_to_be_in_tension(name: str) -> None:
+    """They were refused as systems, which have no springs."""
+    axes = load(name).axes
+    over = {axis.name: [axis.low, axis.high] for axis in axes}
+    record = {**plain_data(record_tree(name)), "design": {"maximise": "th1", "over": over, "where": {"tension": True}}}
+    assert design_from(record).tension
+
+
+def test_springs_of_a_system_are_not_asked_for() -> None:
+    design = {"maximise": "x", "over": {"a": [0, 1], "b": [0, 1]}, "where": {"tension": True}}
+    with pytest.raises(ConfigError, match="a system has no springs that would be in tension"):
+        design_from({**plain_data(record_tree("cubic")), "design": design})

@@ -6,7 +6,9 @@ high to be looked at once.
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +21,15 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError, GeometryError, PtmcadError
 from ptmcad.exact.engine import exact_map
 from ptmcad.model import Kind
-from ptmcad.question.config import slice_from_mapping
-from ptmcad.question.domain import prove, prove_slice, unproved
+from ptmcad.question import domain
+from ptmcad.question.config import load, resolution, slice_from_mapping
+from ptmcad.question.domain import proved, sign_of
 from ptmcad.question.positivity import READING_WORK, decide
+from ptmcad.question.signs import PROVED, Subject, Verdict
 from ptmcad.question.slice import Axis, Slice
-from ptmcad.text.expressions import axis
+from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.parsing import parse
+from ptmcad.text.tree import Negative
 
 DIPS = {
     "degree 20": "(m - 1/3)^20 - 1e-180",
@@ -100,11 +105,11 @@ def test_a_zero_inside_is_refused_where_it_may_not_be(name: str, zero: str) -> N
 @pytest.mark.parametrize("name", [*POSITIVE, *FREE, "F3"])
 def test_a_zero_on_the_edge_is_no_fault(name: str, edge: str) -> None:
     slice = slice_from_mapping(record(**{name: f"1/({TOUCHING[edge]})" if name == "F3" else TOUCHING[edge]}))
-    prove_slice(slice)
+    proved(slice)
 
 
 def test_a_base_that_is_zero_everywhere_is_in_the_domain() -> None:
-    prove_slice(slice_from_mapping(record(rho=0, L2=2, l0="1/5")))
+    proved(slice_from_mapping(record(rho=0, L2=2, l0="1/5")))
 
 
 def bare(**parameters: str) -> Slice:
@@ -128,11 +133,11 @@ def test_a_zero_function_is_no_length() -> None:
     with pytest.raises(
         GeometryError, match="a length must be positive in the whole window, but L1 is 0 at m = 1, n = -1"
     ):
-        prove_slice(bare(L1="0"))
+        proved(bare(L1="0"))
     with pytest.raises(GeometryError, match="stiffness must be positive"):
-        prove_slice(bare(k3="0*m - 2"))
+        proved(bare(k3="0*m - 2"))
     with pytest.raises(GeometryError, match="base length must be positive"):
-        prove_slice(bare(rho="0*m - 2"))
+        proved(bare(rho="0*m - 2"))
 
 
 def test_undecided_is_read_but_not_certified(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -140,8 +145,9 @@ def test_undecided_is_read_but_not_certified(monkeypatch: pytest.MonkeyPatch) ->
     engine = pytest.importorskip("ptmcad.certified.engine")
     decide.cache_clear()
     monkeypatch.setattr(definite, "MAX_WORK", 0)
+    monkeypatch.setattr(resolution, "READING_WORK", 0)  # else the reader proves it, and the slice carries that
     slice = slice_from_mapping(record(L1="(m^3 + n^3 - m*n - 1/7)^2 + 1e-40", l0="1/5"))
-    assert unproved("L1", Kind.LENGTH, slice.parameters["L1"], slice.axes).startswith(
+    assert sign_of(Subject("L1", Kind.LENGTH, slice.parameters["L1"]), slice.axes).problem.startswith(
         "it is not proved that L1 is positive in the whole window: its sign is not decided near m = "
     )
     with pytest.raises(GeometryError, match="not proved that L1 is positive"):
@@ -172,6 +178,50 @@ def test_a_reader_does_not_do_the_work_of_an_engine(monkeypatch: pytest.MonkeyPa
     decide.cache_clear()
 
 
+@pytest.mark.parametrize("name", ["fig4", "free02"])
+def test_what_a_reader_has_proved_no_engine_proves_again(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    slice = load(name)
+    asked: list[object] = []
+
+    def decided(function: Expression, *given: Any) -> Verdict:
+        asked.append(function)
+        return decide(function, *given)
+
+    monkeypatch.setattr(domain, "decide", decided)
+    once = proved(slice)
+    # of a parameter that is an axis the reader looks at the axis alone
+    assert all(function in (axis(0), axis(1)) for function in asked)
+    asked.clear()
+    assert proved(once) == slice
+    assert proved(pickle.loads(pickle.dumps(once))) == slice
+    assert not asked
+    assert all(sign.verdict is PROVED for sign in once.signs)
+    assert {sign.subject.text for sign in once.signs if not sign.subject.part} == {*slice.parameters}
+
+
+@pytest.mark.parametrize("changed", ["parameter", "window", "spring"])
+def test_a_proof_is_not_taken_for_that_of_another_slice(changed: str) -> None:
+    """What is carried says of which function in which window it is."""
+    mechanism = {
+        "parameters": {"g": {"default": 1}, "m": {}, "n": {}},
+        "unknowns": {"th": "angle"},
+        "points": {"A": ["-2", "0"], "P": ["sin(th)", "cos(th)"]},
+        "springs": [{"between": ["A", "P"], "k": "g*m"}],
+        "loads": {"P": ["n", "0"]},
+    }
+    slice = proved(slice_from_mapping({"mechanism": mechanism, "axes": {"m": [0, 2], "n": [-3, 1]}}))
+    first, second = slice.axes
+    other = {
+        "parameter": lambda: replace(slice, parameters={**slice.parameters, "g": constant(-1)}),
+        "window": lambda: replace(slice, axes=(replace(first, low=Fraction(-1)), second)),
+        "spring": lambda: replace(slice, model=replace(slice.model, springs=(
+            slice.model.springs[0]._replace(stiffness=Negative(slice.model.springs[0].stiffness)),))),
+    }[changed]()  # fmt: skip
+    with pytest.raises(GeometryError) as caught:
+        proved(other)
+    assert caught.value.part == "springs.1.k"
+
+
 def test_an_isolated_zero_is_refused_by_the_exact_engine_too() -> None:
     """Between lines of a grid, at a point with irrational coordinates: once an exact map was made of it."""
     with pytest.raises(PtmcadError, match="sign is not decided near m = "):
@@ -184,14 +234,14 @@ def test_a_line_need_not_lie_in_the_window(at: str, sign: bool) -> None:
     slice = slice_from_mapping(
         {"parameters": {"l0": "1/5", "l0_3": "1/10 - m"}, "axes": {"rho": [1, 2], "m": [0, "1/20"]}}
     )
-    on_line = {"l0_3": parse("1/10 - m", {"m": parse(at)})}
     value = parse(at).constant()
-    axes = (slice.axes[0], Axis("m", value, value))
+    on_line = {**slice.parameters, "l0_3": parse("1/10 - m", {"m": parse(at)})}
+    line = replace(slice, axes=(slice.axes[0], Axis("m", value, value)), parameters=on_line)
     if sign:
-        prove(slice.model, on_line, axes)
+        proved(line)
     else:
         with pytest.raises(GeometryError, match="l0_3 is -"):
-            prove(slice.model, on_line, axes)
+            proved(line)
         pytest.importorskip("numba")
         with pytest.raises(GeometryError, match=r"l0_3 is -.* at rho = 3/2, m = 1"):
             certified_intervals(slice, "rho", {"m": at}, 6)
@@ -212,10 +262,10 @@ def test_what_springs_are_given_is_proved_by_engines(stiffness: str, free: str, 
         "loads": {"P": ["n", "g*m"]},
     }
     slice = slice_from_mapping({"mechanism": mechanism, "axes": {"m": [0, 2], "n": [-3, 1]}})
-    prove_slice(slice)
+    proved(slice)
     dip = parse("(m - 1/3)^2 + (n + 1/7)^2 - 1e-18", {"m": axis(0), "n": axis(1)})
     with pytest.raises(GeometryError) as caught:
-        prove_slice(replace(slice, parameters={**slice.parameters, "g": dip}))
+        proved(replace(slice, parameters={**slice.parameters, "g": dip}))
     assert caught.value.part == part
 
 

@@ -227,6 +227,14 @@ def test_a_parameter_that_a_records_expression_uses_is_used() -> None:
         slice_from_mapping({**record, "parameters": {"W": "2*g", "m": 3}})
 
 
+def test_an_alias_that_only_a_records_expression_uses_has_its_value() -> None:
+    """It was once taken for 1: what nothing in a right description uses was held for something that a fault hides."""
+    parameters = {"a": {"default": 3, "alias": ["b"]}, "c": {}}
+    system = {"parameters": parameters, "unknowns": {"x": "real"}, "equations": ["x^3 - a*x + c"]}
+    slice = slice_from_mapping({"system": system, "parameters": {"c": "2*b*u"}, "axes": {"u": [0, 1], "a": [1, 2]}})
+    assert slice.parameters["c"].to_text(("u", "a")) == "2*u*a"
+
+
 def test_an_alias_that_nothing_uses_is_told_at_its_parameter() -> None:
     parameters = {**PENDULUM["parameters"], "L": {"kind": "length", "alias": ["l9"]}, "m": {}}  # type: ignore[dict-item]
     record = {"mechanism": {**PENDULUM, "parameters": parameters}, "axes": {"L": [0, 2], "W": [0, 1]}}

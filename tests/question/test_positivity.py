@@ -15,19 +15,8 @@ from support.examples import examples
 from support.few import few
 
 from ptmcad.algebra import definite
-from ptmcad.question.positivity import (
-    PROVED,
-    Need,
-    Proved,
-    Undecided,
-    Witness,
-    bernstein,
-    decide,
-    named,
-    number,
-    place,
-    polynomial_value,
-)
+from ptmcad.question.positivity import Need, bernstein, decide, named, number, place, polynomial_value
+from ptmcad.question.signs import PROVED, Proved, Undecided, Witness
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.parsing import parse

@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from ptmcad.errors import ConfigError, Faults
+from ptmcad.errors import ConfigError, Faults, Place
 from ptmcad.text.codec import Codec, listed, named, part, reading, record
-from ptmcad.text.entry import Place, from_python, place_at
+from ptmcad.text.entry import from_python, place_at
 from ptmcad.text.node import Node
 from ptmcad.text.yamltree import read_text
 

@@ -15,7 +15,8 @@ from support.dips import AXES, DIPS, NAMES, random_square, thin_dip
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cover.rectangles import Cover
-from ptmcad.question.positivity import Need, Proved, Undecided, decide
+from ptmcad.question.positivity import Need, decide
+from ptmcad.question.signs import Proved, Undecided
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.parsing import parse

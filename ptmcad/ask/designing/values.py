@@ -145,12 +145,7 @@ def _poses(design: Design, values: Mapping[str, Fraction]) -> Poses | None:
     """The poses of a design that has as many stable ones as is asked."""
     from ptmcad.ask.solving import poses_at
 
-    point = design.point(values)
-    for name in design.model.parameters:
-        kind = design.model.kind(name)
-        if name in point and ((kind.is_positive and point[name] <= 0) or (kind.may_vanish and point[name] < 0)):
-            return None
-    poses = poses_at(design.model, point, DIGITS)
+    poses = poses_at(design.model, design.point(values), DIGITS)
     if poses.status in (Status.ON_VARIETY, Status.UNDECIDED):
         return None
     fits = [pose for pose in poses.equilibria if not design.model.tells_stability or pose.stable is True]

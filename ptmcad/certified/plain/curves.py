@@ -73,7 +73,7 @@ def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) ->
 
     Raises
     ------
-    ConfigError, GeometryError
+    ConfigError
         As `problem_of` and `ranges` do.
     """
     found = branches(problem_of(slice), slice.axes)

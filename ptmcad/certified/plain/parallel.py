@@ -9,7 +9,8 @@ from collections.abc import Sequence
 
 from ptmcad.certified.plain.divisors import lowest_terms
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
-from ptmcad.question.positivity import PROVED, Need, decide
+from ptmcad.question.positivity import Need, decide
+from ptmcad.question.signs import PROVED
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 

@@ -392,7 +392,7 @@ def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], No
 
     Raises
     ------
-    ConfigError, GeometryError
+    ConfigError
         As `problem_of` and `ranges` do.
     DegenerateSliceError
         When a condition is zero at a solution wherever one looks, so that nothing would ever be decided.

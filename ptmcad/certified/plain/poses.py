@@ -32,7 +32,7 @@ from ptmcad.model import Mechanism, Model, ptm
 from ptmcad.model.closed import mechanism_in
 from ptmcad.model.compile import CompiledSystem, compiled_with
 from ptmcad.model.fourbars import flat_everywhere
-from ptmcad.question.domain import prove_slice
+from ptmcad.question.domain import proved
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.balls import bounded, enclosed
 from ptmcad.text.enclosure import Enclosure
@@ -65,8 +65,7 @@ def plain_poses(model: Model, parameters: Mapping[str, Fraction], digits: int) -
     ConfigError, GeometryError
         As `ptmcad.certified.plain.points.plain_counter` does, or where a parameter is not what its kind asks for.
     """
-    slice = point_slice(model, parameters)
-    prove_slice(slice)
+    slice = proved(point_slice(model, parameters))
     at = numbers_at(model, parameters)
     if flat := flat_everywhere(at.mechanism, slice.parameters):
         loop, fold = flat

@@ -18,13 +18,11 @@ from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.excesses import Excess, excesses, name_of
 from ptmcad.certified.plain.parallel import shares
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial, Vector
-from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError
+from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.formulas.graph import Formula, Graph, length
-from ptmcad.model import Kind
 from ptmcad.model.closed import equations_in, mechanism_in
 from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.model.fourbars import closed_by, flat_everywhere
-from ptmcad.question.domain import fault, unproved
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.numerals import text_of
@@ -142,14 +140,15 @@ class Problem:
 def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
     """The problem of a slice's model.
 
+    Guarantee: no K of a spring is negative anywhere in the window of a slice that `ptmcad.question.domain.proved` has
+    returned. Only then is a spring without length, whose energy has a peak there, no stable equilibrium that is not
+    counted.
+
     Raises
     ------
     ConfigError
         When the plain formulas do not take the model: more than ``most`` unknowns; or when a condition on solutions
         holds nowhere.
-    GeometryError
-        When it is not proved that k l0 is nowhere negative in the window: only then is a spring without length, whose
-        energy has a peak there, no stable equilibrium that is not counted.
     DegenerateSliceError
         When a closed loop is proved to fold flat all over the window; the message says what its branches are.
     """

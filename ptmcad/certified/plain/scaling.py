@@ -14,7 +14,8 @@ from collections.abc import Iterable
 from ptmcad.certified.plain.divisors import common_divisor, quotient
 from ptmcad.certified.plain.problem import Problem
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
-from ptmcad.question.positivity import PROVED, Need, decide
+from ptmcad.question.positivity import Need, decide
+from ptmcad.question.signs import PROVED
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 

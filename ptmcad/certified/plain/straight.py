@@ -23,7 +23,8 @@ from ptmcad.certified.plain.covering import in_half_angle
 from ptmcad.certified.plain.divisors import common_divisor, quotient, square_root
 from ptmcad.certified.plain.problem import Condition, Problem, Push, SpringCone
 from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial, Vector, waves
-from ptmcad.question.positivity import PROVED, Need, decide
+from ptmcad.question.positivity import Need, decide
+from ptmcad.question.signs import PROVED
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 

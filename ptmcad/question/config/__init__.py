@@ -15,7 +15,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, Faults, expect
+from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, Faults, Place, expect
 from ptmcad.model import Kind, Parameter, ptm
 from ptmcad.question.config.binding import released_names, settled
 from ptmcad.question.config.family import Family, checked_family, family_of, fault_of_member, member_like
@@ -37,7 +37,7 @@ from ptmcad.question.domain import MAX_DEGREE
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Count, Slice
-from ptmcad.text.entry import Place, Scalar, Sequence, Written
+from ptmcad.text.entry import Scalar, Sequence, Written
 from ptmcad.text.node import Node
 from ptmcad.text.syntax import did_you_mean
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from ptmcad.errors import ExpressionError
+from ptmcad.errors import ExpressionError, Place
 from ptmcad.question.config.record import Record, swept_names
 from ptmcad.question.config.scalars import number_of
-from ptmcad.text.entry import Place, Scalar
+from ptmcad.text.entry import Scalar
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import rational
 from ptmcad.text.syntax import parse

@@ -10,16 +10,15 @@ from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 
-from ptmcad.errors import ExpressionError
+from ptmcad.errors import ExpressionError, Place
 from ptmcad.model import Model
 from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.family import Family, family_of
 from ptmcad.question.config.record import Record, Window
 from ptmcad.question.config.resolution import axis_of, point_of, slice_of
-from ptmcad.question.design import Bounds, Condition, named
+from ptmcad.question.design import Bounds, Inequality, named
 from ptmcad.question.slice import Axis, Slice
-from ptmcad.text.entry import Place, Scalar
-from ptmcad.text.expressions import Expression, constant
+from ptmcad.text.entry import Scalar
 
 
 class Aim(Enum):
@@ -52,7 +51,7 @@ class Design:
     along: str
     over: tuple[Axis, ...]
     working: int
-    conditions: tuple[Condition, ...] = ()
+    conditions: tuple[Inequality, ...] = ()
     tension: bool = False
     pose: str = "stable:1"
 
@@ -114,15 +113,7 @@ class Design:
         ConfigError
             When the mechanism does not take such values.
         """
-        axes: dict[str, Expression] = {}
-        record = _without(self.record, self.over)
-        given = {}
-        for name, value in values.items():
-            if name in self.record.axes and name not in self.model.parameters:
-                axes[name] = constant(value)
-            else:
-                given[name] = value
-        return point_of(with_numbers(record, given, {}), axes)
+        return point_of(with_numbers(_without(self.record, self.over), values, {}), {})
 
     def holds(self, values: Mapping[str, Fraction]) -> bool:
         """Whether a design satisfies the conditions."""

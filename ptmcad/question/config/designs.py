@@ -10,8 +10,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.model import Mechanism
+from ptmcad.errors import ConfigError, ExpressionError, Place
+from ptmcad.model import mechanism_in
 from ptmcad.model.reading import NUMBER, two
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.objects import plain, tree_of
@@ -19,12 +19,12 @@ from ptmcad.question.config.options import ranges_of
 from ptmcad.question.config.record import AXIS_NAME, Record, Window, check_axis_name, window_of, with_ranges
 from ptmcad.question.config.resolution import axis_of, described_record, note_values
 from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
-from ptmcad.question.design import Condition, condition_of, named
+from ptmcad.question.design import Inequality, condition_of, named
 from ptmcad.question.examples import A_DESIGN, FIRST, SECOND
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Axis
 from ptmcad.text.codec import Codec, part, reading, record
-from ptmcad.text.entry import Place, Scalar, Tree, Written, from_python
+from ptmcad.text.entry import Scalar, Tree, Written, from_python
 from ptmcad.text.node import Node
 from ptmcad.text.syntax import did_you_mean
 
@@ -215,7 +215,7 @@ def _design(record: Record, asked: Node) -> Design:
     over, where = _parameters(record, said["over"], asked, needed), said["where"]
     conditions = asked.gathered(partial(_condition, record, over), where["conditions"])
     with faults:
-        if where["tension"] and not isinstance(record.model, Mechanism):
+        if where["tension"] and mechanism_in(record.model) is None:
             raise asked.at("where").at("tension").fault("a system has no springs that would be in tension")
     found = Design(record, maximise, along, over, where["stable"], tuple(conditions), where["tension"], said["pose"])
     if faults.found:
@@ -263,7 +263,7 @@ def _bounds(record: Record, entry: Node, needed: tuple[str, ...]) -> Window:
     return window_of(entry, "bounds", "[1/2, 2]")
 
 
-def _condition(record: Record, over: tuple[Axis, ...], item: Node) -> Condition:
+def _condition(record: Record, over: tuple[Axis, ...], item: Node) -> Inequality:
     known = {axis.name: (axis.low, axis.high) for axis in over}
     fixed = {n: s.text for n, s in record.values.items() if n not in record.axes}
     if not isinstance(item.value, Scalar):

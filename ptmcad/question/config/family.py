@@ -191,12 +191,7 @@ def _located(record: Record, name: str, value: Fraction, faults: Faults) -> Slic
         with faults:
             for fault in error.faults:
                 if (fault.key, fault.line) not in known:
-                    raise ConfigError(
-                        f"{fault.message} (at {name} = {text_of(value)})",
-                        key=fault.key,
-                        file=fault.file,
-                        line=fault.line,
-                    ) from error
+                    raise fault.place.error(f"{fault.message} (at {name} = {text_of(value)})") from error
         return None
 
 

@@ -6,15 +6,14 @@ record's folder, or in folders below, are read.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
+from ptmcad.errors import ConfigError, ExpressionError, Faults, Place, quoted
 from ptmcad.model import (
-    Mechanism,
     Model,
-    System,
     built_in,
     mechanism_of,
     ptm,
@@ -25,7 +24,7 @@ from ptmcad.model import (
 )
 from ptmcad.model.parts import check_numbers
 from ptmcad.question.config.starters import mechanism_names, starter_mechanism
-from ptmcad.text.entry import Place, Scalar, Tree, place_at, plain_data, scalars
+from ptmcad.text.entry import Scalar, Tree, place_at, plain_data, scalars
 from ptmcad.text.syntax import NAME, did_you_mean, names_in
 from ptmcad.text.yamltree import read_file
 
@@ -181,18 +180,8 @@ def _read(node: Tree, faults: Faults, used: Iterable[str] = (), is_system: bool 
     data = plain_data(node)
     found = Faults()
     model: Model | None = None
-    try:
-        model = read_system(data, found) if is_system else read_mechanism(data, found)
-        if isinstance(model, Mechanism) and not found.found:
-            with found:
-                model = recognised(model)  # written down again, the built-in one is the same one
-        _check_use(model, {*used}, found)
-        check_numbers(model, found)
-        if isinstance(model, Mechanism) and not found.found:
-            with found:
-                model = without_loops(model)
-    except ConfigError:  # so many faults that no more are looked for: they still have to be put where they stand
-        model = None
+    with suppress(ConfigError):  # so many faults that no more are looked for: they still have to be put in their places
+        model = _system(data, {*used}, found) if is_system else _mechanism(data, {*used}, found)
     keys = [fault.key or "" for fault in found.found]
     placed = [place_at(node, key).error(fault.message) for key, fault in zip(keys, found.found, strict=True)]
     if model is None:
@@ -200,22 +189,46 @@ def _read(node: Tree, faults: Faults, used: Iterable[str] = (), is_system: bool 
     for error in placed:
         with faults:
             raise error
-    return Described(model, node, _doubtful(model, keys))
+    doubtful = _doubtful(model, keys)
+    return Described(model, node, doubtful | _undeclared(model, keys) if is_system and keys else doubtful)
+
+
+def _mechanism(data: Mapping[str, Any], used: set[str], faults: Faults) -> Model:
+    model = read_mechanism(data, faults)
+    if not faults.found:
+        with faults:
+            model = recognised(model)  # written down again, the built-in one is the same one
+    _check_use(model, used, "a point, a spring or a load", faults)
+    check_numbers(model, faults)
+    if not faults.found:
+        with faults:
+            return without_loops(model)
+    return model
+
+
+def _system(data: Mapping[str, Any], used: set[str], faults: Faults) -> Model:
+    model = read_system(data, faults)
+    _check_use(model, used, "an equation", faults)
+    return model
 
 
 _WITHOUT_PARAMETERS = frozenset({"name", "title", "bars", "supports", "unknowns"})
 """Keys below which no parameter is used."""
 
 
-def _check_use(model: Model, used: set[str], faults: Faults) -> None:
-    """Note each parameter that nothing uses, neither the description nor the record's own expressions."""
+def _check_use(model: Model, used: set[str], where: str, faults: Faults) -> None:
+    """Note each parameter that nothing uses, neither the description nor the record's own expressions.
+
+    Parameters
+    ----------
+    where : a description uses one.
+    """
     if {(fault.key or "").partition(".")[0] for fault in faults.found} - _WITHOUT_PARAMETERS:
         return  # what could not be read may use it
     for name in model.idle:
         with faults:
             if name not in used:
                 parameter = model.parameters[name]
-                where = "an equation" if isinstance(model, System) else "a point, a spring or a load"
                 raise ConfigError(
                     f"nothing uses {name}: leave it out, or use it in {where}, or in an expression under the record's "
                     "'parameters:'",
@@ -240,8 +253,11 @@ def _doubtful(model: Model, keys: Iterable[str]) -> frozenset[str]:
     names = {step[1] for step in steps if step[0] == "parameters" and len(step) > 1}
     if any(step[0] == "parameters" and len(step) == 1 for step in steps):
         return frozenset(model.parameters)
-    if isinstance(model, System):  # what is not listed may be something else, where faults hide what it is
-        undeclared = model.parameters.keys() - model.source.get("parameters", {})
-        told = all(step[0] in ("parameters", "name", "title", *_EXPRESSIONS) for step in steps)
-        names |= undeclared - {*model.variables} if told else undeclared
     return frozenset(names | {name for name, p in model.parameters.items() if p.alias_of in names})
+
+
+def _undeclared(model: Model, keys: Iterable[str]) -> frozenset[str]:
+    """The parameters of a system that are not listed: they may be something else, where faults hide what they are."""
+    undeclared = model.parameters.keys() - model.source.get("parameters", {})
+    told = all(key.partition(".")[0] in ("parameters", "name", "title", *_EXPRESSIONS) for key in keys)
+    return frozenset(undeclared - {*model.variables} if told else undeclared)

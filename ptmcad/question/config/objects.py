@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
-from ptmcad.errors import A_RECORD, ConfigError, expect
+from ptmcad.errors import A_RECORD, ConfigError, Place, expect
 from ptmcad.model import ClosedMechanism, Mechanism, Model, System, built_in
 from ptmcad.question.config.model import model_of
 from ptmcad.question.shipped import record_tree
-from ptmcad.text.entry import Place, Tree, from_python
+from ptmcad.text.entry import Tree, from_python
 
 
 def make_mechanism(description: Mapping[Any, Any] | None = None, /, **entries: Any) -> Mechanism | ClosedMechanism:
@@ -40,9 +40,7 @@ def make_mechanism(description: Mapping[Any, Any] | None = None, /, **entries: A
     ConfigError
         With the key of what is wrong; its ``faults`` are all there are.
     """
-    found = _model("mechanism", description, entries)
-    assert isinstance(found, Mechanism | ClosedMechanism)
-    return found
+    return cast("Mechanism | ClosedMechanism", _model("mechanism", description, entries))
 
 
 def make_system(description: Mapping[Any, Any] | None = None, /, **entries: Any) -> System:
@@ -53,9 +51,7 @@ def make_system(description: Mapping[Any, Any] | None = None, /, **entries: Any)
 
     Takes entries, and raises, as `make_mechanism` does.
     """
-    found = _model("system", description, entries)
-    assert isinstance(found, System)
-    return found
+    return cast("System", _model("system", description, entries))
 
 
 def tree_of(question: object, key: str = "question", expected: str = A_RECORD) -> Tree:

@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import A_RECORD, A_SLICE, ConfigError
+from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, Place
 from ptmcad.model import Model, ptm
 from ptmcad.question.config.binding import released_names, settled
 from ptmcad.question.config.objects import plain, tree_of
@@ -17,7 +17,7 @@ from ptmcad.question.config.resolution import point_of, without_shorthands
 from ptmcad.question.config.scalars import number_of, number_text
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Slice
-from ptmcad.text.entry import Place, Scalar, from_python
+from ptmcad.text.entry import Scalar, from_python
 from ptmcad.text.expressions import Expression, constant
 
 _EXPECTED = f"{A_SLICE}, {A_RECORD}"

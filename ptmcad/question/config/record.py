@@ -9,7 +9,7 @@ import re
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from ptmcad.errors import ConfigError, Faults, HypothesisError, PtmcadError, shown
+from ptmcad.errors import ConfigError, Faults, HypothesisError, Place, PtmcadError, shown
 from ptmcad.model import Model, ptm
 from ptmcad.model.reading import MAX_NAME as MAX_AXIS_NAME
 from ptmcad.model.reading import MAX_TITLE, NUMBER, VALUE, two
@@ -26,7 +26,7 @@ from ptmcad.question.config.scalars import (
 from ptmcad.question.examples import A_DESIGN, A_SWEEP, AXES, FORCE, SECOND, THIRD
 from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count
 from ptmcad.text.codec import Codec, Key, choice, named, part, reading, record
-from ptmcad.text.entry import Place, Scalar, Sequence, Tree, Written, plain_data
+from ptmcad.text.entry import Scalar, Sequence, Tree, Written, plain_data
 from ptmcad.text.node import Node, unstorable
 from ptmcad.text.syntax import NAME, NOT_NUMBERS, did_you_mean
 

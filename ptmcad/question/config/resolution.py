@@ -2,15 +2,16 @@
 
 Guarantee: what leaves here is complete and exact; no length or stiffness is known to be out of the range that the
 geometry needs. Where its sign could not be decided at once (see `ptmcad.question.positivity`) it is left to the
-engines, which decide or refuse: `ptmcad.question.domain.prove`. A slice's texts name only its axes and each other.
+engines, which decide or refuse: `ptmcad.question.domain.proved`. What is proved here the slice carries. Its texts name
+only its axes and each other.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 
-from ptmcad.errors import ExpressionError, Faults
+from ptmcad.errors import ExpressionError, Faults, Place
 from ptmcad.model import ClosedMechanism, Kind, Mechanism, Model, System
 from ptmcad.model.evaluate import value_at
 from ptmcad.model.moments import foreign
@@ -18,11 +19,12 @@ from ptmcad.model.parts import fault_of_number, parts
 from ptmcad.question.config.names import Resolution
 from ptmcad.question.config.record import Record, Window, read_record, swept_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of
-from ptmcad.question.domain import MAX_DEGREE, fault, fault_of_part, unproved
+from ptmcad.question.domain import MAX_DEGREE, sign_of, sign_of_part
 from ptmcad.question.examples import AXES
-from ptmcad.question.positivity import READING_WORK
+from ptmcad.question.positivity import READING_WORK, window_of
+from ptmcad.question.signs import PROVED, Judgement, Subject
 from ptmcad.question.slice import NOTHING_ADMISSIBLE, Axis, Count, Slice, have_free_lengths
-from ptmcad.text.entry import Place, Scalar, Tree
+from ptmcad.text.entry import Scalar, Tree
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.syntax import did_you_mean, names_in, parse
 from ptmcad.text.tree import names_of
@@ -108,7 +110,7 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
         with faults:
             refuse_free(*record.free)
         record = record._replace(unread=record.unread | {record.free[0]})
-    axes, resolved = _resolved(record, faults)
+    axes, resolved, signs = _resolved(record, faults)
     with faults:
         described = (fault for fault in faults.found if (fault.key or "").startswith(("mechanism", "system")))
         if not any(described) and all(fault.file == record.place.file for fault in faults.found):
@@ -116,7 +118,7 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
                 _note_unnamed_axes(record, faults)
             _check_count(record, resolved)
     faults.check()
-    return _slice(record, axes, resolved)
+    return _slice(record, axes, resolved, signs)
 
 
 def _note_unnamed_axes(record: Record, faults: Faults) -> None:
@@ -129,11 +131,16 @@ def _note_unnamed_axes(record: Record, faults: Faults) -> None:
             return  # this is told with the others, and such a text may be meant to name any axis
     if named - record.model.parameters.keys() - record.axes.keys() - record.unread:
         return  # an unknown name may be a slip of the axis's
-    for name in tuple(record.axes)[:2] if not isinstance(record.model, System) else ():
+    for name in _needed_axes(record)[:2]:
         place = record.axes[name].place
         if name not in named and name not in record.model.parameters and not _is_faulty(f"axes.{name}", told):
             with faults:
                 raise place.error(f"the axis {name} is not used: no parameter depends on it")
+
+
+def _needed_axes(record: Record) -> tuple[str, ...]:
+    """The axes on which something has to depend: none of a published system, which may have fewer parameters."""
+    return () if isinstance(record.model, System) else tuple(record.axes)
 
 
 def refuse_free(name: str, window: Window) -> None:
@@ -144,8 +151,11 @@ def refuse_free(name: str, window: Window) -> None:
     )
 
 
-def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[str, Expression]]:
-    """The axes, and every parameter as a function of them; faults are noted, and none that follows from another."""
+def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[str, Expression], list[Judgement]]:
+    """The axes, every parameter as a function of them, and the signs of these and of what springs are given.
+
+    Faults are noted, and none that follows from another.
+    """
     with faults:
         if not record.axes and not _is_faulty("axes", [fault.key or "" for fault in faults.found]):
             raise record.place.below("axes").error(f"is missing: a slice needs two axes, such as {AXES}")
@@ -162,24 +172,24 @@ def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[s
     known = [a for a in axes[:2] if a is not None]
     window = (known[0], known[1]) if len(known) == 2 else None
     wrong: set[str] = set()
+    signs: list[Judgement] = []
     for name in sorted(resolved, key=lambda name: bool(_inherited(name, record))):
         if name in record.axes or name in resolution.faulty or _inherited(name, record) in wrong:
             continue  # what has the value of another one is wrong with that one, where it stands
         with faults:
             wrong.add(name)
-            _check_value(name, resolved[name], record, window)
+            signs += _signs_of_value(name, resolved[name], record, window)
             wrong.remove(name)
     doubtful = wrong | resolution.faulty
     for part in parts(record.model):
         with faults:
             if window is not None and not doubtful & {*names_of(part.tree)}:
-                problem = fault_of_part(record.model, part, resolved, window, READING_WORK)
-                if problem:
-                    raise record.place_of_part(part.key).error(problem)
+                sign = sign_of_part(record.model, part, resolved, window, READING_WORK)
+                signs.append(_accepted(sign, record.place_of_part(part.key)))
     if window is None:
         faults.check()
         raise AssertionError("what is wrong with an axis was noted")
-    return window, resolved
+    return window, resolved, signs
 
 
 def _judged_axis(name: str, window: Window, record: Record, faults: Faults) -> Axis | None:
@@ -192,7 +202,7 @@ def _judged_axis(name: str, window: Window, record: Record, faults: Faults) -> A
     with Faults():  # noted above
         low, high = sorted((number_of(window.low), number_of(window.high)))
         kind = record.model.kind(name) if name in record.model.parameters else Kind.NUMBER
-        low = max(low, Fraction(0)) if kind.is_positive or kind.may_vanish else low
+        low = max(low, Fraction(0)) if kind.demand else low
         return Axis(name, low, high) if low < high else None
     return None
 
@@ -202,7 +212,9 @@ def _inherited(name: str, record: Record) -> str:
     return "" if name in record.values else record.model.parameters[name].alias_of or ""
 
 
-def _slice(record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expression]) -> Slice:
+def _slice(
+    record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expression], signs: Sequence[Judgement]
+) -> Slice:
     """The slice of a record whose entries are right one by one."""
     mechanism = record.model
     given = {*record.values, *record.axes}
@@ -212,10 +224,8 @@ def _slice(record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expre
         left_out.update(mechanism.free_lengths)
     effective = {name: expression for name, expression in resolved.items() if name not in left_out}
     _check_shorthands_are_used(record, mechanism, given)
-    for index, name in enumerate(record.axes):
+    for index, name in enumerate(_needed_axes(record)):
         if not any(expression.uses(index) for expression in effective.values()):
-            if isinstance(mechanism, System):
-                continue  # a published system may have fewer parameters than a slice has axes
             hint = did_you_mean(name, mechanism.parameters) if name not in mechanism.parameters else ""
             other = next((parameter for parameter in mechanism.parameters if parameter not in record.axes), "")
             example = f"use it in an expression, such as {other}: {name}" if other else "use it in an expression"
@@ -232,8 +242,9 @@ def _slice(record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expre
         count=record.counting or _usual_count(record.model),
         title=record.title,
         reference=record.reference,
-        text=_texts(effective, resolved, record, axes),
+        text=_texts(effective, record, signs),
         units=record.units,
+        signs=tuple(sign for sign in signs if sign.subject.part or sign.subject.text in effective),
     )
 
 
@@ -301,19 +312,17 @@ def _is_left_out(name: str, mechanism: Model, given: set[str]) -> bool:
     return mechanism.kind(name) is Kind.FREE_LENGTH or given.issuperset(mechanism.shorthands[name])
 
 
-def _texts(
-    effective: Iterable[str], resolved: Mapping[str, Expression], record: Record, axes: tuple[Axis, Axis]
-) -> dict[str, str]:
+def _texts(effective: Iterable[str], record: Record, signs: Iterable[Judgement]) -> dict[str, str]:
     """What the parameters were written as, and every name in those texts, but for the axes.
 
     A k that the springs do not have by default, say, is no parameter of the mechanism, but "k/10" says nothing without
     it. No engine looks at the sign of such a name, so it has to be proved here.
     """
     written = _reached(effective, record)
+    unproved = {sign.subject.text: sign.problem for sign in signs if sign.problem and not sign.subject.part}
     for name in written.keys() - {*effective}:
-        value = resolved[name]
-        if not value.is_constant and (problem := unproved(name, record.model.kind(name), value, axes, READING_WORK)):
-            raise record.place_of(name).error(problem)
+        if name in unproved:
+            raise record.place_of(name).error(unproved[name])
     texts = {**written, **{name: name for name in effective if name in record.axes}}
     return {name: texts[name] for name in record.model.parameters if name in texts}
 
@@ -355,32 +364,43 @@ def axis_of(name: str, window: Window, model: Model) -> Axis:
     if low > high:
         raise window.place.error(f"the range of {name} is reversed: write [{high}, {low}]")
     kind = model.kind(name) if name in model.parameters else Kind.NUMBER
-    if low < 0 and (kind.is_positive or kind.may_vanish):
-        least = "not negative" if kind.may_vanish else "positive"
+    if low < 0 and kind.demand:
         raise window.place.error(
-            f"the range of {name} goes below zero, but a {kind.noun} is {least}: start it at 0 or above"
+            f"the range of {name} goes below zero, but a {kind.noun} is {kind.demand}: start it at 0 or above"
         )
     return Axis(name, low, high)
 
 
-def _check_value(name: str, expression: Expression, record: Record, axes: tuple[Axis, Axis] | None) -> None:
-    """Refuse what the geometry excludes, and a denominator that vanishes in the window, where that is known."""
-    place = record.place_of(name)
+def _signs_of_value(
+    name: str, expression: Expression, record: Record, axes: tuple[Axis, Axis] | None
+) -> tuple[Judgement, ...]:
+    """The sign of a parameter, where the window is known.
+
+    What the geometry excludes is refused, and so is a denominator that vanishes in the window.
+    """
+    place, subject = record.place_of(name), Subject(name, record.model.kind(name), expression)
     if expression.degree > MAX_DEGREE:
         raise place.error(f"{name} has degree {expression.degree} in the axes: at most {MAX_DEGREE} can be computed")
     if expression.is_constant:
-        check_number(name, record.model.kind(name), expression.constant(), place)
-        return
-    problem = "" if axes is None else fault(name, record.model.kind(name), expression, axes, READING_WORK)
-    if problem:
-        raise place.error(problem)
+        check_number(name, subject.kind, expression.constant(), place)
+    if axes is None:
+        return ()
+    if expression.is_constant:
+        return (Judgement(subject, window_of(axes), PROVED),)
+    return (_accepted(sign_of(subject, axes, READING_WORK), place),)
+
+
+def _accepted(sign: Judgement, place: Place) -> Judgement:
+    """A sign that is not known to be wrong."""
+    if sign.problem and sign.is_final:
+        raise place.error(sign.problem)
+    return sign
 
 
 def check_number(name: str, kind: Kind, value: Fraction, place: Place) -> None:
     """Refuse a number that the geometry excludes."""
-    if (kind.is_positive and value <= 0) or (kind.may_vanish and value < 0):
-        least = "not negative" if kind.may_vanish else "positive"
-        raise place.error(f"{name} is {value}, but a {kind.noun} must be {least}")
+    if kind.excludes(value):
+        raise place.error(f"{name} is {value}, but a {kind.noun} must be {kind.demand}")
 
 
 def _check_shorthands_are_used(record: Record, mechanism: Model, given: set[str]) -> None:

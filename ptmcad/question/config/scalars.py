@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
 
-from ptmcad.errors import ConfigError, ExpressionError, Faults
+from ptmcad.errors import ConfigError, ExpressionError, Faults, Place
 from ptmcad.model.reading import MAX_TITLE, title_of
-from ptmcad.text.entry import Place, Scalar, Written
+from ptmcad.text.entry import Scalar, Written
 from ptmcad.text.expressions import Expression
 from ptmcad.text.node import Node
 from ptmcad.text.parsing import parse

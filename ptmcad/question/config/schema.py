@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ptmcad.errors import Faults
+from ptmcad.errors import Faults, Place
 from ptmcad.model import ptm
 from ptmcad.model.ptm import MEANINGS
 from ptmcad.model.reading import DEFINITIONS, MAX_NAME, VALUE, Context
@@ -18,7 +18,7 @@ from ptmcad.question.config.record import record_codec
 from ptmcad.question.config.starters import mechanism_names
 from ptmcad.question.config.sweeps import DEFINITIONS as OF_SWEEPS
 from ptmcad.question.config.sweeps import SWEEP
-from ptmcad.text.entry import Place, Scalar, plain_data
+from ptmcad.text.entry import Scalar, plain_data
 from ptmcad.text.syntax import MAX_TEXT, NAME
 from ptmcad.text.tree import FUNCTIONS
 

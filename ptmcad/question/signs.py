@@ -1,0 +1,86 @@
+"""What is known of the signs of a question's quantities in its window, as data that the question carries.
+
+Guarantee: a `Judgement` says of which function and in which window it holds, so that it cannot be taken for that of
+another one: a question whose parameters or axes were changed by hand carries none of the new ones.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from fractions import Fraction
+from typing import NamedTuple
+
+from ptmcad.model import Kind
+from ptmcad.text.expressions import Expression
+
+Corner = tuple[Fraction, Fraction]
+Interval = tuple[Fraction, Fraction]
+Box = tuple[Interval, Interval]
+
+
+class Proved(Enum):
+    """The function is what was asked for at every point of the open window."""
+
+    PROVED = "proved"
+
+
+PROVED = Proved.PROVED
+
+
+class Witness(NamedTuple):
+    """A point of the open window at which the function is not what was asked for.
+
+    Attributes
+    ----------
+    value : of the function there, or of its denominator when a pole is the matter.
+    distance : 0, or, when the value is a zero at a point with irrational coordinates, how far in each coordinate the
+        zero may be from ``point``.
+    other : for a pole, a point at which the denominator has the other sign, if one was found.
+    """
+
+    point: Corner
+    value: Fraction
+    distance: Fraction = Fraction(0)
+    other: Corner | None = None
+
+
+class Undecided(NamedTuple):
+    """Neither: a dip to zero or below may be hidden in these boxes, and nowhere else."""
+
+    boxes: tuple[Box, ...]
+
+
+Verdict = Proved | Witness | Undecided
+
+
+class Subject(NamedTuple):
+    """A parameter, or a stiffness or a length that is written where a spring or a bar has it.
+
+    Attributes
+    ----------
+    text : the parameter's name, or the expression as a message shows it.
+    kind : what it measures, which decides what sign it needs.
+    value : as a function of the axes.
+    part : where it is written in the description, such as ``springs.2.k``; empty of a parameter.
+    """
+
+    text: str
+    kind: Kind
+    value: Expression
+    part: str = ""
+
+
+class Judgement(NamedTuple):
+    """Whether a subject is in the whole open window what its kind asks for.
+
+    Attributes
+    ----------
+    problem : what is wrong or not proved, in words; empty where it is proved.
+    is_final : whether more work would find nothing else.
+    """
+
+    subject: Subject
+    window: Box
+    verdict: Verdict
+    problem: str = ""
+    is_final: bool = True
