@@ -23,7 +23,6 @@ from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.cli.stored import stored_in
 from ptmcad.errors import ConfigError
 from ptmcad.extras import require_ffmpeg
-from ptmcad.model import Mechanism
 from ptmcad.options import Options
 from ptmcad.process.output import check_writable, write_files
 from ptmcad.question.config import file_name
@@ -86,9 +85,8 @@ def command(
         options = Options(areas=False, progress=progress, timeout=limits.timeout)
         stored = stored_map(asked)
         result = stored or made_map(_slice(asked), options, tolerance)
-        model = result.slice.model
-        if not isinstance(model, Mechanism):
-            raise ConfigError(no_drawing(model))
+        if result.slice.model.drawable is None:
+            raise ConfigError(no_drawing(result.slice.model))
         stem = f"{result.slice.name}-motion" if name is None else file_name(name, "--name")
         names = tuple(f"{stem}.{kind}" for kind in formats)
         check_writable(out, names)
@@ -104,15 +102,12 @@ def command(
 def _slice(asked: Asked) -> Slice:
     """The slice of a mechanism that can be drawn."""
     slice = asked.slice()
-    if not isinstance(slice.model, Mechanism):
+    if slice.model.drawable is None:
         raise ConfigError(no_drawing(slice.model))
     return slice
 
 
 def _draw(motion: Motion, style: Style, fps: int, dpi: int, path: Path) -> None:
-    from ptmcad.show.render.backend import load_matplotlib
-
-    load_matplotlib()
     from ptmcad.show.render.film import save_film
 
     save_film(motion, path, style, fps, dpi)

@@ -22,11 +22,11 @@ from ptmcad.cli.pictures import report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_in, question_of
 from ptmcad.cli.slices import Asked, Third, slice_options
-from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.errors import ConfigError, LimitReached, blamed
 from ptmcad.model import ptm
 from ptmcad.options import Options
 from ptmcad.process.handover import Topic, send, watched
-from ptmcad.process.output import check_writable, how_to_go_on, save_stopped, text_writer, write_files
+from ptmcad.process.output import check_writable, how_to_go_on, save_stopped
 from ptmcad.question.config import Family
 from ptmcad.question.savings import check_names, switched_off
 from ptmcad.question.slice import Count, Slice
@@ -154,13 +154,9 @@ def _open_share(result: Any) -> str:
 def _save(result: Any, name: str, output: Output) -> None:
     """Write the pictures and tables and, last, the JSON."""
     # first: drawing may take longer than there is time
-    text = _hand_over(result, name, output) if "json" in output.formats else ""
-    writers = output.drawing.writers(result, name, output.beside)
-    if "json" in output.formats:
-        writers[f"{name}.json"] = text_writer(text)
-        write_result(output.out, writers, f"{name}.json", text)
-    else:
-        write_files(output.out, writers)
+    file = f"{name}.json" if "json" in output.formats else ""
+    text = _hand_over(result, name, output) if file else ""
+    write_result(output.out, output.drawing.writers(result, name, output.beside), file, text)
 
 
 def explanation(steps: Iterable[Any]) -> str:
@@ -212,10 +208,8 @@ def warn(slice: Slice, options: Options) -> None:
 
 
 def _names_of_savings(_context: click.Context, parameter: click.Parameter, names: tuple[str, ...]) -> tuple[str, ...]:
-    try:
+    with blamed(parameter.opts[0]):
         check_names(names)
-    except ConfigError as error:
-        raise ConfigError(error.message, key=parameter.opts[0]) from error
     return names
 
 
@@ -244,10 +238,8 @@ def _resumed(slice: Slice, path: Path) -> Any:
     from ptmcad.cli.stored import read_result
 
     earlier = read_result(path, whole=False)  # of which its cover alone is taken
-    try:
+    with blamed("--resume", path):
         check_resumable(slice, earlier)
-    except ConfigError as error:
-        raise ConfigError(error.message, key="--resume", file=str(path)) from error
     # what lies outside its cover is taken as decided: a file that contradicts itself must not be
     from ptmcad.verification.certified.checks import contradiction
 

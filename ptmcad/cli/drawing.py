@@ -18,7 +18,7 @@ from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.values import palettes
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, blamed
 from ptmcad.process.output import Writer, text_writer
 from ptmcad.show.style import DEFAULT, LINES, PALETTES, PRESETS, Place, Style, styled
 from ptmcad.text.parsing import share_for
@@ -154,10 +154,8 @@ def _check_fonts(families: tuple[str, ...]) -> None:
     load_matplotlib()
     from ptmcad.show.render.fonts import check_families
 
-    try:
+    with blamed("--font-family"):
         check_families(families)
-    except ConfigError as error:
-        raise ConfigError(error.message, key="--font-family") from error
 
 
 def style_options(command: F) -> F:

@@ -17,14 +17,13 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Drawing, names_of
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.stored import MAX_BYTES, read_result
-from ptmcad.errors import ConfigError, LimitReached, PtmcadError, shown, shown_path
+from ptmcad.cli.stored import read_other, read_result
+from ptmcad.errors import ConfigError, LimitReached, PtmcadError, shown_path
 from ptmcad.options import Options
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import Family, fault_of_member
 from ptmcad.show.document.family import FORMAT, read_family, write_family
 from ptmcad.text.numerals import text_of
-from ptmcad.text.textfile import read_text
 
 if TYPE_CHECKING:
     from ptmcad.answer.boundarysurface import BoundarySurface
@@ -214,12 +213,7 @@ def read_family_file(path: Path, *, whole: bool = True) -> FamilyMap:
     ConfigError
         When one of the files cannot be read, or is not what it should be.
     """
-    text = read_text(path, MAX_BYTES, f"a {FORMAT} file")
-    try:
-        stored = read_family(text)
-    except (ValueError, RecursionError) as error:
-        reason = shown(" ".join(str(error).split()), 300)
-        raise ConfigError(f"is damaged or not a {FORMAT} file: {reason}", file=str(path)) from error
+    stored = read_other(path, read_family, FORMAT)
     members = tuple(read_result(path.parent / file, whole=whole) for file in stored.files)
     for value, file, member in zip(stored.values, stored.files, members, strict=True):
         if member.slice.axes != members[0].slice.axes:

@@ -20,6 +20,7 @@ import click
 
 from ptmcad.cli.gathering import gathered
 from ptmcad.errors import ConfigError
+from ptmcad.options import Progress
 from ptmcad.process.handover import Topic, send, watched
 from ptmcad.process.memory import Bound, bounded, kernel_lines
 
@@ -112,6 +113,15 @@ def clock_stopped(timeout: float | None, spent: float = 0.0) -> Iterator[None]:
         send(Topic.DEADLINE, repr(math.inf), "")
     yield
     report_deadline(timeout, spent)
+
+
+def compile_certified(timeout: float | None, progress: Progress) -> None:
+    """Load the certified engine, and compile it where that is needed, outside of the time limit."""
+    from ptmcad.ask.classification import load_certified
+    from ptmcad.options import DEFAULTS
+
+    with clock_stopped(timeout):
+        load_certified(progress, DEFAULTS)
 
 
 @contextmanager

@@ -152,9 +152,6 @@ def _writers(result: Any, field: Field, names: tuple[str, ...], figure: Figure) 
     boundaries = cache(result.boundaries)
 
     def draw(path: Path) -> None:
-        from ptmcad.show.render.backend import load_matplotlib
-
-        load_matplotlib()
         from ptmcad.show.render.field import field_figure
         from ptmcad.show.render.printing import save, settings
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -10,7 +10,6 @@ from typing import NamedTuple
 import click
 
 from ptmcad.answer.boundarysurface import BoundarySurface
-from ptmcad.answer.comparison import Comparison
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Drawing, drawing_options, names_of
@@ -24,7 +23,7 @@ from ptmcad.cli.points import disagreements, measured, places, poses_at
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import kind_of, read_result, stored_in
 from ptmcad.cli.values import files
-from ptmcad.errors import ConfigError, shown_path
+from ptmcad.errors import ConfigError, blamed, shown_path
 from ptmcad.process.output import Writer, check_writable, write_files
 from ptmcad.question.config import portable_file
 from ptmcad.show.style import Place, Style
@@ -111,11 +110,7 @@ def _compared(
     for line in in_words(found):
         click.echo(line)
     names = names_of(stem, formats)
-    return {name: picture(name, partial(_draw_comparison, draw_comparison, found, drawing)) for name in names}
-
-
-def _draw_comparison(draw: Callable[..., None], found: Comparison, drawing: Drawing, path: Path) -> None:
-    draw(found, path, drawing.dpi, drawing.style)
+    return {n: picture(n, partial(draw_comparison, found, dpi=drawing.dpi, style=drawing.style)) for n in names}
 
 
 def _plot_family(result: Path, folder: Path, formats: tuple[str, ...], drawing: Drawing, added: Added) -> None:
@@ -140,11 +135,8 @@ def _surface(family: FamilyMap, file: Path) -> BoundarySurface:
     """The boundary surface of a stored family, from members that are computed for it."""
     from ptmcad.ask.boundarysurface import boundary_surface
 
-    try:
-        with ProgressBar() as progress:
-            return boundary_surface(family, progress=progress)
-    except ConfigError as error:
-        raise ConfigError(error.message, file=str(file)) from error
+    with blamed(file=file), ProgressBar() as progress:
+        return boundary_surface(family, progress=progress)
 
 
 @click.command("plot")

@@ -12,8 +12,8 @@ from click.core import ParameterSource
 
 from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
-from ptmcad.cli.idle import report_idle
-from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
+from ptmcad.cli.idle import idle_output, report_idle
+from ptmcad.cli.limits import Limits, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.paths import out_option, record_argument
 from ptmcad.cli.pictures import picture, report_written, write_result
@@ -23,7 +23,7 @@ from ptmcad.cli.slices import range_option, set_option
 from ptmcad.cli.values import names, pair_of_names, point, quantity_names
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.model import ptm
-from ptmcad.process.output import Writer, check_writable, text_writer, write_files
+from ptmcad.process.output import check_writable
 from ptmcad.question.config import file_name, names_in_record, slice_from_options
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Slice
@@ -199,15 +199,10 @@ def command(*, asked: AskedLine, out: Path, name: str | None, formats: tuple[str
         names = [*pictures, *filter(None, [file])]
         if names:
             check_writable(out, tuple(names))
-        why = "no file is written, see --format"
-        report_idle((("out", not names, why), ("name", not names, why)))
+        report_idle(idle_output(names))
         with ProgressBar() as progress:
             if enclosed:
-                from ptmcad.ask.classification import load_certified
-                from ptmcad.options import DEFAULTS
-
-                with clock_stopped(limits.timeout):  # the time that compiling takes is not the computation's
-                    load_certified(progress, DEFAULTS)
+                compile_certified(limits.timeout, progress)
             progress("intervals ...", 0, 1)
             found = answer(slice, request)
         click.echo(found.text)
@@ -218,17 +213,14 @@ def command(*, asked: AskedLine, out: Path, name: str | None, formats: tuple[str
 
 def _save(slice: Slice, request: Request, found: Answer, out: Path, pictures: Mapping[str, str], file: str) -> None:
     """Write the pictures, each of a part of the answer, and, last, the JSON, where it has a file."""
-    writers: dict[str, Writer] = {name: picture(name, found.pictures[part]) for name, part in pictures.items()}
+    text = ""
     if file:
         from ptmcad.show.document.slice import SLICE
         from ptmcad.show.ranges.document import document
 
         asked = {"slice": SLICE.write(slice), "request": request_codec().write(request)}
         text = document(slice.name, slice.mechanism, {**found.parts, **asked})
-        writers[file] = text_writer(text)
-        write_result(out, writers, file, text)
-    else:
-        write_files(out, writers)
+    write_result(out, {name: picture(name, found.pictures[part]) for name, part in pictures.items()}, file, text)
 
 
 def _parts(request: Request, *, enclosed: bool) -> list[str]:

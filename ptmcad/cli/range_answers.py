@@ -180,9 +180,6 @@ def _enclosed(slice: Slice, request: Request) -> Answer:
 def _picture(
     kind: str, slice: Slice, found: Any, path: Path, line: Callable[[], SolutionsOnLine] | None = None
 ) -> None:
-    from ptmcad.show.render.backend import load_matplotlib
-
-    load_matplotlib()
     from ptmcad.show.render import ranges as pictures
     from ptmcad.show.render.printing import save
 

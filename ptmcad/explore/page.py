@@ -12,7 +12,6 @@ from string import Template
 from typing import Any
 
 from ptmcad.explore.panel import Panel
-from ptmcad.model import Mechanism
 from ptmcad.question.config.scalars import number_of
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.report.chart import CORE_WIDTH, RIM_WIDTH
@@ -72,7 +71,7 @@ def _data(panel: Panel, secret: str) -> dict[str, Any]:
         "cells": packed([]),
         "name": record.name,
         "title": record.title or record.name,
-        "drawable": isinstance(model, Mechanism),
+        "drawable": model.drawable is not None,
         "told": model.tells_stability,
         "mechanism": drawing_of(model),
         "axes": [

@@ -13,7 +13,6 @@ from typing import Any
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
 from ptmcad.answer.poses import Poses
@@ -28,6 +27,8 @@ from ptmcad.show.render.leaders import Course, routed
 from ptmcad.show.render.legend import INK
 from ptmcad.show.render.mechanism import STRONG, draw_sketch
 from ptmcad.show.render.overlay import Overlay
+from ptmcad.show.render.paper import stroke, write_lines
+from ptmcad.show.render.poses import pose_axes
 from ptmcad.show.render.regionmap import draw_parts, fit, left_out
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sketch import Frame, Scene, arrow_lengths
@@ -172,40 +173,26 @@ def _tip(axes: Any, at: Position) -> Position:
 
 def _draw_block(figure: Figure, block: Block, frame: Frame, slot: Slot, style: Style) -> None:
     """A point's head and poses."""
-    width, tall = (float(side) for side in figure.get_size_inches())
-    inches, em = figure.dpi_scale_trans, style.base_font / 72
-    left = slot.start(block, frame)
-    for k, line in enumerate(block.head):
-        figure.text(
-            left, slot.top - 1.3 * em * (k + 0.5), line, transform=inches, fontsize=style.base_font, fontweight="bold",
-            va="center_baseline", color=INK,
-        )  # fmt: skip
-    top = slot.top - 1.3 * em * len(block.head)
+    line, left = 1.3 * style.base_font / 72, slot.start(block, frame)
+    look = {"fontweight": "bold", "va": "center_baseline", "color": INK}
+    write_lines(figure, (left, slot.top - line / 2), block.head, style.base_font, line, **look)
+    top = slot.top - line * len(block.head)
     mechanism = mechanism_in(block.poses.model)
     assert mechanism is not None  # others have been refused
     scene = Scene(mechanism, frame, arrow_lengths(block.poses))
     for k, pose in enumerate(block.shown):
         row, column = divmod(k, block.across)
-        box = (left + column * frame.width / 72, top - (row + 1) * frame.height / 72, frame.width / 72,
-               frame.height / 72)  # fmt: skip
-        panel = figure.add_axes((box[0] / width, box[1] / tall, box[2] / width, box[3] / tall))
-        panel.set_gid(f"pose-{block.number}-{k + 1}")
-        panel.set(xlim=(0, frame.width), ylim=(0, frame.height), xticks=[], yticks=[])
-        for spine in panel.spines.values():
-            spine.set(color="#b5b5b5", linewidth=0.6)
+        corner = (left + column * frame.width / 72, top - (row + 1) * frame.height / 72)
+        panel = pose_axes(figure, corner, frame, f"pose-{block.number}-{k + 1}", strong=False)
         draw_sketch(panel, scene.of(pose), STRONG, f"pose-{block.number}-{k + 1}-")
 
 
 def _lead(figure: Figure, course: Course, number: int, style: Style) -> None:
     """A line to a point of the map, and a mark there."""
-    inches, tip = figure.dpi_scale_trans, course[-1]
-    for thickness, colour in ((2.2, "white"), (0.8, INK)):
-        figure.add_artist(
-            Line2D(*zip(*course, strict=True), transform=inches, color=colour, linewidth=thickness, zorder=8,
-                   solid_joinstyle="round", gid=f"leader-{number}" if colour == INK else None)
-        )  # fmt: skip
-    figure.add_artist(
-        Line2D((tip[0],), (tip[1],), transform=inches, marker="D", markersize=5.5 * style.base_font / 9,
-               markerfacecolor="white", markeredgecolor=INK, markeredgewidth=1.2, linestyle="none", zorder=9,
-               gid=f"point-{number}")
+    xs, ys = zip(*course, strict=True)
+    stroke(figure, xs, ys, color="white", linewidth=2.2, zorder=8, solid_joinstyle="round")
+    stroke(figure, xs, ys, color=INK, linewidth=0.8, zorder=8, solid_joinstyle="round", gid=f"leader-{number}")
+    stroke(
+        figure, xs[-1:], ys[-1:], marker="D", markersize=5.5 * style.base_font / 9, markerfacecolor="white",
+        markeredgecolor=INK, markeredgewidth=1.2, linestyle="none", zorder=9, gid=f"point-{number}",
     )  # fmt: skip

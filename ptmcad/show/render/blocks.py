@@ -17,7 +17,7 @@ from ptmcad.answer.words import counted
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.leaders import Berth, Order
-from ptmcad.show.render.poses import assigned, in_order
+from ptmcad.show.render.poses import assigned
 from ptmcad.show.render.sketch import Frame, frame_of
 from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.style import PAGE_HEIGHT, Place, Style
@@ -130,7 +130,7 @@ def sized(plan: Plan, style: Style, points: int) -> tuple[Position, list[float],
 
 def arranged(result: RegionMap, points: Sequence[tuple[Point, Poses]], style: Style) -> Plan:
     """Half of the points at each side of the map, few all at the right; on a page of a given width as fits best."""
-    shown = [_shown(poses) for _, poses in points]
+    shown = [poses.working for _, poses in points]
     usual = len(points) // 2 if len(points) > 3 else 0
     most = PAGE_HEIGHT if style.wide is not None else style.size[1] if style.size is not None else None
     found: list[tuple[float, Plan]] = []
@@ -182,11 +182,6 @@ def _block(
     at, poses = point
     wide = min(max(1, len(shown)), page.across) * page.panel
     return Block(n + 1, at, _lines(_head(result, n + 1, at, poses), wide, style), poses, shown, page.across)
-
-
-def _shown(poses: Poses) -> tuple[Pose, ...]:
-    told = poses.model.tells_stability
-    return tuple(pose for pose in in_order(poses) if pose.stable or not told)
 
 
 def _sides(points: Sequence[Point], left: int) -> tuple[list[int], list[int]]:
@@ -245,9 +240,9 @@ def _height(page: _Page, tall: float, inner: float, style: Style, points: int) -
 
 def _head(result: RegionMap, number: int, at: Point, poses: Poses) -> str:
     where = ", ".join(assigned(axis.name, value) for axis, value in zip(result.slice.axes, at, strict=True))
-    if poses.model.tells_stability:
-        return f"{number}:  {where}; {poses.stable}\N{NO-BREAK SPACE}stable"
-    return f"{number}:  {where}; {counted(poses.model, len(poses.equilibria))}"
+    stable = poses.known_stable
+    what = counted(poses.model, len(poses.equilibria)) if stable is None else f"{stable}\N{NO-BREAK SPACE}stable"
+    return f"{number}:  {where}; {what}"
 
 
 def _lines(head: str, points: float, style: Style) -> Sequence[str]:

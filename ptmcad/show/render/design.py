@@ -22,6 +22,7 @@ from ptmcad.question.slice import Axis
 from ptmcad.show.designtable import design_table, value_text
 from ptmcad.show.render.axes import scale_of, symbol
 from ptmcad.show.render.legend import INK
+from ptmcad.show.render.paper import write_lines
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.rangeplate import LEFT, RIGHT, SIZE, WIDE, axes_in, figure_of, scaled
 from ptmcad.show.style import DEFAULT, Style
@@ -52,8 +53,7 @@ def figure_of_design(found: BestDesign) -> Figure:
         else:
             _draw_plane(figure, axes, found, foot)
         axes.tick_params(labelsize=SIZE)
-        for k, line in enumerate(reversed(lines)):
-            figure.text(LEFT, 0.2 + 0.2 * k, line, transform=figure.dpi_scale_trans, fontsize=SIZE)
+        write_lines(figure, (LEFT, 0.2), reversed(lines), SIZE, -0.2, va="baseline")
     return figure
 
 

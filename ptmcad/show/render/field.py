@@ -13,23 +13,20 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from ptmcad.answer.boundaries import NONE, Boundary
 from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
-from ptmcad.model import System
 from ptmcad.show.render.axes import Dress, dress, scale_of, with_symbols
 from ptmcad.show.render.colours import Fill, undetermined_fill
 from ptmcad.show.render.fieldlines import branch_edges, contour_lines
-from ptmcad.show.render.fitting import MIN_SIDE
-from ptmcad.show.render.legend import INK, RIM_INK, STRONG, SWATCH, THIN, Entry, Type, draw_legend, in_rows
-from ptmcad.show.render.textwidth import ALLOWANCE, text_width, wrapped
+from ptmcad.show.render.fitting import MIN_SIDE, beside, dressed
+from ptmcad.show.render.legend import INK, RIM_INK, STRONG, Entry, Type, draw_legend, in_rows, line_mark
+from ptmcad.show.render.textwidth import text_width, wrapped
 from ptmcad.show.render.view import Floats, View
 from ptmcad.show.style import DEFAULT, MIN_FONT, Place, Style
 from ptmcad.show.units import with_unit
@@ -54,7 +51,7 @@ def title_of(result: RegionMap, field: Field) -> str:
 def pose_words(result: RegionMap, field: Field) -> str:
     """Such as ``stable pose 1``."""
     word, _, number = field.pose.partition(":")
-    solution = "solution" if isinstance(result.slice.model, System) else "pose"
+    solution = result.slice.model.nouns.pose
     return f"{solution} {number}" if word == "pose" else f"{word} {solution} {number}"
 
 
@@ -96,12 +93,7 @@ def field_figure(
             shares = _shares(result, boundary.points)
             axes.plot(*shares.T, color=INK, linewidth=style.strong, transform=axes.transAxes)
     chart = (SIDE, SIDE) if style.size is None else (0.6 * style.size[0], 0.6 * style.size[1])
-    how = Dress()
-    if not style.flows:
-        ticks = max(MIN_FONT, 0.95 * font)
-        many = [int(max(2, min(8, side / (ems * ticks / 72)))) for side, ems in zip(chart, (3.3, 2.0), strict=True)]
-        how = Dress(ticks, max(MIN_FONT, 1.05 * font), (many[0], many[1]), scale=font / 9)
-    dress(axes, result.slice, view.x, view.y, how)
+    dress(axes, result.slice, view.x, view.y, Dress() if style.flows else dressed(font, chart))
     legend = [] if style.legend is Place.NONE else _legend(result, field, boundaries, style)
     _Page(figure, axes, bar_axes, title_of(result, field) if style.title is None else style.title, legend, style).set()
     figure.set_label(f"{title_of(result, field)}\n{description(field)}")
@@ -191,12 +183,7 @@ def _legend(result: RegionMap, field: Field, boundaries: Sequence[Boundary], sty
     return told
 
 
-def _edge_mark(figure: Any, left: float, middle: float) -> None:
-    for width, colour, kind in _edge(DEFAULT):
-        figure.add_artist(
-            Line2D((left, left + SWATCH), (middle, middle), transform=figure.dpi_scale_trans, color=colour,
-                   linewidth=width, linestyle=kind)
-        )  # fmt: skip
+_edge_mark = line_mark(*({"color": c, "linewidth": width, "linestyle": kind} for width, c, kind in _edge(DEFAULT)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,7 +207,7 @@ class _Page:
         """
         font, size = self.style.base_font, self.style.size
         em, scale = font / 72, font / 9
-        type = Type(font, max(MIN_FONT, 0.89 * font), scale, self.style.strong, self.style.strong * THIN / STRONG)
+        type = Type.of(self.style)
         side = SIDE * scale
         wide, tall = size or (side + 2.2 * scale, side + 1.5 * scale)
         title_font = max(MIN_FONT, 1.22 * font)
@@ -229,8 +216,8 @@ class _Page:
         head = 1.35 * title_font / 72 * len(lines) + (0.7 if lines else 0.4) * em
         foot = 1.35 * type.line * len([row for row in rows if row]) + 0.5 * em
         for _ in range(3):  # how many numbers an axis has depends on its length
-            left, below, right, above = _beside(self.figure, self.axes)
-            gap, after = (0.0, 0.0) if self.bar is None else (GAP * scale, _beside(self.figure, self.bar)[2])
+            left, below, right, above = beside(self.figure, self.axes)
+            gap, after = (0.0, 0.0) if self.bar is None else (GAP * scale, beside(self.figure, self.bar)[2])
             bar = gap and BAR * scale
             rest = (left + max(right, gap + bar + after) + 0.8 * em, below + above + head + foot)
             if size is None:
@@ -258,15 +245,6 @@ class _Page:
         for k, row in enumerate(reversed(rows)):
             for at, entry in row:
                 draw_legend(self.figure, [entry], 0.75 * em + at, 0.35 * em + 1.35 * type.line * (k + 0.85), type)
-
-
-def _beside(figure: Figure, axes: Any) -> tuple[float, float, float, float]:
-    """Inches that numbers and names take at the left of axes, below, at the right and above."""
-    canvas: Any = FigureCanvasAgg(figure)
-    outer, inner = axes.get_tightbbox(canvas.get_renderer()), axes.get_window_extent()
-    sides = (inner.x0 - outer.x0, inner.y0 - outer.y0, outer.x1 - inner.x1, outer.y1 - inner.y1)
-    left, below, right, above = (max(0.0, float(side)) / figure.dpi * ALLOWANCE for side in sides)
-    return left, below, right, above
 
 
 def _place(axes: Any, box: tuple[float, float, float, float], size: tuple[float, float]) -> None:

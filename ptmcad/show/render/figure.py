@@ -23,13 +23,13 @@ from ptmcad.show.render.axes import heading_of
 from ptmcad.show.render.layout import GAP, LEFT, SIDE
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.mechanism import spring_mark, symbol_mark
+from ptmcad.show.render.paper import stroke, write_lines
 from ptmcad.show.render.poses import (
     BELOW,
     HEAD,
     assigned,
     below_panel,
     describe,
-    in_order,
     panel,
     scale_bar,
     support_legend,
@@ -60,8 +60,7 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
         When the poses are those of no point of the map's window.
     """
     x, y = point_of(result.slice, poses)
-    told = poses.model.tells_stability
-    shown = [pose for pose in in_order(poses) if pose.stable or not told]
+    shown, told = poses.working, poses.known_stable is not None
     arrows = arrow_lengths(poses)
     mechanism = mechanism_in(poses.model)
     assert mechanism is not None  # `arrow_lengths` has refused others
@@ -119,13 +118,9 @@ _LOADS = (Entry(("load",), symbol_mark("load")),)
 
 def _write_head(figure: Figure, lines: Sequence[str], left: float, top: float) -> None:
     """Where the poses are, with the point's mark."""
-    inches = figure.dpi_scale_trans
-    figure.add_artist(Line2D((left + 0.04,), (top - _LINE / 2,), transform=inches, gid="point-in-head", **_POINT))
-    for k, line in enumerate(lines):
-        figure.text(
-            left + 0.16, top - _LINE * (k + 0.5), line, transform=inches, fontsize=9,
-            fontweight="bold", va="center", color=INK,
-        )  # fmt: skip
+    middle = top - _LINE / 2
+    stroke(figure, (left + 0.04,), (middle,), gid="point-in-head", **_POINT)
+    write_lines(figure, (left + 0.16, middle), lines, 9, _LINE, fontweight="bold", color=INK)
 
 
 def _mark(chart: Any, result: RegionMap, point: tuple[Fraction, Fraction]) -> None:

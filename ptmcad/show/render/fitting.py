@@ -21,8 +21,9 @@ from matplotlib.figure import Figure
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import Dress, dress
-from ptmcad.show.render.layout import Box, Layout, Texts
-from ptmcad.show.render.legend import STRONG, THIN, Entry, Type
+from ptmcad.show.render.layout import Layout, Texts
+from ptmcad.show.render.legend import Entry, Type
+from ptmcad.show.render.paper import Box
 from ptmcad.show.render.textwidth import ALLOWANCE, wrapped
 from ptmcad.show.render.view import Same, View
 from ptmcad.show.style import MIN_FONT, Place, Style
@@ -124,10 +125,7 @@ class _Page:
 
     @property
     def type(self) -> Type:
-        return Type(
-            head=self.font, detail=_points(0.89 * self.font), scale=self.font / 9, strong=self.style.strong,
-            thin=self.style.strong * THIN / STRONG, thin_lines=self.style.thin_lines,
-        )  # fmt: skip
+        return Type.of(self.style, self.font)
 
     @property
     def texts(self) -> Texts:
@@ -135,11 +133,7 @@ class _Page:
 
     def dressed(self, width: float, height: float, small: bool = False) -> Dress:
         """Sizes at axes of these sides, with as many numbers as there is room for."""
-        ticks = _points((0.78 if small else 0.95) * self.font)
-        names = _points((0.78 if small else 1.05) * self.font)
-        most = 4 if small else 8
-        intervals = [int(max(2, min(most, side / (ems * ticks / 72)))) for side, ems in ((width, 3.3), (height, 2.0))]
-        return Dress(ticks, names, (intervals[0], intervals[1]), small, self.font / 9)
+        return dressed(self.font, (width, height), small)
 
     def title(self) -> list[str]:
         title = self.parts.title
@@ -168,6 +162,17 @@ class _Page:
             legend=legend, insets=insets, type=self.type, axes=self.dressed(chart[2], chart[3]),
             inset_axes=self.dressed(inset[2], inset[3], small=True), texts=self.texts,
         )  # fmt: skip
+
+
+def dressed(font: float, sides: tuple[float, float], small: bool = False) -> Dress:
+    """Sizes at axes of these sides beside text of this size, with as many numbers as there is room for."""
+    ticks = _points((0.78 if small else 0.95) * font)
+    names = _points((0.78 if small else 1.05) * font)
+    most = 4 if small else 8
+    across, up = (
+        int(max(2, min(most, side / (ems * ticks / 72)))) for side, ems in zip(sides, (3.3, 2.0), strict=True)
+    )
+    return Dress(ticks, names, (across, up), small, font / 9)
 
 
 def _points(size: float) -> float:
@@ -341,14 +346,21 @@ def _measured(of: Same[Slice], view: View, how: Dress, _: tuple[str, ...]) -> Me
     renderer = canvas.get_renderer()
     axes: Any = figure.add_axes((1 / 3, 1 / 3, 1 / 3, 1 / 3))
     dress(axes, of.it, view.x, view.y, how)
-    outer, inner = axes.get_tightbbox(renderer), axes.get_window_extent(renderer)
-    spaces = (inner.x0 - outer.x0, inner.y0 - outer.y0, outer.x1 - inner.x1, outer.y1 - inner.y1)
-    left, below, right, above = (max(0.0, float(space)) / 72 * ALLOWANCE for space in spaces)
+    spaces = beside(figure, axes)
     names = (
         axes.xaxis.label.get_window_extent(renderer).width / 72,
         axes.yaxis.label.get_window_extent(renderer).height / 72,
     )
-    return (left, below, right, above), names
+    return spaces, names
+
+
+def beside(figure: Figure, axes: Any) -> Box:
+    """Inches that numbers and names take at the left of axes, below, at the right and above."""
+    canvas: Any = FigureCanvasAgg(figure)
+    outer, inner = axes.get_tightbbox(canvas.get_renderer()), axes.get_window_extent()
+    sides = (inner.x0 - outer.x0, inner.y0 - outer.y0, outer.x1 - inner.x1, outer.y1 - inner.y1)
+    left, below, right, above = (max(0.0, float(side)) / figure.dpi * ALLOWANCE for side in sides)
+    return left, below, right, above
 
 
 def rewrapped(entry: Entry, width: float, type: Type) -> Entry:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 from ptmcad.show.render.axes import SMALL, Dress
 from ptmcad.show.render.legend import Entry, Type
+from ptmcad.show.render.paper import Box, Corner
 
 SIDE, LEFT, BOTTOM, COLUMN, GAP, MARGIN = 4.6, 0.85, 0.65, 2.6, 0.25, 0.15
 """In inches: the map's side, the space at its left and below, a column at its right, the space before, the rim."""
@@ -19,10 +20,6 @@ BLOCK = INSET_ABOVE + INSET_HEIGHT + INSET_BELOW
 TITLE_LINE = 0.22
 WIDEST = LEFT + SIDE + GAP + 2 * COLUMN + MARGIN
 """Of a picture that grows with what it shows, whatever there is to zoom: what has no room beside the map goes below."""
-
-Box = tuple[float, float, float, float]
-"""Left, bottom, width, height."""
-Corner = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)

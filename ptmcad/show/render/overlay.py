@@ -12,7 +12,7 @@ from enum import Enum
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.show.render.legend import INK, SWATCH, Entry, Mark
+from ptmcad.show.render.legend import INK, Entry, point_mark
 from ptmcad.show.render.view import View
 
 
@@ -49,18 +49,8 @@ def overlay_entries(overlay: Overlay) -> tuple[Entry, ...]:
     for kind in Agreement:
         number = sum(point.agreement is kind for point in overlay)
         if number:
-            found.append(Entry((kind.value, f"{number} point{'s' * (number != 1)}"), _mark(kind)))
+            found.append(Entry((kind.value, f"{number} point{'s' * (number != 1)}"), point_mark(**_style(kind, 1.0))))
     return tuple(found)
-
-
-def _mark(kind: Agreement) -> Mark:
-    def mark(figure: Any, left: float, middle: float) -> None:
-        from matplotlib.lines import Line2D
-
-        inches = figure.dpi_scale_trans
-        figure.add_artist(Line2D((left + SWATCH / 2,), (middle,), transform=inches, **_style(kind, 1.0)))
-
-    return mark
 
 
 def _style(kind: Agreement, scale: float) -> dict[str, Any]:

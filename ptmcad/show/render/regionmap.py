@@ -37,6 +37,7 @@ from ptmcad.show.render.legend import (
 )
 from ptmcad.show.render.overlay import Overlay, draw_overlay, overlay_entries
 from ptmcad.show.render.painting import Paint, paint_map, paint_of
+from ptmcad.show.render.paper import Box, axes_at, write_lines
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import MAX_ZOOMS, Sliver, Zoom, seen_thin_walls, thin_regions, unstable_zooms, zooms
@@ -84,7 +85,6 @@ def draw(
     """
     with settings(style):
         figure, missing = _figure(result, samples, dpi, NO_ROOM, style, overlay)
-    figure.set_label(f"{' '.join(_title(result))}\n{description(result)}")
     save(figure, path, dpi=dpi, style=style)
     return missing
 
@@ -181,6 +181,7 @@ def _figure(
     else:
         seen, layout = fit(result, whole, samples, dpi, style, overlay)
     figure = Figure(figsize=layout.size, dpi=dpi, facecolor="white")
+    figure.set_label(f"{' '.join(_title(result))}\n{description(result)}")
     draw_parts(figure, seen, layout, style, samples, overlay)
     return figure, left_out(seen, layout)
 
@@ -251,7 +252,7 @@ def _legend(
     """The legend with areas and without; ``told`` says whether it tells how many thin regions have no label."""
     if style.legend is Place.NONE:
         return (), ()
-    paint = paint_of(result, style)
+    paint = paint_of(style, result)
     with_areas, without = (
         entries(result, seen.thin_lines, samples, seen.hidden * told, Wording(paint.fill, paint.undetermined, areas))
         for areas in (True, False)
@@ -262,13 +263,10 @@ def _legend(
 
 def draw_parts(figure: Figure, seen: _Seen, layout: Layout, style: Style, samples: bool, overlay: Overlay = ()) -> Any:
     """Everything in its place; the map's axes."""
-    result, inches, paint = seen.whole.result, figure.dpi_scale_trans, paint_of(seen.whole.result, style)
+    result, paint = seen.whole.result, paint_of(style, seen.whole.result)
     on_map = replace(paint, thin_walls=seen.thin_lines)
-    left, middle = layout.title_at
-    for k, line in enumerate(layout.title):
-        at = middle - layout.title_line * k
-        figure.text(left, at, line, transform=inches, fontsize=layout.texts.title, va="center")
-    axes = _axes(figure, layout.chart, "map")
+    write_lines(figure, layout.title_at, layout.title, layout.texts.title, layout.title_line)
+    axes = axes_at(figure, layout.chart, "map")
     paint_map(axes, seen.whole, "", on_map)
     if samples:
         points = np.array([seen.whole.view.approximate_position(c.sample) for c in result.cells])
@@ -318,22 +316,11 @@ def _name_of(result: RegionMap, sliver: Sliver, number: int | None) -> str:
     return f"{letters}: {text}"
 
 
-def _axes(figure: Figure, box: tuple[float, float, float, float], gid: str) -> Any:
-    """Axes at a place given in inches: left, bottom, width, height."""
-    width, tall = figure.get_size_inches()
-    axes = figure.add_axes((box[0] / width, box[1] / tall, box[2] / width, box[3] / tall))
-    axes.set_gid(gid)
-    return axes
-
-
-def _inset(
-    figure: Figure, zoom: Zoom, names: Sequence[str], box: tuple[float, float, float, float], layout: Layout,
-    paint: Paint,
-) -> None:  # fmt: skip
+def _inset(figure: Figure, zoom: Zoom, names: Sequence[str], box: Box, layout: Layout, paint: Paint) -> None:
     """Axes with the zoomed view of one or more slivers."""
     result = zoom.outline.result
     number = zoom.slivers[0].region
-    axes = _axes(figure, box, f"sliver-{number}")
+    axes = axes_at(figure, box, f"sliver-{number}")
     paint_map(axes, zoom.outline, f"sliver-{number}-", paint)
     dress(axes, result.slice, zoom.outline.view.x, zoom.outline.view.y, layout.inset_axes)
     if any(sliver.cell is not None for sliver in zoom.slivers):

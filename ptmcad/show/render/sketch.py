@@ -17,8 +17,8 @@ from math import hypot
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.model import Mechanism, Support, mechanism_in
 from ptmcad.model.elements import Load
-from ptmcad.model.evaluate import value_at
 from ptmcad.model.joints import joints_of
+from ptmcad.model.moments import PointForce, loads_at
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.clearance import Box, Label, Placed, Position, Stroke, distance, place, polyline
 from ptmcad.show.spiral import spirals
@@ -112,22 +112,24 @@ def _sides(points: Iterable[tuple[Fraction, Fraction]]) -> tuple[tuple[Fraction,
 
 def arrow_lengths(poses: Poses) -> dict[str, float]:
     """The loads that are not zero, and the lengths of their arrows: by force, but none shorter than is seen."""
-    loads = load_values(poses)
-    largest = max(map(abs, loads.values()), default=Fraction(0))
+    mechanism = mechanism_in(poses.model)
+    assert mechanism is not None
+    forces = components(loads_at(mechanism, poses.parameters))
+    return arrows_of(forces, max(map(abs, forces.values()), default=Fraction(0)))
+
+
+def arrows_of(forces: Mapping[str, Fraction], largest: Fraction) -> dict[str, float]:
+    """The lengths of the arrows of those that are not zero, in proportion to the largest."""
     return {
-        name: (1 if load > 0 else -1) * max(MIN_ARROW, MAX_ARROW * float(abs(load) / largest))
-        for name, load in loads.items()
-        if load
+        name: (1 if force > 0 else -1) * max(MIN_ARROW, MAX_ARROW * float(abs(force) / largest))
+        for name, force in forces.items()
+        if force
     }
 
 
-def load_values(poses: Poses) -> dict[str, Fraction]:
+def components(loads: Iterable[PointForce]) -> dict[str, Fraction]:
     """The components of all loads by their names; constants and expressions are named by their text."""
-    mechanism = mechanism_in(poses.model)
-    assert mechanism is not None
-    values = dict.fromkeys(mechanism.variables, Fraction(0)) | dict(poses.parameters)
-    components = (pair for load in mechanism.loads for pair in zip(load.names, (load.x, load.y), strict=True))
-    return {name: value_at(tree, values) for name, tree in components}
+    return {name: force for load in loads for name, force in zip(load.names, load.force, strict=True)}
 
 
 def bar_width(mechanism: Mechanism, number: int) -> float:
@@ -167,8 +169,8 @@ def sketched(
     bars = tuple((nodes[a], nodes[b]) for a, b in mechanism.bars)
     drawn = [Stroke(a, b, bar_width(mechanism, number) / 2) for number, (a, b) in enumerate(bars)]
     springs = []
-    for spring in mechanism.springs:
-        line = _spring(nodes[spring.start], nodes[spring.end], drawn, turns)
+    for start, end in mechanism.spring_ends:
+        line = _spring(nodes[start], nodes[end], drawn, turns)
         springs.append(line)
         drawn += polyline(line, 0.5)
     wound = spirals(joints_of(mechanism), nodes, *SPIRAL, SPIRAL_GAP)

@@ -6,6 +6,7 @@ boundary surface, where one is given; the picture says that they are interpolate
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -19,8 +20,9 @@ from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import axis_name, symbol
 from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, in_rows
-from ptmcad.show.render.multiples import draw_flowed, family_entries, in_words, paint_of_family, title_of, value_text
-from ptmcad.show.render.painting import Paint
+from ptmcad.show.render.multiples import draw_flowed, family_entries, in_words, title_of, value_text
+from ptmcad.show.render.painting import Paint, paint_of
+from ptmcad.show.render.paper import write_lines
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sheets import BOX, add_sheets, sheet_colours, sheet_entries
@@ -37,10 +39,7 @@ MAX_FLOORS = 7
 
 def draw_solid(family: FamilyMap, path: Path, dpi: int, style: Style, surface: BoundarySurface | None = None) -> None:
     """Write the picture, as `ptmcad.show.render.printing.save` does."""
-    figure = solid_figure(family, dpi, style, surface)
-    words = in_words(family) if surface is None else f"{in_words(family)}. Surface: {surface.words()}"
-    figure.set_label(f"{title_of(family)}, in three dimensions\n{words}")
-    save(figure, path, dpi=dpi, style=style)
+    save(solid_figure(family, dpi, style, surface), path, dpi=dpi, style=style)
 
 
 def solid_figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySurface | None = None) -> Figure:
@@ -51,7 +50,10 @@ def solid_figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySur
     surface : drawn instead of the maps, with the members' curves on it.
     """
     with settings(style):
-        return _figure(family, dpi, style, surface)
+        figure = _figure(family, dpi, style, surface)
+    words = in_words(family) if surface is None else f"{in_words(family)}. Surface: {surface.words()}"
+    figure.set_label(f"{title_of(family)}, in three dimensions\n{words}")
+    return figure
 
 
 def _figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySurface | None) -> Figure:
@@ -60,8 +62,8 @@ def _figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySurface 
     wide, tall = style.size or SIZE
     figure = Figure(figsize=(wide, tall), dpi=dpi, facecolor="white")
     title = title_of(family) if style.title is None else style.title
-    paint = paint_of_family(family, style)
-    type = Type(font, max(MIN_FONT, 0.89 * font), font / 9, style.strong, style.strong * THIN / STRONG)
+    paint = paint_of(style, *family.members)
+    type = replace(Type.of(style), thin_lines="solid")
     colours = {} if surface is None else sheet_colours(family, surface, paint)
     told = family_entries(family, paint)
     if surface is None:
@@ -89,11 +91,7 @@ def _figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySurface 
             inches = min(box[2] * wide, box[3] * tall) / _BOX_DIAGONAL
             add_sheets(axes, surface, colours, _curves(family), 0.6 * paint.strong / 72 / inches)
     axes.set(xlim=_ends(family.axes[0]), ylim=_ends(family.axes[1]), zlim=_ends(family.free))
-    for k, line in enumerate(titles):
-        figure.text(
-            0.6 * em, tall - em - 1.5 * em * k, line, fontsize=font, fontweight="bold", va="center",
-            transform=figure.dpi_scale_trans, color=INK,
-        )  # fmt: skip
+    write_lines(figure, (0.6 * em, tall - em), titles, font, 1.5 * em, fontweight="bold", color=INK)
     draw_flowed(figure, lines, em, type)
     return figure
 

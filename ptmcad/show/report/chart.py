@@ -20,7 +20,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import Cell, Region
-from ptmcad.answer.words import counted
+from ptmcad.answer.words import stable_of
 from ptmcad.model import Model
 from ptmcad.question.slice import Count
 from ptmcad.show.render.colours import Fill, fill_of
@@ -259,7 +259,7 @@ def counts_text(part: Cell | Region, model: Model) -> str:
         return "counts not known"
     if total is None:
         return f"{stable} stable"
-    return counted(model, total) if stable is None else f"{stable} stable of {counted(model, total)}"
+    return stable_of(model, stable, total)
 
 
 def region_labels(seen: Shapes) -> list[Label]:

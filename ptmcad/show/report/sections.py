@@ -11,7 +11,6 @@ from html import escape
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.words import index_words, noun
-from ptmcad.model import Mechanism
 from ptmcad.question.slice import Count
 from ptmcad.show.render.axes import named, symbol
 from ptmcad.show.render.colours import Fill, fill_of
@@ -106,7 +105,7 @@ def question(result: RegionMap) -> str:
     index = ", ".join(index_words(len(slice.model.unknowns) + 1).split("-"))
     counted_by = _COUNTED[slice.count].format(noun=noun(slice.model), index=" and ".join(index.rsplit(", ", 1)))
     items = [
-        ("Mechanism" if isinstance(slice.model, Mechanism) else "System", slice.model.title or slice.mechanism),
+        (slice.model.record_key.capitalize(), slice.model.title or slice.mechanism),
         ("Axes", axes),
         ("Parameters", shown + (f"{'; ' if shown else ''}zero: {zero}" if zero else "") or "none"),
         ("Count", f"regions are distinguished by {counted_by}"),
