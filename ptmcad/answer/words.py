@@ -22,6 +22,15 @@ def noun(model: Model, number: int = 2) -> str:
     return "solution" if number == 1 else "solutions"
 
 
+def several(number: int, noun: str) -> str:
+    """A number of what has a regular plural.
+
+    >>> several(1, "region"), several(0, "curve")
+    ('1 region', '0 curves')
+    """
+    return f"{number} {noun}{'s' * (number != 1)}"
+
+
 def counted(model: Model, number: int) -> str:
     """A number with the noun."""
     return f"{number} {noun(model, number)}"

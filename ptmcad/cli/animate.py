@@ -10,16 +10,15 @@ from pathlib import Path
 import click
 
 from ptmcad.answer.motion import Fall, Motion
-from ptmcad.cli.drawing import share_of
 from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
-from ptmcad.cli.limits import Limits, held, limit_options
-from ptmcad.cli.maps import made_map, stored_map
-from ptmcad.cli.paths import out_option
+from ptmcad.cli.limits import ResourceLimits, held, limit_options
+from ptmcad.cli.maps import made_map, stored_map, tolerance_option
+from ptmcad.cli.paths import name_option, out_option
 from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_of
-from ptmcad.cli.slices import Asked, slice_options
+from ptmcad.cli.slices import SliceOptions, slice_options
 from ptmcad.cli.stored import stored_in
 from ptmcad.errors import ConfigError
 from ptmcad.extras import require_ffmpeg
@@ -29,13 +28,13 @@ from ptmcad.question.config import file_name
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Slice
 from ptmcad.show.drawable import no_drawing
-from ptmcad.show.style import Style, styled
+from ptmcad.show.style import PictureStyle, styled
 
 FORMATS = ("gif", "mp4")
 MAX_FPS = 60
 
 
-def _style(size: str | None, palette: str | None, title: str | None) -> Style:
+def _style(size: str | None, palette: str | None, title: str | None) -> PictureStyle:
     try:
         return styled("default", size=size, palette=palette, title=title)
     except ConfigError as error:
@@ -56,16 +55,15 @@ def _style(size: str | None, palette: str | None, title: str | None) -> Style:
 @click.option("--dpi", type=click.IntRange(50, 400), default=100, show_default=True, help="Pixels to the inch.")
 @click.option("--palette", metavar="NAME|COLOUR,..", help="As of `ptmcad plot`.  [default: default]")
 @click.option("--title", metavar="TEXT", help="Title, '' for none.  [default: the slice's heading]")
-@click.option("--tolerance", callback=share_of, default="1/100", show_default=True, metavar="EPS",
-              help="With free lengths: the share of the window that may stay undetermined.")  # fmt: skip
+@tolerance_option
 @out_option
-@click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-motion]")
+@name_option("NAME-motion")
 @format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}; mp4 needs the program ffmpeg.", "gif")
 @limit_options
 @gathered(style=_style)
 def command(
-    *, asked: Asked, path: str, pose: str, frames: int, fps: int, style: Style, dpi: int, tolerance: Fraction,
-    out: Path, name: str | None, formats: tuple[str, ...], limits: Limits,
+    *, asked: SliceOptions, path: str, pose: str, frames: int, fps: int, style: PictureStyle, dpi: int,
+    tolerance: Fraction, out: Path, name: str | None, formats: tuple[str, ...], limits: ResourceLimits,
 ) -> None:  # fmt: skip
     """Show the mechanism moving along a path of parameters, and where it snaps.
 
@@ -99,7 +97,7 @@ def command(
     report_written(out, names)
 
 
-def _slice(asked: Asked) -> Slice:
+def _slice(asked: SliceOptions) -> Slice:
     """The slice of a mechanism that can be drawn."""
     slice = asked.slice()
     if slice.model.drawable is None:
@@ -107,7 +105,7 @@ def _slice(asked: Asked) -> Slice:
     return slice
 
 
-def _draw(motion: Motion, style: Style, fps: int, dpi: int, path: Path) -> None:
+def _draw(motion: Motion, style: PictureStyle, fps: int, dpi: int, path: Path) -> None:
     from ptmcad.show.render.film import save_film
 
     save_film(motion, path, style, fps, dpi)

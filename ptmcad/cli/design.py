@@ -14,8 +14,8 @@ from ptmcad.cli.drawing import share_of
 from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import idle_output, report_idle
-from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
-from ptmcad.cli.paths import out_option, record_argument
+from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
+from ptmcad.cli.paths import name_option, out_option, record_argument
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_in
@@ -33,7 +33,7 @@ _RESERVE = 0.9
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class DesignOptions:
     """The record and what changes its design, as it was typed."""
 
     config: Path
@@ -81,13 +81,13 @@ class Asked:
 @click.option("--boxes", type=click.IntRange(min=1), default=BOXES, show_default=True, metavar="N",
               help="Boxes of designs that the proof may take.")  # fmt: skip
 @out_option
-@click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-design]")
+@name_option("NAME-design")
 @format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.  [default: none]")
 @limit_options
-@gathered(asked=Asked)
+@gathered(asked=DesignOptions)
 def command(
     *,
-    asked: Asked,
+    asked: DesignOptions,
     tolerance: Fraction | None,
     seed: int,
     evaluations: int | None,
@@ -95,7 +95,7 @@ def command(
     out: Path,
     name: str | None,
     formats: tuple[str, ...],
-    limits: Limits,
+    limits: ResourceLimits,
 ) -> int:
     """Find the design that makes a range, an area, a barrier or an expression as large as possible.
 

@@ -81,7 +81,7 @@ def _bound(_context: click.Context, _parameter: click.Parameter, value: str | No
     return None if value is None else bound_of(value)
 
 
-class Limits(NamedTuple):
+class ResourceLimits(NamedTuple):
     """Seconds and memory that a command may take, None for no limit of its own."""
 
     timeout: float | None
@@ -90,7 +90,7 @@ class Limits(NamedTuple):
 
 def limit_options(command: F) -> F:
     """Add ``--timeout`` and ``--max-memory``, which the command gets as ``limits``."""
-    command = gathered(limits=Limits)(command)
+    command = gathered(limits=ResourceLimits)(command)
     command = click.option("--max-memory", callback=_bound, metavar="SIZE",
                            help="Stop before using more memory, such as 500M or 2G (exit status 3; 2 when it is "
                                 "too little to start with).  "
@@ -125,7 +125,7 @@ def compile_certified(timeout: float | None, progress: Progress) -> None:
 
 
 @contextmanager
-def held(limits: Limits) -> Iterator[None]:
+def held(limits: ResourceLimits) -> Iterator[None]:
     """Set the limits for what is done inside."""
     report_deadline(limits.timeout)
     bound = limits.max_memory or (default_bound() if watched() else None)

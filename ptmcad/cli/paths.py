@@ -19,6 +19,15 @@ def record_argument(name: str = "config", *, required: bool = False) -> Callable
     return click.argument(name, required=required, type=click.Path(path_type=Path), shell_complete=complete)
 
 
+result_argument = click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
+"""A stored result."""
+
+
+def name_option(default: str) -> Callable[[F], F]:
+    """Add ``--name``, with which the names of all files begin."""
+    return click.option("--name", metavar="NAME", help=f"Start of the files' names.  [default: {default}]")
+
+
 def out_option(command: F) -> F:
     """Add ``--out``, the folder for what a command writes."""
     return click.option(

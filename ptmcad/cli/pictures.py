@@ -14,7 +14,7 @@ import click
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown_path
 from ptmcad.process.output import Writer, save_stopped, text_writer, write_files
 from ptmcad.show.render.backend import load_matplotlib
-from ptmcad.show.style import Style
+from ptmcad.show.style import PictureStyle
 
 _NO_PICTURES = (".csv", ".npz", ".html")
 
@@ -47,7 +47,7 @@ def picture(name: str, draw: Writer) -> Writer:
 
 def _reason(error: Exception) -> str:
     """In words for somebody who does not read the program: names of exceptions are none."""
-    if isinstance(error, ConfigError) and error.key in Style._fields:
+    if isinstance(error, ConfigError) and error.key in PictureStyle._fields:
         return f"--{error.key.replace('_', '-')}: {error.message}"
     if isinstance(error, PtmcadError):
         return str(error)

@@ -13,12 +13,12 @@ from click.core import ParameterSource
 from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import idle_output, report_idle
-from ptmcad.cli.limits import Limits, compile_certified, held, limit_options
+from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
-from ptmcad.cli.paths import out_option, record_argument
+from ptmcad.cli.paths import name_option, out_option, record_argument
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.range_answers import Answer, Request, answer, is_enclosed, request_codec
+from ptmcad.cli.range_answers import RangeAnswer, RangeRequest, answer, is_enclosed, request_codec
 from ptmcad.cli.slices import range_option, set_option
 from ptmcad.cli.values import names, pair_of_names, point, quantity_names
 from ptmcad.errors import ConfigError, ExpressionError
@@ -106,7 +106,7 @@ def _axes(asked: AskedLine) -> tuple[str, ...]:
     return () if asked.config is None else names_in_record(asked.config)[0]
 
 
-def request_of(asked: AskedLine, at: Mapping[str, str]) -> Request:
+def request_of(asked: AskedLine, at: Mapping[str, str]) -> RangeRequest:
     """What is asked for beside the line, checked.
 
     Raises
@@ -116,7 +116,7 @@ def request_of(asked: AskedLine, at: Mapping[str, str]) -> Request:
     """
     over, start = asked.over is not None, _start(asked.start, at)
     quantities = tuple(dict.fromkeys(asked.quantities))
-    request = Request(asked.along, at, over, asked.rows, start, asked.pose, asked.digits, quantities)
+    request = RangeRequest(asked.along, at, over, asked.rows, start, asked.pose, asked.digits, quantities)
     if quantities and not at:
         raise ConfigError(f"needs the value of the other axis too, as in --at {SECOND}=3/2", key="--quantity")
     if not over and click.get_current_context().get_parameter_source("rows") is not ParameterSource.DEFAULT:
@@ -147,7 +147,7 @@ def request_of(asked: AskedLine, at: Mapping[str, str]) -> Request:
 @range_option
 @click.option("--digits", type=click.IntRange(1, 1000), default=10, show_default=True, help="Digits of decimals.")
 @out_option
-@click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-range]")
+@name_option("NAME-range")
 @format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.  [default: none]")
 @click.option(
     "--over", metavar="NAME", shell_complete=names, help="The axis over which to tabulate the operation range's width."
@@ -162,7 +162,7 @@ def request_of(asked: AskedLine, at: Mapping[str, str]) -> Request:
                    "Repeatable.")  # fmt: skip
 @limit_options
 @gathered(asked=AskedLine)
-def command(*, asked: AskedLine, out: Path, name: str | None, formats: tuple[str, ...], limits: Limits) -> None:
+def command(*, asked: AskedLine, out: Path, name: str | None, formats: tuple[str, ...], limits: ResourceLimits) -> None:
     """Find the intervals of constant count along one axis, and the operation range, where the most are stable.
 
     Of the paper's mechanism these are two equilibria; where nothing says what is stable, all solutions are counted.
@@ -211,7 +211,9 @@ def command(*, asked: AskedLine, out: Path, name: str | None, formats: tuple[str
             report_written(out, names)
 
 
-def _save(slice: Slice, request: Request, found: Answer, out: Path, pictures: Mapping[str, str], file: str) -> None:
+def _save(
+    slice: Slice, request: RangeRequest, found: RangeAnswer, out: Path, pictures: Mapping[str, str], file: str
+) -> None:
     """Write the pictures, each of a part of the answer, and, last, the JSON, where it has a file."""
     text = ""
     if file:
@@ -223,7 +225,7 @@ def _save(slice: Slice, request: Request, found: Answer, out: Path, pictures: Ma
     write_result(out, {name: picture(name, found.pictures[part]) for name, part in pictures.items()}, file, text)
 
 
-def _parts(request: Request, *, enclosed: bool) -> list[str]:
+def _parts(request: RangeRequest, *, enclosed: bool) -> list[str]:
     """What is added to the pictures' names."""
     line = bool(request.at) and not enclosed
     parts = [""] * line + ["-over"] * request.over + ["-path"] * (request.start is not None)

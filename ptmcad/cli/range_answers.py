@@ -24,7 +24,7 @@ MAX_TEXT = 10_000
 
 
 @dataclass(frozen=True, slots=True)
-class Request:
+class RangeRequest:
     """What is asked for beside the slice.
 
     Attributes
@@ -45,21 +45,21 @@ class Request:
     quantities: tuple[str, ...]
 
 
-def request_codec() -> Codec[Request]:
+def request_codec() -> Codec[RangeRequest]:
     """A request as JSON's data, with which `answer` gives the same once more.
 
     Earlier versions could be asked for critical free lengths instead (``critical``); now the paper's study finds them.
     """
     from ptmcad.text.codec import TRUTH, Key, line, record_of
 
-    def made(critical: bool, **asked: Any) -> Request:
-        return Request(**asked)
+    def made(critical: bool, **asked: Any) -> RangeRequest:
+        return RangeRequest(**asked)
 
-    return record_of(Request, {str: line(MAX_TEXT)}, made, critical=Key(TRUTH, lambda _: False))
+    return record_of(RangeRequest, {str: line(MAX_TEXT)}, made, critical=Key(TRUTH, lambda _: False))
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class RangeAnswer:
     """What was found, for the terminal, the JSON and the pictures."""
 
     text: str
@@ -67,7 +67,7 @@ class Answer:
     pictures: Mapping[str, Callable[[Path], None]]
 
 
-def answer(slice: Slice, request: Request) -> Answer:
+def answer(slice: Slice, request: RangeRequest) -> RangeAnswer:
     """Compute all that is asked for.
 
     Raises
@@ -80,7 +80,7 @@ def answer(slice: Slice, request: Request) -> Answer:
     from ptmcad.show.ranges import document, table
 
     if is_enclosed(slice, request):
-        known = _enclosed(slice, request) if request.at else Answer(question_of(slice), {}, {})
+        known = _enclosed(slice, request) if request.at else RangeAnswer(question_of(slice), {}, {})
         known = _with_bands(known, slice, request) if request.over else known
         return _with_poses(known, slice, request)
     if request.over:
@@ -97,10 +97,10 @@ def answer(slice: Slice, request: Request) -> Answer:
         texts.append(table.width_table(widths, request.digits))
         parts |= document.part(widths, request.digits)
         pictures["-over"] = partial(_picture, "over", slice, widths)
-    return _with_poses(Answer("\n\n".join(texts), parts, pictures), slice, request)
+    return _with_poses(RangeAnswer("\n\n".join(texts), parts, pictures), slice, request)
 
 
-def is_enclosed(slice: Slice, request: Request) -> bool:
+def is_enclosed(slice: Slice, request: RangeRequest) -> bool:
     """Whether the certified engine answers, as springs have free lengths."""
     from ptmcad.question.line import has_free_lengths
 
@@ -109,21 +109,21 @@ def is_enclosed(slice: Slice, request: Request) -> bool:
     return has_free_lengths(slice, request.along, request.at)
 
 
-def _with_bands(found: Answer, slice: Slice, request: Request) -> Answer:
+def _with_bands(found: RangeAnswer, slice: Slice, request: RangeRequest) -> RangeAnswer:
     """The answer with the operation ranges over the other axis, where springs have free lengths."""
     from ptmcad.ask.bands import certified_widths
     from ptmcad.show.ranges import certified, document
 
     with ProgressBar() as progress:
         widths = certified_widths(slice, request.along, request.rows, request.digits, progress)
-    return Answer(
+    return RangeAnswer(
         f"{found.text}\n\n{certified.width_table(widths, request.digits)}",
         {**found.parts, **document.part(widths, request.digits)},
         {**found.pictures, "-over": partial(_picture, "over", slice, widths)},
     )
 
 
-def _with_poses(found: Answer, slice: Slice, request: Request) -> Answer:
+def _with_poses(found: RangeAnswer, slice: Slice, request: RangeRequest) -> RangeAnswer:
     """The answer with the paths of stable poses and the branches of quantities that were asked for."""
 
     @cache
@@ -135,7 +135,9 @@ def _with_poses(found: Answer, slice: Slice, request: Request) -> Answer:
     return _with_branches(_with_paths(found, slice, request, line), slice, request, line)
 
 
-def _with_paths(found: Answer, slice: Slice, request: Request, line: Callable[[], SolutionsOnLine]) -> Answer:
+def _with_paths(
+    found: RangeAnswer, slice: Slice, request: RangeRequest, line: Callable[[], SolutionsOnLine]
+) -> RangeAnswer:
     """The answer with the paths of stable poses, where they were asked for."""
     if request.start is None:
         return found
@@ -144,14 +146,16 @@ def _with_paths(found: Answer, slice: Slice, request: Request, line: Callable[[]
 
     with ProgressBar() as progress:
         paths = pose_paths(slice, request.along, request.at, request.start, request.pose, progress)
-    return Answer(
+    return RangeAnswer(
         f"{found.text}\n\n{table.path_table(paths, min(request.digits, 10))}",
         {**found.parts, **document.part(paths, request.digits)},
         {**found.pictures, "-path": partial(_picture, "path", slice, paths, line=line)},
     )
 
 
-def _with_branches(found: Answer, slice: Slice, request: Request, line: Callable[[], SolutionsOnLine]) -> Answer:
+def _with_branches(
+    found: RangeAnswer, slice: Slice, request: RangeRequest, line: Callable[[], SolutionsOnLine]
+) -> RangeAnswer:
     """The answer with the branches of the quantities that were asked for."""
     if not request.quantities:
         return found
@@ -160,21 +164,21 @@ def _with_branches(found: Answer, slice: Slice, request: Request, line: Callable
 
     with ProgressBar() as progress:
         diagram = branch_diagram(slice, request.along, request.at, request.quantities, progress, line())
-    return Answer(
+    return RangeAnswer(
         f"{found.text}\n\n{branches.table(diagram)}",
         {**found.parts, **document.part(diagram, request.digits)},
         {**found.pictures, "-branches": partial(_picture, "branches", slice, diagram)},
     )
 
 
-def _enclosed(slice: Slice, request: Request) -> Answer:
+def _enclosed(slice: Slice, request: RangeRequest) -> RangeAnswer:
     """The answer where springs have free lengths."""
     from ptmcad.certified.intervals import certified_intervals
     from ptmcad.show.ranges import certified, document
 
     line = certified_intervals(slice, request.along, request.at, request.digits)
     text = f"{question_of(slice)}\n\n{certified.table(line, request.digits)}"
-    return Answer(text, document.part(line, request.digits), {})
+    return RangeAnswer(text, document.part(line, request.digits), {})
 
 
 def _picture(

@@ -46,7 +46,7 @@ class Third(NamedTuple):
         return self.members == BETWEEN
 
 
-class Asked(NamedTuple):
+class SliceOptions(NamedTuple):
     """The record and what changes it, as they were typed."""
 
     config: Path | None
@@ -99,7 +99,7 @@ class Asked(NamedTuple):
 
 def _with_places(command: F) -> F:
     @wraps(command)
-    def placed(*, asked: Asked, **given: Any) -> Any:
+    def placed(*, asked: SliceOptions, **given: Any) -> Any:
         try:
             return command(asked=asked, **given)
         except (ConfigError, HypothesisError) as error:
@@ -117,12 +117,17 @@ set_option = click.option(
 )  # fmt: skip
 
 
+engine_option = click.option(
+    "--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True
+)
+
+
 def slice_options(command: F) -> F:
     """Add CONFIG, ``--mechanism``, ``--slice``, ``--set`` and ``--range``, which the command gets as ``asked``.
 
     What an engine finds wrong with the question is told with its place in the record.
     """
-    command = gathered(asked=Asked)(_with_places(command))
+    command = gathered(asked=SliceOptions)(_with_places(command))
     for add in (
         range_option,
         set_option,

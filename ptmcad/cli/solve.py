@@ -12,9 +12,9 @@ from ptmcad.answer.poses import MAX_DIGITS, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.cli.formats import format_option
 from ptmcad.cli.idle import idle_output, report_idle
-from ptmcad.cli.limits import Limits, clock_stopped, compile_certified, held, limit_options
+from ptmcad.cli.limits import ResourceLimits, clock_stopped, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
-from ptmcad.cli.paths import out_option, record_argument
+from ptmcad.cli.paths import name_option, out_option, record_argument
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import set_option
@@ -94,7 +94,7 @@ def _write_picture(landscape: bool, poses: Poses, path: Path) -> None:
               help="Significant digits, all of them right.")  # fmt: skip
 @format_option(FORMATS, f"What to make, of {', '.join(FORMATS)}; the table is printed.", "table")
 @out_option
-@click.option("--name", metavar="NAME", help="Start of the files' names.  [default: poses]")
+@name_option("poses")
 @click.option("--landscape", is_flag=True, help="Draw the energy over one or two unknowns too (NAME-landscape.png).")
 @limit_options
 def command(
@@ -107,7 +107,7 @@ def command(
     out: Path,
     name: str | None,
     landscape: bool,
-    limits: Limits,
+    limits: ResourceLimits,
 ) -> int:
     """Find every equilibrium, or solution of a system, at one point, with stability, spring forces and energy.
 

@@ -16,7 +16,7 @@ from ptmcad.answer.consistency import check_numbers
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, blamed, shown
 from ptmcad.show.document.regionmap import FORMAT
-from ptmcad.show.style import Style
+from ptmcad.show.style import PictureStyle
 from ptmcad.text.node import NEWER, is_newer
 from ptmcad.text.textfile import format_named, json_data, read_text
 
@@ -94,7 +94,7 @@ def stored_in(path: Path | None) -> Iterator[None]:
         cause = error.__cause__ if isinstance(error, PictureError) else error
         if path is None:
             raise
-        if isinstance(cause, ConfigError) and cause.key in (*Style._fields, "at"):
+        if isinstance(cause, ConfigError) and cause.key in (*PictureStyle._fields, "at"):
             # an option's fault, not the file's
             raise ConfigError(cause.message, key=f"--{(cause.key or '').replace('_', '-')}") from error
         if isinstance(cause, ConfigError):

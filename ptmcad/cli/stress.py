@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ptmcad.cli.formats import format_option
-from ptmcad.cli.limits import Limits, compile_certified, held, limit_options
+from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
 from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
@@ -80,7 +80,7 @@ def command(
     formats: tuple[str, ...],
     out: Path,
     only_list: bool,
-    limits: Limits,
+    limits: ResourceLimits,
 ) -> int:
     """Run stiff and extreme cases: springs, lengths and forces of very different size, points next to folds and cusps.
 

@@ -20,7 +20,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.model import mechanism_in
 from ptmcad.show.drawable import no_drawing
-from ptmcad.show.render.blocks import GAP, Block, Point, Side, Slot, arranged, sized
+from ptmcad.show.render.blocks import GAP, Block, BlockColumn, Point, Slot, arranged, sized
 from ptmcad.show.render.clearance import Box, Position
 from ptmcad.show.render.layout import Layout
 from ptmcad.show.render.leaders import Course, routed
@@ -31,8 +31,8 @@ from ptmcad.show.render.paper import stroke, write_lines
 from ptmcad.show.render.poses import pose_axes
 from ptmcad.show.render.regionmap import draw_parts, fit, left_out
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.sketch import Frame, Scene, arrow_lengths
-from ptmcad.show.style import MAX_SIDE, Style, styled
+from ptmcad.show.render.sketch import PanelFrame, Scene, arrow_lengths
+from ptmcad.show.style import MAX_SIDE, PictureStyle, styled
 
 MAX_POINTS = 12
 _STEPS, _STEP = 60, 1.05
@@ -40,7 +40,7 @@ _STEPS, _STEP = 60, 1.05
 
 
 def draw_around(
-    result: RegionMap, points: Sequence[tuple[Point, Poses]], style: Style, dpi: int, overlay: Overlay = ()
+    result: RegionMap, points: Sequence[tuple[Point, Poses]], style: PictureStyle, dpi: int, overlay: Overlay = ()
 ) -> tuple[Figure, tuple[str, ...]]:
     """The map in the middle and poses at its sides; within `ptmcad.show.render.printing.settings`.
 
@@ -67,7 +67,7 @@ def draw_around(
         raise ConfigError(f"{error.message}: {_remedy(result, points, style, dpi)}", key=error.key) from error
 
 
-def _remedy(result: RegionMap, points: Sequence[tuple[Point, Poses]], style: Style, dpi: int) -> str:
+def _remedy(result: RegionMap, points: Sequence[tuple[Point, Poses]], style: PictureStyle, dpi: int) -> str:
     """The least size of the same shape in which poses have room, of a page that is given whole."""
     if style.size is None or style.wide is not None:
         return "give fewer points, or a size of your own"
@@ -85,7 +85,7 @@ def _remedy(result: RegionMap, points: Sequence[tuple[Point, Poses]], style: Sty
 
 
 def _drawn(
-    result: RegionMap, points: Sequence[tuple[Point, Poses]], style: Style, dpi: int, overlay: Overlay
+    result: RegionMap, points: Sequence[tuple[Point, Poses]], style: PictureStyle, dpi: int, overlay: Overlay
 ) -> tuple[Figure, tuple[str, ...]]:
     """The figure, and what of the map had no room.
 
@@ -107,7 +107,7 @@ def _drawn(
         wide = number * page.panel / 72
         slot = Slot(GAP if before else size[0] - wide - GAP, size[1] - GAP, wide, before)
         tips = [_tip(axes, seen.whole.view.approximate_position(points[n][0])) for n in side]
-        along = Side([blocks[n] for n in side], slot, frame, em, size[1])
+        along = BlockColumn([blocks[n] for n in side], slot, frame, em, size[1])
         chart = moved.chart
         order, courses = routed(tips, along.berths, texts, (chart[1] + 0.05, chart[1] + chart[3] - 0.05))
         for k, (block, place) in enumerate(along.placed(order)):
@@ -116,7 +116,7 @@ def _drawn(
     return figure, left_out(seen, layout)
 
 
-def _map_beside(result: RegionMap, style: Style, dpi: int, overlay: Overlay = ()) -> tuple[Any, Layout]:
+def _map_beside(result: RegionMap, style: PictureStyle, dpi: int, overlay: Overlay = ()) -> tuple[Any, Layout]:
     """What `fit` finds for the map between the poses."""
     try:
         return fit(result, shapes(result), False, dpi, style, overlay)
@@ -171,7 +171,7 @@ def _tip(axes: Any, at: Position) -> Position:
     return (chart.x0 + at[0] * chart.width) * width, (chart.y0 + at[1] * chart.height) * tall
 
 
-def _draw_block(figure: Figure, block: Block, frame: Frame, slot: Slot, style: Style) -> None:
+def _draw_block(figure: Figure, block: Block, frame: PanelFrame, slot: Slot, style: PictureStyle) -> None:
     """A point's head and poses."""
     line, left = 1.3 * style.base_font / 72, slot.start(block, frame)
     look = {"fontweight": "bold", "va": "center_baseline", "color": INK}
@@ -187,7 +187,7 @@ def _draw_block(figure: Figure, block: Block, frame: Frame, slot: Slot, style: S
         draw_sketch(panel, scene.of(pose), STRONG, f"pose-{block.number}-{k + 1}-")
 
 
-def _lead(figure: Figure, course: Course, number: int, style: Style) -> None:
+def _lead(figure: Figure, course: Course, number: int, style: PictureStyle) -> None:
     """A line to a point of the map, and a mark there."""
     xs, ys = zip(*course, strict=True)
     stroke(figure, xs, ys, color="white", linewidth=2.2, zorder=8, solid_joinstyle="round")

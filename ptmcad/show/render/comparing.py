@@ -20,7 +20,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.colours import GREYS, HATCHES, Fill, undetermined_fill
-from ptmcad.show.render.fitting import MIN_SIDE, Parts, overhang, rewrapped
+from ptmcad.show.render.fitting import MIN_SIDE, PageParts, overhang, rewrapped
 from ptmcad.show.render.legend import INK, Entry, Type, Wording, draw_legend, entries, hidden_words
 from ptmcad.show.render.painting import Paint, paint_map, paint_of
 from ptmcad.show.render.paper import Box, axes_at, write_lines
@@ -31,7 +31,7 @@ from ptmcad.show.render.slivers import seen_thin_walls
 from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.render.thinmarks import Marks, draw_marks, marks_of
 from ptmcad.show.render.view import Shapes
-from ptmcad.show.style import MIN_FONT, Place, Style
+from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle
 from ptmcad.show.table import area_text, count_text
 from ptmcad.text.bounds import percent, share_text
 from ptmcad.text.numerals import shortest_text
@@ -49,7 +49,7 @@ NO_MARKS = Marks()
 
 
 @dataclass(frozen=True, slots=True)
-class _Panel:
+class _MapPanel:
     """A chart with what stands above and below it, and regions that are seen however narrow they are."""
 
     seen: Shapes
@@ -60,7 +60,7 @@ class _Panel:
     marks: Marks = NO_MARKS
 
 
-def draw_comparison(comparison: Comparison, path: Path, dpi: int, style: Style) -> None:
+def draw_comparison(comparison: Comparison, path: Path, dpi: int, style: PictureStyle) -> None:
     """Write the picture, as `ptmcad.show.render.printing.save` does.
 
     Raises
@@ -121,13 +121,13 @@ def change_text(comparison: Comparison, change: Change) -> str:
     return f"{before} → {count_text(comparison.second.regions[change.after], count)}"
 
 
-def comparison_figure(comparison: Comparison, dpi: int, style: Style) -> Figure:
+def comparison_figure(comparison: Comparison, dpi: int, style: PictureStyle) -> Figure:
     """The picture; within `ptmcad.show.render.printing.settings`."""
     font = style.base_font
     em = font / 72
     type = Type.of(style)
     first = shapes(comparison.first)
-    parts = Parts(comparison.first.slice, "", ((), ()), (first.view,))
+    parts = PageParts(comparison.first.slice, "", ((), ()), (first.view,))
     width = style.widest if style.widest is not None else 3 * (SIDE * font / 9 + 6 * em)
     how = Dress(max(MIN_FONT, 0.95 * font), 1.05 * font, (4, 5), scale=font / 9)
     left, below, right, _ = overhang(parts, first.view, (SIDE, SIDE), how)
@@ -155,7 +155,9 @@ def comparison_figure(comparison: Comparison, dpi: int, style: Style) -> Figure:
     return figure
 
 
-def _panels(comparison: Comparison, first: Shapes, style: Style, sides: tuple[float, float], dpi: int) -> list[_Panel]:
+def _panels(
+    comparison: Comparison, first: Shapes, style: PictureStyle, sides: tuple[float, float], dpi: int
+) -> list[_MapPanel]:
     """The two maps and the difference, with text as wide as they are."""
     type, side = Type.of(style), sides[0]
     found: list[tuple[Shapes, Paint, str, Sequence[Entry], Mapping[int, Fill], Marks]] = []
@@ -182,9 +184,9 @@ def _panels(comparison: Comparison, first: Shapes, style: Style, sides: tuple[fl
     marks = marks_of(whole, sides, dpi, type.detail, names)
     changes = [*_differences(comparison, style), *([Entry((hidden_words(marks.hidden),))] if marks.hidden else [])]
     found.append((whole, bare, f"Difference, {' → '.join(LETTERS)}", changes, fills, marks))
-    untold = style.legend is Place.NONE
+    untold = style.legend is LegendPlace.NONE
     return [
-        _Panel(
+        _MapPanel(
             seen, paint, _head(title, side, type),
             [] if untold else [rewrapped(entry, side, type) for entry in told], outlined, marks,
         )
@@ -218,7 +220,7 @@ def _head(title: str, side: float, type: Type) -> list[str]:
     return lines if len(lines) <= _MAX_HEAD else [*lines[: _MAX_HEAD - 1], f"{lines[_MAX_HEAD - 1]} …"]
 
 
-def _fills(comparison: Comparison, style: Style) -> dict[int, Fill]:
+def _fills(comparison: Comparison, style: PictureStyle) -> dict[int, Fill]:
     """Of each change, by the number of its region; others are white."""
     faces = GREYS[2:] if style.palette == "grey" else CHANGES
     found: dict[int, Fill] = {}
@@ -228,7 +230,7 @@ def _fills(comparison: Comparison, style: Style) -> dict[int, Fill]:
     return found
 
 
-def _differences(comparison: Comparison, style: Style) -> list[Entry]:
+def _differences(comparison: Comparison, style: PictureStyle) -> list[Entry]:
     fills, open_part = _fills(comparison, style), _undetermined(comparison)
     if comparison.changes:
         area = _area(comparison, comparison.area)
@@ -244,7 +246,7 @@ def _differences(comparison: Comparison, style: Style) -> list[Entry]:
     return told
 
 
-def _draw(figure: Figure, panel: _Panel, box: Box, how: Dress, font: float) -> None:
+def _draw(figure: Figure, panel: _MapPanel, box: Box, how: Dress, font: float) -> None:
     left, bottom, _, high = box
     axes = axes_at(figure, box)
     result = panel.seen.result

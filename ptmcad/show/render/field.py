@@ -28,7 +28,7 @@ from ptmcad.show.render.fitting import MIN_SIDE, beside, dressed
 from ptmcad.show.render.legend import INK, RIM_INK, STRONG, Entry, Type, draw_legend, in_rows, line_mark
 from ptmcad.show.render.textwidth import text_width, wrapped
 from ptmcad.show.render.view import Floats, View
-from ptmcad.show.style import DEFAULT, MIN_FONT, Place, Style
+from ptmcad.show.style import DEFAULT, MIN_FONT, LegendPlace, PictureStyle
 from ptmcad.show.units import with_unit
 
 SIDE, GAP, BAR = 4.6, 0.2, 0.2
@@ -64,7 +64,12 @@ def description(field: Field) -> str:
 
 
 def field_figure(
-    result: RegionMap, field: Field, boundaries: Sequence[Boundary], contours: int, dpi: int, style: Style = DEFAULT
+    result: RegionMap,
+    field: Field,
+    boundaries: Sequence[Boundary],
+    contours: int,
+    dpi: int,
+    style: PictureStyle = DEFAULT,
 ) -> Figure:
     """The picture, to be called within `settings`.
 
@@ -94,8 +99,10 @@ def field_figure(
             axes.plot(*shares.T, color=INK, linewidth=style.strong, transform=axes.transAxes)
     chart = (SIDE, SIDE) if style.size is None else (0.6 * style.size[0], 0.6 * style.size[1])
     dress(axes, result.slice, view.x, view.y, Dress() if style.flows else dressed(font, chart))
-    legend = [] if style.legend is Place.NONE else _legend(result, field, boundaries, style)
-    _Page(figure, axes, bar_axes, title_of(result, field) if style.title is None else style.title, legend, style).set()
+    legend = [] if style.legend is LegendPlace.NONE else _legend(result, field, boundaries, style)
+    _FieldPage(
+        figure, axes, bar_axes, title_of(result, field) if style.title is None else style.title, legend, style
+    ).set()
     figure.set_label(f"{title_of(result, field)}\n{description(field)}")
     return figure
 
@@ -113,7 +120,7 @@ def fill_empty(axes: Any, field: Field, extent: Sequence[float], fill: Fill) -> 
     )  # fmt: skip
 
 
-def _fill(figure: Figure, axes: Any, field: Field, view: View, number: int, style: Style) -> Any:
+def _fill(figure: Figure, axes: Any, field: Field, view: View, number: int, style: PictureStyle) -> Any:
     """The pixels with their lines, and the scale, whose axes are returned."""
     extent = _extent(view)
     known = field.values[~np.isnan(field.values)]
@@ -153,7 +160,7 @@ def _fill(figure: Figure, axes: Any, field: Field, view: View, number: int, styl
     return bar_axes
 
 
-def _colours(style: Style) -> Any:
+def _colours(style: PictureStyle) -> Any:
     """The palette's, from the least value to the largest."""
     if style.palette == "default":
         return COLOURS
@@ -162,12 +169,12 @@ def _colours(style: Style) -> Any:
     return LinearSegmentedColormap.from_list("own", list(faces))
 
 
-def _edge(style: Style) -> Sequence[tuple[float, str, Any]]:
+def _edge(style: PictureStyle) -> Sequence[tuple[float, str, Any]]:
     """Width, colour and dashes of the lines that make an edge between branches, from below."""
     return ((2.4 * style.line_scale, "white", "solid"), (1.1 * style.line_scale, INK, (0, (3.0, 1.6))))
 
 
-def _legend(result: RegionMap, field: Field, boundaries: Sequence[Boundary], style: Style) -> list[Entry]:
+def _legend(result: RegionMap, field: Field, boundaries: Sequence[Boundary], style: PictureStyle) -> list[Entry]:
     """What lines, white and grey mean, as far as they are there."""
     told = [Entry(("the count changes",), STRONG)] if any(b.separates for b in boundaries) else []
     if field.jumps is not None and any(jump.any() for jump in field.jumps):
@@ -187,7 +194,7 @@ _edge_mark = line_mark(*({"color": c, "linewidth": width, "linestyle": kind} for
 
 
 @dataclass(frozen=True, slots=True)
-class _Page:
+class _FieldPage:
     """The parts of a picture, which are set where they have room: what stands beside axes is measured."""
 
     figure: Figure
@@ -195,7 +202,7 @@ class _Page:
     bar: Any
     title: str
     legend: Sequence[Entry]
-    style: Style
+    style: PictureStyle
 
     def set(self) -> None:
         """Give all parts their places; a page without a size gets the one that it needs.

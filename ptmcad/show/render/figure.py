@@ -36,7 +36,7 @@ from ptmcad.show.render.poses import (
     value_text,
 )
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.regionmap import Room
+from ptmcad.show.render.regionmap import FreeSpace
 from ptmcad.show.render.sketch import Scene, arrow_lengths, frame_of
 from ptmcad.show.render.view import View
 
@@ -81,14 +81,14 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
     key = height(entries) + 0.35
     with settings():
         # what the parts mean stands below the map's legend, unless that is long or insets are there
-        figure = regionmap.figure_of(result, False, _DPI, Room(wide + _GAP + _RIM, panels))
+        figure = regionmap.figure_of(result, False, _DPI, FreeSpace(wide + _GAP + _RIM, panels))
         lowest = min(text.get_position()[1] for text in figure.texts)
         chart: Any = figure.axes[0]
         width, tall = (float(side) for side in figure.get_size_inches())
         bottom = chart.get_position().y0 * tall
         left, place = width - wide - _RIM, (LEFT + SIDE + GAP, bottom + key)
         if len(figure.axes) > 1 or lowest - 0.3 < bottom + key:
-            figure = regionmap.figure_of(result, False, _DPI, Room(wide + _GAP + _RIM, panels + key))
+            figure = regionmap.figure_of(result, False, _DPI, FreeSpace(wide + _GAP + _RIM, panels + key))
             chart = figure.axes[0]
             tall = float(figure.get_size_inches()[1])
             place = (left, chart.get_position().y1 * tall - panels)

@@ -26,7 +26,7 @@ from ptmcad.show.render.legend import Entry, Type
 from ptmcad.show.render.paper import Box
 from ptmcad.show.render.textwidth import ALLOWANCE, wrapped
 from ptmcad.show.render.view import Same, View
-from ptmcad.show.style import MIN_FONT, Place, Style
+from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle
 
 MIN_SIDE = 11.0
 """Sides of the map, in widths of an m: a smaller one is no picture."""
@@ -48,7 +48,7 @@ Measured = tuple[Box, tuple[float, float]]
 
 
 @dataclass(frozen=True, slots=True)
-class Parts:
+class PageParts:
     """What has to be laid out.
 
     Attributes
@@ -66,7 +66,7 @@ class Parts:
     measured: dict[tuple[View, Dress], Measured] = field(default_factory=dict)
 
 
-def fitted(parts: Parts, style: Style, size: tuple[float, float]) -> Layout:
+def fitted(parts: PageParts, style: PictureStyle, size: tuple[float, float]) -> Layout:
     """The layout of the parts on a page of this size, in inches; within `ptmcad.show.render.printing.settings`.
 
     Raises
@@ -86,7 +86,7 @@ def fitted(parts: Parts, style: Style, size: tuple[float, float]) -> Layout:
     raise ConfigError(
         f"axes and legend do not fit into {_inches(size)} in text of {_fonts(style)[-1]:g} points; "
         f"the least size of this shape that does is {_inches(larger, up=True)}"
-        + ("" if style.legend is Place.NONE else ", or leave the legend out"),
+        + ("" if style.legend is LegendPlace.NONE else ", or leave the legend out"),
         key="size",
     )
 
@@ -95,7 +95,7 @@ def _inches(size: tuple[float, float], up: bool = False) -> str:
     return "x".join(f"{side + (0.005 if up else 0):.2f}" for side in size) + "in"
 
 
-def _fonts(style: Style) -> list[float]:
+def _fonts(style: PictureStyle) -> list[float]:
     """The sizes of text that are tried: the one that is asked for, or smaller and smaller ones."""
     first = style.base_font
     if style.font_size is not None:
@@ -104,14 +104,14 @@ def _fonts(style: Style) -> list[float]:
 
 
 @dataclass(frozen=True, slots=True)
-class _Page:
+class _PageLayout:
     """A page that is being laid out, with sizes of text.
 
     ``em`` is the font's size in inches, and ``rim`` the space around everything.
     """
 
-    parts: Parts
-    style: Style
+    parts: PageParts
+    style: PictureStyle
     size: tuple[float, float]
     font: float
 
@@ -179,9 +179,9 @@ def _points(size: float) -> float:
     return max(MIN_FONT, size)
 
 
-def _on(parts: Parts, style: Style, size: tuple[float, float], font: float) -> Layout | None:
+def _on(parts: PageParts, style: PictureStyle, size: tuple[float, float], font: float) -> Layout | None:
     """The first layout, in the order in which parts are given up, that has room for what it shows."""
-    page = _Page(parts, style, size, font)
+    page = _PageLayout(parts, style, size, font)
     for legend in parts.legend:
         for insets in dict.fromkeys((len(parts.views) - 1, 0)):
             found = _placed(page, legend, insets)
@@ -190,18 +190,20 @@ def _on(parts: Parts, style: Style, size: tuple[float, float], font: float) -> L
     return None
 
 
-def _placed(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
+def _placed(page: _PageLayout, legend: Sequence[Entry], insets: int) -> Layout | None:
     """The legend where it is asked for; else at the right unless the map is much larger when it is below."""
     place = page.style.legend
     if place is not None:
-        return {Place.RIGHT: _right, Place.BELOW: _below, Place.NONE: _alone}[place](page, legend, insets)
+        return {LegendPlace.RIGHT: _right, LegendPlace.BELOW: _below, LegendPlace.NONE: _alone}[place](
+            page, legend, insets
+        )
     right, below = _right(page, legend, insets), _below(page, legend, insets)
     if right is None or below is None:
         return right or below
     return right if min(right.chart[2:]) >= _NEARLY * min(below.chart[2:]) else below
 
 
-def _right(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
+def _right(page: _PageLayout, legend: Sequence[Entry], insets: int) -> Layout | None:
     """The legend, and insets below it, at the right of the map."""
     em, (width, _) = page.em, page.size
     for least in (*(max(share * width, MIN_SIDE * em) for share in _GOOD), MIN_SIDE * em):
@@ -224,7 +226,7 @@ def _right(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
     return None
 
 
-def _below(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
+def _below(page: _PageLayout, legend: Sequence[Entry], insets: int) -> Layout | None:
     """The legend in columns below the map, and insets in a row between."""
     em, (width, _) = page.em, page.size
     best: tuple[float, list[list[Entry]]] | None = None
@@ -254,12 +256,12 @@ def _below(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
     )
 
 
-def _alone(page: _Page, _legend: Sequence[Entry], insets: int) -> Layout | None:
+def _alone(page: _PageLayout, _legend: Sequence[Entry], insets: int) -> Layout | None:
     found = _over(page, page.rim, insets)
     return None if found is None else page.layout(found[0], (), found[1])
 
 
-def _over(page: _Page, bottom: float, insets: int) -> tuple[Box, list[Box]] | None:
+def _over(page: _PageLayout, bottom: float, insets: int) -> tuple[Box, list[Box]] | None:
     """The map and a row of insets above a height."""
     em, width = page.em, page.size[0]
     boxes: list[Box] = []
@@ -275,7 +277,7 @@ def _over(page: _Page, bottom: float, insets: int) -> tuple[Box, list[Box]] | No
     return None if chart is None else (chart, boxes)
 
 
-def _chart(page: _Page, width: float, height: float) -> Box | None:
+def _chart(page: _PageLayout, width: float, height: float) -> Box | None:
     """The map's place in a part of the page at its left and top; None where that is too small."""
     em = page.em
     least = MIN_SIDE * em
@@ -290,7 +292,7 @@ def _chart(page: _Page, width: float, height: float) -> Box | None:
     return (page.rim + left, page.top - inner[1], *inner)
 
 
-def _stacked(page: _Page, place: tuple[float, float, float], insets: int) -> list[Box] | None:
+def _stacked(page: _PageLayout, place: tuple[float, float, float], insets: int) -> list[Box] | None:
     """Insets one below the other, from a left end and a top in a column of some width."""
     left, top, column = place
     boxes: list[Box] = []
@@ -309,12 +311,12 @@ def _stacked(page: _Page, place: tuple[float, float, float], insets: int) -> lis
     return boxes
 
 
-def _inset_head(page: _Page) -> float:
+def _inset_head(page: _PageLayout) -> float:
     """Inches of the two lines over an inset."""
     return 3.0 * page.texts.inset / 72
 
 
-def _inset_overhang(page: _Page) -> Box:
+def _inset_overhang(page: _PageLayout) -> Box:
     """What numbers and names of the insets' axes take: the most of all."""
     sides = (_INSET[0] * page.em, _INSET[1] * page.em)
     found = [overhang(page.parts, view, sides, page.dressed(*sides, small=True)) for view in page.parts.views[1:]]
@@ -322,7 +324,7 @@ def _inset_overhang(page: _Page) -> Box:
     return left, below + 0.3 * page.em, right, above
 
 
-def overhang(parts: Parts, view: View, sides: tuple[float, float], how: Dress) -> Box:
+def overhang(parts: PageParts, view: View, sides: tuple[float, float], how: Dress) -> Box:
     """Inches that numbers and names take at the left, below, at the right and above axes of these sides."""
     key = (view, how)
     if key not in parts.measured:

@@ -66,7 +66,7 @@ _RING = 5.0
 
 
 @dataclass(frozen=True, slots=True)
-class Side:
+class UnknownAxis:
     """An axis of the picture: an unknown from ``low`` to ``high``, an angle in degrees."""
 
     name: str
@@ -92,13 +92,13 @@ class Side:
         return copies(value) if self.is_angle else (value,)
 
 
-def sides_of(model: Model, shown: Sequence[Pose], units: Mapping[str, str]) -> tuple[Side, ...]:
+def sides_of(model: Model, shown: Sequence[Pose], units: Mapping[str, str]) -> tuple[UnknownAxis, ...]:
     """The axes: angles all round, and for each unknown on the line a range that holds all equilibria."""
-    found = [Side(name, -180.0, 180.0, True, unit_of_unknown(model, name, units)) for name in model.angles]
+    found = [UnknownAxis(name, -180.0, 180.0, True, unit_of_unknown(model, name, units)) for name in model.angles]
     for k, name in enumerate(model.reals):
         low, high = (end(float(pose.reals[k]) for pose in shown) for end in (min, max))
         room = max((high - low) / 2, max(abs(low), abs(high)) / 4) or 1.0
-        found.append(Side(name, low - room, high + room, False, unit_of_unknown(model, name, units)))
+        found.append(UnknownAxis(name, low - room, high + room, False, unit_of_unknown(model, name, units)))
     return tuple(found)
 
 
@@ -193,7 +193,7 @@ def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
     return figure
 
 
-def _levels(energy: Energy, sides: Sequence[Side], pose: Pose) -> list[float]:
+def _levels(energy: Energy, sides: Sequence[UnknownAxis], pose: Pose) -> list[float]:
     """Where a pose lies: once, and again at the other edge of an angle."""
     places = product(*(side.copies(value) for side, value in zip(sides, place_of(pose), strict=True)))
     return [energy.level(pose, place) for place in places]
@@ -214,13 +214,13 @@ def _title(poses: Poses) -> list[str]:
     return [*lines, *textwrap.wrap(f"V {about} U{work}{unit}: {drawn(poses).lower().rstrip(',')}", _COLUMNS)]
 
 
-def _sampled(energy: Energy, sides: Sequence[Side], number: int) -> tuple[tuple[Floats, Floats], Floats]:
+def _sampled(energy: Energy, sides: Sequence[UnknownAxis], number: int) -> tuple[tuple[Floats, Floats], Floats]:
     """What is shown along the sides, and the energy, shape (number, number), the first unknown along rows."""
     (across, first), (up, second) = (side.sampled(number) for side in sides)
     return (across, up), energy(first[None, :], second[:, None])
 
 
-def _what(sides: Sequence[Side]) -> str:
+def _what(sides: Sequence[UnknownAxis]) -> str:
     return "the two angles" if all(side.is_angle for side in sides) else " and ".join(side.name for side in sides)
 
 
@@ -238,7 +238,7 @@ def contour_levels(critical: Sequence[float], low: float, high: float) -> list[f
     return levels
 
 
-def _decorate(axes: Any, sides: Sequence[Side]) -> None:
+def _decorate(axes: Any, sides: Sequence[UnknownAxis]) -> None:
     for side, set_limits, set_ticks in (
         (sides[0], axes.set_xlim, axes.set_xticks),
         (sides[1], axes.set_ylim, axes.set_yticks),
@@ -251,7 +251,7 @@ def _decorate(axes: Any, sides: Sequence[Side]) -> None:
     axes.set_ylabel(sides[1].label, fontsize=11)
 
 
-def _mark(axes: Any, sides: Sequence[Side], shown: Sequence[Pose]) -> None:
+def _mark(axes: Any, sides: Sequence[UnknownAxis], shown: Sequence[Pose]) -> None:
     """A marker for each equilibrium, again at the opposite edge of an angle, and its number once."""
     length = SIDE * 72
 
@@ -298,7 +298,7 @@ def copies(angle: float) -> tuple[float, ...]:
     return (180.0, -180.0) if abs(angle) > 179.75 else (angle,)
 
 
-def first_copy(sides: Sequence[Side], pose: Pose) -> tuple[float, float]:
+def first_copy(sides: Sequence[UnknownAxis], pose: Pose) -> tuple[float, float]:
     """Where an equilibrium's number belongs."""
     x, y = (side.copies(value)[0] for side, value in zip(sides, place_of(pose), strict=True))
     return x, y

@@ -16,7 +16,7 @@ from ptmcad.answer.words import counted, noun
 from ptmcad.question.slice import Count, Slice
 from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
 from ptmcad.show.render.paper import stroke, write
-from ptmcad.show.style import MIN_FONT, Style
+from ptmcad.show.style import MIN_FONT, PictureStyle
 from ptmcad.show.table import area_by_count, area_text, areas_are_known, count_text, index_heading
 from ptmcad.text.bounds import percent
 
@@ -61,7 +61,7 @@ class Type:
     thin_lines: str = "solid"
 
     @classmethod
-    def of(cls, style: Style, font: float | None = None) -> Type:
+    def of(cls, style: PictureStyle, font: float | None = None) -> Type:
         """As large as a style's text, or text of another size, is."""
         font = style.base_font if font is None else font
         thin = style.strong * THIN / STRONG

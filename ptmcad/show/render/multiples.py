@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from ptmcad.answer.family import FamilyMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress, symbol
-from ptmcad.show.render.fitting import MIN_SIDE, Parts, overhang
+from ptmcad.show.render.fitting import MIN_SIDE, PageParts, overhang
 from ptmcad.show.render.legend import (
     INK,
     STRONG,
@@ -37,7 +37,7 @@ from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import seen_thin_walls
 from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.render.thinmarks import draw_marks, marks_of
-from ptmcad.show.style import MIN_FONT, Place, Style
+from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle
 from ptmcad.text.numerals import shortest_text
 
 SIDE = 1.75
@@ -45,7 +45,7 @@ SIDE = 1.75
 _MAX_COLUMNS = 6
 
 
-def draw_multiples(family: FamilyMap, path: Path, dpi: int, style: Style) -> None:
+def draw_multiples(family: FamilyMap, path: Path, dpi: int, style: PictureStyle) -> None:
     """Write the picture, as `ptmcad.show.render.printing.save` does.
 
     Raises
@@ -95,7 +95,7 @@ def value_text(family: FamilyMap, value: Fraction) -> str:
     return f"{symbol(family.free.name)} = {shortest_text(value).replace('-', '−')}"
 
 
-def multiples_figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
+def multiples_figure(family: FamilyMap, dpi: int, style: PictureStyle) -> Figure:
     """The picture.
 
     Raises
@@ -109,13 +109,13 @@ def multiples_figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     return figure
 
 
-def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
+def _figure(family: FamilyMap, dpi: int, style: PictureStyle) -> Figure:
     font = style.base_font
     em = font / 72
     type = Type.of(style)
     how = Dress(max(MIN_FONT, 0.85 * font), 0.95 * font, (4, 4), scale=font / 9)
     seen = [shapes(result) for result in family.members]
-    parts = Parts(family.members[0].slice, "", ((), ()), (seen[0].view,))
+    parts = PageParts(family.members[0].slice, "", ((), ()), (seen[0].view,))
     left, below, right, _ = overhang(parts, seen[0].view, (SIDE, SIDE), how)
     columns = _columns(len(seen), style.size)
     rows = math.ceil(len(seen) / columns)
@@ -129,7 +129,7 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     thin = any(seen_thin_walls(shape, (72 * side, 72 * side)) for shape in seen)
     paint = replace(paint, thin_walls=thin)
     told = family_entries(family, paint, thin, sum(mark.hidden for mark in marks))
-    lines = [] if style.legend is Place.NONE else in_rows(told, wide - 1.2 * em, type)
+    lines = [] if style.legend is LegendPlace.NONE else in_rows(told, wide - 1.2 * em, type)
     rest = 1.5 * em * len(titles) + 0.4 * em + rows * head + below + (type.line * 1.35) * len(lines) + 0.7 * em
     between = 0.5 * em * (rows - 1)
     tall = (style.size[1] - rest - between) / rows if style.size is not None else side

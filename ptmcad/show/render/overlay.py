@@ -12,6 +12,7 @@ from enum import Enum
 from fractions import Fraction
 from typing import Any
 
+from ptmcad.answer.words import several
 from ptmcad.show.render.legend import INK, Entry, point_mark
 from ptmcad.show.render.view import View
 
@@ -49,7 +50,7 @@ def overlay_entries(overlay: Overlay) -> tuple[Entry, ...]:
     for kind in Agreement:
         number = sum(point.agreement is kind for point in overlay)
         if number:
-            found.append(Entry((kind.value, f"{number} point{'s' * (number != 1)}"), point_mark(**_style(kind, 1.0))))
+            found.append(Entry((kind.value, several(number, "point")), point_mark(**_style(kind, 1.0))))
     return tuple(found)
 
 

@@ -13,7 +13,7 @@ from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.show.render.colours import Fill, filler, undetermined_fill
 from ptmcad.show.render.legend import CORE, INK, RIM, RIM_INK, STRONG, THIN
 from ptmcad.show.render.view import Floats, Shapes
-from ptmcad.show.style import Style
+from ptmcad.show.style import PictureStyle
 from ptmcad.show.table import count_text
 
 _OVER = 0.004
@@ -33,7 +33,7 @@ class Paint:
     thin_walls: bool = True
 
 
-def paint_of(style: Style, *results: RegionMap) -> Paint:
+def paint_of(style: PictureStyle, *results: RegionMap) -> Paint:
     """The same for all maps that are drawn beside each other, which count the same."""
     return Paint(
         filler([region for result in results for region in result.regions], results[0].slice.count, style.palette),

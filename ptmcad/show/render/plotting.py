@@ -24,10 +24,12 @@ from ptmcad.show.render.poses import describe
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.regionmap import description, figure_of, whole_title
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.style import Place, Style, styled
+from ptmcad.show.style import LegendPlace, PictureStyle, styled
 
 
-def plot(result: RegionMap, ax: Any, style: str | Style, samples: bool, dpi: int, options: dict[str, Any]) -> Any:
+def plot(
+    result: RegionMap, ax: Any, style: str | PictureStyle, samples: bool, dpi: int, options: dict[str, Any]
+) -> Any:
     """A figure of its own, or the axes that were given, with the map in them.
 
     Raises
@@ -46,7 +48,7 @@ def plot(result: RegionMap, ax: Any, style: str | Style, samples: bool, dpi: int
         return figure_of(result, samples, dpi, style=made)
 
 
-def draw_on(axes: Any, result: RegionMap, samples: bool, style: Style) -> None:
+def draw_on(axes: Any, result: RegionMap, samples: bool, style: PictureStyle) -> None:
     """The map in a caller's axes, in the units of its own axes, so that the caller can add to it.
 
     Without insets and arrows; its legend stands at the axes' right.
@@ -62,9 +64,9 @@ def draw_on(axes: Any, result: RegionMap, samples: bool, style: Style) -> None:
     title = whole_title(result) if style.title is None else style.title
     if title:
         axes.set_title(title, loc="left", wrap=True)
-    if style.legend is not Place.NONE:
+    if style.legend is not LegendPlace.NONE:
         handles = handles_of(fills_by_count(paint, result))
-        below = style.legend is Place.BELOW
+        below = style.legend is LegendPlace.BELOW
         axes.legend(
             handles=handles, title=head_of(result.slice)[0], ncols=len(handles) if below else 1, borderaxespad=0,
             loc="upper left", bbox_to_anchor=(0.0, -0.2) if below else (1.03, 1.0), frameon=False,
@@ -80,7 +82,12 @@ def handles_of(fills: Mapping[str, Fill]) -> list[Patch]:
 
 
 def draw_with_poses(
-    result: RegionMap, points: Sequence[tuple[Point, Poses]], path: Path, dpi: int, style: Style, overlay: Overlay
+    result: RegionMap,
+    points: Sequence[tuple[Point, Poses]],
+    path: Path,
+    dpi: int,
+    style: PictureStyle,
+    overlay: Overlay,
 ) -> tuple[str, ...]:
     """Write the map with the stable poses at points around it; what had no room is returned, in words.
 

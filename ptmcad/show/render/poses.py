@@ -28,7 +28,7 @@ from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_mark, symbol_mark, torsion_mark
 from ptmcad.show.render.paper import axes_at, stroke, write, write_lines
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.sketch import MAX_ARROW, MIN_ARROW, Frame, Scene, arrow_lengths, components, frame_of
+from ptmcad.show.render.sketch import MAX_ARROW, MIN_ARROW, PanelFrame, Scene, arrow_lengths, components, frame_of
 from ptmcad.show.units import energy_unit
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import magnitude, power_of_ten, shortest_text
@@ -131,7 +131,7 @@ def panel(figure: Figure, scene: Scene, pose: Pose, number: int, corner: tuple[f
     return axes
 
 
-def pose_axes(figure: Figure, corner: tuple[float, float], frame: Frame, gid: str, strong: bool) -> Any:
+def pose_axes(figure: Figure, corner: tuple[float, float], frame: PanelFrame, gid: str, strong: bool) -> Any:
     """Axes in which a unit is a point, in a dark frame or a pale one."""
     axes = axes_at(figure, (*corner, frame.width / 72, frame.height / 72), gid)
     axes.set(xlim=(0, frame.width), ylim=(0, frame.height), xticks=[], yticks=[])
@@ -329,7 +329,7 @@ _KEY_COLUMNS = 33
 _SCALE_ROOM = 0.3
 
 
-def scale_bar(figure: Figure, frame: Frame, place: tuple[float, float], units: Mapping[str, str]) -> None:
+def scale_bar(figure: Figure, frame: PanelFrame, place: tuple[float, float], units: Mapping[str, str]) -> None:
     """A bar of known length, at most 60 points long, from a place in inches to the right."""
     left, middle = place
     step = _round_below(Fraction(60) / frame.scale)

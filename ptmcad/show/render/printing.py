@@ -20,7 +20,7 @@ from typing import Any
 import matplotlib
 from matplotlib.figure import Figure
 
-from ptmcad.show.style import DEFAULT, Style
+from ptmcad.show.style import DEFAULT, PictureStyle
 
 FORMATS = ("png", "svg", "pdf", "eps")
 
@@ -49,7 +49,7 @@ _KEPT = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
 
 
 @contextmanager
-def settings(style: Style = DEFAULT) -> Iterator[None]:
+def settings(style: PictureStyle = DEFAULT) -> Iterator[None]:
     """Matplotlib's own defaults and the project's fonts, not a user's matplotlibrc; for drawing and for printing.
 
     A style's font comes first; letters that it lacks are taken from the one that comes with matplotlib.
@@ -77,7 +77,7 @@ def suffix_of(path: Path) -> str:
     return suffix
 
 
-def save(figure: Figure, path: Path, *, dpi: int = 150, style: Style = DEFAULT) -> None:
+def save(figure: Figure, path: Path, *, dpi: int = 150, style: PictureStyle = DEFAULT) -> None:
     """Write a figure whose label is its title and, on further lines, its description.
 
     Parameters
@@ -96,7 +96,7 @@ def save(figure: Figure, path: Path, *, dpi: int = 150, style: Style = DEFAULT) 
     path.write_bytes(content(figure, suffix_of(path), dpi=dpi, style=style))
 
 
-def content(figure: Figure, suffix: str, *, dpi: int = 150, style: Style = DEFAULT) -> bytes:
+def content(figure: Figure, suffix: str, *, dpi: int = 150, style: PictureStyle = DEFAULT) -> bytes:
     """What `save` writes."""
     title, _, description = str(figure.get_label()).partition("\n")
     with settings(style):

@@ -20,7 +20,7 @@ from matplotlib.patches import Rectangle
 from ptmcad.answer.counts import Counts, MorseIndex
 from ptmcad.answer.intervals import CountIntervals, End
 from ptmcad.answer.widths import CertifiedWidths, OperationWidths
-from ptmcad.answer.words import counted, noun, sought
+from ptmcad.answer.words import counted, noun, several, sought
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.ranges.certified import widest_text
 from ptmcad.show.ranges.numbers import end_text, width_text
@@ -113,7 +113,7 @@ def _unstable(index: MorseIndex | None) -> tuple[str, ...]:
     if index is None:
         return ()
     saddles, maxima = sum(index[1:-1]), index[-1]
-    between = [f"{saddles} saddle{'s' * (saddles != 1)}"] if len(index) > 2 else []
+    between = [several(saddles, "saddle")] if len(index) > 2 else []
     return (", ".join([*between, f"{maxima} maxim{'um' if maxima == 1 else 'a'}"]),)
 
 

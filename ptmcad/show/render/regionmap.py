@@ -19,10 +19,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.answer.words import noun
+from ptmcad.answer.words import noun, several
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import dress, heading_of
-from ptmcad.show.render.fitting import Parts, fitted
+from ptmcad.show.render.fitting import PageParts, fitted
 from ptmcad.show.render.labels import place
 from ptmcad.show.render.layout import SIDE, Layout, flowing
 from ptmcad.show.render.legend import (
@@ -43,7 +43,7 @@ from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import MAX_ZOOMS, Sliver, Zoom, seen_thin_walls, thin_regions, unstable_zooms, zooms
 from ptmcad.show.render.thinmarks import RESOLVED, Marks, draw_marks, homes_of, ranked
 from ptmcad.show.render.view import Shapes
-from ptmcad.show.style import DEFAULT, Place, Style
+from ptmcad.show.style import DEFAULT, LegendPlace, PictureStyle
 from ptmcad.show.table import area_text, areas_are_known, count_text, region_area
 
 TITLE_COLUMNS, TITLE_LINES = 80, 3
@@ -52,7 +52,7 @@ _ZOOMED_COLUMNS = 34
 
 
 def draw(
-    result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150, style: Style = DEFAULT,
+    result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150, style: PictureStyle = DEFAULT,
     overlay: Overlay = (),
 ) -> tuple[str, ...]:  # fmt: skip
     """Write the picture of a map.
@@ -151,25 +151,30 @@ def _seen(whole: Shapes, sides: tuple[float, float], dpi: int, earlier: _Seen | 
 
 
 @dataclass(frozen=True, slots=True)
-class Room:
+class FreeSpace:
     """Inches left free at the right of a picture that grows with what it shows, and how tall it is there at least."""
 
     beside: float = 0.0
     tallest: float = 0.0
 
 
-NO_ROOM = Room()
+NO_ROOM = FreeSpace()
 
 
 def figure_of(
-    result: RegionMap, samples: bool, dpi: int, room: Room = NO_ROOM, style: Style = DEFAULT, overlay: Overlay = ()
+    result: RegionMap,
+    samples: bool,
+    dpi: int,
+    room: FreeSpace = NO_ROOM,
+    style: PictureStyle = DEFAULT,
+    overlay: Overlay = (),
 ) -> Figure:
     """The picture, to be called within `settings`."""
     return _figure(result, samples, dpi, room, style, overlay)[0]
 
 
 def _figure(
-    result: RegionMap, samples: bool, dpi: int, room: Room, style: Style, overlay: Overlay
+    result: RegionMap, samples: bool, dpi: int, room: FreeSpace, style: PictureStyle, overlay: Overlay
 ) -> tuple[Figure, tuple[str, ...]]:
     """The picture, and what it leaves out."""
     whole = shapes(result)
@@ -191,7 +196,7 @@ def left_out(seen: _Seen, layout: Layout) -> tuple[str, ...]:
     found = []
     lost, drawn = len(seen.views) + seen.unnamed, len(layout.insets)
     if lost > drawn and not drawn:
-        found.append(f"{lost} zoomed view{'s' * (lost > 1)} of parts that are too thin to be seen")
+        found.append(f"{several(lost, 'zoomed view')} of parts that are too thin to be seen")
     if seen.unnamed:
         found.append("labels of such parts, in which unstable ones differ")
     if layout.shortened:
@@ -200,7 +205,7 @@ def left_out(seen: _Seen, layout: Layout) -> tuple[str, ...]:
 
 
 def fit(
-    result: RegionMap, whole: Shapes, samples: bool, dpi: int, style: Style, overlay: Overlay = ()
+    result: RegionMap, whole: Shapes, samples: bool, dpi: int, style: PictureStyle, overlay: Overlay = ()
 ) -> tuple[_Seen, Layout]:
     """What is to be drawn on a page of a given size, and where.
 
@@ -209,7 +214,7 @@ def fit(
     wide, tall = style.size or (8.4, 5.7)
     seen, tries = _seen(whole, (wide / 2, tall / 2), dpi), 3
     while True:
-        parts = Parts(
+        parts = PageParts(
             result.slice,
             whole_title(result) if style.title is None else style.title,
             _legend(result, seen, samples, style, overlay),
@@ -237,20 +242,20 @@ def fit(
         seen = again
 
 
-def _natural(style: Style, parts: Parts) -> tuple[float, float]:
+def _natural(style: PictureStyle, parts: PageParts) -> tuple[float, float]:
     """A size for a map as large as in a picture that grows with what it shows, in proportion to the text."""
     scale = style.base_font / 9
     lines = sum(len(entry.lines) for entry in parts.legend[0])
-    wide = {Place.RIGHT: 8.4, None: 8.4, Place.BELOW: 6.0, Place.NONE: 5.7}[style.legend]
-    tall = 5.7 + (0.1 * lines if style.legend is Place.BELOW else 0.0)
+    wide = {LegendPlace.RIGHT: 8.4, None: 8.4, LegendPlace.BELOW: 6.0, LegendPlace.NONE: 5.7}[style.legend]
+    tall = 5.7 + (0.1 * lines if style.legend is LegendPlace.BELOW else 0.0)
     return wide * scale, tall * scale
 
 
 def _legend(
-    result: RegionMap, seen: _Seen, samples: bool, style: Style, overlay: Overlay = (), told: bool = True
+    result: RegionMap, seen: _Seen, samples: bool, style: PictureStyle, overlay: Overlay = (), told: bool = True
 ) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
     """The legend with areas and without; ``told`` says whether it tells how many thin regions have no label."""
-    if style.legend is Place.NONE:
+    if style.legend is LegendPlace.NONE:
         return (), ()
     paint = paint_of(style, result)
     with_areas, without = (
@@ -261,7 +266,9 @@ def _legend(
     return (*with_areas, *further), (*without, *further)
 
 
-def draw_parts(figure: Figure, seen: _Seen, layout: Layout, style: Style, samples: bool, overlay: Overlay = ()) -> Any:
+def draw_parts(
+    figure: Figure, seen: _Seen, layout: Layout, style: PictureStyle, samples: bool, overlay: Overlay = ()
+) -> Any:
     """Everything in its place; the map's axes."""
     result, paint = seen.whole.result, paint_of(style, seen.whole.result)
     on_map = replace(paint, thin_walls=seen.thin_lines)
@@ -295,7 +302,7 @@ def _title(result: RegionMap) -> list[str]:
     return textwrap.wrap(whole_title(result), TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …") or [""]
 
 
-def _title_lines(result: RegionMap, style: Style) -> list[str]:
+def _title_lines(result: RegionMap, style: PictureStyle) -> list[str]:
     """Lines over a picture that grows with what it shows."""
     if style.title is None:
         return _title(result)

@@ -45,7 +45,7 @@ LABEL_HALF_HEIGHT, LABEL_SIZE = 5.6, 9.0
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class PanelFrame:
     """What all panels have in common: points to the unit of length, and their sides in points."""
 
     scale: Fraction
@@ -91,13 +91,13 @@ class Sketch:
     labels: tuple[Placed, ...]
 
 
-def frame_of(shown: Sequence[Pose], width: float = WIDTH, most_height: float = MAX_HEIGHT) -> Frame:
+def frame_of(shown: Sequence[Pose], width: float = WIDTH, most_height: float = MAX_HEIGHT) -> PanelFrame:
     """The frame that shows all these poses at one scale, as large as the width and the height allow."""
     sides = [[high - low for low, high in _sides(_centers(pose).values())] for pose in shown]
     wide, tall = (max(side[k] for side in sides) for k in (0, 1))
     room = (Fraction(width - 2 * MARGIN), Fraction(most_height - 2 * MARGIN))
     scale = min((r / side for r, side in zip(room, (wide, tall), strict=True) if side), default=Fraction(1))
-    return Frame(scale, max(MIN_HEIGHT, float(tall * scale) + 2 * MARGIN), width)
+    return PanelFrame(scale, max(MIN_HEIGHT, float(tall * scale) + 2 * MARGIN), width)
 
 
 def _centers(pose: Pose) -> dict[str, tuple[Fraction, Fraction]]:
@@ -142,7 +142,7 @@ class Scene:
     """What the sketches of several poses have in common; ``arrows`` are lengths of loads."""
 
     mechanism: Mechanism
-    frame: Frame
+    frame: PanelFrame
     arrows: Mapping[str, float]
 
     def of(self, pose: Pose) -> Sketch:
@@ -150,7 +150,7 @@ class Scene:
         return sketch(self.mechanism, pose, self.frame, self.arrows)
 
 
-def sketch(mechanism: Mechanism, pose: Pose, frame: Frame, arrows: Mapping[str, float]) -> Sketch:
+def sketch(mechanism: Mechanism, pose: Pose, frame: PanelFrame, arrows: Mapping[str, float]) -> Sketch:
     """A pose in a frame, with arrows of these lengths."""
     return sketched(mechanism, frame.nodes(pose), (frame.width, frame.height), arrows)
 

@@ -27,7 +27,7 @@ from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sheets import BOX, add_sheets, sheet_colours, sheet_entries
 from ptmcad.show.render.textwidth import text_width, wrapped
-from ptmcad.show.style import MIN_FONT, Place, Style
+from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle
 from ptmcad.show.units import unit_of_free, with_unit
 
 SIZE = (5.8, 5.5)
@@ -37,12 +37,14 @@ MAX_FLOORS = 7
 """Of filled maps: more would hide each other."""
 
 
-def draw_solid(family: FamilyMap, path: Path, dpi: int, style: Style, surface: BoundarySurface | None = None) -> None:
+def draw_solid(
+    family: FamilyMap, path: Path, dpi: int, style: PictureStyle, surface: BoundarySurface | None = None
+) -> None:
     """Write the picture, as `ptmcad.show.render.printing.save` does."""
     save(solid_figure(family, dpi, style, surface), path, dpi=dpi, style=style)
 
 
-def solid_figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySurface | None = None) -> Figure:
+def solid_figure(family: FamilyMap, dpi: int, style: PictureStyle, surface: BoundarySurface | None = None) -> Figure:
     """The picture: at most `MAX_FLOORS` maps are filled, of the other members there are the curves.
 
     Parameters
@@ -56,7 +58,7 @@ def solid_figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySur
     return figure
 
 
-def _figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySurface | None) -> Figure:
+def _figure(family: FamilyMap, dpi: int, style: PictureStyle, surface: BoundarySurface | None) -> Figure:
     font = style.base_font
     em, small = font / 72, max(MIN_FONT, 0.85 * font)
     wide, tall = style.size or SIZE
@@ -71,7 +73,7 @@ def _figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySurface 
     else:
         fills = [entry for entry in told if entry.mark != STRONG]
         told = sheet_entries(surface, colours, fills if _lowest(family) else fills[:1])
-    lines = [] if style.legend is Place.NONE else in_rows(told, wide - 1.2 * em, type)
+    lines = [] if style.legend is LegendPlace.NONE else in_rows(told, wide - 1.2 * em, type)
     titles = wrapped(title, wide - 1.2 * em, font, True) if title else []
     head, foot = 1.5 * em * len(titles) + 0.4 * em, 1.35 * type.line * len(lines) + (0.7 * em if lines else 0.0)
     # names of axes are so many letters below the box, whose lowest corner is a tenth above the axes' end

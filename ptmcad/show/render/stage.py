@@ -39,7 +39,7 @@ from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sketch import Sketch, arrows_of, components, own_labels, sketched
 from ptmcad.show.render.textwidth import text_width
 from ptmcad.show.render.view import View
-from ptmcad.show.style import Style
+from ptmcad.show.style import PictureStyle
 
 SIZE = (9.0, 5.1)
 MIN_SIZE = (6.5, 3.4)
@@ -94,7 +94,7 @@ def check_drawable(motion: Motion) -> Mechanism:
 class Stage:
     """The pictures of a motion, one for each of its steps; to be used within `printing.settings`."""
 
-    def __init__(self, motion: Motion, style: Style, dpi: int):
+    def __init__(self, motion: Motion, style: PictureStyle, dpi: int):
         self.motion, self.mechanism = motion, check_drawable(motion)
         size = style.size or SIZE
         if size[0] < MIN_SIZE[0] or size[1] < MIN_SIZE[1]:
@@ -216,7 +216,7 @@ class Stage:
                   for n, v in zip(model.reals, step.unknowns[angles:], strict=True)]  # fmt: skip
         yield self._text(self.below, ",  ".join(texts), SIZES[1])
 
-    def _map(self, style: Style) -> None:
+    def _map(self, style: PictureStyle) -> None:
         result = self.motion.result
         whole = shapes(result)
         paint_map(self.chart, whole, "", paint_of(style, result))
@@ -308,7 +308,7 @@ def _arrows(motion: Motion, mechanism: Mechanism) -> dict[tuple[Fraction, Fracti
     return {at: arrows_of(own, largest) for at, own in forces.items()}
 
 
-def _key(motion: Motion, style: Style, width: float) -> list[list[tuple[float, Entry]]]:
+def _key(motion: Motion, style: PictureStyle, width: float) -> list[list[tuple[float, Entry]]]:
     """The legend in rows: each entry with its distance from the left, in inches."""
     result = motion.result
     paint = paint_of(style, result)

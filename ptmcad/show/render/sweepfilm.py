@@ -22,7 +22,7 @@ from ptmcad.show.render.legend import head_of
 from ptmcad.show.render.painting import fills_by_count, paint_of
 from ptmcad.show.render.plotting import draw_on, handles_of
 from ptmcad.show.render.stage import Pixels
-from ptmcad.show.style import Place, Style
+from ptmcad.show.style import LegendPlace, PictureStyle
 from ptmcad.show.table import in_order
 from ptmcad.text.numerals import fraction_of, shortest_text
 
@@ -44,10 +44,10 @@ class SweepFilm:
     """
 
     def __init__(
-        self, maps: Callable[[int], RegionMap], values: Sequence[Mapping[str, str]], style: Style, dpi: int
+        self, maps: Callable[[int], RegionMap], values: Sequence[Mapping[str, str]], style: PictureStyle, dpi: int
     ) -> None:
         self.maps, self.values, self.dpi = maps, values, dpi
-        self.style = style._replace(legend=Place.NONE, title="")
+        self.style = style._replace(legend=LegendPlace.NONE, title="")
         self.head, fills = "", dict[str, Fill]()
         for number in range(len(values)):
             result = maps(number)
@@ -77,7 +77,7 @@ def save_sweep_film(
     maps: Callable[[int], RegionMap],
     values: Sequence[Mapping[str, str]],
     path: Path,
-    style: Style,
+    style: PictureStyle,
     fps: int,
     dpi: int = 100,
 ) -> None:

@@ -49,7 +49,7 @@ LABEL, _LETTER = 42, 0.55
 
 
 @dataclass(frozen=True, slots=True)
-class Chart:
+class MapPictures:
     """The whole window, and views of thin regions, as SVG; ``places`` are the samples' positions in the window."""
 
     whole: str
@@ -59,7 +59,7 @@ class Chart:
     hidden: int
 
 
-def chart(seen: Shapes) -> Chart:
+def chart(seen: Shapes) -> MapPictures:
     """The pictures of a map."""
     result = seen.result
     thin = thin_regions(seen, MAP_PIXELS)
@@ -69,7 +69,7 @@ def chart(seen: Shapes) -> Chart:
         (letter, seen.view.approximate_position(sliver.at)) for letter, zoom in marks for sliver in zoom.slivers[:1]
     ]
     places = tuple(seen.view.approximate_position((c.sample[0], c.sample[1])) for c in result.cells)
-    return Chart(
+    return MapPictures(
         whole=_picture(seen, "map", tips, region_labels(seen)),
         details=tuple(_picture(zoom.outline, f"detail-{letter}", (), ()) for letter, zoom in marks),
         places=places,

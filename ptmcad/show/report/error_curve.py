@@ -30,7 +30,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
-class Series:
+class MeasuredSeries:
     """Measurements of one method: pairs (seconds, error), both positive, in the order in which they are joined."""
 
     name: str
@@ -42,7 +42,7 @@ class ErrorCurve:
     """What the error is, in words, and its measurements."""
 
     error: str
-    series: tuple[Series, ...]
+    series: tuple[MeasuredSeries, ...]
 
 
 def read_error_curve(path: Path) -> ErrorCurve:
@@ -74,7 +74,7 @@ def _some(codec: Codec[T], most: int) -> Codec[tuple[T, ...]]:
     return Codec(list, read)
 
 
-_SERIES = record_of(Series, name=line(60), points=_some(listed(Codec[float](float, _positive), 2), _MAX_POINTS))
+_SERIES = record_of(MeasuredSeries, name=line(60), points=_some(listed(Codec[float](float, _positive), 2), _MAX_POINTS))
 _CURVE = record_of(ErrorCurve, error=line(200), series=_some(_SERIES, _MAX_SERIES))
 
 

@@ -30,7 +30,7 @@ _MAX_NAME = 24
 
 
 @dataclass(frozen=True, slots=True)
-class Room:
+class Margins:
     """What is left around the window for numbers and names, and the size of the names' type on phones."""
 
     left: float
@@ -39,13 +39,13 @@ class Room:
     name: float
 
 
-def room(seen: Shapes, detail: bool) -> Room:
+def room(seen: Shapes, detail: bool) -> Margins:
     """The room that the numbers of a view need: of the whole window, or of thin regions, where the type is larger."""
     number, name = (_DETAIL, _DETAIL) if detail else (_NUMBER, _NAME)
     across, up = (ticks(interval, scale_of(*interval)) for interval in (seen.view.x, seen.view.y))
     beside = max((_width(text) for text, _ in up), default=0) * number
     beyond = max(((float(at) - 1) * SIDE + _width(text) * number / 2 for text, at in across), default=0)
-    return Room(
+    return Margins(
         left=ceil(max(_LEFT, 14 + beside + 6 + 1.3 * name)),
         right=ceil(max(RIM, beyond + 2)),
         bottom=ceil(max(_BOTTOM, 18 + 1.1 * number + 1.1 * name + 20)),
@@ -58,7 +58,7 @@ def _width(text: str) -> float:
     return sum(_WIDTHS.get(character, 0.64) for character in text)
 
 
-def frame(seen: Shapes, room: Room) -> Iterator[str]:
+def frame(seen: Shapes, room: Margins) -> Iterator[str]:
     """The frame with ticks, numbers and names, as elements of a group whose origin is its upper left corner."""
     yield f'<rect class="frame" width="{SIDE}" height="{SIDE}"/>'
     slice = seen.result.slice

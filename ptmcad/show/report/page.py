@@ -28,7 +28,7 @@ from ptmcad.show.render.colours import fill_of
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.report import sections
-from ptmcad.show.report.chart import SLACK, Chart, chart, counts_text, pattern_defs
+from ptmcad.show.report.chart import SLACK, MapPictures, chart, counts_text, pattern_defs
 from ptmcad.show.report.equilibria import at_sample, both
 from ptmcad.show.report.error_curve import ErrorCurve, error_section
 from ptmcad.show.report.formulas import curves
@@ -108,7 +108,7 @@ def _shown(model: Model) -> str:
     return "its poses and its energy" if model.has_potential else "its poses"
 
 
-def _details(drawn: Chart) -> str:
+def _details(drawn: MapPictures) -> str:
     """The views of thin regions below the map."""
     if not drawn.details:
         return ""
@@ -202,7 +202,7 @@ def _unknowns(model: Model) -> tuple[str, ...]:
     return (*model.angles, *model.reals)
 
 
-def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
+def _data(result: RegionMap, drawn: MapPictures) -> dict[str, Any]:
     """What the script shows and draws."""
     names, model = result.slice.axis_names, result.slice.model
     return {

@@ -10,13 +10,13 @@ from html import escape
 
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.answer.words import index_words, noun
+from ptmcad.answer.words import index_words, noun, several
 from ptmcad.question.slice import Count
 from ptmcad.show.render.axes import named, symbol
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.legend import entries
 from ptmcad.show.report.bounds import exactly
-from ptmcad.show.report.chart import Chart, counts_text, hatch_id
+from ptmcad.show.report.chart import MapPictures, counts_text, hatch_id
 from ptmcad.show.report.equilibria import both, distinct_parameters
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.show.table import NOT_COMPUTED, area_digits, areas_are_known, stability_in_words
@@ -122,17 +122,17 @@ def answer(result: RegionMap) -> str:
         return f"no cells were computed; {result.status.value}"
     if result.cover is not None:
         return (
-            f"{regions} region{'s' * (regions != 1)}, {percent(result.undetermined)} of the window undetermined; "
+            f"{several(regions, 'region')}, {percent(result.undetermined)} of the window undetermined; "
             f"{result.status.value}"
         )
     curves = sum(c.separates for c in result.components)
     return (
-        f"{regions} region{'s' * (regions != 1)} in {cells} cell{'s' * (cells != 1)}, parted by {curves} "
-        f"curve{'s' * (curves != 1)}; {result.status.value}"
+        f"{several(regions, 'region')} in {several(cells, 'cell')}, parted by {several(curves, 'curve')}; "
+        f"{result.status.value}"
     )
 
 
-def legend(result: RegionMap, chart: Chart) -> str:
+def legend(result: RegionMap, chart: MapPictures) -> str:
     """What colours and lines mean, in words."""
     parts = []
     for entry in entries(result, chart.thin_walls, samples=False, hidden=chart.hidden):
