@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from fractions import Fraction
 
 from ptmcad.model import Model, mechanism_in
@@ -53,6 +53,14 @@ def _stable(model: Model) -> str:
 def stable_of(model: Model, stable: int | None, total: int) -> str:
     """The number of all solutions, after that of stable ones where these are known."""
     return counted(model, total) if stable is None else f"{stable} stable of {counted(model, total)}"
+
+
+def assignments(
+    model: Model, angles: Iterable[str], reals: Iterable[str], named: Callable[[str], str] = str
+) -> list[str]:
+    """The unknowns with their values, which are given as texts."""
+    names = map(named, (*model.angles, *model.reals))
+    return [f"{name} = {value}" for name, value in zip(names, (*angles, *reals), strict=True)]
 
 
 def kind_name(negative: int, unknowns: int) -> str:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import partial
-from math import degrees
+from math import degrees, remainder
 from pathlib import Path
 
 import click
 
 from ptmcad.answer.motion import Fall, Motion
+from ptmcad.answer.words import assignments
 from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
@@ -132,13 +133,9 @@ def _in_words(motion: Motion, fall: Fall) -> str:
     model = slice.model
     where = ", ".join(f"{n} = {v:.6g}" for n, v in zip(slice.axis_names, fall.at, strict=True))
     turns = len(model.angles)
-    unknowns = [f"{n} = {_turned(degrees(v)):.2f}°" for n, v in zip(model.angles, fall.after, strict=False)]
-    unknowns += [f"{n} = {v:.6g}" for n, v in zip(model.reals, fall.after[turns:], strict=True)]
+    angles = (f"{remainder(degrees(angle), 360):.2f}°" for angle in fall.after[:turns])
+    unknowns = assignments(model, angles, (f"{x:.6g}" for x in fall.after[turns:]))
     return (
         f"snap at {where}: the pose vanishes and falls to {', '.join(unknowns)}, where the energy is lower by "
         f"{fall.drop:.4g} (steepest descent, floating point)"
     )
-
-
-def _turned(angle: float) -> float:
-    return angle - 360 * round(angle / 360)

@@ -13,7 +13,7 @@ from flint import arb, ctx
 from ptmcad.answer.intervals import CountIntervals, End, Span
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
 from ptmcad.answer.widths import Maximum, OperationWidths
-from ptmcad.answer.words import followed, kind_name, noun, sought
+from ptmcad.answer.words import assignments, followed, kind_name, noun, sought
 from ptmcad.model import Model, built_in
 from ptmcad.model.moments import acting
 from ptmcad.question.slice import Axis
@@ -230,9 +230,9 @@ def _posture(point: Target, heights: Sequence[str]) -> str:
 
 
 def _unknowns(point: PathPoint | Target, model: Model, digits: int) -> str:
-    angles = [f"{name} = {degrees(a, digits)}" for name, a in zip(model.angles, point.angles, strict=True)]
-    reals = zip(model.reals, point.reals, strict=True)
-    return ", ".join([*angles, *(f"{name} = {narrowly_known(x, digits) or UNDECIDED}" for name, x in reals)])
+    angles = (degrees(angle, digits) for angle in point.angles)
+    reals = (narrowly_known(x, digits) or UNDECIDED for x in point.reals)
+    return ", ".join(assignments(model, angles, reals))
 
 
 UNDECIDED = "undecided"

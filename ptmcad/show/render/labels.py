@@ -13,6 +13,7 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 
+from ptmcad.show.render.clearance import Box, around, holds, overlap
 from ptmcad.show.render.textwidth import text_width
 from ptmcad.show.render.view import Shapes
 
@@ -29,7 +30,6 @@ one of another count: more than all distances."""
 TRIED = _DIRECTIONS * len(_DISTANCES)
 
 Image = np.ndarray[tuple[int, int], np.dtype[np.int64]]
-Box = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,14 +73,14 @@ def place(
                 x, y = tip[0] + (half[0] + distance) * cos(angle), tip[1] + (half[1] + distance) * sin(angle)
                 # a tip at the frame has room beside itself, along the frame
                 x, y = (_within(v, h, side) for v, h, side in zip((x, y), half, sides, strict=True))
-                box = (x - half[0], y - half[1], x + half[0], y + half[1])
+                box = around((x, y), half)
                 cost = distance + (_OTHER_REGION if distance < scale * _SHORT else 0.0)
                 cost += 1e6 * sum(
                     max(0.0, e)
                     for e in (_EDGE - box[0], _EDGE - box[1], box[2] - sides[0] + _EDGE, box[3] - sides[1] + _EDGE)
                 )
-                cost += 1e4 * sum(_overlap(box, other) for other in taken)
-                cost += 1e3 * sum(_near(box, p) for p in points)
+                cost += 1e4 * sum(overlap(_wider(box, 2), other) for other in taken)
+                cost += 1e3 * sum(holds(_wider(box, 6), p) for p in points)
                 cost += 1e3 * sum(_crosses(a, b, tip, (x, y)) for a, b in arrows)
                 cost += 1e3 * sum(_meets(box, a, b) for a, b in arrows)
                 cost += 1e3 * sum(_meets(other, tip, (x, y)) for other in taken) if skip else 0.0
@@ -95,7 +95,7 @@ def place(
         result.append(Placement(tips[number], (label[0] / sides[0], label[1] / sides[1]), size, clear))
         if skip and not clear:
             continue
-        taken.append((label[0] - half[0], label[1] - half[1], label[0] + half[0], label[1] + half[1]))
+        taken.append(around(label, half))
         arrows.append((tip, label))
     return result
 
@@ -105,18 +105,14 @@ def _within(middle: float, half: float, side: float) -> float:
     return min(max(middle, half + _EDGE), side - half - _EDGE) if 2 * (half + _EDGE) <= side else middle
 
 
-def _overlap(a: Box, b: Box) -> bool:
-    return a[0] < b[2] + 2 and b[0] < a[2] + 2 and a[1] < b[3] + 2 and b[1] < a[3] + 2
-
-
-def _near(box: Box, point: tuple[float, float]) -> bool:
-    return box[0] - 6 < point[0] < box[2] + 6 and box[1] - 6 < point[1] < box[3] + 6
+def _wider(box: Box, by: float) -> Box:
+    return box[0] - by, box[1] - by, box[2] + by, box[3] + by
 
 
 def _meets(box: Box, a: tuple[float, float], b: tuple[float, float]) -> bool:
     """Whether an arrow passes through a box, seen at points a few points apart."""
-    n = max(2, int(hypot(b[0] - a[0], b[1] - a[1]) / 4))
-    return any(_near(box, (a[0] + (b[0] - a[0]) * k / n, a[1] + (b[1] - a[1]) * k / n)) for k in range(n + 1))
+    n, near = max(2, int(hypot(b[0] - a[0], b[1] - a[1]) / 4)), _wider(box, 6)
+    return any(holds(near, (a[0] + (b[0] - a[0]) * k / n, a[1] + (b[1] - a[1]) * k / n)) for k in range(n + 1))
 
 
 def _crosses(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float], d: tuple[float, float]) -> bool:

@@ -16,7 +16,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from ptmcad.answer.poses import Pose, Poses
-from ptmcad.answer.words import counted, kind_name, noun, of_what, untold
+from ptmcad.answer.words import assignments, counted, kind_name, noun, of_what, untold
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism, Model, Support, mechanism_in
 from ptmcad.model.joints import joints_of
@@ -98,8 +98,7 @@ def kind(pose: Pose) -> str:
 
 def unknown_texts(model: Model, pose: Pose) -> list[str]:
     """The unknowns with their values: angles in degrees."""
-    angles = [f"{symbol(name)} = {number_text(a)}°" for name, a in zip(model.angles, pose.degrees, strict=True)]
-    return angles + [f"{symbol(name)} = {number_text(x)}" for name, x in zip(model.reals, pose.reals, strict=True)]
+    return assignments(model, (f"{number_text(a)}°" for a in pose.degrees), map(number_text, pose.reals), symbol)
 
 
 def _lines_below(model: Model, pose: Pose) -> list[str]:

@@ -13,7 +13,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from html import escape
-from io import BytesIO, StringIO
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +45,13 @@ _CHANGING = re.compile(rb"^%%CreationDate:.*\n", re.MULTILINE)
 _TEXT_STYLE = re.compile(r"""(?<=<text style=")[^"<>]*'DejaVu Sans'""")
 _SIMILAR = "'Bitstream Vera Sans', Verdana, Geneva, sans-serif"
 """Fonts about as wide as the one that SVG text was measured in, for where that is not installed."""
+_UNDATED: dict[str, dict[str, str | None]] = {
+    "svg": {"Date": None, "Creator": "ptmcad"},
+    "pdf": {"CreationDate": None, "Creator": "ptmcad", "Producer": None},
+    "eps": {"Creator": "ptmcad"},
+    "png": {"Software": None},
+}
+"""What is written of the making of a picture."""
 _KEPT = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
 
 
@@ -105,38 +112,19 @@ def content(figure: Figure, suffix: str, *, dpi: int = 150, style: PictureStyle 
 
 def printed(figure: Figure, suffix: str, dpi: int, title: str, description: str) -> bytes:
     """The picture as a file's content, without dates and versions; to be called within `settings`."""
-    figure.set_dpi(dpi)
-    canvas: Any
-    if suffix == "svg":
-        from matplotlib.backends.backend_svg import FigureCanvasSVG
-
-        text = StringIO()
-        canvas = FigureCanvasSVG(figure)
-        canvas.print_svg(text, metadata={"Date": None, "Creator": "ptmcad", "Title": title})
-        head = f"<title>{escape(title, quote=False)}</title>"
-        described = f"{head}\n <desc>{escape(description, quote=False)}</desc>"
-        content = _TEXT_STYLE.sub(rf"\g<0>, {_SIMILAR}", text.getvalue())
-        return content.replace(head, described, 1).replace("<svg ", '<svg role="img" ', 1).encode()
     data = BytesIO()
-    if suffix == "pdf":
-        from matplotlib.backends.backend_pdf import FigureCanvasPdf
-
-        canvas = FigureCanvasPdf(figure)
-        metadata = {"CreationDate": None, "Creator": "ptmcad", "Producer": None, "Title": title}
-        canvas.print_pdf(data, metadata=metadata)
-    elif suffix == "eps":
-        from matplotlib.backends.backend_ps import FigureCanvasPS
-
-        canvas = FigureCanvasPS(figure)
-        with _opaque():
-            canvas.print_eps(data, metadata={"Creator": "ptmcad", "Title": _ascii(title)})
+    metadata = {**_UNDATED[suffix], "Title": _ascii(title) if suffix == "eps" else title}
+    figure.set_dpi(dpi)
+    with _opaque():
+        figure.savefig(data, format=suffix, metadata=metadata)
+    if suffix == "eps":
         return _CHANGING.sub(b"", data.getvalue())
-    else:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-        canvas = FigureCanvasAgg(figure)
-        canvas.print_png(data, metadata={"Software": None, "Title": title})
-    return data.getvalue()
+    if suffix != "svg":
+        return data.getvalue()
+    head = f"<title>{escape(title, quote=False)}</title>"
+    described = f"{head}\n <desc>{escape(description, quote=False)}</desc>"
+    content = _TEXT_STYLE.sub(rf"\g<0>, {_SIMILAR}", data.getvalue().decode())
+    return content.replace(head, described, 1).replace("<svg ", '<svg role="img" ', 1).encode()
 
 
 @contextmanager

@@ -23,7 +23,6 @@ from ptmcad.answer.words import noun, several
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import dress, heading_of
 from ptmcad.show.render.fitting import PageParts, fitted
-from ptmcad.show.render.labels import place
 from ptmcad.show.render.layout import SIDE, Layout, flowing
 from ptmcad.show.render.legend import (
     INK,
@@ -41,7 +40,7 @@ from ptmcad.show.render.paper import Box, axes_at, write_lines
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import MAX_ZOOMS, Sliver, Zoom, seen_thin_walls, thin_regions, unstable_zooms, zooms
-from ptmcad.show.render.thinmarks import RESOLVED, Marks, draw_marks, homes_of, ranked
+from ptmcad.show.render.thinmarks import RESOLVED, counts_of, draw_marks, placed_marks, ranked
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import DEFAULT, LegendPlace, PictureStyle
 from ptmcad.show.table import area_text, areas_are_known, count_text, region_area
@@ -107,9 +106,9 @@ class _Seen:
     def with_room(self, sides: tuple[float, float], size: float) -> _Seen:
         """The same but for what has no label of its own in a picture with sides in points, where no inset stands."""
         ranked = self.ranked
-        homes = homes_of(self.whole.result, ranked)
-        marks = place(*self._labels(ranked), self.whole, sides, size, skip=True, homes=homes)
-        kept = [sliver for sliver, mark in zip(ranked, marks, strict=True) if mark.clear]
+        names = [_name_of(self.whole.result, sliver, None) for sliver in ranked]
+        marks = placed_marks(self.whole, ranked, names, counts_of(self.whole.result), sides, size, skip=True)
+        kept = [sliver for sliver, mark in zip(ranked, marks.placed, strict=True) if mark.clear]
         if len(kept) == len(ranked):
             return self
         views = tuple(replace(zoom, slivers=tuple(s for s in zoom.slivers if s in kept)) for zoom in self.views)
@@ -117,11 +116,6 @@ class _Seen:
         lines = parts[1] > 0 or seen_thin_walls(self.whole, sides)
         views = tuple(zoom for zoom in views if zoom.slivers)
         return replace(self, views=views, thin_lines=lines, unnamed=self.unnamed + parts[0] - parts[1])
-
-    def _labels(self, slivers: Sequence[Sliver]) -> tuple[list[tuple[float, float]], list[str]]:
-        """Where thin regions are, and their counts."""
-        tips = [self.whole.view.approximate_position(sliver.at) for sliver in slivers]
-        return tips, [_name_of(self.whole.result, sliver, None) for sliver in slivers]
 
     @property
     def ranked(self) -> list[Sliver]:
@@ -355,12 +349,9 @@ def _mark(
     axes: Any, seen: _Seen, slivers: Sequence[Sliver], names: Sequence[str], layout: Layout, paint: Paint
 ) -> None:  # fmt: skip
     """An arrow to every sliver, labels apart from each other."""
-    tips = [seen.whole.view.approximate_position(sliver.at) for sliver in slivers]
-    sides = (layout.chart[2] * 72, layout.chart[3] * 72)
+    sides, told = (layout.chart[2] * 72, layout.chart[3] * 72), counts_of(seen.whole.result)
     skip = not layout.insets
-    homes = homes_of(seen.whole.result, slivers)
-    placed = place(tips, names, seen.whole, sides, layout.texts.arrow, skip=skip, homes=homes)
-    draw_marks(axes, Marks(slivers, placed, names), paint.scale)
+    draw_marks(axes, placed_marks(seen.whole, slivers, names, told, sides, layout.texts.arrow, skip), paint.scale)
 
 
 def description(result: RegionMap) -> str:

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from math import degrees
+from math import degrees, remainder
 from typing import Any
 
 import numpy as np
@@ -23,7 +23,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from ptmcad.answer.motion import Motion, Step
-from ptmcad.answer.words import counted, noun
+from ptmcad.answer.words import assignments, counted, noun
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism
 from ptmcad.model.moments import loads_at
@@ -209,12 +209,10 @@ class Stage:
         wide = self.world.sides[0] / 72
         size = min(SIZES[1], SIZES[1] * wide / text_width(what, SIZES[1]))
         yield self._text(self.above, what, size, colour)
-        angles = len(model.angles)
-        texts = [f"{symbol(n)} = {_turned(degrees(v)):.1f}°".replace("-", "−")
-                 for n, v in zip(model.angles, step.unknowns, strict=False)]  # fmt: skip
-        texts += [f"{symbol(n)} = {v:.4g}".replace("-", "−")
-                  for n, v in zip(model.reals, step.unknowns[angles:], strict=True)]  # fmt: skip
-        yield self._text(self.below, ",  ".join(texts), SIZES[1])
+        turns = len(model.angles)
+        angles = (f"{remainder(degrees(angle), 360):.1f}°" for angle in step.unknowns[:turns])
+        texts = assignments(model, angles, (f"{x:.4g}" for x in step.unknowns[turns:]), symbol)
+        yield self._text(self.below, ",  ".join(texts).replace("-", "−"), SIZES[1])
 
     def _map(self, style: PictureStyle) -> None:
         result = self.motion.result
@@ -259,10 +257,6 @@ class Stage:
 
     def _text(self, at: tuple[float, float], text: str, size: float, colour: str = INK) -> Any:
         return write(self.figure, at, text, size, color=colour)
-
-
-def _turned(angle: float) -> float:
-    return angle - 360 * round(angle / 360)
 
 
 def _world(motion: Motion, sides: tuple[float, float]) -> _World:

@@ -12,7 +12,7 @@ from fractions import Fraction
 from html import escape
 from math import ceil
 
-from ptmcad.show.render.axes import Scale, scale_of, symbol
+from ptmcad.show.render.axes import Scale, fixed, scale_of, symbol
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.units import unit
 from ptmcad.text.numerals import magnitude, shortest_text
@@ -94,10 +94,4 @@ def ticks(interval: tuple[Fraction, Fraction], scale: Scale) -> list[tuple[str, 
     first, last = -(-shown[0] // step), shown[1] // step
     values = [k * step for k in range(int(first), int(last) + 1)]
     decimals = max((len(shortest_text(v).partition(".")[2]) for v in values), default=0)
-    return [(_fixed(v, decimals), (v - shown[0]) / (shown[1] - shown[0])) for v in values]
-
-
-def _fixed(value: Fraction, decimals: int) -> str:
-    digits = str(abs(value) * 10**decimals).zfill(decimals + 1)
-    text = f"{digits[:-decimals]}.{digits[-decimals:]}" if decimals else digits
-    return f"−{text}" if value < 0 else text
+    return [(fixed(v, decimals), (v - shown[0]) / (shown[1] - shown[0])) for v in values]

@@ -14,7 +14,7 @@ from ptmcad.answer.words import index_words, noun, several
 from ptmcad.question.slice import Count
 from ptmcad.show.render.axes import named, symbol
 from ptmcad.show.render.colours import Fill, fill_of
-from ptmcad.show.render.legend import entries
+from ptmcad.show.render.legend import Entry, entries
 from ptmcad.show.report.bounds import exactly
 from ptmcad.show.report.chart import MapPictures, counts_text, hatch_id
 from ptmcad.show.report.equilibria import both, distinct_parameters
@@ -140,16 +140,18 @@ def legend(result: RegionMap, chart: MapPictures) -> str:
             case Fill() as fill:
                 parts.append(f"<li>{swatch(fill)}<span>{escape(': '.join(_head_and_rest(entry.lines)))}</span></li>")
             case float(width):
-                line = f'<path class="{"wall strong" if width > 1 else "wall"}" d="M0 9H30"/>'
-                mark = f'<svg class="swatch line" viewBox="0 0 30 18" aria-hidden="true">{line}</svg>'
-                parts.append(f"<li>{mark}<span>{escape(' '.join(entry.lines))}</span></li>")
+                parts.append(_line_entry('"wall strong"' if width > 1 else '"wall"', entry))
             case _ if callable(entry.mark):  # of curves on which solutions are not isolated
-                line = '<path class="wall strong" stroke-dasharray="6 4" d="M0 9H30"/>'
-                mark = f'<svg class="swatch line" viewBox="0 0 30 18" aria-hidden="true">{line}</svg>'
-                parts.append(f"<li>{mark}<span>{escape(' '.join(entry.lines))}</span></li>")
+                parts.append(_line_entry('"wall strong" stroke-dasharray="6 4"', entry))
             case _ if entry.lines:
                 parts.append(f"<li><b>{escape(' '.join(entry.lines))}</b></li>")
     return f'<ul class="legend" aria-label="Legend">{"".join(parts)}</ul>'
+
+
+def _line_entry(look: str, entry: Entry) -> str:
+    line = f'<path class={look} d="M0 9H30"/>'
+    mark = f'<svg class="swatch line" viewBox="0 0 30 18" aria-hidden="true">{line}</svg>'
+    return f"<li>{mark}<span>{escape(' '.join(entry.lines))}</span></li>"
 
 
 def _head_and_rest(lines: tuple[str, ...]) -> tuple[str, ...]:
