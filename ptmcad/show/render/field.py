@@ -25,7 +25,7 @@ from ptmcad.show.render.axes import Dress, dress, scale_of, with_symbols
 from ptmcad.show.render.colours import Fill, undetermined_fill
 from ptmcad.show.render.fieldlines import branch_edges, contour_lines
 from ptmcad.show.render.fitting import MIN_SIDE, beside, dressed
-from ptmcad.show.render.legend import INK, RIM_INK, STRONG, Entry, Type, draw_legend, in_rows, line_mark
+from ptmcad.show.render.legend import INK, RIM_INK, STRONG, Entry, Type, draw_rows, in_rows, line_mark
 from ptmcad.show.render.textwidth import text_width, wrapped
 from ptmcad.show.render.view import Floats, View
 from ptmcad.show.style import DEFAULT, MIN_FONT, LegendPlace, PictureStyle
@@ -249,9 +249,8 @@ class _FieldPage:
             )  # fmt: skip
             if max(text_width(line, title_font) for line in lines) > wide - corner[0] - 0.5 * em:
                 title.set_position((72 * (0.75 * em - corner[0]), 72 * above + 0.5 * font))
-        for k, row in enumerate(reversed(rows)):
-            for at, entry in row:
-                draw_legend(self.figure, [entry], 0.75 * em + at, 0.35 * em + 1.35 * type.line * (k + 0.85), type)
+        step = 1.35 * type.line
+        draw_rows(self.figure, rows, (0.75 * em, 0.35 * em + step * (len(rows) - 0.15)), step, type)
 
 
 def _place(axes: Any, box: tuple[float, float, float, float], size: tuple[float, float]) -> None:

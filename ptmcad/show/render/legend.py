@@ -15,7 +15,7 @@ from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.words import counted, noun
 from ptmcad.question.slice import Count, Slice
 from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
-from ptmcad.show.render.paper import stroke, write
+from ptmcad.show.render.paper import Corner, stroke, write
 from ptmcad.show.style import MIN_FONT, PictureStyle
 from ptmcad.show.table import area_by_count, area_text, areas_are_known, count_text, index_heading
 from ptmcad.text.bounds import percent
@@ -231,6 +231,13 @@ def in_rows(entries: Sequence[Entry], width: float, type: Type) -> list[list[tup
         lines[-1].append((at, entry))
         at += each
     return lines
+
+
+def draw_rows(figure: Any, rows: Sequence[Sequence[tuple[float, Entry]]], at: Corner, step: float, type: Type) -> None:
+    """A legend in rows from a place in inches downwards."""
+    for k, row in enumerate(rows):
+        for left, entry in row:
+            draw_legend(figure, [entry], at[0] + left, at[1] - k * step, type)
 
 
 def draw_legend(figure: Any, legend: Sequence[Entry], left: float, top: float, type: Type | None = None) -> None:

@@ -24,7 +24,7 @@ from ptmcad.show.render.legend import (
     THIN,
     Entry,
     Type,
-    draw_legend,
+    draw_rows,
     head_of,
     hidden_words,
     in_rows,
@@ -171,6 +171,5 @@ def _strip_inner(axes: Any, has_left: bool, has_below: bool) -> None:
 
 def draw_flowed(figure: Figure, lines: Sequence[Sequence[tuple[float, Entry]]], em: float, type: Type) -> None:
     """A legend in rows at the figure's foot."""
-    for k, entries in enumerate(reversed(lines)):
-        for at, entry in entries:
-            draw_legend(figure, [entry], 0.6 * em + at, 0.5 * em + (k + 1) * type.line * 1.35, type)
+    step = 1.35 * type.line
+    draw_rows(figure, lines, (0.6 * em, 0.5 * em + len(lines) * step), step, type)

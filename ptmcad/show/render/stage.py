@@ -30,7 +30,7 @@ from ptmcad.model.moments import loads_at
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.clearance import Placed
-from ptmcad.show.render.legend import INK, Entry, Type, draw_legend, head_of, in_rows
+from ptmcad.show.render.legend import INK, Entry, Type, draw_rows, head_of, in_rows
 from ptmcad.show.render.mechanism import PALE, STRONG, draw_sketch
 from ptmcad.show.render.painting import fills_by_count, paint_map, paint_of
 from ptmcad.show.render.paper import axes_at, write
@@ -112,7 +112,7 @@ class Stage:
         side = min(0.5 * width - LEFT, top - foot)
         self.chart = axes_at(self.figure, (LEFT, top - side, side, side), "map")
         self._map(style)
-        self._legend(key, foot - BOTTOM)
+        draw_rows(self.figure, key, (LEFT, foot - BOTTOM + 0.04), LINE, TYPE)
         self._right(LEFT + side + GAP, top, foot)
         self.where = (LEFT, top + 0.13)
         self.sketches = _sketches(motion, self.mechanism, self.world)
@@ -224,11 +224,6 @@ class Stage:
             Line2D(*zip(*track, strict=True), color=INK, linewidth=0.9, linestyle=(0, (4, 2)),
                    transform=self.chart.transAxes, zorder=6)
         )  # fmt: skip
-
-    def _legend(self, key: list[list[tuple[float, Entry]]], top: float) -> None:
-        for k, row in enumerate(key):
-            for left, entry in row:
-                draw_legend(self.figure, (entry,), LEFT + left, top - LINE * k + 0.04, TYPE)
 
     def _energy(self) -> None:
         """The chart's frame, and behind the followed pose all equilibria whose energy lies in it."""

@@ -74,7 +74,7 @@ def cosine_sine(angle: Bounds) -> tuple[Bounds, Bounds]:
     """Cosine and sine of an angle in radians: those at the middle of its bounds, which nothing leaves faster than the
     angle itself."""
     slack = (angle[1] - angle[0]) / 2
-    cosine, sine = ((low - slack, high + slack) for low, high in _cosine_sine(sum(angle) / 2))
+    cosine, sine = ((low - slack, high + slack) for low, high in _cosine_sine((angle[0] + angle[1]) / 2))
     return cosine, sine
 
 
