@@ -52,7 +52,7 @@ _OF_TORSION = (("deflection", "rad", "deflection"), ("deflection", "deg", "degre
 """What is said of a torsion spring: the words, the unit, and the field."""
 
 
-class Quantity(NamedTuple):
+class NamedNumber(NamedTuple):
     """A number of a pose by its name, with its unit where that is none of the record's."""
 
     name: str
@@ -104,13 +104,13 @@ class Pose:
         """Whether some spring has a free length, so that the pose is admissible or not."""
         return self.admissible is not None or any(spring.free_length for spring in self.springs)
 
-    def quantities(self, model: Model) -> tuple[tuple[Quantity, ...], ...]:
+    def quantities(self, model: Model) -> tuple[tuple[NamedNumber, ...], ...]:
         """Unknowns, coordinates of points that move, springs' lengths and forces, torsion springs' deflections and
         moments; the same ones for all poses of a model."""
         mechanism = mechanism_in(model)
         moving = () if mechanism is None else mechanism.moving
         unknowns = [
-            Quantity(name, unit, number)
+            NamedNumber(name, unit, number)
             for unit, names, numbers in (
                 ("rad", model.angles, self.angles),
                 ("deg", model.angles, self.degrees),
@@ -119,18 +119,18 @@ class Pose:
             for name, number in zip(names, numbers, strict=True)
         ]
         nodes = [
-            Quantity(f"{name} {axis}", "", x)
+            NamedNumber(f"{name} {axis}", "", x)
             for name, place in self.nodes.items()
             if name in moving
             for axis, x in zip("xy", place, strict=True)
         ]
         springs = [
-            Quantity(f"{what} {spring.start}{spring.end}", "", getattr(spring, what))
+            NamedNumber(f"{what} {spring.start}{spring.end}", "", getattr(spring, what))
             for what in ("length", "force")
             for spring in self.springs
         ]
         torsion = [
-            Quantity(f"{what} {spring.name}", unit, getattr(spring, field))
+            NamedNumber(f"{what} {spring.name}", unit, getattr(spring, field))
             for what, unit, field in _OF_TORSION
             for spring in self.torsion
         ]

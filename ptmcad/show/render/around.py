@@ -22,12 +22,12 @@ from ptmcad.model import mechanism_in
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.blocks import GAP, Block, BlockColumn, Point, Slot, arranged, sized
 from ptmcad.show.render.clearance import Box, Position
+from ptmcad.show.render.inches import stroke, write_lines
 from ptmcad.show.render.layout import Layout
 from ptmcad.show.render.leaders import Course, routed
 from ptmcad.show.render.legend import INK
 from ptmcad.show.render.mechanism import STRONG, draw_sketch
 from ptmcad.show.render.overlay import Overlay
-from ptmcad.show.render.paper import stroke, write_lines
 from ptmcad.show.render.poses import pose_axes
 from ptmcad.show.render.regionmap import draw_parts, fit, left_out
 from ptmcad.show.render.shapes import shapes

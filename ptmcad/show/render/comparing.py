@@ -21,9 +21,9 @@ from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.colours import GREYS, HATCHES, Fill, undetermined_fill
 from ptmcad.show.render.fitting import MIN_SIDE, PageParts, overhang, rewrapped
+from ptmcad.show.render.inches import Box, axes_at, write_lines
 from ptmcad.show.render.legend import INK, Entry, Type, Wording, draw_legend, entries, hidden_words
 from ptmcad.show.render.painting import Paint, paint_map, paint_of
-from ptmcad.show.render.paper import Box, axes_at, write_lines
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.regionmap import whole_title
 from ptmcad.show.render.shapes import shapes

@@ -20,10 +20,10 @@ from ptmcad.model import mechanism_in
 from ptmcad.question.slice import Slice
 from ptmcad.show.render import regionmap
 from ptmcad.show.render.axes import heading_of
+from ptmcad.show.render.inches import stroke, write_lines
 from ptmcad.show.render.layout import GAP, LEFT, SIDE
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.mechanism import spring_mark, symbol_mark
-from ptmcad.show.render.paper import stroke, write_lines
 from ptmcad.show.render.poses import (
     BELOW,
     HEAD,

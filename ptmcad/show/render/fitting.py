@@ -21,9 +21,9 @@ from matplotlib.figure import Figure
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import Dress, dress
+from ptmcad.show.render.inches import Box
 from ptmcad.show.render.layout import Layout, Texts
 from ptmcad.show.render.legend import Entry, Type
-from ptmcad.show.render.paper import Box
 from ptmcad.show.render.textwidth import ALLOWANCE, wrapped
 from ptmcad.show.render.view import Same, View
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle

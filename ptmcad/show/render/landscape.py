@@ -36,8 +36,8 @@ from ptmcad.show.drawable import no_landscape
 from ptmcad.show.render.axes import Scale, scale_of, symbol
 from ptmcad.show.render.clearance import Box, Label, Stroke, place
 from ptmcad.show.render.energy import Energy, Floats, drawn, energy_of, is_cut
+from ptmcad.show.render.inches import axes_at
 from ptmcad.show.render.legend import INK, Entry, draw_legend, point_mark
-from ptmcad.show.render.paper import axes_at
 from ptmcad.show.render.poses import TITLE_LINE, describe, empty, heading, kind, titled, value_text
 from ptmcad.show.render.printing import settings
 from ptmcad.show.units import energy_unit, unit_of_unknown, with_unit

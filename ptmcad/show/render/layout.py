@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from ptmcad.show.render.axes import SMALL, Dress
+from ptmcad.show.render.inches import Box, Corner
 from ptmcad.show.render.legend import Entry, Type
-from ptmcad.show.render.paper import Box, Corner
 
 SIDE, LEFT, BOTTOM, COLUMN, GAP, MARGIN = 4.6, 0.85, 0.65, 2.6, 0.25, 0.15
 """In inches: the map's side, the space at its left and below, a column at its right, the space before, the rim."""

@@ -15,7 +15,7 @@ from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.words import counted, noun
 from ptmcad.question.slice import Count, Slice
 from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
-from ptmcad.show.render.paper import Corner, stroke, write
+from ptmcad.show.render.inches import Corner, stroke, write
 from ptmcad.show.style import MIN_FONT, PictureStyle
 from ptmcad.show.table import area_by_count, area_text, areas_are_known, count_text, index_heading
 from ptmcad.text.bounds import percent

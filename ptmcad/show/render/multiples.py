@@ -18,6 +18,7 @@ from ptmcad.answer.family import FamilyMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.fitting import MIN_SIDE, PageParts, overhang
+from ptmcad.show.render.inches import axes_at, write, write_lines
 from ptmcad.show.render.legend import (
     INK,
     STRONG,
@@ -31,7 +32,6 @@ from ptmcad.show.render.legend import (
     thin_entry,
 )
 from ptmcad.show.render.painting import Paint, fills_by_count, paint_map, paint_of
-from ptmcad.show.render.paper import axes_at, write, write_lines
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import seen_thin_walls

@@ -19,14 +19,14 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import assignments, counted, kind_name, noun, of_what, untold
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism, Model, Support, mechanism_in
-from ptmcad.model.joints import joints_of
+from ptmcad.model.joints import torsion_springs
 from ptmcad.model.moments import PointForce, loads_at
 from ptmcad.question.slice import merged
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import symbol, with_symbols
+from ptmcad.show.render.inches import axes_at, stroke, write, write_lines
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_mark, symbol_mark, torsion_mark
-from ptmcad.show.render.paper import axes_at, stroke, write, write_lines
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.sketch import MAX_ARROW, MIN_ARROW, PanelFrame, Scene, arrow_lengths, components, frame_of
 from ptmcad.show.units import energy_unit
@@ -282,9 +282,9 @@ def parts_legend(mechanism: Mechanism) -> Iterator[Entry]:
 
 def torsion_legend(mechanism: Mechanism) -> Iterator[Entry]:
     """Torsion springs at their joints, and those of which no joint is known."""
-    joints = list(zip(mechanism.torsion, joints_of(mechanism), strict=True))
-    drawn = [f"{with_symbols(to_text(t.angle))} at {symbol(joint.point)}" for t, joint in joints if joint is not None]
-    others = [with_symbols(to_text(t.angle)) for t, joint in joints if joint is None]
+    springs = [(with_symbols(to_text(spring.angle)), joint) for spring, joint in torsion_springs(mechanism)]
+    drawn = [f"{angle} at {symbol(joint.point)}" for angle, joint in springs if joint is not None]
+    others = [angle for angle, joint in springs if joint is None]
     for texts, end, mark in ((drawn, "", torsion_mark()), (others, "; not drawn", None)):
         if texts:
             each = ", ".join(text.replace(" ", "\N{NO-BREAK SPACE}") for text in texts)

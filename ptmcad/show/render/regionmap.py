@@ -23,6 +23,7 @@ from ptmcad.answer.words import noun, several
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import dress, heading_of
 from ptmcad.show.render.fitting import PageParts, fitted
+from ptmcad.show.render.inches import Box, axes_at, write_lines
 from ptmcad.show.render.layout import SIDE, Layout, flowing
 from ptmcad.show.render.legend import (
     INK,
@@ -36,7 +37,6 @@ from ptmcad.show.render.legend import (
 )
 from ptmcad.show.render.overlay import Overlay, draw_overlay, overlay_entries
 from ptmcad.show.render.painting import Paint, paint_map, paint_of
-from ptmcad.show.render.paper import Box, axes_at, write_lines
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import MAX_ZOOMS, Sliver, Zoom, seen_thin_walls, thin_regions, unstable_zooms, zooms

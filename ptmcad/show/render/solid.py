@@ -19,10 +19,10 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import axis_name, symbol
+from ptmcad.show.render.inches import write_lines
 from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, in_rows
 from ptmcad.show.render.multiples import draw_flowed, family_entries, in_words, title_of, value_text
 from ptmcad.show.render.painting import Paint, paint_of
-from ptmcad.show.render.paper import write_lines
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sheets import BOX, add_sheets, sheet_colours, sheet_entries

@@ -30,10 +30,10 @@ from ptmcad.model.moments import loads_at
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.clearance import Placed
+from ptmcad.show.render.inches import axes_at, write
 from ptmcad.show.render.legend import INK, Entry, Type, draw_rows, head_of, in_rows
 from ptmcad.show.render.mechanism import PALE, STRONG, draw_sketch
 from ptmcad.show.render.painting import fills_by_count, paint_map, paint_of
-from ptmcad.show.render.paper import axes_at, write
 from ptmcad.show.render.regionmap import whole_title
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sketch import Sketch, arrows_of, components, own_labels, sketched

@@ -20,7 +20,7 @@ from ptmcad.answer.words import index_words, moments_work, untold
 from ptmcad.errors import ConfigError
 from ptmcad.model import Model, Support
 from ptmcad.model.elements import UnknownKind
-from ptmcad.model.joints import joints_of
+from ptmcad.model.joints import torsion_springs
 from ptmcad.model.work import split_moments
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import heading_of, symbol, with_symbols
@@ -164,7 +164,7 @@ def drawing_of(model: Model) -> dict[str, Any]:
     # a mechanism without torsion springs says nothing of them
     torsion = [
         {"name": with_symbols(spring.name), "at": [number[name] for name in joint if name] if joint else []}
-        for spring, joint in zip(mechanism.torsion, joints_of(mechanism), strict=True)
+        for spring, joint in torsion_springs(mechanism)
     ]
     return unknowns | {
         "points": [symbol(name) for name in mechanism.points],
