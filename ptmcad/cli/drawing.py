@@ -10,12 +10,12 @@ from collections.abc import Callable
 from fractions import Fraction
 from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
 from ptmcad.cli.formats import format_option
-from ptmcad.cli.gathering import gathered
+from ptmcad.cli.gathering import F, gathered
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.values import palettes
 from ptmcad.errors import ConfigError, blamed
@@ -26,8 +26,6 @@ from ptmcad.text.parsing import share_for
 if TYPE_CHECKING:
     from ptmcad.answer.poses import Poses
     from ptmcad.show.render.overlay import Measured
-
-F = TypeVar("F", bound=Callable[..., Any])
 
 PICTURES = ("png", "svg", "pdf", "eps")
 DATA = ("csv", "npz")

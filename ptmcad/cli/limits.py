@@ -10,21 +10,19 @@ import math
 import os
 import re
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple
 
 import click
 
-from ptmcad.cli.gathering import gathered
+from ptmcad.cli.gathering import F, gathered
 from ptmcad.errors import ConfigError
 from ptmcad.options import Progress
 from ptmcad.process.handover import Topic, send, watched
 from ptmcad.process.memory import Bound, bounded, kernel_lines
-
-F = TypeVar("F", bound=Callable[..., Any])
 
 MIN_BOUND = 64 << 20
 """The exact engine's libraries alone need about half of this."""

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
 
 import click
 
+from ptmcad.cli.gathering import F
 from ptmcad.cli.values import files
-
-F = TypeVar("F", bound=Callable[..., Any])
 
 
 def record_argument(name: str = "config", *, required: bool = False) -> Callable[[F], F]:

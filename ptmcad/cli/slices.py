@@ -3,14 +3,13 @@
 Guarantee: every such command takes the same words for the same slice.
 """
 
-from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import click
 
-from ptmcad.cli.gathering import gathered
+from ptmcad.cli.gathering import F, gathered
 from ptmcad.cli.paths import record_argument
 from ptmcad.cli.values import mechanisms, pair_of_names, settings
 from ptmcad.errors import ConfigError, HypothesisError, PtmcadError
@@ -24,9 +23,6 @@ from ptmcad.question.config import (
 from ptmcad.question.config.options import Typed
 from ptmcad.question.config.record import Record
 from ptmcad.question.slice import Slice
-
-F = TypeVar("F", bound=Callable[..., Any])
-
 
 BETWEEN = "between"
 """In place of the members' values."""

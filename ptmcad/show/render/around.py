@@ -20,7 +20,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.model import mechanism_in
 from ptmcad.show.drawable import no_drawing
-from ptmcad.show.render.blocks import GAP, Block, BlockColumn, Point, Slot, arranged, sized
+from ptmcad.show.render.blocks import GAP, Block, BlockColumn, Slot, arranged, sized
 from ptmcad.show.render.clearance import Box, Position
 from ptmcad.show.render.inches import stroke, write_lines
 from ptmcad.show.render.layout import Layout
@@ -32,7 +32,8 @@ from ptmcad.show.render.poses import pose_axes
 from ptmcad.show.render.regionmap import draw_parts, fit, left_out
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sketch import PanelFrame, Scene, arrow_lengths
-from ptmcad.show.style import MAX_SIDE, PictureStyle, styled
+from ptmcad.show.render.view import Point
+from ptmcad.show.style import MAX_SIDE, PictureStyle, Size, styled
 
 MAX_POINTS = 12
 _STEPS, _STEP = 60, 1.05
@@ -124,7 +125,7 @@ def _map_beside(result: RegionMap, style: PictureStyle, dpi: int, overlay: Overl
         raise ConfigError("the map and its legend have no room beside the poses", key=error.key) from error
 
 
-def _moved(layout: Layout, left: float, size: tuple[float, float]) -> Layout:
+def _moved(layout: Layout, left: float, size: Size) -> Layout:
     """The layout further to the right on a wider page."""
     return replace(
         layout,

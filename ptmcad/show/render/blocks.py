@@ -20,9 +20,8 @@ from ptmcad.show.render.leaders import Berth, Order
 from ptmcad.show.render.poses import assigned
 from ptmcad.show.render.sketch import PanelFrame, frame_of
 from ptmcad.show.render.textwidth import wrapped
+from ptmcad.show.render.view import Point
 from ptmcad.show.style import PAGE_HEIGHT, LegendPlace, PictureStyle
-
-Point = tuple[Fraction, Fraction]
 
 PANEL, MIN_PANEL = 138.0, 104.0
 """Width of a pose in points, and the least at which its letters have room."""

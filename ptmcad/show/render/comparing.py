@@ -31,7 +31,7 @@ from ptmcad.show.render.slivers import seen_thin_walls
 from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.render.thinmarks import Marks, draw_marks, marks_of
 from ptmcad.show.render.view import Shapes
-from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle
+from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, count_text
 from ptmcad.text.bounds import percent, share_text
 from ptmcad.text.numerals import shortest_text
@@ -155,9 +155,7 @@ def comparison_figure(comparison: Comparison, dpi: int, style: PictureStyle) -> 
     return figure
 
 
-def _panels(
-    comparison: Comparison, first: Shapes, style: PictureStyle, sides: tuple[float, float], dpi: int
-) -> list[_MapPanel]:
+def _panels(comparison: Comparison, first: Shapes, style: PictureStyle, sides: Size, dpi: int) -> list[_MapPanel]:
     """The two maps and the difference, with text as wide as they are."""
     type, side = Type.of(style), sides[0]
     found: list[tuple[Shapes, Paint, str, Sequence[Entry], Mapping[int, Fill], Marks]] = []

@@ -13,7 +13,6 @@ from fractions import Fraction
 from math import radians
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import moments_work
@@ -22,11 +21,9 @@ from ptmcad.exact.models.system import polynomial_at
 from ptmcad.model import Model
 from ptmcad.model.evaluate import value_at
 from ptmcad.model.moments import moments_at
+from ptmcad.show.render.view import Floats
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import magnitude
-
-Floats = NDArray[np.float64]
-
 
 Terms = tuple[tuple[tuple[int, ...], float], ...]
 

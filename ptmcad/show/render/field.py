@@ -25,10 +25,11 @@ from ptmcad.show.render.axes import Dress, dress, scale_of, with_symbols
 from ptmcad.show.render.colours import Fill, undetermined_fill
 from ptmcad.show.render.fieldlines import branch_edges, contour_lines
 from ptmcad.show.render.fitting import MIN_SIDE, beside, dressed
+from ptmcad.show.render.inches import Box
 from ptmcad.show.render.legend import INK, RIM_INK, STRONG, Entry, Type, draw_rows, in_rows, line_mark
 from ptmcad.show.render.textwidth import text_width, wrapped
 from ptmcad.show.render.view import Floats, View
-from ptmcad.show.style import DEFAULT, MIN_FONT, LegendPlace, PictureStyle
+from ptmcad.show.style import DEFAULT, MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.show.units import with_unit
 
 SIDE, GAP, BAR = 4.6, 0.2, 0.2
@@ -253,7 +254,7 @@ class _FieldPage:
         draw_rows(self.figure, rows, (0.75 * em, 0.35 * em + step * (len(rows) - 0.15)), step, type)
 
 
-def _place(axes: Any, box: tuple[float, float, float, float], size: tuple[float, float]) -> None:
+def _place(axes: Any, box: Box, size: Size) -> None:
     axes.set_position((box[0] / size[0], box[1] / size[1], box[2] / size[0], box[3] / size[1]))
 
 

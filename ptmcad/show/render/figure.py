@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
-from fractions import Fraction
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -38,7 +37,7 @@ from ptmcad.show.render.poses import (
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import FreeSpace
 from ptmcad.show.render.sketch import Scene, arrow_lengths, frame_of
-from ptmcad.show.render.view import View
+from ptmcad.show.render.view import Point, View
 
 _GAP, _RIM, _LINE = 0.2, 0.15, 0.2
 _MAX_HEIGHT = 134.0
@@ -123,13 +122,13 @@ def _write_head(figure: Figure, lines: Sequence[str], left: float, top: float) -
     write_lines(figure, (left + 0.16, middle), lines, 9, _LINE, fontweight="bold", color=INK)
 
 
-def _mark(chart: Any, result: RegionMap, point: tuple[Fraction, Fraction]) -> None:
+def _mark(chart: Any, result: RegionMap, point: Point) -> None:
     """A diamond at the point, in the axes' own scales."""
     x, y = View.whole(result).approximate_position(point)
     chart.add_artist(Line2D((x,), (y,), transform=chart.transAxes, gid="point", **_POINT))
 
 
-def point_of(slice: Slice, poses: Poses) -> tuple[Fraction, Fraction]:
+def point_of(slice: Slice, poses: Poses) -> Point:
     """The point of the slice's window whose mechanism the poses are of.
 
     Raises

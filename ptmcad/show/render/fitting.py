@@ -21,12 +21,13 @@ from matplotlib.figure import Figure
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import Dress, dress
+from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.inches import Box
 from ptmcad.show.render.layout import Layout, Texts
 from ptmcad.show.render.legend import Entry, Type
 from ptmcad.show.render.textwidth import ALLOWANCE, wrapped
 from ptmcad.show.render.view import Same, View
-from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle
+from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 
 MIN_SIDE = 11.0
 """Sides of the map, in widths of an m: a smaller one is no picture."""
@@ -43,7 +44,7 @@ _LOOK = ("axes", "font", "mathtext", "text", "xtick", "ytick")
 MAX_TITLE_LINES = 2
 
 
-Measured = tuple[Box, tuple[float, float]]
+Measured = tuple[Box, Size]
 """Spaces around axes, and the lengths of their names."""
 
 
@@ -66,7 +67,7 @@ class PageParts:
     measured: dict[tuple[View, Dress], Measured] = field(default_factory=dict)
 
 
-def fitted(parts: PageParts, style: PictureStyle, size: tuple[float, float]) -> Layout:
+def fitted(parts: PageParts, style: PictureStyle, size: Size) -> Layout:
     """The layout of the parts on a page of this size, in inches; within `ptmcad.show.render.printing.settings`.
 
     Raises
@@ -91,7 +92,7 @@ def fitted(parts: PageParts, style: PictureStyle, size: tuple[float, float]) -> 
     )
 
 
-def _inches(size: tuple[float, float], up: bool = False) -> str:
+def _inches(size: Size, up: bool = False) -> str:
     return "x".join(f"{side + (0.005 if up else 0):.2f}" for side in size) + "in"
 
 
@@ -112,7 +113,7 @@ class _PageLayout:
 
     parts: PageParts
     style: PictureStyle
-    size: tuple[float, float]
+    size: Size
     font: float
 
     @property
@@ -152,9 +153,7 @@ class _PageLayout:
         lines = len(self.title())
         return self.size[1] - self.rim - (self.title_line * lines + 0.3 * self.em if lines else 0.35 * self.em)
 
-    def layout(
-        self, chart: Box, legend: Sequence[tuple[tuple[float, float], Sequence[Entry]]], insets: Sequence[Box]
-    ) -> Layout:
+    def layout(self, chart: Box, legend: Sequence[tuple[Position, Sequence[Entry]]], insets: Sequence[Box]) -> Layout:
         inset = insets[0] if insets else chart
         return Layout(
             size=self.size, chart=chart, title=self.title(),
@@ -164,7 +163,7 @@ class _PageLayout:
         )  # fmt: skip
 
 
-def dressed(font: float, sides: tuple[float, float], small: bool = False) -> Dress:
+def dressed(font: float, sides: Size, small: bool = False) -> Dress:
     """Sizes at axes of these sides beside text of this size, with as many numbers as there is room for."""
     ticks = _points((0.78 if small else 0.95) * font)
     names = _points((0.78 if small else 1.05) * font)
@@ -179,7 +178,7 @@ def _points(size: float) -> float:
     return max(MIN_FONT, size)
 
 
-def _on(parts: PageParts, style: PictureStyle, size: tuple[float, float], font: float) -> Layout | None:
+def _on(parts: PageParts, style: PictureStyle, size: Size, font: float) -> Layout | None:
     """The first layout, in the order in which parts are given up, that has room for what it shows."""
     page = _PageLayout(parts, style, size, font)
     for legend in parts.legend:
@@ -324,7 +323,7 @@ def _inset_overhang(page: _PageLayout) -> Box:
     return left, below + 0.3 * page.em, right, above
 
 
-def overhang(parts: PageParts, view: View, sides: tuple[float, float], how: Dress) -> Box:
+def overhang(parts: PageParts, view: View, sides: Size, how: Dress) -> Box:
     """Inches that numbers and names take at the left, below, at the right and above axes of these sides."""
     key = (view, how)
     if key not in parts.measured:

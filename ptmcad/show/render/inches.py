@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from ptmcad.show.render.clearance import Position
+
 Box = tuple[float, float, float, float]
 """Left, bottom, width, height."""
-Corner = tuple[float, float]
 
 
 def axes_at(figure: Any, box: Box, gid: str | None = None) -> Any:
@@ -18,12 +19,12 @@ def axes_at(figure: Any, box: Box, gid: str | None = None) -> Any:
     return axes
 
 
-def write(figure: Any, at: Corner, text: str, size: float, **look: Any) -> Any:
+def write(figure: Any, at: Position, text: str, size: float, **look: Any) -> Any:
     """A line of text of a size in points, by default from the middle of its left end."""
     return figure.text(*at, text, transform=figure.dpi_scale_trans, fontsize=size, **{"va": "center", **look})
 
 
-def write_lines(figure: Any, at: Corner, lines: Iterable[str], size: float, step: float, **look: Any) -> None:
+def write_lines(figure: Any, at: Position, lines: Iterable[str], size: float, step: float, **look: Any) -> None:
     """Lines of text below each other, the first one at a place."""
     for k, line in enumerate(lines):
         write(figure, (at[0], at[1] - k * step), line, size, **look)

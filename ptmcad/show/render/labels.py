@@ -13,9 +13,10 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 
-from ptmcad.show.render.clearance import Box, around, holds, overlap
+from ptmcad.show.render.clearance import Box, Position, around, holds, overlap
 from ptmcad.show.render.textwidth import text_width
 from ptmcad.show.render.view import Shapes
+from ptmcad.show.style import Size
 
 FONT_SIZE = 8.0
 _DIRECTIONS = 32
@@ -39,14 +40,14 @@ class Placement:
     ``clear`` says whether label and arrow are within the picture and clear of all those before them.
     """
 
-    tip: tuple[float, float]
-    label: tuple[float, float]
+    tip: Position
+    label: Position
     size: float
     clear: bool = True
 
 
 def place(
-    tips: Sequence[tuple[float, float]], texts: Sequence[str], seen: Shapes, sides: tuple[float, float],
+    tips: Sequence[Position], texts: Sequence[str], seen: Shapes, sides: Size,
     size: float = FONT_SIZE, skip: bool = False, homes: Sequence[Collection[int]] = (),
 ) -> list[Placement]:  # fmt: skip
     """Places for the texts, one after the other.
@@ -62,7 +63,7 @@ def place(
     points = [(x * sides[0], y * sides[1]) for x, y in tips]
     scale = min(*sides, 331.2) / 331.2
     taken: list[Box] = []
-    arrows: list[tuple[tuple[float, float], tuple[float, float]]] = []
+    arrows: list[tuple[Position, Position]] = []
     result = []
     for number, (tip, text) in enumerate(zip(points, texts, strict=True)):
         half = (36 * text_width(text, size) + 0.25 * size + 1, 0.85 * size + 1)
@@ -109,20 +110,20 @@ def _wider(box: Box, by: float) -> Box:
     return box[0] - by, box[1] - by, box[2] + by, box[3] + by
 
 
-def _meets(box: Box, a: tuple[float, float], b: tuple[float, float]) -> bool:
+def _meets(box: Box, a: Position, b: Position) -> bool:
     """Whether an arrow passes through a box, seen at points a few points apart."""
     n, near = max(2, int(hypot(b[0] - a[0], b[1] - a[1]) / 4)), _wider(box, 6)
     return any(holds(near, (a[0] + (b[0] - a[0]) * k / n, a[1] + (b[1] - a[1]) * k / n)) for k in range(n + 1))
 
 
-def _crosses(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float], d: tuple[float, float]) -> bool:
-    def side(p: tuple[float, float], q: tuple[float, float], r: tuple[float, float]) -> bool:
+def _crosses(a: Position, b: Position, c: Position, d: Position) -> bool:
+    def side(p: Position, q: Position, r: Position) -> bool:
         return (q[0] - p[0]) * (r[1] - p[1]) > (q[1] - p[1]) * (r[0] - p[0])
 
     return side(a, b, c) != side(a, b, d) and side(c, d, a) != side(c, d, b)
 
 
-def _passed(image: Image, a: tuple[float, float], b: tuple[float, float], sides: tuple[float, float]) -> int:
+def _passed(image: Image, a: Position, b: Position, sides: Size) -> int:
     """How many other regions than one an arrow passes, from its tip to its label's centre."""
     steps = np.linspace(0.0, 1.0, 24)
     row, column = (
@@ -132,7 +133,7 @@ def _passed(image: Image, a: tuple[float, float], b: tuple[float, float], sides:
     return len(np.unique(image[row, column])) - 1
 
 
-def _covered(image: Image, box: Box, sides: tuple[float, float]) -> list[int]:
+def _covered(image: Image, box: Box, sides: Size) -> list[int]:
     """The regions that the box covers."""
     rows, columns = image.shape
     left, right = (int(min(max(v / sides[0], 0.0), 0.999) * columns) for v in (box[0], box[2]))

@@ -34,12 +34,13 @@ from ptmcad.model import Model
 from ptmcad.model.moments import moments_at
 from ptmcad.show.drawable import no_landscape
 from ptmcad.show.render.axes import Scale, scale_of, symbol
-from ptmcad.show.render.clearance import Box, Label, Stroke, place
-from ptmcad.show.render.energy import Energy, Floats, drawn, energy_of, is_cut
+from ptmcad.show.render.clearance import Box, Label, Position, Stroke, place
+from ptmcad.show.render.energy import Energy, drawn, energy_of, is_cut
 from ptmcad.show.render.inches import axes_at
 from ptmcad.show.render.legend import INK, Entry, draw_legend, point_mark
 from ptmcad.show.render.poses import TITLE_LINE, describe, empty, heading, kind, titled, value_text
 from ptmcad.show.render.printing import settings
+from ptmcad.show.render.view import Floats
 from ptmcad.show.units import energy_unit, unit_of_unknown, with_unit
 
 SIDE, LEFT, BOTTOM, BAR, KEY, MARGIN = 4.6, 0.85, 0.65, 1.25, 2.2, 0.15
@@ -255,11 +256,11 @@ def _mark(axes: Any, sides: Sequence[UnknownAxis], shown: Sequence[Pose]) -> Non
     """A marker for each equilibrium, again at the opposite edge of an angle, and its number once."""
     length = SIDE * 72
 
-    def on_paper(place: Sequence[float]) -> tuple[float, float]:
+    def on_paper(place: Sequence[float]) -> Position:
         x, y = (side.share(value) * length for side, value in zip(sides, place, strict=True))
         return x, y
 
-    def back(place: Sequence[float]) -> tuple[float, float]:
+    def back(place: Sequence[float]) -> Position:
         x, y = (s.low + v / length * (s.high - s.low) for s, v in zip(sides, place, strict=True))
         return x, y
 
@@ -298,7 +299,7 @@ def copies(angle: float) -> tuple[float, ...]:
     return (180.0, -180.0) if abs(angle) > 179.75 else (angle,)
 
 
-def first_copy(sides: Sequence[UnknownAxis], pose: Pose) -> tuple[float, float]:
+def first_copy(sides: Sequence[UnknownAxis], pose: Pose) -> Position:
     """Where an equilibrium's number belongs."""
     x, y = (side.copies(value)[0] for side, value in zip(sides, place_of(pose), strict=True))
     return x, y

@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from ptmcad.show.render.axes import SMALL, Dress
-from ptmcad.show.render.inches import Box, Corner
+from ptmcad.show.render.clearance import Position
+from ptmcad.show.render.inches import Box
 from ptmcad.show.render.legend import Entry, Type
 
 SIDE, LEFT, BOTTOM, COLUMN, GAP, MARGIN = 4.6, 0.85, 0.65, 2.6, 0.25, 0.15
@@ -47,11 +48,11 @@ class Layout:
     shortened : whether the legend has no areas because they have no room.
     """
 
-    size: Corner
+    size: Position
     chart: Box
     title: Sequence[str]
-    title_at: Corner
-    legend: Sequence[tuple[Corner, Sequence[Entry]]]
+    title_at: Position
+    legend: Sequence[tuple[Position, Sequence[Entry]]]
     insets: Sequence[Box]
     title_line: float = TITLE_LINE
     type: Type = field(default_factory=Type)

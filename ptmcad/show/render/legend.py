@@ -14,8 +14,9 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.words import counted, noun
 from ptmcad.question.slice import Count, Slice
+from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
-from ptmcad.show.render.inches import Corner, stroke, write
+from ptmcad.show.render.inches import stroke, write
 from ptmcad.show.style import MIN_FONT, PictureStyle
 from ptmcad.show.table import area_by_count, area_text, areas_are_known, count_text, index_heading
 from ptmcad.text.bounds import percent
@@ -233,7 +234,9 @@ def in_rows(entries: Sequence[Entry], width: float, type: Type) -> list[list[tup
     return lines
 
 
-def draw_rows(figure: Any, rows: Sequence[Sequence[tuple[float, Entry]]], at: Corner, step: float, type: Type) -> None:
+def draw_rows(
+    figure: Any, rows: Sequence[Sequence[tuple[float, Entry]]], at: Position, step: float, type: Type
+) -> None:
     """A legend in rows from a place in inches downwards."""
     for k, row in enumerate(rows):
         for left, entry in row:

@@ -37,7 +37,7 @@ from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import seen_thin_walls
 from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.render.thinmarks import draw_marks, marks_of
-from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle
+from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.text.numerals import shortest_text
 
 SIDE = 1.75
@@ -152,7 +152,7 @@ def _figure(family: FamilyMap, dpi: int, style: PictureStyle) -> Figure:
     return figure
 
 
-def _columns(number: int, size: tuple[float, float] | None) -> int:
+def _columns(number: int, size: Size | None) -> int:
     """So that charts are about as wide as high."""
     if size is None:
         return min(number, 3 if number in (3, 5, 6, 9) else 4 if number in (7, 8, 12) else _MAX_COLUMNS)

@@ -9,12 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
-from fractions import Fraction
 from typing import Any
 
 from ptmcad.answer.words import several
 from ptmcad.show.render.legend import INK, Entry, point_mark
-from ptmcad.show.render.view import View
+from ptmcad.show.render.view import Point, View
 
 
 class Agreement(Enum):
@@ -36,7 +35,7 @@ _SHAPES: dict[Agreement, dict[str, Any]] = {
 class Measured:
     """A point in the axes' order, with a label that may be empty."""
 
-    at: tuple[Fraction, Fraction]
+    at: Point
     label: str = ""
     agreement: Agreement = Agreement.UNTOLD
 

@@ -15,7 +15,6 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import expect
 from ptmcad.show.render.around import draw_around
 from ptmcad.show.render.axes import axis_name
-from ptmcad.show.render.blocks import Point
 from ptmcad.show.render.colours import Fill
 from ptmcad.show.render.legend import INK, head_of
 from ptmcad.show.render.overlay import Overlay
@@ -24,6 +23,7 @@ from ptmcad.show.render.poses import describe
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.regionmap import description, figure_of, whole_title
 from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.view import Point
 from ptmcad.show.style import LegendPlace, PictureStyle, styled
 
 

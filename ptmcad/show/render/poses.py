@@ -24,11 +24,13 @@ from ptmcad.model.moments import PointForce, loads_at
 from ptmcad.question.slice import merged
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import symbol, with_symbols
+from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.inches import axes_at, stroke, write, write_lines
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_mark, symbol_mark, torsion_mark
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.sketch import MAX_ARROW, MIN_ARROW, PanelFrame, Scene, arrow_lengths, components, frame_of
+from ptmcad.show.style import Size
 from ptmcad.show.units import energy_unit
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import magnitude, power_of_ten, shortest_text
@@ -115,7 +117,7 @@ def below_panel(pose: Pose, model: Model) -> float:
     return BELOW + 0.16 * (len(_lines_below(model, pose)) - 2)
 
 
-def panel(figure: Figure, scene: Scene, pose: Pose, number: int, corner: tuple[float, float]) -> Any:
+def panel(figure: Figure, scene: Scene, pose: Pose, number: int, corner: Position) -> Any:
     """One pose in axes at a place in inches, with its kind above and energy and angles below."""
     mechanism, frame = scene.mechanism, scene.frame
     strong = pose.stable is True or not mechanism.tells_stability
@@ -130,7 +132,7 @@ def panel(figure: Figure, scene: Scene, pose: Pose, number: int, corner: tuple[f
     return axes
 
 
-def pose_axes(figure: Figure, corner: tuple[float, float], frame: PanelFrame, gid: str, strong: bool) -> Any:
+def pose_axes(figure: Figure, corner: Position, frame: PanelFrame, gid: str, strong: bool) -> Any:
     """Axes in which a unit is a point, in a dark frame or a pale one."""
     axes = axes_at(figure, (*corner, frame.width / 72, frame.height / 72), gid)
     axes.set(xlim=(0, frame.width), ylim=(0, frame.height), xticks=[], yticks=[])
@@ -222,7 +224,7 @@ def _unknowns_in_words(model: Model, pose: Pose) -> str:
     return ", ".join(([", ".join(angles) + " degrees"] if angles else []) + reals)
 
 
-def titled(lines: Sequence[str], size: tuple[float, float], left: float) -> Figure:
+def titled(lines: Sequence[str], size: Size, left: float) -> Figure:
     """A page of a size in inches with a title at the top."""
     figure = Figure(figsize=size, facecolor="white")
     write_lines(figure, (left, size[1] - MARGIN - TITLE_LINE / 2), lines, 11, TITLE_LINE)
@@ -328,7 +330,7 @@ _KEY_COLUMNS = 33
 _SCALE_ROOM = 0.3
 
 
-def scale_bar(figure: Figure, frame: PanelFrame, place: tuple[float, float], units: Mapping[str, str]) -> None:
+def scale_bar(figure: Figure, frame: PanelFrame, place: Position, units: Mapping[str, str]) -> None:
     """A bar of known length, at most 60 points long, from a place in inches to the right."""
     left, middle = place
     step = _round_below(Fraction(60) / frame.scale)

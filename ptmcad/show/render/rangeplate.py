@@ -16,6 +16,7 @@ from ptmcad.show.render.axes import heading_of, scale_of, symbol
 from ptmcad.show.render.inches import Box, axes_at, write_lines
 from ptmcad.show.render.legend import Entry, Type, draw_legend, width
 from ptmcad.show.render.textwidth import wrapped
+from ptmcad.show.style import Size
 from ptmcad.show.units import unit, with_unit
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text
@@ -44,7 +45,7 @@ def beside(heading: str, key: float, tall: float, words: str) -> Figure:
     return figure_of(wrapped(heading, wide - LEFT - MARGIN, TITLE)[:3], (wide, tall), words)
 
 
-def figure_of(title: Sequence[str], size: tuple[float, float], words: str) -> Figure:
+def figure_of(title: Sequence[str], size: Size, words: str) -> Figure:
     """A figure under a title of these lines, its size in inches that of what is below it."""
     tall = size[1] + LINE * len(title) + 2 * MARGIN
     figure = Figure(figsize=(size[0], tall), facecolor="white")

@@ -42,7 +42,7 @@ from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import MAX_ZOOMS, Sliver, Zoom, seen_thin_walls, thin_regions, unstable_zooms, zooms
 from ptmcad.show.render.thinmarks import RESOLVED, counts_of, draw_marks, placed_marks, ranked
 from ptmcad.show.render.view import Shapes
-from ptmcad.show.style import DEFAULT, LegendPlace, PictureStyle
+from ptmcad.show.style import DEFAULT, LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, areas_are_known, count_text, region_area
 
 TITLE_COLUMNS, TITLE_LINES = 80, 3
@@ -103,7 +103,7 @@ class _Seen:
     thin_lines: bool = False
     unnamed: int = 0
 
-    def with_room(self, sides: tuple[float, float], size: float) -> _Seen:
+    def with_room(self, sides: Size, size: float) -> _Seen:
         """The same but for what has no label of its own in a picture with sides in points, where no inset stands."""
         ranked = self.ranked
         names = [_name_of(self.whole.result, sliver, None) for sliver in ranked]
@@ -132,7 +132,7 @@ class _Seen:
         return [sliver for zoom in self.views for sliver in zoom.slivers]
 
 
-def _seen(whole: Shapes, sides: tuple[float, float], dpi: int, earlier: _Seen | None = None) -> _Seen:
+def _seen(whole: Shapes, sides: Size, dpi: int, earlier: _Seen | None = None) -> _Seen:
     """What is seen of a map with sides in inches."""
     pixels = round(min(sides) * min(dpi, RESOLVED))
     thin = thin_regions(whole, pixels)
@@ -236,7 +236,7 @@ def fit(
         seen = again
 
 
-def _natural(style: PictureStyle, parts: PageParts) -> tuple[float, float]:
+def _natural(style: PictureStyle, parts: PageParts) -> Size:
     """A size for a map as large as in a picture that grows with what it shows, in proportion to the text."""
     scale = style.base_font / 9
     lines = sum(len(entry.lines) for entry in parts.legend[0])

@@ -21,6 +21,7 @@ from ptmcad.model.joints import joints_of
 from ptmcad.model.moments import PointForce, loads_at
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.clearance import Box, Label, Placed, Position, Stroke, distance, place, polyline
+from ptmcad.show.render.view import Point
 from ptmcad.show.spiral import spirals
 
 BAR_WIDTHS = (5.5, 3.2)
@@ -100,11 +101,11 @@ def frame_of(shown: Sequence[Pose], width: float = WIDTH, most_height: float = M
     return PanelFrame(scale, max(MIN_HEIGHT, float(tall * scale) + 2 * MARGIN), width)
 
 
-def _centers(pose: Pose) -> dict[str, tuple[Fraction, Fraction]]:
+def _centers(pose: Pose) -> dict[str, Point]:
     return {name: (x.center, y.center) for name, (x, y) in pose.nodes.items()}
 
 
-def _sides(points: Iterable[tuple[Fraction, Fraction]]) -> tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]:
+def _sides(points: Iterable[Point]) -> tuple[Point, Point]:
     """The least and the largest x, and the same for y."""
     xs, ys = zip(*points, strict=True)
     return (min(xs), max(xs)), (min(ys), max(ys))

@@ -19,7 +19,7 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import axis_name, symbol
-from ptmcad.show.render.inches import write_lines
+from ptmcad.show.render.inches import Box, write_lines
 from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, in_rows
 from ptmcad.show.render.multiples import draw_flowed, family_entries, in_words, title_of, value_text
 from ptmcad.show.render.painting import Paint, paint_of
@@ -98,7 +98,7 @@ def _figure(family: FamilyMap, dpi: int, style: PictureStyle, surface: BoundaryS
     return figure
 
 
-def _axes(figure: Figure, box: tuple[float, float, float, float], family: FamilyMap, font: float) -> Any:
+def _axes(figure: Figure, box: Box, family: FamilyMap, font: float) -> Any:
     """Empty axes in three dimensions, in parallel projection."""
     from matplotlib.ticker import MaxNLocator
     from mpl_toolkits.mplot3d import Axes3D

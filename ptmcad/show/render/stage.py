@@ -29,7 +29,7 @@ from ptmcad.model import Mechanism
 from ptmcad.model.moments import loads_at
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import Dress, dress, symbol
-from ptmcad.show.render.clearance import Placed
+from ptmcad.show.render.clearance import Placed, Position
 from ptmcad.show.render.inches import axes_at, write
 from ptmcad.show.render.legend import INK, Entry, Type, draw_rows, head_of, in_rows
 from ptmcad.show.render.mechanism import PALE, STRONG, draw_sketch
@@ -38,8 +38,8 @@ from ptmcad.show.render.regionmap import whole_title
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sketch import Sketch, arrows_of, components, own_labels, sketched
 from ptmcad.show.render.textwidth import text_width
-from ptmcad.show.render.view import View
-from ptmcad.show.style import PictureStyle
+from ptmcad.show.render.view import Point, View
+from ptmcad.show.style import PictureStyle, Size
 
 SIZE = (9.0, 5.1)
 MIN_SIZE = (6.5, 3.4)
@@ -69,10 +69,10 @@ class _World:
     """From the mechanism's plane to points on paper."""
 
     scale: float
-    shift: tuple[float, float]
-    sides: tuple[float, float]
+    shift: Position
+    sides: Size
 
-    def places(self, mechanism: Mechanism, step: Step) -> dict[str, tuple[float, float]]:
+    def places(self, mechanism: Mechanism, step: Step) -> dict[str, Position]:
         (dx, dy), k = self.shift, self.scale
         return {name: (x * k + dx, y * k + dy) for name, (x, y) in zip(mechanism.points, step.points, strict=True)}
 
@@ -250,11 +250,11 @@ class Stage:
         if several:
             axes.set_title(f"dots: {which}, stable ones blue", fontsize=SIZES[2], loc="right", pad=2)
 
-    def _text(self, at: tuple[float, float], text: str, size: float, colour: str = INK) -> Any:
+    def _text(self, at: Position, text: str, size: float, colour: str = INK) -> Any:
         return write(self.figure, at, text, size, color=colour)
 
 
-def _world(motion: Motion, sides: tuple[float, float]) -> _World:
+def _world(motion: Motion, sides: Size) -> _World:
     """One scale for all steps, and their middle in the middle."""
     places = np.array([step.points for step in motion.steps]).reshape(-1, 2)
     low, high = places.min(axis=0), places.max(axis=0)
@@ -267,8 +267,8 @@ def _world(motion: Motion, sides: tuple[float, float]) -> _World:
 def _sketches(motion: Motion, mechanism: Mechanism, world: _World) -> list[Sketch]:
     """The mechanism at each step; labels keep their side while they can, and glide where they cannot."""
     arrows, sketches = _arrows(motion, mechanism), list[Sketch]()
-    offsets: dict[str, tuple[float, float]] = {}
-    ways: list[dict[str, tuple[float, float]]] = []
+    offsets: dict[str, Position] = {}
+    ways: list[dict[str, Position]] = []
     for step in motion.steps:
         labels = partial(own_labels, offsets=dict(offsets))
         seen = sketched(mechanism, world.places(mechanism, step), world.sides, arrows[step.at], TURNS, labels)
@@ -278,7 +278,7 @@ def _sketches(motion: Motion, mechanism: Mechanism, world: _World) -> list[Sketc
     return [replace(seen, labels=tuple(_glided(seen.labels, ways, k))) for k, seen in enumerate(sketches)]
 
 
-def _glided(labels: Iterable[Placed], ways: list[dict[str, tuple[float, float]]], number: int) -> Iterator[Placed]:
+def _glided(labels: Iterable[Placed], ways: list[dict[str, Position]], number: int) -> Iterator[Placed]:
     """Labels at the mean of where they stand in the steps around, without lines that lead to them."""
     near = ways[max(0, number - GLIDE) : number + GLIDE + 1]
     for placed in labels:
@@ -286,7 +286,7 @@ def _glided(labels: Iterable[Placed], ways: list[dict[str, tuple[float, float]]]
         yield replace(placed, center=(placed.label.at[0] + x, placed.label.at[1] + y), leader=None)
 
 
-def _arrows(motion: Motion, mechanism: Mechanism) -> dict[tuple[Fraction, Fraction], dict[str, float]]:
+def _arrows(motion: Motion, mechanism: Mechanism) -> dict[Point, dict[str, float]]:
     """For each point the lengths of its loads' arrows, in proportion to the largest load of the motion."""
     parameters = motion.result.slice.parameters
     forces = {}

@@ -14,6 +14,7 @@ from ptmcad.show.render.labels import Placement, place
 from ptmcad.show.render.legend import INK
 from ptmcad.show.render.slivers import Sliver, inside, thin_regions
 from ptmcad.show.render.view import Shapes
+from ptmcad.show.style import Size
 from ptmcad.show.table import count_text
 
 RESOLVED = 42
@@ -52,7 +53,7 @@ def ranked(whole: Shapes, slivers: Sequence[Sliver], thin: Sequence[int]) -> lis
 
 
 def placed_marks(
-    whole: Shapes, slivers: Sequence[Sliver], names: Sequence[str], told: Sequence[str], sides: tuple[float, float],
+    whole: Shapes, slivers: Sequence[Sliver], names: Sequence[str], told: Sequence[str], sides: Size,
     size: float, skip: bool,
 ) -> Marks:  # fmt: skip
     """Marks of thin regions with places for their names.
@@ -72,9 +73,7 @@ def counts_of(result: RegionMap) -> list[str]:
     return [count_text(region, result.slice.count) for region in result.regions]
 
 
-def marks_of(
-    whole: Shapes, sides: tuple[float, float], dpi: int, size: float, names: Sequence[str] | None = None
-) -> Marks:
+def marks_of(whole: Shapes, sides: Size, dpi: int, size: float, names: Sequence[str] | None = None) -> Marks:
     """The marks of a map in a drawing of its own, without insets.
 
     Parameters

@@ -17,21 +17,21 @@ from math import ceil
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import Cell, Region
 from ptmcad.answer.words import stable_of
 from ptmcad.model import Model
 from ptmcad.question.slice import Count
+from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.slivers import innermost, thin_regions, zooms
-from ptmcad.show.render.view import Shapes
+from ptmcad.show.render.view import Floats, Shapes
 from ptmcad.show.report.frame import RIM, SIDE, frame, room
 from ptmcad.show.report.pathdata import GRID, path_data
 from ptmcad.show.table import count_text
 from ptmcad.text.numerals import shortest_text
 
-Mark = tuple[str, tuple[float, float]]
+Mark = tuple[str, Position]
 """A letter and its place in the view, as fractions of the sides."""
 Label = tuple[int, float, float]
 """A region and the place of its count."""
@@ -54,7 +54,7 @@ class MapPictures:
 
     whole: str
     details: tuple[str, ...]
-    places: tuple[tuple[float, float], ...]
+    places: tuple[Position, ...]
     thin_walls: bool
     hidden: int
 
@@ -165,17 +165,17 @@ def _shortened(value: Fraction) -> str:
     return text if len(text) <= 12 else f"{float(value):.6g}" if abs(value) < 10**300 else text[:12] + "…"
 
 
-def _placed(line: NDArray[np.float64]) -> NDArray[np.float64]:
+def _placed(line: Floats) -> Floats:
     """Fractions of the view's sides in the picture's units, from above."""
-    placed: NDArray[np.float64] = np.stack([line[:, 0], 1 - line[:, 1]], axis=1) * SIDE
+    placed: Floats = np.stack([line[:, 0], 1 - line[:, 1]], axis=1) * SIDE
     return placed
 
 
-def _open(line: NDArray[np.float64]) -> str:
+def _open(line: Floats) -> str:
     return path_data(_placed(line))
 
 
-def _closed(polygon: NDArray[np.float64]) -> str:
+def _closed(polygon: Floats) -> str:
     return path_data(_placed(polygon), closed=True)
 
 

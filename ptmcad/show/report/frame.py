@@ -13,7 +13,7 @@ from html import escape
 from math import ceil
 
 from ptmcad.show.render.axes import Scale, fixed, scale_of, symbol
-from ptmcad.show.render.view import Shapes
+from ptmcad.show.render.view import Interval, Shapes
 from ptmcad.show.units import unit
 from ptmcad.text.numerals import magnitude, shortest_text
 
@@ -83,7 +83,7 @@ def frame(seen: Shapes, room: Margins) -> Iterator[str]:
             yield f'<text class="name" transform="{place}">{text}</text>'
 
 
-def ticks(interval: tuple[Fraction, Fraction], scale: Scale) -> list[tuple[str, Fraction]]:
+def ticks(interval: Interval, scale: Scale) -> list[tuple[str, Fraction]]:
     """At most `_MAX_TICKS` + 1 round numbers of a scale, as text, and where they are between the ends (0 to 1)."""
     low, high = interval
     power = Fraction(10) ** scale.exponent
