@@ -48,7 +48,7 @@ def save(found: Row, folder: Path, formats: tuple[str, ...]) -> tuple[str, ...]:
             writers[f"{name}.{suffix}"] = picture(f"{name}.{suffix}", partial(_draw, found))
     file = f"{name}.json" if "json" in formats else ""
     if writers or file:
-        write_result(folder, writers, file, to_json(found))
+        write_result(folder, writers, file, to_json(found) if file else "")
     return (*writers, file) if file else tuple(writers)
 
 

@@ -22,7 +22,7 @@ from ptmcad.show.render.outline import TOLERANCE, outline
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.report.chart import counts_text, hatch_id, pattern_defs, region_labels, region_outlines, wall_lines
-from ptmcad.show.report.frame import RIM, SIDE, frame, room
+from ptmcad.show.report.frame import SIDE, frame, room
 from ptmcad.show.table import area_digits, count_text
 from ptmcad.text.numerals import approximate_text
 
@@ -75,11 +75,7 @@ def map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
 def _frame(seen: Shapes) -> dict[str, Any]:
     """The axes, and how much room they need around the window."""
     around = room(seen, detail=False)
-    return {
-        "svg": "".join(frame(seen, around)),
-        "view": f"0 0 {around.left + SIDE + around.right} {RIM + SIDE + around.bottom}",
-        "place": f"translate({around.left} {RIM})",
-    }
+    return {"svg": "".join(frame(seen, around)), "view": around.view, "place": around.place}
 
 
 def _digest(result: RegionMap) -> list[list[Any]]:

@@ -26,7 +26,7 @@ from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.slivers import innermost, thin_regions, zooms
 from ptmcad.show.render.view import Floats, Shapes
-from ptmcad.show.report.frame import RIM, SIDE, frame, room
+from ptmcad.show.report.frame import SIDE, frame, room
 from ptmcad.show.report.pathdata import GRID, path_data
 from ptmcad.show.table import count_text
 from ptmcad.text.numerals import shortest_text
@@ -127,11 +127,9 @@ def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[La
     around = room(seen, detail=name != "map")
     plate = "plate" if result.cover is None else "undetermined"
     parts = [
-        f'<svg id="{name}" class="map" role="group" '
-        f'viewBox="0 0 {around.left + SIDE + around.right} {RIM + SIDE + around.bottom}" '
-        f'aria-label="{escape(_window_text(seen))}">',
+        f'<svg id="{name}" class="map" role="group" viewBox="{around.view}" aria-label="{escape(_window_text(seen))}">',
         f'<clipPath id="{name}-window"><rect width="{SIDE}" height="{SIDE}"/></clipPath>',
-        f'<g transform="translate({around.left} {RIM})">',
+        f'<g transform="{around.place}">',
         f'<rect class="{plate}" width="{SIDE}" height="{SIDE}"/><g clip-path="url(#{name}-window)">',
     ]
     parts.append(f'<g transform="scale({1 / GRID:g})">')

@@ -38,6 +38,16 @@ class Margins:
     bottom: float
     name: float
 
+    @property
+    def view(self) -> str:
+        """The picture's own coordinates, as SVG has them."""
+        return f"0 0 {self.left + SIDE + self.right} {RIM + SIDE + self.bottom}"
+
+    @property
+    def place(self) -> str:
+        """Where the window begins."""
+        return f"translate({self.left} {RIM})"
+
 
 def room(seen: Shapes, detail: bool) -> Margins:
     """The room that the numbers of a view need: of the whole window, or of thin regions, where the type is larger."""
