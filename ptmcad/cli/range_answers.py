@@ -66,6 +66,10 @@ class RangeAnswer:
     parts: Mapping[str, Any]
     pictures: Mapping[str, Callable[[Path], None]]
 
+    def added(self, text: str, part: Mapping[str, Any], end: str, picture: Callable[[Path], None]) -> RangeAnswer:
+        """The same with one more table, part of the JSON, and picture under the end of its name."""
+        return RangeAnswer(f"{self.text}\n\n{text}", {**self.parts, **part}, {**self.pictures, end: picture})
+
 
 def answer(slice: Slice, request: RangeRequest) -> RangeAnswer:
     """Compute all that is asked for.
@@ -79,25 +83,23 @@ def answer(slice: Slice, request: RangeRequest) -> RangeAnswer:
     from ptmcad.exact.ranges.strips import refuse_free_lengths
     from ptmcad.show.ranges import document, table
 
+    known = RangeAnswer(question_of(slice), {}, {})
     if is_enclosed(slice, request):
-        known = _enclosed(slice, request) if request.at else RangeAnswer(question_of(slice), {}, {})
+        known = _enclosed(slice, request) if request.at else known
         known = _with_bands(known, slice, request) if request.over else known
         return _with_poses(known, slice, request)
     if request.over:
         refuse_free_lengths(slice)  # before the line is asked for, whose refusal would not say what to leave out
-    texts, parts = [question_of(slice)], dict[str, Any]()
-    pictures: dict[str, Callable[[Path], None]] = {}
+    digits = request.digits
     if request.at:
         found = ranges.intervals(slice, request.along, request.at)
-        texts.append(table.table(found, request.digits))
-        parts |= document.part(found, request.digits)
-        pictures[""] = partial(_picture, "line", slice, found)
+        text, part = table.table(found, digits), document.part(found, digits)
+        known = known.added(text, part, "", partial(_picture, "line", slice, found))
     if request.over:
         widths = ranges.operation_widths(slice, request.along, request.rows)
-        texts.append(table.width_table(widths, request.digits))
-        parts |= document.part(widths, request.digits)
-        pictures["-over"] = partial(_picture, "over", slice, widths)
-    return _with_poses(RangeAnswer("\n\n".join(texts), parts, pictures), slice, request)
+        text, part = table.width_table(widths, digits), document.part(widths, digits)
+        known = known.added(text, part, "-over", partial(_picture, "over", slice, widths))
+    return _with_poses(known, slice, request)
 
 
 def is_enclosed(slice: Slice, request: RangeRequest) -> bool:
@@ -116,11 +118,8 @@ def _with_bands(found: RangeAnswer, slice: Slice, request: RangeRequest) -> Rang
 
     with ProgressBar() as progress:
         widths = certified_widths(slice, request.along, request.rows, request.digits, progress)
-    return RangeAnswer(
-        f"{found.text}\n\n{certified.width_table(widths, request.digits)}",
-        {**found.parts, **document.part(widths, request.digits)},
-        {**found.pictures, "-over": partial(_picture, "over", slice, widths)},
-    )
+    text, part = certified.width_table(widths, request.digits), document.part(widths, request.digits)
+    return found.added(text, part, "-over", partial(_picture, "over", slice, widths))
 
 
 def _with_poses(found: RangeAnswer, slice: Slice, request: RangeRequest) -> RangeAnswer:
@@ -146,11 +145,8 @@ def _with_paths(
 
     with ProgressBar() as progress:
         paths = pose_paths(slice, request.along, request.at, request.start, request.pose, progress)
-    return RangeAnswer(
-        f"{found.text}\n\n{table.path_table(paths, min(request.digits, 10))}",
-        {**found.parts, **document.part(paths, request.digits)},
-        {**found.pictures, "-path": partial(_picture, "path", slice, paths, line=line)},
-    )
+    text, part = table.path_table(paths, min(request.digits, 10)), document.part(paths, request.digits)
+    return found.added(text, part, "-path", partial(_picture, "path", slice, paths, line=line))
 
 
 def _with_branches(
@@ -164,11 +160,8 @@ def _with_branches(
 
     with ProgressBar() as progress:
         diagram = branch_diagram(slice, request.along, request.at, request.quantities, progress, line())
-    return RangeAnswer(
-        f"{found.text}\n\n{branches.table(diagram)}",
-        {**found.parts, **document.part(diagram, request.digits)},
-        {**found.pictures, "-branches": partial(_picture, "branches", slice, diagram)},
-    )
+    text, part = branches.table(diagram), document.part(diagram, request.digits)
+    return found.added(text, part, "-branches", partial(_picture, "branches", slice, diagram))
 
 
 def _enclosed(slice: Slice, request: RangeRequest) -> RangeAnswer:

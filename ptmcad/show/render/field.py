@@ -115,9 +115,13 @@ def _extent(view: View) -> tuple[float, ...]:
 def fill_empty(axes: Any, field: Field, extent: Sequence[float], fill: Fill) -> None:
     """The pixels of which the map says nothing, and in white those of its regions, over which the values come."""
     axes.patch.set(facecolor=fill.face, hatch=fill.hatch or None, edgecolor=RIM_INK, linewidth=0)
-    axes.imshow(
-        np.where(field.region == NONE, np.nan, 0.0), origin="lower", extent=tuple(extent), aspect="auto",
-        cmap=ListedColormap([_EMPTY]), interpolation="nearest", gid="empty",
+    show_pixels(axes, np.where(field.region == NONE, np.nan, 0.0), extent, cmap=ListedColormap([_EMPTY]), gid="empty")
+
+
+def show_pixels(axes: Any, values: Any, extent: Sequence[float], **look: Any) -> Any:
+    """An image of values, row after row from the bottom, without any smoothing."""
+    return axes.imshow(
+        values, origin="lower", extent=tuple(extent), aspect="auto", interpolation="nearest", **look
     )  # fmt: skip
 
 
@@ -126,10 +130,8 @@ def _fill(figure: Figure, axes: Any, field: Field, view: View, number: int, styl
     extent = _extent(view)
     known = field.values[~np.isnan(field.values)]
     low, high = float(known.min()), float(known.max())
-    image = axes.imshow(
-        field.values, origin="lower", extent=extent, aspect="auto", cmap=_colours(style), interpolation="nearest",
-        vmin=low, vmax=high if high > low else low + 1.0, gid="values",
-    )  # fmt: skip
+    span = {"vmin": low, "vmax": high if high > low else low + 1.0}
+    image = show_pixels(axes, field.values, extent, cmap=_colours(style), gid="values", **span)
     lines = {**_LINES, "linewidths": 0.6 * style.line_scale}
     levels = contour_lines(axes, field, extent, number)
     for found in filter(None, levels.values()):
