@@ -12,22 +12,22 @@ import click
 
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.field import Field
-from ptmcad.cli.drawing import pixels_of, share_of, style_options
+from ptmcad.cli.drawing import pixels_of, style_options
 from ptmcad.cli.formats import format_option
 from ptmcad.cli.idle import idle_style, report_idle
-from ptmcad.cli.limits import Limits, held, limit_options
-from ptmcad.cli.maps import made_map, stored_map
+from ptmcad.cli.limits import ResourceLimits, held, limit_options
+from ptmcad.cli.maps import made_map, stored_map, tolerance_option
 from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_of
-from ptmcad.cli.slices import Asked, slice_options
+from ptmcad.cli.slices import SliceOptions, slice_options
 from ptmcad.cli.stored import stored_in
 from ptmcad.cli.values import poses, quantity_names
 from ptmcad.errors import ConfigError, PtmcadError, shown_path
 from ptmcad.options import Options
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
-from ptmcad.show.style import Place, Style
+from ptmcad.show.style import LegendPlace, PictureStyle
 
 PICTURES, DATA = ("png", "svg", "pdf"), ("csv", "npz")
 FORMATS = (*PICTURES, *DATA)
@@ -39,7 +39,7 @@ class Figure(NamedTuple):
     """How a map is drawn."""
 
     contours: int
-    style: Style
+    style: PictureStyle
     dpi: int
 
 
@@ -61,26 +61,25 @@ class DifferenceError(PtmcadError):
               help="About so many contour lines; 0 for none.")  # fmt: skip
 @click.option("--checks", type=click.IntRange(0, 100_000), default=50, show_default=True,
               help="Random pixels that are compared with exact poses.")  # fmt: skip
-@click.option("--tolerance", callback=share_of, default="1/100", show_default=True, metavar="EPS",
-              help="With free lengths: the share of the window that may stay undetermined.")  # fmt: skip
+@tolerance_option
 @style_options
 @out_option
 @format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.", "png")
 @limit_options
 def command(
     *,
-    asked: Asked,
+    asked: SliceOptions,
     value: str,
     pose: str,
     pixels: tuple[int, int],
     contours: int,
     checks: int,
     tolerance: Fraction,
-    style: Style,
+    style: PictureStyle,
     dpi: int,
     out: Path,
     formats: tuple[str, ...],
-    limits: Limits,
+    limits: ResourceLimits,
 ) -> None:
     """Colour the window by a quantity of one equilibrium.
 
@@ -104,7 +103,7 @@ def command(
         *idle_style(formats),
         ("contours", nothing_drawn, "no picture is written"),
         ("thin_lines", not nothing_drawn, "the curves over a quantity are those where the count changes"),
-        ("legend", not nothing_drawn and style.legend is Place.RIGHT, "beside the map is the scale"),
+        ("legend", not nothing_drawn and style.legend is LegendPlace.RIGHT, "beside the map is the scale"),
     ])  # fmt: skip
     stem = f"{slice.name}-{_slug(value)}-{_slug(pose)}"
     names = tuple(f"{stem}.{kind}" for kind in formats)
@@ -152,9 +151,6 @@ def _writers(result: Any, field: Field, names: tuple[str, ...], figure: Figure) 
     boundaries = cache(result.boundaries)
 
     def draw(path: Path) -> None:
-        from ptmcad.show.render.backend import load_matplotlib
-
-        load_matplotlib()
         from ptmcad.show.render.field import field_figure
         from ptmcad.show.render.printing import save, settings
 

@@ -12,8 +12,11 @@ from pathlib import Path
 import click
 
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown_path
-from ptmcad.process.output import Writer, save_stopped, write_files
-from ptmcad.show.style import Style
+from ptmcad.process.output import Writer, save_stopped, text_writer, write_files
+from ptmcad.show.render.backend import load_matplotlib
+from ptmcad.show.style import PictureStyle
+
+_NO_PICTURES = (".csv", ".npz", ".html")
 
 
 def report_written(folder: Path, names: Iterable[str]) -> None:
@@ -24,13 +27,15 @@ def report_written(folder: Path, names: Iterable[str]) -> None:
 
 
 def picture(name: str, draw: Writer) -> Writer:
-    """A writer of the picture of this name, which is drawn by a function of the path.
+    """A writer of the picture of this name, or of a table, which is made by a function of the path.
 
-    Its failures are of one kind, `PictureError`, but for lack of memory.
+    What all pictures need is loaded first. Failures are of one kind, `PictureError`, but for lack of memory.
     """
 
     def write(path: Path) -> None:
         try:
+            if not name.endswith(_NO_PICTURES):
+                load_matplotlib()
             draw(path)
         except MemoryError:
             raise
@@ -42,7 +47,7 @@ def picture(name: str, draw: Writer) -> Writer:
 
 def _reason(error: Exception) -> str:
     """In words for somebody who does not read the program: names of exceptions are none."""
-    if isinstance(error, ConfigError) and error.key in Style._fields:
+    if isinstance(error, ConfigError) and error.key in PictureStyle._fields:
         return f"--{error.key.replace('_', '-')}: {error.message}"
     if isinstance(error, PtmcadError):
         return str(error)
@@ -50,15 +55,15 @@ def _reason(error: Exception) -> str:
     return said if isinstance(error, OSError) else f"drawing failed unexpectedly{f': {said}' if said else ''}"
 
 
-def write_result(folder: Path, writers: Mapping[str, Writer], name: str, text: str) -> tuple[Path, ...]:
-    """Write all files or, when a picture fails, the JSON alone.
+def write_result(folder: Path, pictures: Mapping[str, Writer], name: str, text: str) -> tuple[Path, ...]:
+    """Write pictures and, last, the JSON, where it has a name; all of them or, when a picture fails, the JSON alone.
 
     The JSON then goes where the result of a stopped run goes: older pictures beside it would not be its own.
 
     Parameters
     ----------
-    writers : as of `write_files`; the last one is the JSON's.
-    name, text : of the JSON.
+    pictures : as of `write_files`.
+    name, text : of the JSON; an empty name where none is wanted.
 
     Raises
     ------
@@ -67,9 +72,10 @@ def write_result(folder: Path, writers: Mapping[str, Writer], name: str, text: s
     OutputError
         When a file cannot be written.
     """
+    if not name:
+        return write_files(folder, pictures)
     try:
-        return write_files(folder, writers)
+        return write_files(folder, {**pictures, name: text_writer(text)})
     except PictureError as error:
-        beside = tuple(other for other in writers if other != name)
-        place, why = save_stopped(folder / name, text, whole=True, beside=beside)
+        place, why = save_stopped(folder / name, text, whole=True, beside=tuple(pictures))
         raise PictureError(f"{error}; the result, without pictures, is in {place}{why}") from error

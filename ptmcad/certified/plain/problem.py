@@ -241,8 +241,7 @@ def _with_springs(problem: Problem, slice: Slice, system: CompiledSystem, ring: 
 
 
 def _pulls(slice: Slice, system: CompiledSystem, ring: Harmonics) -> list[tuple[str, Expression, Vector]]:
-    """Name, K and d of each spring with a free length, no K of which is negative anywhere in the window; of those side
-    by side as of one."""
+    """Name, K and d of each spring with a free length; of those side by side as of one."""
     found: list[tuple[str, Expression, Vector]] = []
     for spring in system.springs:
         pull = constant_of(system.values([spring.pull], ring)[0])
@@ -252,9 +251,6 @@ def _pulls(slice: Slice, system: CompiledSystem, ring: Harmonics) -> list[tuple[
         if not (across.terms or up.terms):
             continue
         name = name_of(spring, slice.model)
-        asked = f"stiffness times free length of spring {name}", Kind.FREE_LENGTH, pull, slice.axes
-        if problem := fault(*asked) or unproved(*asked):
-            raise GeometryError(problem, part=spring.key)
         for k, (other, its_pull, its_vector) in enumerate(found):
             # each of K |d| and K' |d'| alone has a cone, and where both are short at once neither direction would be
             # balanced by the rest; but K f |e| and K' g |e| are one

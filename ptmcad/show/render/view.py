@@ -15,9 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.show.render.clearance import Position
 
 Floats = NDArray[np.float64]
 Interval = tuple[Fraction, Fraction]
+Point = tuple[Fraction, Fraction]
+"""Of a map, in the order of its axes."""
 T = TypeVar("T")
 
 
@@ -51,7 +54,7 @@ class View:
         """The interval of axis 0 or 1."""
         return self.y if axis else self.x
 
-    def approximate_position(self, point: tuple[Fraction, Fraction]) -> tuple[float, float]:
+    def approximate_position(self, point: Point) -> Position:
         """A point in the view's own coordinates, (0, 0) to (1, 1)."""
         (left, right), (bottom, top) = self.x, self.y
         return float((point[0] - left) / (right - left)), float((point[1] - bottom) / (top - bottom))

@@ -94,10 +94,11 @@ def csv_text(sweep: Sweep, members: Members) -> str:
 def counts_in(members: Iterable[Member]) -> tuple[str, ...]:
     """The counts of regions that occur in any member, in increasing order."""
     found = {area.count for member in members if member.summary for area in member.summary.areas}
-    return tuple(sorted(found, key=_order))
+    return tuple(sorted(found, key=count_order))
 
 
-def _order(count: str) -> tuple[int, ...]:
+def count_order(count: str) -> tuple[int, ...]:
+    """What counts are sorted by."""
     return (-1,) if count == "?" else tuple(map(int, count.split("-")))
 
 
