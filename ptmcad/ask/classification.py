@@ -267,11 +267,10 @@ def check_flat_loops(slice: Slice) -> None:
     ------
     DegenerateSliceError
     """
-    loops = _loops(slice)
-    if loops is not None:
+    if _loops(slice) is not None:
         from ptmcad.certified.plain.problem import check_loops
 
-        check_loops(loops, slice)
+        check_loops(slice)
 
 
 def check_resumable(slice: Slice, earlier: RegionMap) -> None:
