@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from flint import arb
+from flint import arb, fmpq
 
 from ptmcad.errors import ExpressionError
 from ptmcad.model import Kind
@@ -17,7 +17,7 @@ from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.terms import evaluated, power, terms_of
+from ptmcad.verification.certified.terms import evaluated, monomials, power
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import derivation_of
@@ -68,12 +68,12 @@ def _undecided_parts(slice: Slice, window: Window) -> list[str]:
     model, true = slice.model, derivation_of(slice.model)
     known = {name: 0 * axis(0) for name in model.free_lengths} | dict(slice.parameters)
     for what, polynomial, strict in true.required:
-        terms = terms_of(polynomial, true.ring.names)
+        names = true.ring.names
         right = model.positive if strict else (*model.positive, *model.nonnegative)
-        if terms in [((1, 1, (name,)),) for name in right]:
+        if list(monomials(polynomial, names)) in [[(fmpq(1), [(name, 1)])] for name in right]:
             continue  # as a parameter, or nothing is
         try:
-            sign = is_in_domain(evaluated(terms, known) + 0 * axis(0), window, strict)
+            sign = is_in_domain(evaluated(polynomial, known, names) + 0 * axis(0), window, strict)
         except ExpressionError:  # too long to be multiplied out
             sign = Sign.UNCHECKED
         if sign is Sign.WRONG:
