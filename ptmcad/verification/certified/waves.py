@@ -201,10 +201,6 @@ def _by(f: Waves, k: int) -> Waves:
     return _collected(found)
 
 
-def _less(f: Waves, moment: Waves) -> Waves:
-    return _collected([*f.items(), *((key, -c) for key, c in moment.items())])
-
-
 def form_of(slice: Slice) -> Form:
     """The form of a slice's model, with springs as one that are parallel all over the slice."""
     return _form(slice.model, tuple(slice.parameters.items()), slice.axes)
@@ -218,9 +214,9 @@ def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[
     everything = range(len(unknowns))
     inequalities, stability = (list(map(ring.waves, some)) for some in (true.inequalities, true.stability))
     multiples: list[Waves] = []
-    if true.energy is not None and true.from_energy:
-        potential = ring.waves(true.energy)
-        equations = [_less(_by(potential, k), ring.waves(true.moments[unknowns[k]])) for k in everything]
+    if true.from_energy:
+        given = dict(zip(true.unknowns, true.equations, strict=True))
+        equations = [ring.waves(given[unknown]) for unknown in unknowns]
     else:
         whole = list(map(ring.waves, true.equations))
         equations = [_divided(e, inequalities) for e in whole]
