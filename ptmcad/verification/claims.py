@@ -10,7 +10,7 @@ from fractions import Fraction
 from functools import cached_property
 from math import gcd, lcm
 
-from flint import arb, fmpq, fmpz_poly
+from flint import arb, ctx, fmpq, fmpz_poly
 
 from ptmcad.answer.regionmap import CriticalValue, RegionMap
 from ptmcad.errors import PoleError
@@ -22,7 +22,8 @@ from ptmcad.verification.algebra import NotFinite
 from ptmcad.verification.derivation import has_index
 from ptmcad.verification.fibre import Fibre, fibre
 from ptmcad.verification.report import Violation
-from ptmcad.verification.sturm import roots_between, roots_within
+from ptmcad.verification.roots import numbered_root
+from ptmcad.verification.sturm import ends_of, roots_between, roots_within
 
 
 @dataclass(frozen=True)
@@ -204,56 +205,20 @@ def is_root(f: fmpz_poly, value: CriticalValue) -> bool:
 
 
 def bracket(value: CriticalValue, width: fmpq) -> tuple[fmpq, fmpq]:
-    """A narrow bracket of a critical value, which halving the stored one comes to."""
+    """A narrow bracket of a critical value, within the stored one."""
     low, high = from_fraction(value.low), from_fraction(value.high)
-    if high - low <= width:
-        return low, high
-    p = polynomial(value)
-    at_low, at_high = p(low), p(high)
-    if at_low != 0 and at_high != 0 and (at_low > 0) != (at_high > 0):
-        return _halved_often(p, low, high, width)
-    # the only root may have even multiplicity; then the ends do not show on which side it lies
+    p, bits = polynomial(value), 64
+    for end in (low, high):
+        if p(end) == 0:
+            return end, end
     while high - low > width:
-        middle = (low + high) / 2
-        if p(middle) == 0:
-            return middle, middle
-        low, high = (middle, high) if side(middle, value) < 0 else (low, middle)
+        with ctx.workprec(bits):
+            root = numbered_root(p, low, high, 0)
+        if root is None:
+            raise Violation(f"the polynomial of a critical value has no root between {short(low)} and {short(high)}")
+        first, last = ends_of(root)
+        low, high, bits = max(low, first), min(high, last), 2 * bits
     return low, high
-
-
-def _halved_often(p: fmpz_poly, low: fmpq, high: fmpq, width: fmpq) -> tuple[fmpq, fmpq]:
-    """What halving comes to between two places with values of different signs, by far fewer values.
-
-    The ends that halving can come to are numbered. The secant says in which of so many pieces the root is; while it is
-    right, they are squared.
-    """
-    steps = 1
-    while high - low > width * steps:
-        steps *= 2
-    step = (high - low) / steps
-    first, last = (0, fmpq(p(low))), (steps, fmpq(p(high)))
-
-    def narrowed(place: int) -> tuple[tuple[int, fmpq], tuple[int, fmpq]]:
-        if not first[0] < place < last[0]:
-            return first, last
-        here = place, fmpq(p(low + step * place))
-        if here[1] == 0:
-            return here, here
-        return (here, last) if (here[1] > 0) == (first[1] > 0) else (first, here)
-
-    pieces = 4
-    while last[0] - first[0] > 1:
-        length = max(1, (last[0] - first[0]) // pieces)
-        ahead = first[1] / (first[1] - last[1]) * (last[0] - first[0])
-        guess = min(first[0] + int((ahead / length).floor()) * length, last[0] - length)
-        first, last = narrowed(guess)
-        first, last = narrowed(guess + length)
-        if last[0] - first[0] > length:
-            first, last = narrowed((first[0] + last[0]) // 2)
-            pieces = 4
-        else:
-            pieces *= pieces
-    return low + step * first[0], low + step * last[0]
 
 
 def ball(value: CriticalValue, width: fmpq) -> arb:

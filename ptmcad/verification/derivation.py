@@ -19,8 +19,9 @@ from ptmcad.model import Kind, Mechanism, Model, System, mechanism_in
 from ptmcad.question.slice import Count
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.tree import names_of
-from ptmcad.verification import loops, xjoints
+from ptmcad.verification import xjoints
 from ptmcad.verification.coordinates import CoordinateRing, circle_names
+from ptmcad.verification.loops import Loops
 from ptmcad.verification.xjoints import Joint
 
 Vector = tuple[fmpq_mpoly, fmpq_mpoly]
@@ -145,8 +146,11 @@ class Derivation:
     @property
     def pulling(self) -> tuple[SpringVector, ...]:
         """The springs whose free lengths can be taken off the equations; with others none has one."""
-        along = bool(self.closing) and len(self.unknowns) == len(self.closing) + 1
-        return self.springs if self.from_energy or along else ()
+        return self.springs if self.from_energy or self._loops.leave_one_way else ()
+
+    @property
+    def _loops(self) -> Loops:
+        return Loops(self.ring, self.unknowns, self.closing)
 
     def stretched(self, ring: CoordinateRing, length: Callable[[fmpq_mpoly], fmpq_mpoly]) -> fmpq_mpoly:
         """The energy in a larger ring, of springs with their free lengths.
@@ -175,7 +179,7 @@ class Derivation:
 
     def along_loops(self, p: fmpq_mpoly) -> fmpq_mpoly:
         """The derivative along closed loops with one degree of freedom left."""
-        return loops.along(self.ring, self.unknowns, self.closing, self.ring.gradient(p, self.unknowns))
+        return self._loops.along(self.ring.gradient(p, self.unknowns))
 
 
 def derivation_at(model: Model, values: Mapping[str, Fraction]) -> Derivation:
@@ -247,8 +251,7 @@ def _of_mechanism(model: Model, mechanism: Mechanism, ring: CoordinateRing, unkn
     slopes = tuple(map(fmpq_mpoly.__sub__, ring.gradient(parts.energy, unknowns), forces))
     if not kept:
         return replace(given, equations=slopes, from_energy=True)
-    ways = loops.one_way if len(unknowns) == len(kept) + 1 else loops.several_ways
-    equations, stability = ways(ring, unknowns, kept, slopes)
+    equations, stability = Loops(ring, unknowns, kept).conditions(slopes)
     return replace(given, equations=equations, stability=stability)
 
 

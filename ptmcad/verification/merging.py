@@ -12,7 +12,7 @@ from itertools import pairwise
 from ptmcad.answer.regionmap import Cell, Merge, Status
 from ptmcad.question.slice import Count
 from ptmcad.text.numerals import approximate_text
-from ptmcad.verification.certified.counted import names_in
+from ptmcad.verification.certified.counted import check_region, names_in
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import kinds_of_count, parameters_of, shorthands_of
 from ptmcad.verification.report import Violation
@@ -156,11 +156,5 @@ def check_regions(claims: Claims) -> str:
         members = {n for n, cell in enumerate(r.cells) if cell.region == number}
         if members not in found or tuple(sorted(members)) != region.cells:
             raise Violation(f"region {number} is said to have cells {region.cells}, not {tuple(sorted(members))}")
-        for name in ("stable", "total", "index"):
-            values = {getattr(r.cells[n], name) for n in members}
-            expected = values.pop() if len(values) == 1 else None
-            if getattr(region, name) != expected:
-                raise Violation(f"region {number}: {name} is {expected}, not {getattr(region, name)}")
-        if tuple(region.sample) not in {tuple(r.cells[n].sample) for n in members}:
-            raise Violation(f"the sample of region {number} is not the sample of one of its cells")
+        check_region(r, number, members)
     return f"{len(found)} regions"

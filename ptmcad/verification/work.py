@@ -27,16 +27,15 @@ def fault_in_work(
         one without the unknown.
     """
     coordinates = _coordinates(ring, moments)
+    places = [k for k, name in enumerate(ring.names) if name in coordinates]
     for unknown, moment in moments.items():
         slope = ring.normal(ring.by(work, unknown))
         missing = ring.normal(moment - slope)
+        right = missing.is_zero()
         if varying:
-            of_unknowns = [n for k, n in enumerate(missing.degrees()) if ring.names[k] in coordinates]
-            line = unknown not in ring.angles
-            steady = not line or slope.subs({ring.names.index(unknown): 0}).is_zero()
-        else:
-            of_unknowns, steady = [len(missing)], True
-        if not steady or max(of_unknowns, default=0) > 0:
+            steady = unknown in ring.angles or slope.subs({ring.names.index(unknown): 0}).is_zero()
+            right = steady and not any(missing.degrees()[k] > 0 for k in places)
+        if not right:
             return unknown
     zeros: dict[str | int, int | fmpz | fmpq] = {ring.names.index(name): value for name, value in coordinates.items()}
     return "" if work.subs(zeros).is_zero() else START

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 import yaml
-from flint import arb, ctx
+from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly_ctx
 from support.maps import CONFIGS
 
 import ptmcad
@@ -181,7 +181,8 @@ def test_more_digits_are_taken_where_the_first_do_not_do() -> None:
 
 def test_numbers_of_a_description_are_as_exact_as_the_precision() -> None:
     """They were rounded to doubles, so that narrow boxes beside an equilibrium were confirmed."""
+    a = fmpq_mpoly_ctx.get(("a",), Ordering.lex).gen(0)
     with ctx.workprec(400):
-        assert ball(((1, 10, ()), (1, 3, ())), {}).overlaps(arb(from_fraction(Fraction(13, 30))))
-        assert ball(((1, 10, ()), (2, 1, ("a",))), {"a": arb(1)}).overlaps(arb(from_fraction(Fraction(21, 10))))
-    assert evaluated(((1, 10, ()), (1, 3, ("a",))), {"a": Fraction(1)}) == Fraction(13, 30)
+        assert ball(0 * a + fmpq(13, 30), {}).overlaps(arb(from_fraction(Fraction(13, 30))))
+        assert ball(2 * a + fmpq(1, 10), {"a": arb(1)}).overlaps(arb(from_fraction(Fraction(21, 10))))
+    assert evaluated(a / 3 + fmpq(1, 10), {"a": Fraction(1)}) == Fraction(13, 30)

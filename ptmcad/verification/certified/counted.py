@@ -5,15 +5,16 @@ Guarantee: data only.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
 from ptmcad.answer.counts import MorseIndex
-from ptmcad.answer.regionmap import Cell
+from ptmcad.answer.regionmap import Cell, RegionMap
 from ptmcad.question.slice import Count
 from ptmcad.verification.certified.boxes import Box, Floats
+from ptmcad.verification.report import Violation
 
 NAMES = ("total", "stable", "index", "admissible")
 _NEEDED = {
@@ -41,6 +42,23 @@ def contradiction_in(cell: Cell) -> str:
     if cell.admissible is not None and cell.stable is not None and cell.admissible > cell.stable:
         return f"{cell.admissible} admissible equilibria among {cell.stable} stable ones"
     return ""
+
+
+def check_region(r: RegionMap, number: int, members: Collection[int]) -> None:
+    """A region has the counts that all of its cells have, and the sample of one of them.
+
+    Raises
+    ------
+    Violation
+    """
+    region = r.regions[number]
+    for name in NAMES:
+        values = {getattr(r.cells[n], name) for n in members}
+        expected = values.pop() if len(values) == 1 else None
+        if getattr(region, name) != expected:
+            raise Violation(f"region {number}: {name} is {expected}, not {getattr(region, name)}")
+    if tuple(region.sample) not in {tuple(r.cells[n].sample) for n in members}:
+        raise Violation(f"the sample of region {number} is not the sample of one of its cells")
 
 
 @dataclass(frozen=True, slots=True)

@@ -282,20 +282,6 @@ def _nonzero(numbers: Sequence[int]) -> list[tuple[int, int]]:
     return [(k, number) for k, number in enumerate(numbers) if number]
 
 
-def value_of(row: Waves, values: Mapping[str, arb], at: Sequence[arb]) -> arb:
-    """One sum of waves, at all configurations in a box and for all parameters in balls."""
-    total = _ZERO
-    for (turned, raised, sine), terms in row.items():
-        part = ball(terms, values)
-        if any(turned):
-            angle = sum((multiple * x for multiple, x in zip(turned, at, strict=True) if multiple), _ZERO)
-            part *= angle.sin() if sine else angle.cos()
-        for exponent, x in zip(raised, at, strict=True):
-            part *= power(x, exponent)
-        total += part
-    return total
-
-
 class _Pointed(NamedTuple):
     """The direction of a spring on one line, and the multiples of the unknowns in twice the sum that turns it."""
 
@@ -392,4 +378,4 @@ def unit(value: arb) -> arb:
     return value if value.rad() < 1 else _ANY
 
 
-__all__ = ["ConeBalls", "Field", "Jet", "Matrix", "size", "value_of"]
+__all__ = ["ConeBalls", "Field", "Jet", "Matrix", "size"]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
-from math import inf, isfinite
+from math import inf
 from operator import lt
 
 from flint import arb, arb_mat
@@ -34,15 +34,31 @@ _NARROWING, _WORTHWHILE = 40, 0.999
 def inverse_of(jacobian: Matrix) -> arb_mat | None:
     """An approximate inverse of the middle of a matrix, of exact numbers."""
     n = len(jacobian)
-    middle = [float(x.mid()) for row in jacobian for x in row]
-    if not all(map(isfinite, middle)):
-        return None
     try:
-        inverse = arb_mat(n, n, middle).inv()
+        inverse = arb_mat(n, n, [x.mid() for row in jacobian for x in row]).inv()
     except ZeroDivisionError:
         return None
-    entries = [float(x.mid()) for x in inverse.entries()]
-    return arb_mat(n, n, entries) if all(map(isfinite, entries)) else None
+    entries = [x.mid() for x in inverse.entries()]
+    return arb_mat(n, n, entries) if all(x.is_finite() for x in entries) else None
+
+
+def image(values: Sequence[arb], jacobian: Matrix, reach: Sequence[arb]) -> list[arb] | None:
+    """Krawczyk's image of a box, less its middle; None where the middle of the derivatives is singular.
+
+    Parameters
+    ----------
+    values : at the middle; jacobian : over the box.
+    reach : half widths of the box.
+    """
+    inverse = inverse_of(jacobian)
+    if inverse is None:
+        return None
+    balls = [arb(0, r) for r in reach]
+    steps = _steps(arb_mat(len(values), 1, list(values)), inverse)
+    return [
+        sum((entry * x for entry, x in zip(row, balls, strict=True)), arb(0)) - step
+        for row, step in zip(_rest(jacobian, inverse), steps, strict=True)
+    ]
 
 
 def _rest(jacobian: Matrix, inverse: arb_mat) -> Matrix:
@@ -50,12 +66,6 @@ def _rest(jacobian: Matrix, inverse: arb_mat) -> Matrix:
     n = len(jacobian)
     whole = (inverse * arb_mat(jacobian)).entries()
     return [[(i == j) - whole[i * n + j] for j in range(n)] for i in range(n)]
-
-
-def _at(field: Field, center: Floats) -> arb_mat:
-    """f at a point."""
-    values = field([arb(x) for x in center]).values
-    return arb_mat(len(values), 1, values)
 
 
 def _steps(values: arb_mat, inverse: arb_mat) -> list[arb]:
@@ -66,14 +76,7 @@ def _steps(values: arb_mat, inverse: arb_mat) -> list[arb]:
 
 def image_of(field: Field, box: Box, jet: Jet) -> list[arb] | None:
     """Krawczyk's image of a box, less its middle."""
-    inverse = inverse_of(jet.jacobian)
-    if inverse is None:
-        return None
-    reach = [arb(0, r) for r in box[1]]
-    return [
-        sum((entry * x for entry, x in zip(row, reach, strict=True)), arb(0)) - step
-        for row, step in zip(_rest(jet.jacobian, inverse), _steps(_at(field, box[0]), inverse), strict=True)
-    ]
+    return image(field(list(map(arb, box[0]))).values, jet.jacobian, list(map(arb, box[1])))
 
 
 def newton(field: Field, box: Box) -> Floats | None:

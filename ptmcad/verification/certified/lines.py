@@ -11,8 +11,6 @@ from typing import NamedTuple
 
 from flint import fmpq_mpoly
 
-from ptmcad.verification.certified.terms import Terms, terms_of
-
 Vanishes = Callable[[fmpq_mpoly], bool]
 """Whether a polynomial in the parameters is zero all over the slice."""
 Multi = tuple[int, ...]
@@ -28,7 +26,7 @@ class Line(NamedTuple):
     twice : the multiples of the unknowns in twice that sum.
     """
 
-    vector: tuple[Terms, Terms]
+    vector: tuple[fmpq_mpoly, fmpq_mpoly]
     twice: Multi
 
 
@@ -99,12 +97,10 @@ def _turned(c: fmpq_mpoly, quarters: int) -> _Complex:
     return (_Complex(c, zero), _Complex(zero, c), _Complex(-c, zero), _Complex(zero, -c))[quarters]
 
 
-def _simplest(p: fmpq_mpoly, q: fmpq_mpoly) -> tuple[Terms, Terms]:
+def _simplest(p: fmpq_mpoly, q: fmpq_mpoly) -> tuple[fmpq_mpoly, fmpq_mpoly]:
     """A vector in the same direction, or against it, without what both coordinates have in common, if that is all."""
-    one: Terms = ((1, 1, ()),)
+    one = p.context().constant(1)
     if p.is_zero() or q.is_zero():
-        return ((), one) if p.is_zero() else (one, ())
+        return (p, one) if p.is_zero() else (one, q)
     ratio = q.leading_coefficient() / p.leading_coefficient()
-    if q == p * ratio:
-        return ((int(ratio.q), 1, ()),), ((int(ratio.p), 1, ()),)
-    return terms_of(p), terms_of(q)
+    return (one * ratio.q, one * ratio.p) if q == p * ratio else (p, q)

@@ -20,7 +20,7 @@ from ptmcad.question.slice import Count, Point, Slice
 from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import MIN_HALF_WIDTH, Box, Floats, Unproved, Zero, is_same
 from ptmcad.verification.certified.counted import Counted, Counts, Where, with_further
-from ptmcad.verification.certified.field import Field, Matrix, value_of
+from ptmcad.verification.certified.field import Field, Matrix
 from ptmcad.verification.certified.kinks import Sides, sides
 from ptmcad.verification.certified.narrow import Function, judged, only
 from ptmcad.verification.certified.parameters import over
@@ -94,9 +94,10 @@ class ModelCounting:
         Unproved
             When a margin may be zero at a stable solution.
         """
+        field = Field(self.form, values, [margin.squared for margin in self.margins])
         stable = (zero for zero in found if "-" not in zero.signs)
         counts = counts_of(self.form, found, count)
-        return with_further(counts, count, lambda: sum(_has_margins(self.margins, values, zero) for zero in stable))
+        return with_further(counts, count, lambda: sum(_has_margins(field, zero) for zero in stable))
 
     def _once(self, found: Sequence[Zero]) -> list[Zero]:
         """Solutions on all sides; at both ends of a box of angles one may be there on two sides."""
@@ -282,9 +283,9 @@ def _start(field: Field) -> Box:
     return (0.0,) * len(widths), widths
 
 
-def _has_margins(margins: Sequence[Margin], values: Mapping[str, arb], zero: Zero) -> bool:
-    """Whether every spring is longer than its free length at a solution."""
-    found = [value_of(margin.squared, values, zero.within) for margin in margins]
+def _has_margins(field: Field, zero: Zero) -> bool:
+    """Whether all conditions of a field hold at a solution."""
+    found = field(zero.within).conditions
     if any(value < 0 for value in found):
         return False
     if all(value > 0 for value in found):

@@ -14,12 +14,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from flint import arb, arb_mat, ctx
+from flint import arb, ctx
 
 from ptmcad.answer.regionmap import Solution
 from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import Floats, Unproved, Zero
 from ptmcad.verification.certified.field import Matrix
+from ptmcad.verification.certified.krawczyk import image
 from ptmcad.verification.report import Violation
 
 NARROW = Fraction(1, 2**20)
@@ -110,8 +111,8 @@ def tested(function: Function, solution: Solution) -> Judgement | None:
     if found is None or not all(abs(s) < w for s, w in zip(found[0], wide, strict=True)):
         return None
     for _ in range(_NARROWINGS):
-        image, jacobian = found
-        within = tuple(m + s for m, s in zip(middle, image, strict=True))
+        steps, jacobian = found
+        within = tuple(m + s for m, s in zip(middle, steps, strict=True))
         away = [abs(x - c) for x, c in zip(within, given, strict=True)]
         if any(d > radius for d in away):
             return Judgement(False)
@@ -126,27 +127,15 @@ def tested(function: Function, solution: Solution) -> Judgement | None:
 
 def narrowed(function: Function, found: Judgement) -> Judgement:
     """The same with a narrower box of the solution, where one more image is narrower."""
-    image = _image(function, [x.mid() for x in found.within], [x.rad() for x in found.within])
-    if image is None:
+    new = _image(function, [x.mid() for x in found.within], [x.rad() for x in found.within])
+    if new is None:
         return found
-    within = tuple((x.mid() + step).intersection(x) for x, step in zip(found.within, image[0], strict=True))
-    return Judgement(True, within, image[1])
+    within = tuple((x.mid() + step).intersection(x) for x, step in zip(found.within, new[0], strict=True))
+    return Judgement(True, within, new[1])
 
 
 def _image(function: Function, middle: list[arb], reach: list[arb]) -> tuple[list[arb], Matrix] | None:
     """Krawczyk's image of a box, less its middle, and the derivatives over the box; None where they are singular."""
     at, over = function(middle), function([arb(m, r) for m, r in zip(middle, reach, strict=True)])
-    if at is None or over is None:
-        return None
-    (values, _), (_, jacobian) = at, over
-    n = len(middle)
-    try:
-        inverse = arb_mat(n, n, [x.mid() for row in jacobian for x in row]).inv()
-    except ZeroDivisionError:
-        return None
-    inverse = arb_mat(n, n, [x.mid() for x in inverse.entries()])
-    steps = (inverse * arb_mat(n, 1, list(values))).entries()
-    whole = (inverse * arb_mat(n, n, [x for row in jacobian for x in row])).entries()
-    balls = [arb(0, r) for r in reach]
-    image = [sum((((i == j) - whole[n * i + j]) * balls[j] for j in range(n)), -steps[i]) for i in range(n)]
-    return image, jacobian
+    found = None if at is None or over is None else image(at[0], over[1], reach)
+    return None if found is None or over is None else (found, over[1])

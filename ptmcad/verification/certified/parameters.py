@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from flint import arb
+from flint import arb, fmpq
 
 from ptmcad.errors import ExpressionError
 from ptmcad.model import Kind
@@ -17,7 +17,7 @@ from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.terms import evaluated, power, terms_of
+from ptmcad.verification.certified.terms import evaluated, monomials, power
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import derivation_of
@@ -52,9 +52,7 @@ def check_domain(claims: Claims) -> str:
                 raise Violation(f"{name} is {'not positive' if strict else 'negative'} somewhere in the window")
         if Sign.UNCHECKED in (pole, sign):
             unchecked.append(name)
-    unchecked += _undecided_parts(slice, here)
-    if claims.result.cover is not None:
-        unchecked += _undecided_pulls(claims, here)
+    unchecked += _undecided_polynomials(claims, here)
     if unchecked:
         return Unchecked(
             f"{', '.join(unchecked)}: of too high degree, or zero at a point where that could not be decided"
@@ -62,40 +60,33 @@ def check_domain(claims: Claims) -> str:
     return f"{len(asked)} parameters"
 
 
-def _undecided_parts(slice: Slice, window: Window) -> list[str]:
-    """The stiffnesses and free lengths written in springs of which it could not be decided that they make sense."""
-    undecided: list[str] = []
+def _undecided_polynomials(claims: Claims, window: Window) -> list[str]:
+    """The stiffnesses and free lengths written in springs of which it could not be decided that they make sense.
+
+    So of stiffness times free length where it pulls: if that is negative, a spring without length is a minimum that is
+    not smooth, and is not counted.
+    """
+    undecided, zero, slice = [], 0 * axis(0), claims.result.slice
     model, true = slice.model, derivation_of(slice.model)
-    known = {name: 0 * axis(0) for name in model.free_lengths} | dict(slice.parameters)
-    for what, polynomial, strict in true.required:
-        terms = terms_of(polynomial, true.ring.names)
-        right = model.positive if strict else (*model.positive, *model.nonnegative)
-        if terms in [((1, 1, (name,)),) for name in right]:
-            continue  # as a parameter, or nothing is
+    known, names = {name: zero for name in model.free_lengths} | dict(slice.parameters), true.ring.names
+    right = {strict: [*model.positive, *(() if strict else model.nonnegative)] for strict in (True, False)}
+    asked = [
+        (what, p, names, strict)
+        for what, p, strict in true.required
+        # as a parameter, or nothing is
+        if list(monomials(p, names)) not in [[(fmpq(1), [(name, 1)])] for name in right[strict]]
+    ]
+    if claims.result.cover is not None:
+        asked += [(f"stiffness times free length of spring {c.name}", c.pull, (), False) for c in form_of(slice).cones]
+    for what, p, variables, strict in asked:
         try:
-            sign = is_in_domain(evaluated(terms, known) + 0 * axis(0), window, strict)
+            sign = is_in_domain(evaluated(p, known, variables) + zero, window, strict)
         except ExpressionError:  # too long to be multiplied out
             sign = Sign.UNCHECKED
         if sign is Sign.WRONG:
             raise Violation(f"{what} is {'not positive' if strict else 'negative'} somewhere in the window")
         if sign is Sign.UNCHECKED:
             undecided.append(what)
-    return undecided
-
-
-def _undecided_pulls(claims: Claims, window: Window) -> list[str]:
-    """The springs of which it could not be decided that stiffness times free length is nowhere negative.
-
-    Where it is negative, a spring without length is a minimum that is not smooth, and is not counted.
-    """
-    undecided, zero = [], 0 * axis(0)
-    parameters = {name: zero for name in claims.model.free_lengths} | dict(claims.result.slice.parameters)
-    for cone in form_of(claims.result.slice).cones:
-        sign = is_in_domain(evaluated(cone.pull, parameters) + zero, window, False)
-        if sign is Sign.WRONG:
-            raise Violation(f"stiffness times free length of the spring {cone.name} is negative somewhere")
-        if sign is Sign.UNCHECKED:
-            undecided.append(f"stiffness times free length of {cone.name}")
     return undecided
 
 

@@ -13,7 +13,7 @@ from itertools import pairwise
 from ptmcad.answer.regionmap import Status
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import approximate_text, text_of
-from ptmcad.verification.certified.counted import NAMES, contradiction_in, names_in, needed_for
+from ptmcad.verification.certified.counted import check_region, contradiction_in, names_in, needed_for
 from ptmcad.verification.certified.sweep import Sweep, sweep
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import kinds_of_count, shorthands_of
@@ -189,12 +189,7 @@ def check_regions(claims: CertifiedClaims) -> str:
             raise Violation(f"region {number} is said to have cells {region.cells}, not {members}")
         if len(members) > 1:
             raise Violation(f"region {number} joins cells {members}, which are not proved to be connected")
-        for name in NAMES:
-            values = {getattr(r.cells[n], name) for n in members}
-            if values != {getattr(region, name)}:
-                raise Violation(f"region {number}: {name} is {getattr(region, name)}, in its cells {values}")
-        if tuple(region.sample) not in {tuple(r.cells[n].sample) for n in members}:
-            raise Violation(f"the sample of region {number} is not the sample of one of its cells")
+        check_region(r, number, members)
         component = component_of[members[0]]
         reach, least = _reach(claims, component), found.areas[component]
         low, high = region.area

@@ -1,4 +1,4 @@
-"""Polynomials in parameters, term by term, and their values; powers of balls.
+"""Polynomials in parameters and their values; powers of balls.
 
 Guarantee: values are exact for exact numbers and functions; balls contain the value for each number in the balls given.
 A power is no product of balls that have nothing to do with one another, which would enclose it poorly.
@@ -6,50 +6,44 @@ A power is no product of balls that have nothing to do with one another, which w
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from functools import cache
 from math import prod
 from typing import Any
 
-from flint import arb, fmpq_mpoly
+from flint import arb, fmpq, fmpq_mpoly
 
 from ptmcad.text.balls import ball_of
-from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
-Terms = tuple[tuple[int, int, tuple[str, ...]], ...]
-"""A polynomial: numerator and denominator of each coefficient, and the parameters, with repetitions, next to it."""
 _ZERO, _ONE = arb(0), arb(1)
 
 
-def terms_of(p: fmpq_mpoly, names: Sequence[str] = ()) -> Terms:
-    """Those of a polynomial in parameters, which are the first variables; by the ring's names, or others."""
+def monomials(p: fmpq_mpoly, names: Sequence[str] = ()) -> Iterator[tuple[fmpq, list[tuple[str, int]]]]:
+    """The coefficients of a polynomial, each with the names of what it is next to and their powers.
+
+    Parameters
+    ----------
+    names : of the first variables, if they are not the ring's own.
+    """
     names = names or p.context().names()
-    return tuple(
-        (int(c.p), int(c.q), tuple(n for n, power in zip(names, powers, strict=False) for _ in range(int(power))))
-        for powers, c in p.terms()
-    )
+    for powers, c in p.terms():
+        yield c, [(name, int(power)) for name, power in zip(names, powers, strict=False) if power]
 
 
-def evaluated(terms: Terms, values: Mapping[str, Any]) -> Any:
+def evaluated(p: fmpq_mpoly, values: Mapping[str, Any], names: Sequence[str] = ()) -> Any:
     """The value of a polynomial for exact numbers, functions or balls; of one without names a fraction, or 0."""
     total: Any = 0
     number = Fraction(0)  # exact: a quotient of integers would be a double
-    for numerator, denominator, names in terms:
-        if names:
-            term = prod([_raised(values[name], exponent) for name, exponent in _powers(names)], start=numerator)
-            total = total + (term / denominator if denominator != 1 else term)
+    for c, factors in monomials(p, names):
+        if factors:
+            term = prod([_raised(values[name], exponent) for name, exponent in factors], start=int(c.p))
+            total = total + (term / int(c.q) if c.q != 1 else term)
         else:
-            number += Fraction(numerator, denominator)
+            number = to_fraction(c)
     if not number:
         return total
     return total + (from_fraction(number) if isinstance(total, arb) else number)
-
-
-@cache
-def _powers(names: tuple[str, ...]) -> tuple[tuple[str, int], ...]:
-    return tuple(Counter(names).items())
 
 
 def _raised(value: Any, exponent: int) -> Any:
@@ -59,9 +53,9 @@ def _raised(value: Any, exponent: int) -> Any:
     return power(value, exponent) if isinstance(value, arb) else value**exponent
 
 
-def ball(terms: Terms, values: Mapping[str, Any]) -> arb:
+def ball(p: fmpq_mpoly, values: Mapping[str, Any]) -> arb:
     """The value of a polynomial for balls, also of one without names."""
-    found = evaluated(terms, values)
+    found = evaluated(p, values)
     return found if isinstance(found, arb) else ball_of(Fraction(found))
 
 

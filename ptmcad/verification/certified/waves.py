@@ -6,7 +6,7 @@ products of one wave, a cosine or a sine of a sum of whole multiples of angles, 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -17,7 +17,6 @@ from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import Expression
 from ptmcad.verification.certified.lines import Line, line_of
 from ptmcad.verification.certified.parallel import Parameters
-from ptmcad.verification.certified.terms import Terms, terms_of
 from ptmcad.verification.coordinates import CoordinateRing, circle_names
 from ptmcad.verification.derivation import Derivation, derivation_of
 
@@ -25,10 +24,11 @@ Multi = tuple[int, ...]
 """For each unknown the multiple of an angle, or the power of a real unknown."""
 Key = tuple[Multi, Multi, int]
 """The multiples, the powers, and 0 for the cosine or 1 for the sine."""
-Waves = Mapping[Key, Terms]
-"""Factors of the waves; the first multiple that is not zero is positive, and there is no sine of nothing."""
-_Polynomials = dict[Key, fmpq_mpoly]
-_Side = tuple[str, _Polynomials, list[_Polynomials], list[_Polynomials]]
+Waves = Mapping[Key, fmpq_mpoly]
+"""Factors of the waves, polynomials in the parameters; the first multiple that is not zero is positive, and there is no
+sine of nothing."""
+Vector = tuple[Waves, Waves]
+_Side = tuple[str, Waves, Vector, Vector | None]
 """Springs side by side: their names, and the pull and the vector, with its derivative along loops, of the one that they
 are together."""
 
@@ -49,11 +49,11 @@ class Cone(NamedTuple):
     """
 
     name: str
-    pull: Terms
-    vector: tuple[Waves, Waves]
-    slopes: tuple[tuple[Waves, Waves], ...]
-    weights: tuple[tuple[Waves, Waves], ...]
-    bends: tuple[tuple[Waves, Waves], ...]
+    pull: fmpq_mpoly
+    vector: Vector
+    slopes: tuple[Vector, ...]
+    weights: tuple[Vector, ...]
+    bends: tuple[Vector, ...]
     line: Line | None
 
 
@@ -69,8 +69,8 @@ class Margin(NamedTuple):
     """
 
     spring: str
-    vector: tuple[Waves, Waves]
-    free: Terms
+    vector: Vector
+    free: fmpq_mpoly
     squared: Waves
 
 
@@ -150,7 +150,11 @@ class _Exponentials:
         self.unit = places["imaginary unit"]
         self.numbers: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(parameters, Ordering.lex)
 
-    def waves(self, value: fmpq_mpoly) -> _Polynomials:
+    def vector(self, vector: tuple[fmpq_mpoly, fmpq_mpoly]) -> Vector:
+        """Those of both coordinates."""
+        return self.waves(vector[0]), self.waves(vector[1])
+
+    def waves(self, value: fmpq_mpoly) -> Waves:
         """Those of a polynomial in coordinates and parameters."""
         p = value.compose(*self.images, ctx=self.context)
         for square in self.squares:
@@ -173,8 +177,8 @@ class _Exponentials:
         return _collected(found)
 
 
-def _collected(terms: Iterable[tuple[Key, fmpq_mpoly]]) -> _Polynomials:
-    found: _Polynomials = {}
+def _collected(terms: Iterable[tuple[Key, fmpq_mpoly]]) -> Waves:
+    found: dict[Key, fmpq_mpoly] = {}
     for (turned, raised, sine), c in terms:
         lead = next((m for m in turned if m), 0)
         if not lead and sine:
@@ -185,7 +189,7 @@ def _collected(terms: Iterable[tuple[Key, fmpq_mpoly]]) -> _Polynomials:
     return {key: c for key, c in found.items() if not c.is_zero()}
 
 
-def _by(f: _Polynomials, k: int) -> _Polynomials:
+def _by(f: Waves, k: int) -> Waves:
     """The derivative by an unknown."""
     found = []
     for (turned, raised, sine), c in f.items():
@@ -195,10 +199,6 @@ def _by(f: _Polynomials, k: int) -> _Polynomials:
             lower = tuple(e - (k == j) for j, e in enumerate(raised))
             found.append(((turned, lower, sine), c * raised[k]))
     return _collected(found)
-
-
-def _less(f: _Polynomials, moment: _Polynomials) -> _Polynomials:
-    return _collected([*f.items(), *((key, -c) for key, c in moment.items())])
 
 
 def form_of(slice: Slice) -> Form:
@@ -213,10 +213,10 @@ def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[
     unknowns = ring.unknowns
     everything = range(len(unknowns))
     inequalities, stability = (list(map(ring.waves, some)) for some in (true.inequalities, true.stability))
-    multiples: list[_Polynomials] = []
-    if true.energy is not None and true.from_energy:
-        potential = ring.waves(true.energy)
-        equations = [_less(_by(potential, k), ring.waves(true.moments[unknowns[k]])) for k in everything]
+    multiples: list[Waves] = []
+    if true.from_energy:
+        given = dict(zip(true.unknowns, true.equations, strict=True))
+        equations = [ring.waves(given[unknown]) for unknown in unknowns]
     else:
         whole = list(map(ring.waves, true.equations))
         equations = [_divided(e, inequalities) for e in whole]
@@ -230,12 +230,12 @@ def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[
         unknowns,
         tuple(name in model.angles for name in unknowns),
         true.has_index,
-        _rows(equations),
-        _rows(jacobian),
+        tuple(equations),
+        tuple(jacobian),
         cones,
-        _rows(inequalities),
-        _rows(stability),
-        _rows(multiples),
+        tuple(inequalities),
+        tuple(stability),
+        tuple(multiples),
         closing,
     )
 
@@ -248,14 +248,13 @@ def margins_of(model: Model, count: Count) -> tuple[Margin, ...]:
     true = derivation_of(model)
     ring, found = _Exponentials(model, true.ring), []
     for spring in true.springs:
-        across, up, free, squared = (
-            _kept(ring.waves(f)) for f in (*spring.vector, spring.free, spring.squared - spring.free**2)
-        )
-        found.append(Margin(spring.name, (across, up), next(iter(free.values()), ()), squared))
+        free = next(iter(ring.waves(spring.free).values()), ring.numbers.constant(0))
+        squared = ring.waves(spring.squared - spring.free**2)
+        found.append(Margin(spring.name, ring.vector(spring.vector), free, squared))
     return tuple(found)
 
 
-def _divided(f: _Polynomials, inequalities: Iterable[_Polynomials]) -> _Polynomials:
+def _divided(f: Waves, inequalities: Iterable[Waves]) -> Waves:
     """An equation without the factors h of which it is known that h = 0 makes some inequality's polynomial zero."""
     found = dict(f)
     for c in inequalities:
@@ -275,10 +274,11 @@ def _cones(ring: _Exponentials, true: Derivation, parameters: Parameters) -> Ite
     sides: list[_Side] = []
     for spring in true.pulling:
         pull = ring.waves(spring.stiffness * spring.free)
-        vector = list(map(ring.waves, spring.vector))
+        vector = ring.vector(spring.vector)
         if all(map(parameters.vanishes, pull.values())) or not any(_by(d, k) for d in vector for k in everything):
             continue
-        along = [ring.waves(true.along_loops(d)) for d in spring.vector] if true.closing else []
+        across, up = spring.vector
+        along = ring.vector((true.along_loops(across), true.along_loops(up))) if true.closing else None
         new = (spring.name, pull, vector, along)
         for k, side in enumerate(sides):
             if joined := _joined(side, new, parameters):
@@ -287,14 +287,16 @@ def _cones(ring: _Exponentials, true: Derivation, parameters: Parameters) -> Ite
         else:
             sides.append(new)
     for name, pull, vector, along in sides:
-        slopes = [[_by(d, k) for d in vector] for k in everything]
-        nothing: list[_Polynomials] = [{}, {}]
-        weights = [*[nothing] * (len(ring.unknowns) - 1), along] if along else slopes
-        bends = [[_by(d, j) for d in weight] for weight in weights for j in everything]
-        ((_, strength),) = _kept(pull).items()
-        pairs = [tuple(map(_pair, some)) for some in (slopes, weights, bends)]
-        line = line_of((vector[0], vector[1]), parameters.vanishes)
-        yield Cone(name, strength, _pair(vector), pairs[0], pairs[1], pairs[2], line)
+        slopes = tuple(_slope(vector, k) for k in everything)
+        nothing: Vector = ({}, {})
+        weights = slopes if along is None else (*[nothing] * (len(ring.unknowns) - 1), along)
+        bends = tuple(_slope(weight, k) for weight in weights for k in everything)
+        ((_, strength),) = pull.items()
+        yield Cone(name, strength, vector, slopes, weights, bends, line_of(vector, parameters.vanishes))
+
+
+def _slope(vector: Vector, k: int) -> Vector:
+    return _by(vector[0], k), _by(vector[1], k)
 
 
 def _joined(one: _Side, other: _Side, parameters: Parameters) -> _Side | None:
@@ -306,19 +308,11 @@ def _joined(one: _Side, other: _Side, parameters: Parameters) -> _Side | None:
             f, g = factors
             pulls = [(key, c * f) for key, c in look(pull).items()]
             pulls += [(key, c * g) for key, c in look(more).items()]
-            left, right = ([{key: c / f for key, c in look(d).items()} for d in some] for some in (vector, along))
-            return f"{name} + {also}", _collected(pulls), left, right
+            turned = None if along is None else _divided_by(f, along, look)
+            return f"{name} + {also}", _collected(pulls), _divided_by(f, vector, look), turned
     return None
 
 
-def _kept(f: _Polynomials) -> Waves:
-    return {key: terms_of(p) for key, p in f.items()}
-
-
-def _rows(some: Iterable[_Polynomials]) -> tuple[Waves, ...]:
-    return tuple(map(_kept, some))
-
-
-def _pair(vector: Sequence[_Polynomials]) -> tuple[Waves, Waves]:
-    across, up = map(_kept, vector)
+def _divided_by(f: fmpq_mpoly, vector: Vector, look: Callable[[Waves], Waves]) -> Vector:
+    across, up = ({key: c / f for key, c in look(d).items()} for d in vector)
     return across, up

@@ -8,14 +8,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations, product
+from math import prod
 from typing import NamedTuple
+
+from flint import fmpq_mpoly
 
 from ptmcad.errors import ExpressionError
 from ptmcad.text.expressions import Expression
+from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.verification.certified.kinks import Sides
 from ptmcad.verification.certified.lines import Line
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.terms import Terms, evaluated
+from ptmcad.verification.certified.terms import evaluated, monomials
 from ptmcad.verification.certified.waves import Cone, Form, Key, Waves, form_of
 from ptmcad.verification.exclusion.formulas import Formulas
 
@@ -93,7 +97,7 @@ class Equations:
         for cone in self.form.cones:
             for some in (cone.slopes, cone.weights):
                 rows += [_combined(self.basis[i], [vector[k] for vector in some]) for k in (0, 1)]
-        found = [set(names) for row in rows for terms in row.values() for _, _, names in terms]
+        found = [{name for name, _ in names} for row in rows for p in row.values() for _, names in monomials(p)]
         common = set.intersection(*found) if found else set()
         return tuple(sorted(common & set(self.claims.model.positive)))
 
@@ -123,19 +127,21 @@ class Equations:
 
         return f.divide(polynomial(e.numerator), polynomial(e.denominator))
 
-    def terms(self, terms: Terms) -> int:
+    def polynomial(self, p: fmpq_mpoly) -> int:
         """A polynomial in the parameters."""
         f = self.list
         return f.sum(
-            f.multiply(f.number(Fraction(p, q)), f.product(self.parameters[name] for name in names))
-            for p, q, names in terms
+            f.multiply(
+                f.number(to_fraction(c)), f.product(self.parameters[n] for n, power in names for _ in range(power))
+            )
+            for c, names in monomials(p)
         )
 
     def waves(self, row: Waves) -> int:
         """A sum of waves."""
         f, total = self.list, self.list.number(0)
-        for (turned, raised, sine), terms in row.items():
-            part = self.terms(terms)
+        for (turned, raised, sine), p in row.items():
+            part = self.polynomial(p)
             for x, exponent in zip(self.unknowns, raised, strict=True):
                 part = f.multiply(part, f.power(x, exponent))
             if any(turned):
@@ -155,7 +161,7 @@ class Equations:
             return tuple(zip(across, up, strict=True))
 
         vector = self.waves(cone.vector[0]), self.waves(cone.vector[1])
-        return ConeFormulas(self.terms(cone.pull), vector, pairs(slopes), pairs(weights), pairs(bends), cone)
+        return ConeFormulas(self.polynomial(cone.pull), vector, pairs(slopes), pairs(weights), pairs(bends), cone)
 
     def equations(self, directions: Mapping[int, Pair], without: int | None = None) -> list[int]:
         """The equations, with the directions of the springs; without the part of one, what balances it."""
@@ -203,7 +209,7 @@ class Equations:
 
     def _ahead(self, s: ConeFormulas) -> Pair:
         """The vector along which such a spring points, on its side, before its line turns."""
-        x, y = (self.list.multiply(self.list.number(self.sides[s.name]), self.terms(t)) for t in s.line.vector)
+        x, y = (self.list.multiply(self.list.number(self.sides[s.name]), self.polynomial(t)) for t in s.line.vector)
         return x, y
 
     def _spin(self, s: ConeFormulas, j: int) -> Fraction:
@@ -311,35 +317,27 @@ class Equations:
             values |= {n: e.evaluate(*at) for n, e in self.claims.result.slice.parameters.items()}
         except ExpressionError:
             return Fraction(1)
-        factors = (evaluated(terms, values) for row in self.cones[k].cone.vector for terms in row.values())
+        factors = (evaluated(p, values) for row in self.cones[k].cone.vector for p in row.values())
         return sum(map(abs, factors), Fraction(0)) or Fraction(1)
 
 
 def _combined(factors: Sequence[int], rows: Sequence[Waves]) -> Waves:
-    """A sum of whole multiples of waves; terms with the same parameters are put together."""
-    found: dict[Key, dict[tuple[str, ...], Fraction]] = {}
+    """A sum of whole multiples of waves."""
+    found: dict[Key, fmpq_mpoly] = {}
     for factor, row in zip(factors, rows, strict=True):
-        for key, terms in row.items() if factor else ():
-            there = found.setdefault(key, {})
-            for p, q, names in terms:
-                there[names] = there.get(names, Fraction(0)) + factor * Fraction(p, q)
-    written = {
-        key: tuple((c.numerator, c.denominator, names) for names, c in terms.items() if c)
-        for key, terms in found.items()
-    }
-    return {key: terms for key, terms in written.items() if terms}
+        for key, p in row.items() if factor else ():
+            found[key] = found[key] + factor * p if key in found else factor * p
+    return {key: p for key, p in found.items() if not p.is_zero()}
 
 
 def _without(row: Waves, names: Sequence[str]) -> Waves:
     """A row of which all terms have these parameters, divided by them."""
 
-    def rest(of: tuple[str, ...]) -> tuple[str, ...]:
-        kept = list(of)
-        for name in names:
-            kept.remove(name)
-        return tuple(kept)
+    def divided(p: fmpq_mpoly) -> fmpq_mpoly:
+        gens = dict(zip(p.context().names(), p.context().gens(), strict=True))
+        return p / prod((gens[name] for name in names), start=p.context().constant(1))
 
-    return {key: tuple((p, q, rest(of)) for p, q, of in terms) for key, terms in row.items()}
+    return {key: divided(p) for key, p in row.items()} if names else row
 
 
 def bases(form: Form) -> list[list[list[int]]]:

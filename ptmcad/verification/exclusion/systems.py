@@ -295,7 +295,7 @@ class _Systems:
         m, f = self.model, self.model.list
         found: list[tuple[int, tuple[int, ...]]] = []
         for margin in margins_of(self.claims.model, self.count):
-            free, vector = m.terms(margin.free), (m.waves(margin.vector[0]), m.waves(margin.vector[1]))
+            free, vector = m.polynomial(margin.free), (m.waves(margin.vector[0]), m.waves(margin.vector[1]))
             value = f.subtract(f.length(*vector), free)
             found.append((value, vector if f.constant(free) == 0 else (value,)))
         return found
