@@ -28,7 +28,7 @@ from ptmcad.exact.sizes import sizes
 from ptmcad.exact.stages import SliceProblem, point_values, problem_of, prove_regular
 from ptmcad.exact.survey import Survey, survey
 from ptmcad.exact.witness import SHARES, points
-from ptmcad.model import ClosedMechanism, Mechanism, ptm
+from ptmcad.model import Mechanism, ptm
 from ptmcad.model.sizes import terms_of
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
@@ -112,10 +112,9 @@ def check(slice: Slice, sized: bool = True) -> Check:
     at = (sample[0], sample[1])
     if is_certified(slice, "auto"):
         cost, flat = _CERTIFIED, flat_loops(slice)
-        if isinstance(slice.model, ClosedMechanism):
-            from ptmcad.certified.plain.problem import check_loops
+        from ptmcad.certified.plain.problem import check_loops
 
-            check_loops(slice)  # however long the rest would take
+        check_loops(slice)  # however long the rest would take
         try:
             if not _is_large(slice):
                 _check_certified(slice)

@@ -227,7 +227,7 @@ def _with_springs(problem: Problem, slice: Slice, system: CompiledSystem, ring: 
         return sum(slopes, start=nothing)
 
     def weights(x: TrigonometricPolynomial, y: TrigonometricPolynomial) -> tuple[Vector, ...]:
-        """What takes K |d| off the energy takes K u . w off its slope along loops, w being the derivative along them."""
+        """What takes K |d| off the energy takes K u . w off its slope along loops, w being d's derivative there."""
         if problem.closing:
             return (*[(nothing, nothing)] * problem.closing, (along(x), along(y)))
         return tuple((x.derivative(k), y.derivative(k)) for k in range(len(ring.unknowns)))
