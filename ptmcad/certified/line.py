@@ -7,13 +7,14 @@ decided lies in one of the gaps between them; a gap that is `proved` holds nothi
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from itertools import chain, pairwise
 
 import numpy as np
 from flint import ctx
 
+from ptmcad.answer.intervals import CertifiedChange, CertifiedInterval
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.plain.curves import curves
@@ -24,6 +25,7 @@ from ptmcad.certified.system import EquationSystem
 from ptmcad.formulas.balls import ball, lower, upper
 from ptmcad.formulas.tape import enclosing_floats
 from ptmcad.question.slice import Count, Slice
+from ptmcad.text.enclosure import Enclosure
 
 MIN_BOX_WIDTH = 1e-8
 BUDGET, MAX_OPEN_BOXES = 20_000, 400
@@ -35,39 +37,12 @@ MIN_PART = Fraction(1, 2**16)
 """Parts of the line of this share are not halved."""
 
 
-@dataclass(frozen=True, slots=True)
-class CriticalGap:
-    """Values among which counts may change: [low, high], and the names of the curves of which it holds points.
-
-    ``proved``: each of these points was proved to be the only one near it. Otherwise the gap may hold none.
-    """
-
-    low: Fraction
-    high: Fraction
-    names: tuple[str, ...]
-    proved: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Stretch:
-    """An open interval on which ``counts``, found at ``sample``, hold; undecided counts are not known."""
-
-    low: Fraction
-    high: Fraction
-    sample: Fraction
-    counts: PointCount
-
-
-@dataclass(frozen=True, slots=True)
-class LineCounts:
-    """Stretches and the gaps between them, both in increasing order."""
-
-    stretches: tuple[Stretch, ...]
-    gaps: tuple[CriticalGap, ...]
-
-
-def line_counts(slice: Slice, varying: int, value: Fraction, bits: int) -> LineCounts:
+def line_counts(
+    slice: Slice, varying: int, value: Fraction, bits: int
+) -> tuple[tuple[CertifiedInterval, ...], tuple[CertifiedChange, ...]]:
     """The counts on the line on which axis ``varying`` runs over its window and the other one has a value.
+
+    Intervals and the changes between them, both in increasing order.
 
     Parameters
     ----------
@@ -75,25 +50,42 @@ def line_counts(slice: Slice, varying: int, value: Fraction, bits: int) -> LineC
     """
     axis = slice.axes[varying]
     wanted = curves(slice, Count.INDEX)
-    found: list[list[CriticalGap]] = [[] for _ in wanted]
+    found: list[list[CertifiedChange]] = [[] for _ in wanted]
     # what is quick to search comes first: what it leaves undecided need not be looked at closely again
     for k in sorted(range(len(wanted)), key=lambda k: len(wanted[k].system.tape)):
         undecided = _joined([gap for gaps in found for gap in gaps if not gap.proved])
-        found[k] = list(_gaps(slice, wanted[k], varying, value, bits, undecided))
-    gaps = _joined([g for some in found for g in some if g.high > axis.low and g.low < axis.high])
+        found[k] = list(_gaps(slice, wanted[k], varying, value, bits, [gap.at for gap in undecided]))
+    gaps = _joined([g for some in found for g in some if g.at.high > axis.low and g.at.low < axis.high])
     counter = plain_counter(slice)
-    stretches = []
-    for low, high in pairwise([axis.low, *(end for gap in gaps for end in (gap.low, gap.high)), axis.high]):
-        if not any((gap.low, gap.high) == (low, high) for gap in gaps) and low < high:
-            sample = _simple(low, high)
+    intervals = []
+    for before, after in pairwise([_point(axis.low), *(gap.at for gap in gaps), _point(axis.high)]):
+        if before.high < after.low:
+            sample = _simple(before.high, after.low)
             x, y = (sample, value) if varying == 0 else (value, sample)
-            stretches.append(Stretch(low, high, sample, counter.at(x, y, Count.INDEX)))
-    return LineCounts(tuple(stretches), tuple(gaps))
+            counts = counter.at(x, y, Count.INDEX)
+            numbers = _numbers(slice, counts)
+            intervals.append(CertifiedInterval(before, after, counts.index, counts.cones, sample, *numbers))
+    return tuple(intervals), tuple(gaps)
+
+
+def _point(value: Fraction) -> Enclosure:
+    return Enclosure(value, value)
+
+
+def _numbers(slice: Slice, counts: PointCount) -> tuple[int | None, int | None]:
+    """All equilibria and the stable ones; nothing where it is known what is stable, but not of each of them."""
+    if counts.index is not None:
+        return sum(counts.index), counts.index[0]
+    if counts.total is None or not slice.model.tells_stability:
+        return counts.total, None
+    if not all(solution.signs for solution in counts.solutions):
+        return None, None
+    return counts.total, sum(not solution.signs.strip("+") for solution in counts.solutions)
 
 
 def _gaps(
-    slice: Slice, curve: CriticalCurve, varying: int, value: Fraction, bits: int, undecided: Sequence[CriticalGap]
-) -> Iterator[CriticalGap]:
+    slice: Slice, curve: CriticalCurve, varying: int, value: Fraction, bits: int, undecided: Sequence[Enclosure]
+) -> Iterator[CertifiedChange]:
     """Where the line meets a curve; parts of it that are too hard as a whole are halved while the budget lasts, but for
     what is ``undecided`` in them."""
     system = on_line(curve.system, varying)
@@ -114,21 +106,20 @@ def _gaps(
         left, variables = found.left(), start.shape[1] // 2
         if (found.used >= BUDGET or len(left) > MAX_OPEN_BOXES) and high - low > smallest and total < MAX_BOXES:
             inside = [(max(low, g.low), min(high, g.high)) for g in undecided if g.high > low and g.low < high]
-            yield from (CriticalGap(*ends, (curve.name,), False) for ends in inside)
+            yield from (CertifiedChange(Enclosure(*ends), (curve.name,), False) for ends in inside)
             middle = (low + high) / 2
             edges = [low, *chain.from_iterable(inside or [(middle, middle)]), high]
             waiting += [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]
             continue
         for box in left:
-            yield CriticalGap(
-                Fraction(float(box[varying])), Fraction(float(box[variables + varying])), (curve.name,), False
-            )
+            ends = Fraction(float(box[varying])), Fraction(float(box[variables + varying]))
+            yield CertifiedChange(Enclosure(*ends), (curve.name,), False)
         # ``narrow`` was contracted with the equations alone; its number can be enclosed to any precision
         for row in found.narrow:
             with ctx.workprec(bits):
                 box = _balls(row, varying, value)
             exact = refined(equations, box, bits)[varying]
-            yield CriticalGap(lower(exact), upper(exact), (curve.name,), True)
+            yield CertifiedChange(Enclosure(lower(exact), upper(exact)), (curve.name,), True)
 
 
 _NONE = np.empty(0, np.int64)
@@ -150,16 +141,17 @@ def on_line(system: EquationSystem, varying: int) -> EquationSystem:
     return replace(system, unknowns=system.unknowns[kept], jacobian=jacobian, solved=solved)
 
 
-def _joined(gaps: list[CriticalGap]) -> list[CriticalGap]:
+def _joined(gaps: Sequence[CertifiedChange]) -> list[CertifiedChange]:
     """Gaps that touch become one."""
-    joined: list[CriticalGap] = []
-    for gap in sorted(gaps, key=lambda g: (g.low, g.high)):
-        if not joined or gap.low > joined[-1].high:
+    joined: list[CertifiedChange] = []
+    for gap in sorted(gaps, key=lambda g: (g.at.low, g.at.high)):
+        if not joined or gap.at.low > joined[-1].at.high:
             joined.append(gap)
             continue
         last = joined.pop()
         names = tuple(dict.fromkeys((*last.names, *gap.names)))
-        joined.append(CriticalGap(last.low, max(last.high, gap.high), names, last.proved and gap.proved))
+        at = Enclosure(last.at.low, max(last.at.high, gap.at.high))
+        joined.append(CertifiedChange(at, names, last.proved and gap.proved))
     return joined
 
 

@@ -10,12 +10,13 @@ Johansson, Arb: efficient arbitrary-precision midpoint-radius interval arithmeti
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import operator
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 
 from flint import arb, ctx
 
-from ptmcad.formulas.graph import Operation
+from ptmcad.formulas.graph import OPERATORS, Operation
 from ptmcad.formulas.tape import Tape
 from ptmcad.text.balls import ball_of, exact
 
@@ -53,44 +54,27 @@ def run_arb(tape: Tape, box: Sequence[arb], precision: int, stages: int | None =
         When the box is proved to hold no point at which the operands of all `meet` nodes are equal.
     """
     end = len(tape) if stages is None else int(tape.stages[stages - 1])
+    rows = zip(tape.operations[:end].tolist(), tape.first[:end].tolist(), tape.second[:end].tolist(), strict=True)
     with ctx.workprec(precision):
         values: list[arb] = []
-        for place in range(end):
-            operation, a, b = Operation(int(tape.operations[place])), int(tape.first[place]), int(tape.second[place])
-            if operation is Operation.CONSTANT:
+        for place, (operation, a, b) in enumerate(rows):
+            if operation == Operation.CONSTANT:
                 values.append(ball_of(tape.constants[place]))
-            elif operation is Operation.VARIABLE:
+            elif operation == Operation.VARIABLE:
                 values.append(box[a])
             elif b < 0:
-                values.append(_unary(operation, values[a]))
+                values.append(_FUNCTIONS[operation](values[a]))
             else:
-                values.append(_binary(operation, values[a], values[b]))
+                values.append(_FUNCTIONS[operation](values[a], values[b]))
         return values
 
 
-def _unary(operation: Operation, a: arb) -> arb:
-    if operation is Operation.NEGATE:
-        return -a
-    if operation is Operation.SQUARE:
-        return _square(a)
-    return a.sin() if operation is Operation.SINE else a.cos()
+def _length(x: arb, y: arb) -> arb:
+    return _hull(_root(x.abs_lower(), y.abs_lower()), _root(x.abs_upper(), y.abs_upper()))
 
 
-def _binary(operation: Operation, a: arb, b: arb) -> arb:
-    if operation is Operation.ADD:
-        return a + b
-    if operation is Operation.SUBTRACT:
-        return a - b
-    if operation is Operation.MULTIPLY:
-        return a * b
-    if operation is Operation.DIVIDE:
-        return a / b
-    if operation is Operation.MEET:
-        return _meet(a, b)
-    if operation is Operation.DIRECTION:
-        return _direction(a, b)
-    length = _hull(_root(a.abs_lower(), b.abs_lower()), _root(a.abs_upper(), b.abs_upper()))
-    return length if operation is Operation.LENGTH else 1 / length
+def _inverse_length(x: arb, y: arb) -> arb:
+    return 1 / _length(x, y)
 
 
 def _square(a: arb) -> arb:
@@ -133,3 +117,16 @@ def _root(x: arb, y: arb) -> arb:
 
 def _hull(a: arb, b: arb) -> arb:
     return a if a.is_exact() and b.is_exact() and a == b else a.union(b)
+
+
+_FUNCTIONS: Mapping[int, Callable[..., arb]] = {
+    **OPERATORS,
+    Operation.DIVIDE: operator.truediv,
+    Operation.SQUARE: _square,
+    Operation.SINE: arb.sin,
+    Operation.COSINE: arb.cos,
+    Operation.LENGTH: _length,
+    Operation.INVERSE_LENGTH: _inverse_length,
+    Operation.DIRECTION: _direction,
+    Operation.MEET: _meet,
+}

@@ -12,9 +12,12 @@ True
 
 from __future__ import annotations
 
+import operator
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
 from fractions import Fraction
+from typing import Any
 
 
 class Operation(IntEnum):
@@ -40,6 +43,13 @@ class Operation(IntEnum):
     DIVIDE = 13
 
 
+OPERATORS: Mapping[int, Callable[..., Any]] = {
+    Operation.ADD: operator.add,
+    Operation.SUBTRACT: operator.sub,
+    Operation.MULTIPLY: operator.mul,
+    Operation.NEGATE: operator.neg,
+}
+"""Those that are Python's in all arithmetics."""
 Number = Fraction | int
 
 

@@ -17,13 +17,24 @@ from typing import NamedTuple
 import numpy as np
 
 from ptmcad.formulas.compiled import ONE, ZERO, compiled, inlined
-from ptmcad.formulas.graph import Operation
-from ptmcad.formulas.intervals import Floats, Program
+from ptmcad.formulas.intervals import (
+    ADD,
+    CONSTANT,
+    COSINE,
+    DIRECTION,
+    DIVIDE,
+    LENGTH,
+    MEET,
+    MULTIPLY,
+    NEGATE,
+    SINE,
+    SQUARE,
+    SUBTRACT,
+    VARIABLE,
+    Floats,
+    Program,
+)
 from ptmcad.formulas.rounding import direction, down, length, multiply, reciprocal, sine, up
-
-_CONSTANT, _VARIABLE, _ADD, _SUBTRACT = (int(x) for x in list(Operation)[:4])
-_MULTIPLY, _SQUARE, _NEGATE, _SINE, _COSINE = (int(x) for x in list(Operation)[4:9])
-_INVERSE_LENGTH, _DIRECTION, _LENGTH, _MEET, _DIVIDE = (int(x) for x in list(Operation)[9:])
 
 
 class TapeSeries(NamedTuple):
@@ -113,32 +124,32 @@ def extend(
     for k in range(first, last + 1):
         for i in range(np.uint64(0), np.uint64(end)):
             operation, a, b = operations[i], left[i], right[i]
-            if operation == _VARIABLE:
+            if operation == VARIABLE:
                 u, v = low_of[a, k], high_of[a, k]
-            elif operation == _CONSTANT:
+            elif operation == CONSTANT:
                 u, v = (constant_low[i], constant_high[i]) if k == 0 else (0.0, 0.0)
-            elif operation == _ADD:
+            elif operation == ADD:
                 u, v = down(low[a, k] + low[b, k]), up(high[a, k] + high[b, k])
-            elif operation == _SUBTRACT:
+            elif operation == SUBTRACT:
                 u, v = down(low[a, k] - high[b, k]), up(high[a, k] - low[b, k])
-            elif operation == _NEGATE:
+            elif operation == NEGATE:
                 u, v = -high[a, k], -low[a, k]
-            elif operation == _MULTIPLY:
+            elif operation == MULTIPLY:
                 u, v = _product(low[a], high[a], low[b], high[b], 0, k, k)
-            elif operation == _SQUARE:
+            elif operation == SQUARE:
                 u, v = _product(low[a], high[a], low[a], high[a], 0, k, k)
                 if k == 0:
                     u = max(u, 0.0)
-            elif operation == _MEET:
+            elif operation == MEET:
                 u, v = low[a, k], high[a, k]
-            elif operation == _DIVIDE:
+            elif operation == DIVIDE:
                 if k == 0:
                     p, q = reciprocal(low[b, 0], high[b, 0])
                     u, v = multiply(low[a, 0], high[a, 0], p, q)
                 else:
                     u, v = _quotient_coefficient(low[a, k], high[a, k], low[i], high[i], low[b], high[b], k)
-            elif operation in (_SINE, _COSINE):
-                u, v = _wave(operation == _COSINE, low[a], high[a], into, i, k)
+            elif operation in (SINE, COSINE):
+                u, v = _wave(operation == COSINE, low[a], high[a], into, i, k)
             else:
                 u, v = _of_length(operation, low, high, other_low[i], other_high[i], a, b, i, k)
             low[i, k], high[i, k] = u, v
@@ -168,18 +179,18 @@ def _of_length(
     """Coefficient k of |(a, b)|, of 1/|(a, b)| or of a/|(a, b)|; of the length in ``l_low`` and ``l_high``, too."""
     if k == 0:
         l_low[0], l_high[0] = length(low[a, 0], high[a, 0], low[b, 0], high[b, 0])
-        if operation == _LENGTH:
+        if operation == LENGTH:
             u, v = l_low[0], l_high[0]
-        elif operation == _DIRECTION:
+        elif operation == DIRECTION:
             u, v = direction(low[a, 0], high[a, 0], low[b, 0], high[b, 0])
         else:
             u = down(1 / l_high[0]) if l_high[0] > 0 else 0.0
             v = up(1 / l_low[0]) if l_low[0] > 0 else inf
     else:
         l_low[k], l_high[k] = _length_coefficient(low[a], high[a], low[b], high[b], l_low, l_high, k)
-        if operation == _LENGTH:
+        if operation == LENGTH:
             u, v = l_low[k], l_high[k]
-        elif operation == _DIRECTION:
+        elif operation == DIRECTION:
             u, v = _quotient_coefficient(low[a, k], high[a, k], low[i], high[i], l_low, l_high, k)
         else:
             u, v = _quotient_coefficient(0.0, 0.0, low[i], high[i], l_low, l_high, k)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Protocol, TypeVar
 
-from ptmcad.formulas.graph import Formula, Graph, Operation, direction, inverse_length, length, meet
+from ptmcad.formulas.graph import OPERATORS, Formula, Graph, Operation, direction, inverse_length, length, meet
 
 V_co = TypeVar("V_co", covariant=True)
 
@@ -145,17 +145,7 @@ def _value(node: Formula, arithmetic: Any, value: Callable[[Formula], Any]) -> A
         if a.operation is Operation.VARIABLE:
             return getattr(arithmetic, name)(a.variable)
         return getattr(value(a), name)()
-    x = value(a)
-    if operation is Operation.NEGATE:
-        return -x
+    operands = [value(operand) for operand in (a, b) if operand is not None]
     if operation is Operation.SQUARE:
-        return x * x
-    assert b is not None
-    y = value(b)
-    if operation is Operation.ADD:
-        return x + y
-    if operation is Operation.SUBTRACT:
-        return x - y
-    if operation is Operation.MULTIPLY:
-        return x * y
-    return getattr(arithmetic, operation.name.lower())(x, y)
+        return operands[0] * operands[0]
+    return (OPERATORS.get(operation) or getattr(arithmetic, operation.name.lower()))(*operands)

@@ -188,7 +188,7 @@ def test_before_anything_is_decided_the_message_says_that_there_is_no_map(monkey
     ("seconds", "told"), [(1.0, "the time limit was reached"), (4.5, "4.5 s before the time limit")]
 )
 def test_a_search_that_ends_early_says_so(seconds: float, told: str) -> None:
-    run = object.__new__(engine._Run)
+    run = object.__new__(engine._MapSearch)
     run.pace = Pace(seconds, lambda: 0.0, lambda: 0.0)
     assert told in run._at_limit()
 

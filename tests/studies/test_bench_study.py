@@ -361,7 +361,7 @@ STOPPING = """
 from fractions import Fraction
 from ptmcad.certified import engine
 
-engine._Run._late = lambda run: run.tolerance < Fraction(1, 100) and run.best is not None
+engine._MapSearch._late = lambda run: run.tolerance < Fraction(1, 100) and run.best is not None
 from ptmcad.__main__ import main
 
 raise SystemExit(main())

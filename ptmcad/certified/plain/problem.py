@@ -207,35 +207,31 @@ def _of_slopes(problem: Problem, system: CompiledSystem, ring: Harmonics) -> Pro
 def _of_loops(problem: Problem, system: CompiledSystem, ring: Harmonics) -> Problem:
     """Of closed loops with one degree of freedom left."""
     *closed, slope = system.values(system.equations, ring)
-    sign = Fraction(_order_sign(_places(system, ring)))
-    return replace(problem, equations=(*closed, slope.scaled(sign)), closing=len(closed))
+    return replace(problem, equations=(*closed, slope.scaled(_order(system, ring))), closing=len(closed))
 
 
-def _order_sign(places: Sequence[int]) -> int:
+def _order(system: CompiledSystem, ring: Harmonics) -> Fraction:
     """Where unknowns are in another order the Jacobian's determinant may have the other sign: so has the slope then."""
-    return -1 if sum(a > b for a, b in combinations(places, 2)) % 2 else 1
+    exchanged = sum(a > b for a, b in combinations(_places(system, ring), 2))
+    return Fraction(-1 if exchanged % 2 else 1)
 
 
 def _with_springs(problem: Problem, slice: Slice, system: CompiledSystem, ring: Harmonics) -> Problem:
     """The problem with a cone for each spring with a free length, and with what tells admissible equilibria."""
-    size = range(len(ring.unknowns))
-    places = _places(system, ring)
-    sign = Fraction(_order_sign(places))
-    tangent = [f.scaled(sign) for f in system.values(system.tangent, ring)]
     nothing = ring.constant(Fraction(0))
+    tangent = [f.scaled(_order(system, ring)) for f in system.values(system.tangent, ring)]
 
-    def weights(difference: Vector) -> tuple[Vector, ...]:
-        """Where K |d| is taken off the energy, K u . w is taken off its slope along the loops, w being the derivative
-        of d along them."""
-        across, up = ([f.derivative(k) for k in size] for f in difference)
-        if not problem.closing:
-            return tuple(zip(across, up, strict=True))
-        x, y = (
-            sum((t * slopes[k] for t, k in zip(tangent, places, strict=True)), start=nothing) for slopes in (across, up)
-        )
-        return (*[(nothing, nothing)] * problem.closing, (x, y))
+    def along(f: TrigonometricPolynomial) -> TrigonometricPolynomial:
+        slopes = (t * f.derivative(k) for t, k in zip(tangent, _places(system, ring), strict=True))
+        return sum(slopes, start=nothing)
 
-    cones = tuple(SpringCone(name, pull, d, weights(d)) for name, pull, d in _pulls(slice, system, ring))
+    def weights(x: TrigonometricPolynomial, y: TrigonometricPolynomial) -> tuple[Vector, ...]:
+        """What takes K |d| off the energy takes K u . w off its slope along loops, w being d's derivative there."""
+        if problem.closing:
+            return (*[(nothing, nothing)] * problem.closing, (along(x), along(y)))
+        return tuple((x.derivative(k), y.derivative(k)) for k in range(len(ring.unknowns)))
+
+    cones = tuple(SpringCone(name, pull, d, weights(*d)) for name, pull, d in _pulls(slice, system, ring))
     found = excesses(slice.model, system, ring) if slice.count is Count.ADMISSIBLE else ()
     return replace(problem, cones=cones, excesses=tuple(found))
 

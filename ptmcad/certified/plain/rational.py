@@ -7,14 +7,14 @@ where a reflection is proved to leave the energy as it is, and the equilibrium's
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import isqrt
 
 from flint import arb, ctx
 
 from ptmcad.certified.plain.problem import FIRST
-from ptmcad.formulas.graph import Operation
+from ptmcad.formulas.graph import OPERATORS, Operation
 from ptmcad.formulas.tape import Tape
 from ptmcad.model import Mechanism
 from ptmcad.model.proofs import energy_is_kept
@@ -57,8 +57,8 @@ def rational_point(
 def exact_values(tape: Tape, at: Point) -> list[Fraction | None]:
     """The tape run in fractions; None of what depends on other unknowns, or is not proved to be rational."""
     values: list[Fraction | None] = []
-    for place in range(len(tape)):
-        operation, first, second = Operation(int(tape.operations[place])), int(tape.first[place]), tape.second[place]
+    rows = zip(map(Operation, tape.operations.tolist()), tape.first.tolist(), tape.second.tolist(), strict=True)
+    for place, (operation, first, second) in enumerate(rows):
         if operation is Operation.CONSTANT:
             values.append(tape.constants[place])
         elif operation is Operation.VARIABLE:
@@ -67,27 +67,21 @@ def exact_values(tape: Tape, at: Point) -> list[Fraction | None]:
             direction = at.get(int(tape.first[first]), ()) if tape.operations[first] == Operation.VARIABLE else ()
             values.append(direction[operation is Operation.SINE] if len(direction) == 2 else None)
         else:
-            values.append(_result(operation, values[first], values[int(second)] if second >= 0 else Fraction(0)))
+            values.append(_result(operation, [values[k] for k in (first, second) if k >= 0]))
     return values
 
 
-def _result(operation: Operation, a: Fraction | None, b: Fraction | None) -> Fraction | None:
-    """Of two operands, the second of which is not used where there is only one."""
-    if a is None or b is None:
-        return Fraction(0) if operation is Operation.MULTIPLY and 0 in (a, b) else None
-    match operation:
-        case Operation.ADD:
-            return a + b
-        case Operation.SUBTRACT:
-            return a - b
-        case Operation.MULTIPLY:
-            return a * b
-        case Operation.SQUARE:
-            return a * a
-        case Operation.NEGATE:
-            return -a
-        case Operation.DIVIDE:
-            return a / b if b else None
+def _result(operation: Operation, operands: Sequence[Fraction | None]) -> Fraction | None:
+    known = [operand for operand in operands if operand is not None]
+    if len(known) < len(operands):
+        return Fraction(0) if operation is Operation.MULTIPLY and 0 in known else None
+    if operation in OPERATORS:
+        return Fraction(OPERATORS[operation](*known))
+    a, b = known[0], known[-1]
+    if operation is Operation.SQUARE:
+        return a * a
+    if operation is Operation.DIVIDE:
+        return a / b if b else None
     length = _root(a * a + b * b)
     if operation is Operation.LENGTH:
         return length
