@@ -102,8 +102,7 @@ def _sides(
     problem: SliceProblem, variety: Variety, stacks: Stacks, region_of: Sequence[int]
 ) -> tuple[tuple[int, ...], ...]:
     """The regions along low x, high x, low y, high y."""
-    numbers = iter(region_of)
-    rows = [tuple(next(numbers) for _ in stack.heights) for stack in stacks.stacks]
+    rows = stacks.rows(region_of)
     along = [_without_repetition([row[0] for row in rows]), _without_repetition([row[-1] for row in rows])]
     base, fibre = problem.window[variety.base], problem.window[1 - variety.base]
     across = [

@@ -77,9 +77,7 @@ def _apart(end: BaseEnd, middle: fmpq) -> BaseEnd:
 
 
 def _between(left: BaseEnd, right: BaseEnd, walls: Sequence[Wall], heights: Sequence[fmpq]) -> StackData:
-    low = left.root.high if left.root else left.value
-    high = right.root.low if right.root else right.value
-    return StackData(left, right, simplest_between(low, high), tuple(walls), tuple(heights))
+    return StackData(left, right, simplest_between(left.high, right.low), tuple(walls), tuple(heights))
 
 
 def _on_line(curve: FibredCurve, line: RationalPolynomial) -> UnivariatePolynomial:
