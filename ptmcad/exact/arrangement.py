@@ -29,11 +29,9 @@ from ptmcad.exact.stages import (
     Variety,
     cell_at,
     crossings_of,
+    decomposition_of,
     neighbours_of,
     problem_of,
-    projection_of,
-    stacks_of,
-    variety_of,
 )
 from ptmcad.exact.variety import Known
 from ptmcad.question.domain import prove_slice
@@ -79,9 +77,7 @@ def picture_of(slice: Slice, known: Known | None = None, check: Check = nothing,
     without_free_lengths(slice.model, slice.parameters, "an arrangement is")
     prove_slice(slice)
     problem = problem_of(slice)._replace(known=known)
-    variety = variety_of(problem, base=base)
-    projection = projection_of(problem, variety, check=check)
-    stacks = stacks_of(problem, variety, projection)
+    variety, projection, stacks = decomposition_of(problem, base, check)
     crossings = crossings_of(problem, variety, stacks, check=check)
     joined = joined_cells(variety, projection, stacks, crossings)
     counts = counts_by_component(problem, stacks, joined, lambda _done, _total: check())

@@ -248,6 +248,15 @@ def stacks_of(problem: SliceProblem, variety: Variety, projection: Projection) -
     return Stacks(stacks, tuple(points))
 
 
+def decomposition_of(
+    problem: SliceProblem, base: int | None = None, check: Check = nothing
+) -> tuple[Variety, Projection, Stacks]:
+    """The window cut along the variety, over a base axis: the first stages in one."""
+    variety = variety_of(problem, base=base)
+    projection = projection_of(problem, variety, check=check)
+    return variety, projection, stacks_of(problem, variety, projection)
+
+
 def counts_of(problem: SliceProblem, stacks: Stacks, report: Report = unreported) -> SampleCounts:
     """The equilibria at every sample."""
     found = []

@@ -37,12 +37,12 @@ from ptmcad.algebra.real_roots import gaps, isolate, simplest_between
 from ptmcad.answer.intervals import End, Span
 from ptmcad.errors import ConfigError, DegenerateSliceError, HypothesisError, InfiniteSolutionsError
 from ptmcad.exact.models import ParametricSystem, system_from
-from ptmcad.exact.models.system import ALONG, RationalPolynomial, SliceSystem, on_slice, saturated, with_root
+from ptmcad.exact.models.system import ALONG, RationalPolynomial, SliceSystem, lifted, on_slice, saturated, with_root
 from ptmcad.exact.point_system import DegeneratePoint, point_system
 from ptmcad.exact.ranges.line import END_WIDTH, intervals, runs
 from ptmcad.exact.statics import is_positive
-from ptmcad.exact.variety import algebra_of, lifted
-from ptmcad.model import mechanism_in
+from ptmcad.exact.variety import algebra_of
+from ptmcad.model.compile import compiled
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
@@ -95,7 +95,7 @@ def ranges_on(slice: Slice, along: str, value: End, working: int) -> LineRanges:
     if algebra.dimension > MAX_DIMENSION:
         return (), whole
     numbers = _critical(equations, algebra, axis)
-    flat = known.has_index or mechanism_in(slice.model) is not None
+    flat = known.has_index or bool(compiled(slice.model).points)
     counting = _Counting(system, algebra.dimension, equations is not given, minimal, working, flat)
     ends: list[End] = [axis.low, *numbers, axis.high]
     here = [counting.between(*map(from_fraction, gap)) for gap in gaps(numbers, (axis.low, axis.high))]
@@ -109,7 +109,7 @@ def _finite(equations: SliceSystem) -> tuple[SliceSystem, QuotientAlgebra] | Non
             return equations, algebra_of(equations)
         except InfiniteSolutionsError:
             for condition in equations.inequalities:
-                equations = saturated(equations, lifted(condition, equations))
+                equations = saturated(equations, condition)
     return None
 
 
@@ -122,7 +122,7 @@ def _critical(equations: SliceSystem, algebra: QuotientAlgebra, axis: Axis) -> t
             *equations.boundary,
             multiplication_denominator(algebra),
             *_lowest(trace_form(algebra)),
-            *(p for condition in conditions for p in _lowest(_matrix(algebra, lifted(condition, equations)))),
+            *(p for condition in conditions for p in _lowest(_matrix(algebra, lifted(condition, equations.unknowns)))),
         )
     ]
     factors = {tuple(map(int, factor.coeffs())): factor for p in found for factor, _ in p.factor()[1]}

@@ -21,7 +21,7 @@ from ptmcad.exact.cad.adjacency import Crossing, cross
 from ptmcad.exact.cad.curves import FibredCurve, by_component
 from ptmcad.exact.cad.stacks import BaseEnd, StackData
 from ptmcad.exact.ranges.line import runs
-from ptmcad.exact.stages import counts_of, lines_across, problem_of, projection_of, stacks_of, variety_of
+from ptmcad.exact.stages import counts_of, decomposition_of, lines_across, problem_of
 from ptmcad.question.slice import Slice, without_free_lengths
 
 
@@ -106,9 +106,7 @@ def strips(slice: Slice, along: str, working: int | None = None) -> RangeStrips:
     base = 1 - slice.axis_names.index(along)
     refuse_free_lengths(slice)
     problem = problem_of(slice)
-    variety = variety_of(problem, base=base)
-    projection = projection_of(problem, variety)
-    stacks = stacks_of(problem, variety, projection)
+    variety, projection, stacks = decomposition_of(problem, base)
     counts = [found.counts for found in counts_of(problem, stacks).found]
     if working is None:
         working = operation_number(slice.model, counts)
