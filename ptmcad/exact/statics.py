@@ -3,7 +3,7 @@
 Guarantee: a number that is rational is given exactly (so what is zero is known to be zero), and every other one is
 enclosed so narrowly that the digits asked for are settled. A number is found to be rational by algebra, never by its
 enclosure: cosines, sines, coordinates, squared lengths and the energy are elements of the real field of the solution;
-an eigenvalue is a root of a quadratic over it; and an angle is a rational number of radians only when it is zero
+an eigenvalue is a root of a polynomial over it; and an angle is a rational number of radians only when it is zero
 (Lindemann), of degrees only when its cosine is that of a root of unity.
 """
 
