@@ -61,7 +61,7 @@ class Quantities(NamedTuple):
 
 
 class _AtSolution:
-    """Elements of a solution's field, as an arithmetic for formulas: parameters have values, free lengths are zero."""
+    """Elements of a solution's field, as an arithmetic for formulas; parameters have values."""
 
     def __init__(self, known: CompiledSystem, parameters: Mapping[str, fmpq], point: RealPoint) -> None:
         self._names, self._parameters, self._field = known.names, parameters, point.field
@@ -79,7 +79,7 @@ class _AtSolution:
     def variable(self, number: int) -> FieldElement:
         if number in self._reals:
             return self._reals[number]
-        return self._field.constant(self._parameters.get(self._names[number], fmpq(0)))
+        return self._field.constant(self._parameters[self._names[number]])
 
     def cos(self, number: int) -> FieldElement:
         return self._turned[number][0]
