@@ -14,6 +14,7 @@ from collections.abc import Callable, Sequence
 
 from flint import arb, fmpq, fmpq_poly, fmpz_poly
 
+from ptmcad.algebra.graphs import on_graph
 from ptmcad.algebra.real_roots import Interval, RealRoot, has_root_between, refine
 
 NODES = (fmpq(-7, 8), fmpq(0), fmpq(7, 8))
@@ -59,7 +60,7 @@ def arc_integral(
         distance = tube * miss
         if distance * 16 > fibre[1] - fibre[0]:
             return None
-        if not any(has_root_between(_on_arc(rows, arc + end), fmpq(-1), fmpq(1)) for end in (-distance, distance)):
+        if not any(has_root_between(on_graph(rows, arc + end), fmpq(-1), fmpq(1)) for end in (-distance, distance)):
             mean = here + bend / 3
             return (arb(mean) + arb(distance) * arb(0, 1)) * arb(2 * radius)
     return None
@@ -68,11 +69,3 @@ def arc_integral(
 def _rounded(root: RealRoot, unit: fmpq) -> fmpq:
     """A multiple of the unit within two units of the root."""
     return unit * (refine(root, unit).middle / unit).floor()
-
-
-def _on_arc(rows: Sequence[fmpq_poly], arc: fmpq_poly) -> fmpz_poly:
-    """A positive multiple of p along an arc."""
-    total = fmpq_poly([0])
-    for row in reversed(rows):
-        total = total * arc + row
-    return total.numer()

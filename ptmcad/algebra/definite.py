@@ -37,6 +37,7 @@ from ptmcad.algebra.real_roots import (
     Interval,
     RealRoot,
     disjoint,
+    gaps,
     inside,
     isolate,
     refine,
@@ -184,7 +185,7 @@ def _work(f: Coefficient, base: int) -> int:
     return 2 * degree * max(other, 1) * degree**3 * bits
 
 
-def _open_intervals(f: Coefficient, base: int, window: Interval, fibre: Interval) -> Iterator[Interval]:
+def _open_intervals(f: Coefficient, base: int, window: Interval, fibre: Interval) -> list[Interval]:
     """Open intervals of the base between all places at which the number of roots of f in the fibre can change."""
     along = coefficients_in(f, base)
     critical = [discriminant(coefficients_in(f, 1 - base)), *(univariate(along, edge) for edge in fibre)]
@@ -195,9 +196,7 @@ def _open_intervals(f: Coefficient, base: int, window: Interval, fibre: Interval
             new = q // q.gcd(known)
             known *= new
             roots += isolate(new, *window)
-    separate = inside(disjoint(roots), window)
-    ends = [window[0], *(end for r in separate for end in (r.low, r.high)), window[1]]
-    return ((ends[k], ends[k + 1]) for k in range(0, len(ends), 2))
+    return gaps(inside(disjoint(roots), window), window)
 
 
 def _negative_beside(p: Coefficient, crossing: _Crossing, x: Interval, y: Interval) -> SignPoint:
@@ -219,9 +218,8 @@ def _between_roots(q: UnivariatePolynomial, window: Interval) -> Iterator[fmpq]:
     if not q:
         return
     separate = inside(disjoint(isolate(squarefree_part(q), *window)), window)
-    ends = [window[0], *(end for r in separate for end in (r.low, r.high)), window[1]]
-    for k in range(0, len(ends), 2):
-        yield simplest_between(ends[k], ends[k + 1])
+    for gap in gaps(separate, window):
+        yield simplest_between(*gap)
 
 
 def _nonzero_point(p: Coefficient, x: Interval, y: Interval) -> Point:

@@ -25,7 +25,7 @@ from flint import (
     fmpz_poly,
 )
 
-from ptmcad.algebra.groebner import Monomial, shifted
+from ptmcad.algebra.groebner import Monomial, grevlex_key, shifted
 from ptmcad.algebra.polynomials import integral
 from ptmcad.algebra.quotient import standard_monomials
 from ptmcad.algebra.trigonometric import angle_sum
@@ -143,7 +143,7 @@ def _normal_forms(
     size, zero, one = len(basis), fmpq(0), fmpq(1)
     table: dict[Monomial, list[fmpq]] = {m: [one if i == k else zero for i in range(size)] for m, k in position.items()}
     border = {shifted(m, k) for m in basis for k in range(unknowns)} - position.keys()
-    for m in sorted(border, key=lambda m: (sum(m), *(-e for e in reversed(m)))):
+    for m in sorted(border, key=grevlex_key):
         row = [zero] * size
         if m in rules:
             for n, c in rules[m].items():

@@ -21,6 +21,11 @@ from ptmcad.algebra.polynomials import Coefficient, UnknownPolynomial, common_fa
 Monomial = tuple[int, ...]
 
 
+def grevlex_key(m: Monomial) -> tuple[int, ...]:
+    """Greater for the greater monomial in the graded reverse lexicographic order."""
+    return (sum(m), *(-e for e in reversed(m)))
+
+
 class MonomialOrder(NamedTuple):
     """Graded reverse lexicographic order for the unknowns taken in the order of ``permutation``."""
 

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 from flint import fmpq, fmpq_mat, nmod, nmod_mat
 
-from ptmcad.algebra.groebner import Monomial, shifted
+from ptmcad.algebra.groebner import Monomial, grevlex_key, shifted
 from ptmcad.algebra.residues import primes
 
 Rational = Mapping[Monomial, fmpq]
@@ -43,11 +43,6 @@ class _Level(NamedTuple):
     proved: Rules
     monomials: tuple[Monomial, ...]
     columns: tuple[Monomial, ...]
-
-
-def order_key(m: Monomial) -> tuple[int, ...]:
-    """Greater for the greater monomial in the graded reverse lexicographic order."""
-    return (sum(m), *(-e for e in reversed(m)))
 
 
 def lies_in_ideal(
@@ -94,7 +89,7 @@ def _monomials(width: int, degree: int) -> Iterator[Monomial]:
 
 
 def _level(width: int, degree: int, proved: Rules, staircase: frozenset[Monomial]) -> _Level:
-    every = sorted((m for d in range(degree + 1) for m in _monomials(width, d)), key=order_key)
+    every = sorted((m for d in range(degree + 1) for m in _monomials(width, d)), key=grevlex_key)
     divisible: set[Monomial] = set()
     for m in every:
         if m in proved or any(m[k] and shifted(m, k, -1) in divisible for k in range(width)):

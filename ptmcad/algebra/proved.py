@@ -14,8 +14,8 @@ from time import monotonic
 from flint import fmpq, fmpq_mat
 
 from ptmcad.algebra.fibre import FibreAlgebra, RationalPolynomial, bezout_bound, fibre_of_rules
-from ptmcad.algebra.groebner import Monomial, powers_of
-from ptmcad.algebra.membership import Rules, lies_in_ideal, order_key
+from ptmcad.algebra.groebner import Monomial, grevlex_key, powers_of
+from ptmcad.algebra.membership import Rules, lies_in_ideal
 from ptmcad.algebra.msolve import MsolveError, Terms, groebner_basis
 from ptmcad.algebra.polynomials import integral
 from ptmcad.algebra.quotient import standard_monomials
@@ -90,7 +90,7 @@ def _rules(elements: Sequence[Terms]) -> Rules:
     for p in elements:
         if not p:
             raise MsolveError("msolve's basis has the element 0")
-        lead = max(p, key=order_key)
+        lead = max(p, key=grevlex_key)
         rules[lead] = {m: c / -p[lead] for m, c in p.items() if m != lead}
     divides = any(a != b and all(i <= j for i, j in zip(a, b, strict=True)) for a in rules for b in rules)
     if divides or len(rules) < len(elements):

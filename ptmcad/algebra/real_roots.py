@@ -7,7 +7,7 @@ are disjoint and contain one root each, an interval of length zero being the roo
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from flint import arb, arb_poly, ctx, fmpq, fmpz, fmpz_poly
 
@@ -230,6 +230,12 @@ def inside(roots: Sequence[RealRoot], interval: Interval) -> tuple[RealRoot, ...
     while inner and inner[-1].high >= interval[1]:
         inner[-1] = halve(inner[-1])
     return tuple(inner)
+
+
+def gaps(isolated: Sequence[Any], window: tuple[Any, Any]) -> list[tuple[Any, Any]]:
+    """The parts of a window between the intervals of numbers in it, which are disjoint and in increasing order."""
+    ends = [window[0], *(end for number in isolated for end in (number.low, number.high)), window[1]]
+    return list(zip(ends[::2], ends[1::2], strict=True))
 
 
 def simplest_between(low: fmpq, high: fmpq) -> fmpq:

@@ -31,10 +31,8 @@ def areas_of(
     """
     base, region_of = variety.base, known.neighbours.region_of
     alone = "equal-counts" in without
-    numbers = iter(range(len(region_of)) if alone else region_of)
-    stacks = known.stacks.stacks
-    rows = [tuple(next(numbers) for _ in stack.heights) for stack in stacks]
-    parts = RegionStacks(stacks, rows, variety.curves, problem.window[base], problem.window[1 - base])
+    rows = known.stacks.rows(range(len(region_of)) if alone else region_of)
+    parts = RegionStacks(known.stacks.stacks, rows, variety.curves, problem.window[base], problem.window[1 - base])
     # the halves before and behind an abscissa need no cuts, and are the cheapest
     reflections = sorted(problem.reflections, key=lambda change: (change.axes, change.axis_signs[base]))
     used = None

@@ -29,11 +29,9 @@ from ptmcad.exact.stages import (
     Variety,
     cell_at,
     crossings_of,
+    decomposition_of,
     neighbours_of,
     problem_of,
-    projection_of,
-    stacks_of,
-    variety_of,
 )
 from ptmcad.exact.variety import Known
 from ptmcad.question.domain import proved
@@ -78,9 +76,7 @@ def picture_of(slice: Slice, known: Known | None = None, check: Check = nothing,
     """
     without_free_lengths(slice.model, slice.parameters, "an arrangement is")
     problem = problem_of(proved(slice))._replace(known=known)
-    variety = variety_of(problem, base=base)
-    projection = projection_of(problem, variety, check=check)
-    stacks = stacks_of(problem, variety, projection)
+    variety, projection, stacks = decomposition_of(problem, base, check)
     crossings = crossings_of(problem, variety, stacks, check=check)
     joined = joined_cells(variety, projection, stacks, crossings)
     counts = counts_by_component(problem, stacks, joined, lambda _done, _total: check())
@@ -101,8 +97,7 @@ def _sides(
     problem: SliceProblem, variety: Variety, stacks: Stacks, region_of: Sequence[int]
 ) -> tuple[tuple[int, ...], ...]:
     """The regions along low x, high x, low y, high y."""
-    numbers = iter(region_of)
-    rows = [tuple(next(numbers) for _ in stack.heights) for stack in stacks.stacks]
+    rows = stacks.rows(region_of)
     along = [_without_repetition([row[0] for row in rows]), _without_repetition([row[-1] for row in rows])]
     base, fibre = problem.window[variety.base], problem.window[1 - variety.base]
     across = [

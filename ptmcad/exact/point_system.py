@@ -111,7 +111,7 @@ def text_of_point(values: Mapping[str, fmpq]) -> str:
 def point_systems(
     system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None = None
 ) -> Iterator[PointSystem]:
-    """The system of all solutions, and then of those at which no inequality's polynomial vanishes, if there are some.
+    """The system of all solutions, and then of those at which no inequality's polynomial vanishes.
 
     One of infinitely many solutions is left out.
 

@@ -59,7 +59,8 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int, m
         return Poses(given, parameters, (), Status.UNDECIDED, digits, 0, remark)
     # where equations are simpler in other angles there are more coordinates than those of the unknowns
     real = [replace(p, unknowns=p.unknowns[: system.ring.width]) for p in found.real]
-    solutions = [s for s in _exact_solutions(known, point, values, real) if s.all_positive(s.inequalities)]
+    relaxed = dict.fromkeys(given.free_lengths, fmpq(0)) | values
+    solutions = [s for s in _exact_solutions(known, point, relaxed, real) if s.all_positive(s.inequalities)]
     results = [pose_of(solution, digits) for solution in solutions]
     poses = [pose for pose, _ in results]
     degenerate = any(pose.multiplicity > 1 for pose in poses)

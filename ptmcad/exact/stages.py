@@ -5,10 +5,10 @@ Guarantee: no stage decides anything by rounding without an error bound, and non
     SliceProblem -> Variety -> Projection -> Stacks -> SampleCounts -> Neighbours -> Areas
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import pairwise
-from typing import NamedTuple
+from itertools import islice, pairwise
+from typing import NamedTuple, TypeVar
 
 from flint import fmpq
 
@@ -32,6 +32,7 @@ from ptmcad.question.slice import Count, Slice
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import short_text
 
+_T = TypeVar("_T")
 Sample = tuple[fmpq, fmpq]
 Report = Callable[[int, int], None]
 """Called as report(done, total); may raise to stop."""
@@ -106,6 +107,11 @@ class Stacks(NamedTuple):
 
     stacks: tuple[StackData, ...]
     points: tuple[Sample, ...]
+
+    def rows(self, values: Iterable[_T]) -> list[tuple[_T, ...]]:
+        """What there is for every cell, as a row for each stack."""
+        numbers = iter(values)
+        return [tuple(islice(numbers, len(stack.heights))) for stack in self.stacks]
 
 
 class SampleCounts(NamedTuple):
@@ -240,6 +246,15 @@ def stacks_of(problem: SliceProblem, variety: Variety, projection: Projection) -
     stacks = lift(variety.curves, projection.abscissae, window[base], window[1 - base], avoided)
     points = (((s.sample, height) if base == 0 else (height, s.sample)) for s in stacks for height in s.heights)
     return Stacks(stacks, tuple(points))
+
+
+def decomposition_of(
+    problem: SliceProblem, base: int | None = None, check: Check = nothing
+) -> tuple[Variety, Projection, Stacks]:
+    """The window cut along the variety, over a base axis: the first stages in one."""
+    variety = variety_of(problem, base=base)
+    projection = projection_of(problem, variety, check=check)
+    return variety, projection, stacks_of(problem, variety, projection)
 
 
 def counts_of(problem: SliceProblem, stacks: Stacks, report: Report = unreported) -> SampleCounts:

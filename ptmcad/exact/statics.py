@@ -3,7 +3,7 @@
 Guarantee: a number that is rational is given exactly (so what is zero is known to be zero), and every other one is
 enclosed so narrowly that the digits asked for are settled. A number is found to be rational by algebra, never by its
 enclosure: cosines, sines, coordinates, squared lengths and the energy are elements of the real field of the solution;
-an eigenvalue is a root of a quadratic over it; and an angle is a rational number of radians only when it is zero
+an eigenvalue is a root of a polynomial over it; and an angle is a rational number of radians only when it is zero
 (Lindemann), of degrees only when its cosine is that of a root of unity.
 """
 
@@ -61,7 +61,7 @@ class Quantities(NamedTuple):
 
 
 class _AtSolution:
-    """Elements of a solution's field, as an arithmetic for formulas: parameters have values, free lengths are zero."""
+    """Elements of a solution's field, as an arithmetic for formulas; parameters have values."""
 
     def __init__(self, known: CompiledSystem, parameters: Mapping[str, fmpq], point: RealPoint) -> None:
         self._names, self._parameters, self._field = known.names, parameters, point.field
@@ -79,7 +79,7 @@ class _AtSolution:
     def variable(self, number: int) -> FieldElement:
         if number in self._reals:
             return self._reals[number]
-        return self._field.constant(self._parameters.get(self._names[number], fmpq(0)))
+        return self._field.constant(self._parameters[self._names[number]])
 
     def cos(self, number: int) -> FieldElement:
         return self._turned[number][0]

@@ -81,20 +81,21 @@ def eigenvalues(stiffness: Stiffness, number: Callable[[FieldElement], RealNumbe
     size = len(stiffness.matrix)
     if size == 1:
         return (number(stiffness.matrix[0][0]),)
+    unknown = (RealNumber(None, arb.nan()),) * size
     entries = [[number(entry).ball for entry in row] for row in stiffness.matrix]
     try:
         found = acb_mat(size, size, [x for row in entries for x in row]).eig(multiple=True)
     except ValueError:  # the balls are too wide for the eigenvalues to be told from each other's clusters
-        return (RealNumber(None, arb.nan()),) * size
+        return unknown
     balls = sorted((value.real for value in found), key=lambda ball: float(ball.mid()))
     near_zero = [ball for ball in balls if ball.contains(0)]
     if len(near_zero) != stiffness.nullity:
-        return (RealNumber(None, arb.nan()),) * size
+        return unknown
     values = [RealNumber(Fraction(0), arb(0)) if ball.contains(0) else RealNumber(None, ball) for ball in balls]
     for root, multiplicity in stiffness.rationals:
         near = [k for k, ball in enumerate(balls) if ball.overlaps(ball_of(root))]
         if len(near) != multiplicity:
-            return (RealNumber(None, arb.nan()),) * size
+            return unknown
         for k in near:
             values[k] = RealNumber(root, ball_of(root))
     return tuple(values)

@@ -138,10 +138,9 @@ class BoundaryStrips:
         return tuple(to_fraction(refine(roots[w.component][w.root], width).middle) for w in part.walls)
 
     def _parts(self, picture: Picture) -> list[_StackPart]:
-        numbers = iter(picture.neighbours.region_of)
         found = []
-        for stack in picture.stacks.stacks:
-            row = [next(numbers) for _ in stack.heights]
+        rows = picture.stacks.rows(picture.neighbours.region_of)
+        for stack, row in zip(picture.stacks.stacks, rows, strict=True):
             kept = [k for k, (a, b) in enumerate(pairwise(row)) if a != b]
             low, high = _inner(stack.left, stack.sample), _inner(stack.right, stack.sample)
             regions = (row[0], *(row[k + 1] for k in kept))

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ptmcad.algebra.resultants import Check, nothing
-from ptmcad.exact.stages import SliceProblem, projection_of, stacks_of, variety_of
+from ptmcad.exact.stages import SliceProblem, decomposition_of
 
 
 class Survey(NamedTuple):
@@ -37,7 +37,6 @@ def survey(problem: SliceProblem, check: Check = nothing) -> Survey:
     DegenerateSliceError, InfiniteSolutionsError
         When every point of the slice is exceptional.
     """
-    variety = variety_of(problem)
-    stacks = stacks_of(problem, variety, projection_of(problem, variety, check=check))
+    variety, _, stacks = decomposition_of(problem, check=check)
     cells = len(stacks.points)
     return Survey(cells, cells - len(stacks.stacks), max((len(c.in_v) - 1 for c in variety.curves), default=0))

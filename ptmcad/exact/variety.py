@@ -29,7 +29,6 @@ from ptmcad.algebra.groebner import GroebnerBasis, MonomialOrder, groebner_basis
 from ptmcad.algebra.polynomials import (
     Coefficient,
     Ratio,
-    UnknownPolynomial,
     from_plane,
     irreducible_factors,
     to_plane,
@@ -56,6 +55,7 @@ from ptmcad.exact.models.system import (
     SliceSystem,
     element_on_slice,
     leading_minor,
+    lifted,
     on_slice,
     saturated,
 )
@@ -125,7 +125,7 @@ def discriminant_variety(
     if "sign-curve" in without:
         for order in range(1, system.dimension if system.has_index else 1):
             minor = element_on_slice(system, leading_minor(system, order), parameters)
-            seen.adopt(irreducible_factors(norm(algebra, lifted(minor, equations))[0]), Kind.AUXILIARY)
+            seen.adopt(irreducible_factors(norm(algebra, lifted(minor, equations.unknowns))[0]), Kind.AUXILIARY)
     if "hermite-matrix" in without:
         for part in determinant(trace_form(algebra)):
             seen.adopt(irreducible_factors(part), Kind.AUXILIARY)
@@ -212,7 +212,7 @@ def nondegenerate(equations: SliceSystem) -> Nondegenerate:
         if not equations.inequalities:
             raise
     for condition in equations.inequalities:
-        equations = saturated(equations, lifted(condition, equations))
+        equations = saturated(equations, condition)
         if not algebra_of(equations).dimension:
             raise NothingToCountError(
                 "at every point of the slice each solution, real or complex, makes the left side of an inequality "
@@ -238,11 +238,6 @@ def _with_jacobian(equations: SliceSystem) -> Nondegenerate:
     return Nondegenerate(equations, algebra, rows, jacobian_norm)
 
 
-def lifted(p: UnknownPolynomial, equations: SliceSystem) -> UnknownPolynomial:
-    """A polynomial in all coordinates of the equations."""
-    return {(*m, *(0,) * (equations.unknowns - len(m))): c for m, c in p.items()}
-
-
 def sign_changes(equations: SliceSystem, algebra: QuotientAlgebra) -> Iterator[Coefficient]:
     """The norms of the conditions, over those solutions at which they are not zero all over the slice.
 
@@ -263,7 +258,7 @@ def sign_changes(equations: SliceSystem, algebra: QuotientAlgebra) -> Iterator[C
                     "none is stable; leave the condition out, or mend it",
                     part=f"stable.{n}",
                 )
-            product = norm(others, {(*m, 0): c for m, c in p.items()})[0]
+            product = norm(others, lifted(p, equations.unknowns + 1))[0]
         yield product
 
 

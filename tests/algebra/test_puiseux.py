@@ -109,7 +109,7 @@ def test_what_does_not_vanish_quite_is_counted_as_error() -> None:
     """Negative powers of s are as large as at the end next to the singular point, where s = 1/8 here."""
     place = Beside(arb(1), fmpq(65, 64), fmpq(65, 64) + fmpq(64, 65))  # X = 1
     rows = [arb_poly([fmpq(1, 2**40), fmpq(-1, 2**45), 7]), arb_poly([fmpq(-1, 2**50)])]
-    chart = puiseux._Chart(2, arb_poly([0]), 1, rows, 2, 1, arb(0))
+    chart = puiseux._PuiseuxChart(2, arb_poly([0]), 1, rows, 2, 1, arb(0))
     constant, linear = puiseux._regular(chart, place)
     for s in (fmpq(1, 8), fmpq(1, 3), fmpq(1)):
         assert constant[0].contains(7 + fmpq(1, 2**40) / s**2 - fmpq(1, 2**45) / s)

@@ -222,9 +222,7 @@ def _areas(
 
 def _isolated(stack: StackData) -> fmpq:
     """About the stack's width."""
-    low = stack.left.root.high if stack.left.root else stack.left.value
-    high = stack.right.root.low if stack.right.root else stack.right.value
-    return high - low
+    return stack.right.low - stack.left.high
 
 
 def _spans(stacks: Sequence[StackData], share: fmpq, *, own: bool) -> list[Interval]:

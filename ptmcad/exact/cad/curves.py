@@ -16,7 +16,7 @@ from ptmcad.algebra.real_roots import Interval, RealRoot, isolate
 from ptmcad.algebra.reflected_roots import isolate_reflected
 from ptmcad.algebra.reflections import Reflection, reflection_of
 from ptmcad.algebra.restrictions import Restrictions
-from ptmcad.algebra.resultants import balanced
+from ptmcad.algebra.resultants import Check, balanced, discriminant, resultant
 from ptmcad.answer.regionmap import Component
 
 _LONG_FIBRE = 16
@@ -126,6 +126,21 @@ def shortened(polynomials: list[Coefficients], deflate: bool = True) -> tuple[li
         return deflated, 1, inflation
     shorter, unit = balanced(deflated)
     return shorter, unit, inflation
+
+
+def short_discriminant(c: FibredCurve, check: Check, deflate: bool = True) -> tuple[UnivariatePolynomial, int, int]:
+    """The discriminant of p(u, v^(1/k)) in the units of `shortened`, unit, and inflation; k as large as it may be."""
+    (shorter,), unit, inflation = shortened([c.in_v[:: deflation(c.in_v) if deflate else 1]], deflate)
+    return discriminant(shorter, check), unit, inflation
+
+
+def short_resultant(
+    c: FibredCurve, d: FibredCurve, check: Check, deflate: bool = True
+) -> tuple[UnivariatePolynomial, int, int]:
+    """The resultant of two curves in the same way."""
+    power = gcd(deflation(c.in_v), deflation(d.in_v)) if deflate else 1
+    (first, second), unit, inflation = shortened([c.in_v[::power], d.in_v[::power]], deflate)
+    return resultant(first, second, check), unit, inflation
 
 
 def _deflated(polynomials: list[Coefficients], deflate: bool) -> tuple[list[Coefficients], int]:

@@ -12,6 +12,7 @@ from math import prod
 
 from flint import fmpq
 
+from ptmcad.algebra.graphs import on_graph
 from ptmcad.algebra.polynomials import RationalPolynomial, UnivariatePolynomial
 from ptmcad.algebra.real_roots import (
     RealRoot,
@@ -25,7 +26,6 @@ from ptmcad.algebra.real_roots import (
 )
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.area import RegionStacks
-from ptmcad.exact.cad.curves import FibredCurve
 from ptmcad.exact.cad.stacks import BaseEnd, StackData, level_at
 
 
@@ -47,7 +47,7 @@ def below(parts: RegionStacks, line: RationalPolynomial) -> RegionStacks:
     """The half below a line, which is within the window: its stacks end where walls cross the line, too."""
     ends = [stack.right.root for stack in parts.stacks if stack.right.root]
     crossings = squarefree_part(
-        prod((q for c in parts.curves if (q := _on_line(c, line))), start=UnivariatePolynomial([1]))
+        prod((q for c in parts.curves if (q := on_graph(c.in_v, line))), start=UnivariatePolynomial([1]))
     )
     for polynomial in {id(r.polynomial): r.polynomial for r in ends}.values():
         crossings //= crossings.gcd(polynomial)
@@ -77,14 +77,4 @@ def _apart(end: BaseEnd, middle: fmpq) -> BaseEnd:
 
 
 def _between(left: BaseEnd, right: BaseEnd, walls: Sequence[Wall], heights: Sequence[fmpq]) -> StackData:
-    low = left.root.high if left.root else left.value
-    high = right.root.low if right.root else right.value
-    return StackData(left, right, simplest_between(low, high), tuple(walls), tuple(heights))
-
-
-def _on_line(curve: FibredCurve, line: RationalPolynomial) -> UnivariatePolynomial:
-    """A multiple of p(u, line(u)); zero where the line is the curve."""
-    total = RationalPolynomial([0])
-    for c in reversed(curve.in_v):
-        total = total * line + RationalPolynomial(c)
-    return total.numer()
+    return StackData(left, right, simplest_between(left.high, right.low), tuple(walls), tuple(heights))

@@ -15,7 +15,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 from itertools import combinations
-from math import gcd
 
 from flint import ctx, fmpq
 
@@ -31,8 +30,8 @@ from ptmcad.algebra.real_roots import (
     squarefree_part,
     vanishes_at,
 )
-from ptmcad.algebra.resultants import Check, discriminant, nothing, resultant
-from ptmcad.exact.cad.curves import FibredCurve, deflation, shortened, stretched
+from ptmcad.algebra.resultants import Check, nothing, resultant
+from ptmcad.exact.cad.curves import FibredCurve, deflation, short_discriminant, short_resultant, stretched
 
 _BITS = (128, 512)
 """Of the critical abscissa, until all discs are told apart; with more of them the other way is the shorter one."""
@@ -93,10 +92,8 @@ class PointsOver:
 
     def _meet(self, k: int, m: int) -> bool:
         """Whether two curves have a complex point over the root in common."""
-        rows = self.curves[k].in_v, self.curves[m].in_v
-        power = gcd(*map(deflation, rows))  # of polynomials in v^k it is the k-th power of that in v
-        (first, second), unit, inflation = shortened([r[::power] for r in rows])
-        return vanishes_at(stretched(resultant(first, second, self.check), unit, inflation), self.root)
+        # of polynomials in v^k it is the k-th power of that in v
+        return vanishes_at(stretched(*short_resultant(self.curves[k], self.curves[m], self.check)), self.root)
 
     @cached_property
     def _known(self) -> dict[int, list[Interval] | None]:
@@ -127,10 +124,8 @@ def _discriminant(c: FibredCurve, check: Check) -> UnivariatePolynomial:
     The discriminant of p(u, v^k) is, but for a constant, a power of that of p(u, v) times powers of p(u, 0) and of the
     leading coefficient.
     """
-    power = deflation(c.in_v)
-    (shorter,), unit, inflation = shortened([c.in_v[::power]])
-    found = stretched(discriminant(shorter, check), unit, inflation)
-    return found if power == 1 else found * c.in_v[0] * c.in_v[-1]
+    found = stretched(*short_discriminant(c, check))
+    return found if deflation(c.in_v) == 1 else found * c.in_v[0] * c.in_v[-1]
 
 
 def _merged(found: Sequence[RootDisc], same: Sequence[tuple[RootDisc, RootDisc]]) -> list[Interval] | None:

@@ -13,13 +13,12 @@ v = 0, of p(u, 0). References: McCallum, J. Symb. Comp. 5 (1988); Strzebonski, J
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import gcd
 from typing import NamedTuple
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import Interval, RealRoot, disjoint, inside, isolate, refine
-from ptmcad.algebra.resultants import Check, discriminant, nothing, resultant
-from ptmcad.exact.cad.curves import FibredCurve, base_deflation, deflation, shortened
+from ptmcad.algebra.resultants import Check, nothing
+from ptmcad.exact.cad.curves import FibredCurve, base_deflation, deflation, short_discriminant, short_resultant
 
 
 class Projection(NamedTuple):
@@ -76,7 +75,7 @@ def project(
             adopt(factors, origin)
     for i, c in enumerate(curves):
         for d in curves[i + 1 :]:
-            adopt(_of_two(c, d, check, deflate), f"components {c.component} and {d.component} meet")
+            adopt(_factors(*short_resultant(c, d, check, deflate)), f"components {c.component} and {d.component} meet")
     roots = [r for p, _ in found.values() for r in isolate(p, *base)]
     # intervals that are short against the window leave room for simple samples between them
     width = (base[1] - base[0]) / 2**16
@@ -100,18 +99,10 @@ def _factors(p: UnivariatePolynomial, unit: int = 1, inflation: int = 1) -> list
 def _of_one(
     c: FibredCurve, fibre: Interval, check: Check, deflate: bool
 ) -> list[tuple[list[UnivariatePolynomial], str]]:
-    k = deflation(c.in_v) if deflate else 1
-    (deflated,), unit, inflation = shortened([c.in_v[::k]], deflate)
     name = f"component {c.component}"
-    result = [(_factors(discriminant(deflated, check), unit, inflation), f"{name}: turning or singular point")]
-    if k > 1 and fibre[0] < 0 < fibre[1]:
+    result = [(_factors(*short_discriminant(c, check, deflate)), f"{name}: turning or singular point")]
+    if deflate and deflation(c.in_v) > 1 and fibre[0] < 0 < fibre[1]:
         result.append((_factors(c.in_v[0]), f"{name}: turning point on the axis"))
     for edge in fibre:
         result.append((_factors(c.trace(edge)), f"{name}: crosses the window's edge"))
     return result
-
-
-def _of_two(c: FibredCurve, d: FibredCurve, check: Check, deflate: bool) -> list[UnivariatePolynomial]:
-    k = gcd(deflation(c.in_v), deflation(d.in_v)) if deflate else 1
-    (first, second), unit, inflation = shortened([c.in_v[::k], d.in_v[::k]], deflate)
-    return _factors(resultant(first, second, check), unit, inflation)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import Interval, RealRoot, disjoint, inside, isolate, sign_at, simplest_between
+from ptmcad.algebra.real_roots import Interval, RealRoot, disjoint, gaps, inside, isolate, sign_at, simplest_between
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.curves import FibredCurve
 
@@ -22,6 +22,15 @@ class BaseEnd(NamedTuple):
     value: fmpq
     root: RealRoot | None
     critical: int | None
+
+    @property
+    def low(self) -> fmpq:
+        """Of the root's interval, or the edge."""
+        return self.root.low if self.root else self.value
+
+    @property
+    def high(self) -> fmpq:
+        return self.root.high if self.root else self.value
 
 
 class StackData(NamedTuple):
@@ -79,9 +88,7 @@ def lift(
     ends.append(BaseEnd(base[1], None, None))
     stacks = []
     for left, right in pairwise(ends):
-        low = left.root.high if left.root else left.value
-        high = right.root.low if right.root else right.value
-        sample = _simplest_off(low, high, avoided.lines)
+        sample = _simplest_off(left.high, right.low, avoided.lines)
         roots = roots_over(curves, sample, fibre)
         heights = heights_between(roots, fibre, [c.fibre(sample) for c in avoided.curves])
         stacks.append(StackData(left, right, sample, tuple(w for w, _ in roots), heights))
@@ -95,9 +102,7 @@ def heights_between(
 
     None is a root of the polynomials to be avoided.
     """
-    separated = inside([r for _, r in roots], fibre)
-    levels = [fibre[0], *(x for r in separated for x in (r.low, r.high)), fibre[1]]
-    return tuple(_simplest_off(levels[2 * k], levels[2 * k + 1], avoided) for k in range(len(separated) + 1))
+    return tuple(_simplest_off(*gap, avoided) for gap in gaps(inside([r for _, r in roots], fibre), fibre))
 
 
 def _simplest_off(low: fmpq, high: fmpq, avoided: Sequence[UnivariatePolynomial]) -> fmpq:

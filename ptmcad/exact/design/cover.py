@@ -54,11 +54,21 @@ class Space(NamedTuple):
 
     def length(self, low: fmpq, high: fmpq) -> fmpq:
         """An upper bound for the length of a part, given by the powers of its ends; exact where the power is 1."""
-        return root_bound(high, self.power, up=True) - root_bound(low, self.power, up=False)
+        first, last = self.outside(low, high)
+        return last - first
 
     def least(self, low: fmpq, high: fmpq) -> fmpq:
         """A lower bound of the same."""
-        return root_bound(high, self.power, up=False) - root_bound(low, self.power, up=True)
+        first, last = self.inside(low, high)
+        return last - first
+
+    def outside(self, low: fmpq, high: fmpq) -> Interval:
+        """Values of the line's parameter just beyond those with these powers, or these values."""
+        return root_bound(low, self.power, up=False), root_bound(high, self.power, up=True)
+
+    def inside(self, low: fmpq, high: fmpq) -> Interval:
+        """Values just between them."""
+        return root_bound(low, self.power, up=True), root_bound(high, self.power, up=False)
 
 
 class LinePart(NamedTuple):
@@ -187,7 +197,7 @@ def _joined(parts: Sequence[LinePart]) -> list[LinePart]:
 
 def _counted(space: Space, box: Box, part: LinePart) -> LinePart:
     """The part with what a sample says of its count."""
-    low, high = (root_bound(part.low, space.power, up=True), root_bound(part.high, space.power, up=False))
+    low, high = space.inside(part.low, part.high)
     if low >= high:
         return part
     for share in _SHARES:

@@ -6,14 +6,14 @@ and the count is that of samples between all of them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import groupby, pairwise
+from itertools import pairwise
 
 from flint import fmpq
 
 from ptmcad.algebra.bernstein import on_lines
 from ptmcad.algebra.real_roots import Interval, disjoint, inside, isolate, refine, simplest_between, squarefree_part
-from ptmcad.exact.design.cover import Space, root_bound
+from ptmcad.exact.design.cover import Space
+from ptmcad.exact.ranges.line import runs
 
 _WIDTH = fmpq(1, 2**80)
 """Of what isolates a root, against the window's power."""
@@ -34,23 +34,11 @@ def longest_on_line(space: Space, design: tuple[fmpq, ...]) -> tuple[Interval, I
     ends = [(low, low), *((root.low, root.high) for root in roots), (high, high)]
     counts = []
     for (_, left), (right, _) in pairwise(ends):
-        a, b = root_bound(left, space.power, up=True), root_bound(right, space.power, up=False)
-        counts.append(space.count_at(simplest_between(a, b), (at[0], at[1])))
+        counts.append(space.count_at(simplest_between(*space.inside(left, right)), (at[0], at[1])))
     if None in counts:
         return None
-    spans = list(_spans(space, ends, counts))
+    here = runs([count == space.working for count in counts])
+    spans = [(space.outside(*ends[first]), space.outside(*ends[last])) for first, last in here]
     if not spans:
         return (space.window[0],) * 2, (space.window[0],) * 2
     return max(spans, key=lambda span: span[1][0] - span[0][1])
-
-
-def _spans(space: Space, ends: list[Interval], counts: list[int | None]) -> Iterator[tuple[Interval, Interval]]:
-    for here, group in groupby(range(len(counts)), key=lambda k: counts[k] == space.working):
-        numbers = list(group)
-        if here:
-            low, high = ends[numbers[0]], ends[numbers[-1] + 1]
-            yield _enclosed(space, low), _enclosed(space, high)
-
-
-def _enclosed(space: Space, end: Interval) -> Interval:
-    return root_bound(end[0], space.power, up=False), root_bound(end[1], space.power, up=True)

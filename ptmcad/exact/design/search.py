@@ -99,7 +99,7 @@ def search(
             if not feasible(half):
                 continue
             boxes += 1
-            above, certainly, within = bounder.over(half, state, _share(half, whole), _enough(best, wanted))
+            above, certainly, within = bounder.over(half, state, max(_shares(half, whole)), _enough(best, wanted))
             bound = min(above, -negative)
             if bound > _enough(best, wanted) and bound + certainly > 2 * best:
                 best = improved(tuple((low + high) / 2 for low, high in half))
@@ -116,13 +116,13 @@ def _enough(best: fmpq, wanted: Goal) -> fmpq:
     return max(best * (1 + wanted.tolerance), wanted.least if best <= 0 else fmpq(0))
 
 
-def _share(place: Place, whole: Place) -> fmpq:
-    return max((b - a) / (d - c) for (a, b), (c, d) in zip(place, whole, strict=True))
+def _shares(place: Place, whole: Place) -> list[fmpq]:
+    return [(b - a) / (d - c) for (a, b), (c, d) in zip(place, whole, strict=True)]
 
 
 def _cut(place: Place, whole: Place) -> Sequence[Place]:
     """The halves of a box across its longest side, as a share of the bounds'."""
-    shares = [(b - a) / (d - c) for (a, b), (c, d) in zip(place, whole, strict=True)]
+    shares = _shares(place, whole)
     axis = shares.index(max(shares))
     low, high = place[axis]
     middle = (low + high) / 2

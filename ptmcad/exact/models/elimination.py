@@ -40,9 +40,8 @@ def elimination_system(
     conditions = list(on.inequalities) if excludes else []
     if (nowhere := prod(irreducible_factors(*on.boundary, *limits), start=ONE)) != ONE:
         conditions.append({(0,) * on.unknowns: nowhere})
-    width = on.unknowns
     for condition in conditions:
-        on = saturated(on, {(*m, *(0,) * (on.unknowns - width)): c for m, c in condition.items()})
+        on = saturated(on, condition)
     unknowns = system_text(system).unknowns
     for _ in conditions:
         names = (f"{INVERSE}{n or ''}" for n in count())

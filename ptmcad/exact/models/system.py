@@ -4,6 +4,7 @@ Guarantee: the equations of a potential, and every Jacobian, are derived by exac
 """
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 from flint import fmpq
@@ -191,20 +192,23 @@ def on_slice(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Slice
     )
 
 
+def lifted(p: UnknownPolynomial, unknowns: int) -> UnknownPolynomial:
+    """A polynomial in the first of so many coordinates as one in all of them."""
+    return {(*m, *(0,) * (unknowns - len(m))): c for m, c in p.items()}
+
+
 def saturated(equations: SliceSystem, condition: UnknownPolynomial) -> SliceSystem:
     """The system of those solutions at which a polynomial does not vanish: its inverse is one more coordinate."""
-
-    def lifted(p: UnknownPolynomial, power: int = 0) -> UnknownPolynomial:
-        return {(*m, power): c for m, c in p.items()}
-
+    width = equations.unknowns
+    more = partial(lifted, unknowns=width + 1)
     some = next((c for p in (condition, *equations.equations) for c in p.values()), PLANE.constant(0))
-    inverse = {**lifted(condition, 1), (0,) * (equations.unknowns + 1): constant_like(some, -1)}
+    inverse = {(*m, 1): c for m, c in lifted(condition, width).items()} | {(0,) * (width + 1): constant_like(some, -1)}
     return equations._replace(
-        equations=(*map(lifted, equations.equations), inverse),
-        jacobian=lifted(equations.jacobian),
-        inequalities=tuple(map(lifted, equations.inequalities)),
-        stability=tuple(map(lifted, equations.stability)),
-        unknowns=equations.unknowns + 1,
+        equations=(*map(more, equations.equations), inverse),
+        jacobian=more(equations.jacobian),
+        inequalities=tuple(map(more, equations.inequalities)),
+        stability=tuple(map(more, equations.stability)),
+        unknowns=width + 1,
     )
 
 
@@ -236,7 +240,7 @@ def with_root(
     ring = TrigonometricRing((ALONG,), system.ring.angles, (*system.ring.reals, OVER))
     one = _one(parameters)
 
-    def lifted(p: TrigonometricPolynomial, is_condition: bool = False) -> TrigonometricPolynomial:
+    def moved(p: TrigonometricPolynomial, is_condition: bool = False) -> TrigonometricPolynomial:
         terms = _substitute(system, p, parameters)
         scale = lcm(d for _, d in terms.values())
         found: dict[tuple[int, ...], fmpq] = {}
@@ -253,9 +257,9 @@ def with_root(
     root = {(*(0,) * ring.width, k): fmpq(c) for k, c in enumerate(minimal.coeffs())}
     return from_equations(
         ring,
-        [*map(lifted, system.equations), ring.context.from_dict(root)],
-        inequalities=tuple(lifted(p, True) for p in system.inequalities),
-        stability=tuple(lifted(p, True) for p in stability),
+        [*map(moved, system.equations), ring.context.from_dict(root)],
+        inequalities=tuple(moved(p, True) for p in system.inequalities),
+        stability=tuple(moved(p, True) for p in stability),
         definite=system.has_index or system.definite,
     )
 

@@ -13,9 +13,8 @@ condition changes its sign at a solution at which it is not zero all along.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
-from itertools import groupby
 from typing import NamedTuple
 
 from flint import fmpq
@@ -34,16 +33,16 @@ from ptmcad.algebra.polynomials import (
     from_expression,
 )
 from ptmcad.algebra.quotient import QuotientAlgebra, matrix_of, multiples, multiplication_denominator, trace_form
-from ptmcad.algebra.real_roots import isolate, simplest_between
+from ptmcad.algebra.real_roots import gaps, isolate, simplest_between
 from ptmcad.answer.intervals import End, Span
 from ptmcad.errors import ConfigError, DegenerateSliceError, HypothesisError, InfiniteSolutionsError
 from ptmcad.exact.models import ParametricSystem, system_from
-from ptmcad.exact.models.system import ALONG, RationalPolynomial, SliceSystem, on_slice, saturated, with_root
+from ptmcad.exact.models.system import ALONG, RationalPolynomial, SliceSystem, lifted, on_slice, saturated, with_root
 from ptmcad.exact.point_system import DegeneratePoint, point_system
-from ptmcad.exact.ranges.line import END_WIDTH, intervals
+from ptmcad.exact.ranges.line import END_WIDTH, intervals, runs
 from ptmcad.exact.statics import is_positive
-from ptmcad.exact.variety import algebra_of, lifted
-from ptmcad.model import mechanism_in
+from ptmcad.exact.variety import algebra_of
+from ptmcad.model.compile import compiled
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
@@ -96,12 +95,11 @@ def ranges_on(slice: Slice, along: str, value: End, working: int) -> LineRanges:
     if algebra.dimension > MAX_DIMENSION:
         return (), whole
     numbers = _critical(equations, algebra, axis)
-    flat = known.has_index or mechanism_in(slice.model) is not None
+    flat = known.has_index or bool(compiled(slice.model).points)
     counting = _Counting(system, algebra.dimension, equations is not given, minimal, working, flat)
     ends: list[End] = [axis.low, *numbers, axis.high]
-    lows, highs = [axis.low, *(n.high for n in numbers)], [*(n.low for n in numbers), axis.high]
-    here = [counting.between(*map(from_fraction, gap)) for gap in zip(lows, highs, strict=True)]
-    return tuple(_spans(ends, [h is True for h in here])), tuple(_spans(ends, [h is not False for h in here]))
+    here = [counting.between(*map(from_fraction, gap)) for gap in gaps(numbers, (axis.low, axis.high))]
+    return _spans(ends, [h is True for h in here]), _spans(ends, [h is not False for h in here])
 
 
 def _finite(equations: SliceSystem) -> tuple[SliceSystem, QuotientAlgebra] | None:
@@ -111,7 +109,7 @@ def _finite(equations: SliceSystem) -> tuple[SliceSystem, QuotientAlgebra] | Non
             return equations, algebra_of(equations)
         except InfiniteSolutionsError:
             for condition in equations.inequalities:
-                equations = saturated(equations, lifted(condition, equations))
+                equations = saturated(equations, condition)
     return None
 
 
@@ -124,7 +122,7 @@ def _critical(equations: SliceSystem, algebra: QuotientAlgebra, axis: Axis) -> t
             *equations.boundary,
             multiplication_denominator(algebra),
             *_lowest(trace_form(algebra)),
-            *(p for condition in conditions for p in _lowest(_matrix(algebra, lifted(condition, equations)))),
+            *(p for condition in conditions for p in _lowest(_matrix(algebra, lifted(condition, equations.unknowns)))),
         )
     ]
     factors = {tuple(map(int, factor.coeffs())): factor for p in found for factor, _ in p.factor()[1]}
@@ -211,9 +209,6 @@ def _sign(solution: RealPoint, p: RationalPolynomial) -> int:
     return 0 if value.is_zero else 1 if is_positive(value) else -1
 
 
-def _spans(ends: Sequence[End], here: Sequence[bool]) -> Iterator[Span]:
+def _spans(ends: Sequence[End], here: Sequence[bool]) -> tuple[Span, ...]:
     """The longest runs of gaps in which something holds."""
-    for holds, group in groupby(range(len(here)), lambda k: here[k]):
-        numbers = list(group)
-        if holds:
-            yield Span(ends[numbers[0]], ends[numbers[-1] + 1])
+    return tuple(Span(ends[first], ends[last]) for first, last in runs(here))

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from flint import arb, ctx
 
-from ptmcad.algebra.real_roots import simplest_between
+from ptmcad.algebra.numbers import simplest_fraction
 from ptmcad.exact.poses import exact_poses
 from ptmcad.exact.ranges.equations import LineSystem
 from ptmcad.exact.ranges.meeting import Meeting, parameters_at, value_at, what_meets
@@ -25,7 +25,6 @@ from ptmcad.exact.ranges.tracking import BITS, Reached, bridge, enclose, follow
 from ptmcad.question.line import Line
 from ptmcad.text.balls import ball_of, ball_over, enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 DIGITS = 12
 _NEAREST = Fraction(1, 2**56)
@@ -62,7 +61,7 @@ def landing(
     """
     side = 1 if target.value > current.value else -1
     distance = (line.along.high - line.along.low) * _NEAREST
-    near, far = (number.low, number.high) if side > 0 else (number.high, number.low)
+    near, far = ends_from(number, side)
     before = _nearer(family, current, beside(near, -side, distance))
     after = _nearer(family, target, beside(far, side, distance))
     energy = _limit(family, line, number, before)
@@ -78,10 +77,14 @@ def landing(
     return LimitPose(unknowns, energy, _limit(family, line, number, Reached(near, at, at)))
 
 
+def ends_from(number: AlgebraicNumber, side: int) -> tuple[Fraction, Fraction]:
+    """The near and the far end of an isolating interval, seen by one who goes to this side."""
+    return (number.low, number.high) if side > 0 else (number.high, number.low)
+
+
 def beside(value: Fraction, side: int, gap: Fraction) -> Fraction:
     """A short rational at a distance between gap / 2 and gap, at one side."""
-    low, high = sorted((value + side * gap / 2, value + side * gap))
-    return to_fraction(simplest_between(from_fraction(low), from_fraction(high)))
+    return simplest_fraction(value + side * gap / 2, value + side * gap)
 
 
 def _nearer(family: LineSystem, place: Reached, value: Fraction) -> Reached:

@@ -12,15 +12,16 @@ over the plane specialises, and that the ends are those of the map's walls is a 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
+from itertools import groupby
 from typing import Any
 
 from flint import fmpq
 
-from ptmcad.algebra.numbers import in_order, roots_in
+from ptmcad.algebra.numbers import in_order, roots_in, simplest_fraction
 from ptmcad.algebra.polynomials import Ratio, from_expression
-from ptmcad.algebra.real_roots import simplest_between
+from ptmcad.algebra.real_roots import gaps
 from ptmcad.answer.counts import Counts, operation_number
 from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, End
 from ptmcad.answer.regionmap import Component
@@ -34,7 +35,7 @@ from ptmcad.exact.witness import points
 from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import shortest_text
 
 END_WIDTH = Fraction(1, 2**100)
@@ -132,10 +133,7 @@ def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Component], ...]
 
 def samples_between(along: Axis, numbers: tuple[AlgebraicNumber, ...]) -> tuple[Fraction, ...]:
     """Simple rationals below, between and above the given numbers, in the window."""
-    lows = [along.low, *(n.high for n in numbers)]
-    highs = [*(n.low for n in numbers), along.high]
-    samples = (simplest_between(from_fraction(a), from_fraction(b)) for a, b in zip(lows, highs, strict=True))
-    return tuple(to_fraction(s) for s in samples)
+    return tuple(simplest_fraction(*gap) for gap in gaps(numbers, (along.low, along.high)))
 
 
 def counts_at(line: Line, value: Fraction) -> Counts:
@@ -151,6 +149,14 @@ def is_regular(line: Line, value: Fraction) -> bool:
     except DegenerateSliceError:
         return False
     return True
+
+
+def runs(here: Sequence[bool]) -> Iterator[tuple[int, int]]:
+    """Where the longest runs of gaps in which something holds begin, and where they end."""
+    for holds, group in groupby(range(len(here)), lambda k: here[k]):
+        numbers = list(group)
+        if holds:
+            yield numbers[0], numbers[-1] + 1
 
 
 def _joined(

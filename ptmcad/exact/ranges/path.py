@@ -26,7 +26,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.exact.models import system_from
 from ptmcad.exact.poses import exact_poses
 from ptmcad.exact.ranges.equations import LineSystem
-from ptmcad.exact.ranges.landing import DIGITS, beside, landing
+from ptmcad.exact.ranges.landing import DIGITS, beside, ends_from, landing
 from ptmcad.exact.ranges.line import critical_values, is_regular
 from ptmcad.exact.ranges.matrices import Vector
 from ptmcad.exact.ranges.meeting import parameters_at, value_at, what_meets
@@ -132,8 +132,8 @@ def _one_way(
     reached: list[Reached] = []
     current = origin
     for k, number in enumerate(numbers):
-        near, far = _ends(number, side)
-        following = _ends(numbers[k + 1], side)[0] if k + 1 < len(numbers) else edge
+        near, far = ends_from(number, side)
+        following = ends_from(numbers[k + 1], side)[0] if k + 1 < len(numbers) else edge
         gap = min(abs(near - current.value), abs(following - far)) / 8
         crossed, end = None, None
         for least in _distances(window, gap):
@@ -173,11 +173,6 @@ def _distances(window: Fraction, gap: Fraction) -> tuple[Fraction, Fraction]:
     least = window * _MIN_DISTANCE
     first = least if gap > least else gap / 2**12
     return first, first / 2**10
-
-
-def _ends(number: AlgebraicNumber, side: int) -> tuple[Fraction, Fraction]:
-    """The near and the far end of an isolating interval, seen from where one comes."""
-    return (number.low, number.high) if side > 0 else (number.high, number.low)
 
 
 def _condition(family: LineSystem, line: Line, reached: Reached) -> Fate | None:

@@ -17,11 +17,11 @@ from flint import fmpq
 from ptmcad.algebra.polynomials import RationalPolynomial, UnivariatePolynomial
 from ptmcad.algebra.real_roots import Interval, RealRoot, has_root_between, isolate, refine, simplest_between
 from ptmcad.answer.counts import operation_number
-from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.adjacency import Crossing, cross
 from ptmcad.exact.cad.curves import FibredCurve, by_component
 from ptmcad.exact.cad.stacks import BaseEnd, StackData
-from ptmcad.exact.stages import counts_of, lines_across, problem_of, projection_of, stacks_of, variety_of
+from ptmcad.exact.ranges.line import runs
+from ptmcad.exact.stages import counts_of, decomposition_of, lines_across, problem_of
 from ptmcad.question.slice import Slice, without_free_lengths
 
 
@@ -106,14 +106,11 @@ def strips(slice: Slice, along: str, working: int | None = None) -> RangeStrips:
     base = 1 - slice.axis_names.index(along)
     refuse_free_lengths(slice)
     problem = problem_of(slice)
-    variety = variety_of(problem, base=base)
-    projection = projection_of(problem, variety)
-    stacks = stacks_of(problem, variety, projection)
+    variety, projection, stacks = decomposition_of(problem, base)
     counts = [found.counts for found in counts_of(problem, stacks).found]
     if working is None:
         working = operation_number(slice.model, counts)
-    counted = iter([found.working == working for found in counts])
-    inside = [[next(counted) for _ in stack.heights] for stack in stacks.stacks]
+    inside = stacks.rows(found.working == working for found in counts)
     curves, fibre = by_component(variety.curves), problem.window[1 - base]
     found = [_over(stack, here, curves, fibre) for stack, here in zip(stacks.stacks, inside, strict=True)]
     special = [stacks.stacks[0].left]
@@ -143,23 +140,11 @@ def _over(
     stack: StackData, inside: Sequence[bool], curves: dict[int, FibredCurve], fibre: Interval
 ) -> list[RangeStrip]:
     """The strips of a stack, given which of its cells are in the operation range."""
-    found = []
-    first = None
-    for k, is_inside in enumerate([*inside, False]):
-        if is_inside and first is None:
-            first = k
-        elif not is_inside and first is not None:
-            low = _branch(stack.walls[first - 1], curves, fibre[0]) if first else RangeEnd(None, 0, fibre[0])
-            high = (
-                _branch(stack.walls[k - 1], curves, fibre[1]) if k <= len(stack.walls) else RangeEnd(None, 0, fibre[1])
-            )
-            found.append(RangeStrip(stack.left, stack.right, stack.sample, low, high, fibre))
-            first = None
-    return found
-
-
-def _branch(wall: Wall, curves: dict[int, FibredCurve], edge: fmpq) -> RangeEnd:
-    return RangeEnd(curves[wall.component], wall.root, edge)
+    walls = [RangeEnd(curves[wall.component], wall.root, fibre[0]) for wall in stack.walls]
+    ends = [RangeEnd(None, 0, fibre[0]), *walls, RangeEnd(None, 0, fibre[1])]
+    return [
+        RangeStrip(stack.left, stack.right, stack.sample, ends[first], ends[end], fibre) for first, end in runs(inside)
+    ]
 
 
 def at_abscissa(branch: RangeEnd, u: fmpq, fibre: Interval, width: fmpq) -> RealRoot:

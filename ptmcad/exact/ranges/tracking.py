@@ -14,7 +14,7 @@ from fractions import Fraction
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.real_roots import simplest_between
+from ptmcad.algebra.numbers import simplest_fraction
 from ptmcad.exact.ranges.equations import Instance, LineSystem
 from ptmcad.exact.ranges.matrices import (
     Matrix,
@@ -29,7 +29,6 @@ from ptmcad.exact.ranges.matrices import (
     times,
 )
 from ptmcad.text.balls import ball_of
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 BITS = 160
 _MIN_STEP = Fraction(1, 2**60)
@@ -224,8 +223,7 @@ def follow(
 
 def _short(value: Fraction, step: Fraction) -> Fraction:
     """A rational of few digits about a step away: without this each step would make the value's digits more."""
-    low, high = sorted((value + step * 15 / 16, value + step))
-    return to_fraction(simplest_between(from_fraction(low), from_fraction(high)))
+    return simplest_fraction(value + step * 15 / 16, value + step)
 
 
 def bridge(family: LineSystem, start: Reached, value: Fraction) -> Reached | None:
