@@ -84,10 +84,35 @@ def values(formulas: Sequence[Formula], arithmetic: Arithmetic[Any]) -> list[Any
     return list(map(value, formulas))
 
 
-def values_by_group(groups: Mapping[str, Sequence[Formula]], arithmetic: Arithmetic[Any]) -> dict[str, list[Any]]:
-    """The values of groups of formulas, each node still computed once."""
-    found = iter(values([formula for group in groups.values() for formula in group], arithmetic))
-    return {name: [next(found) for _ in group] for name, group in groups.items()}
+def evaluated(structure: Any, arithmetic: Arithmetic[Any]) -> Any:
+    """Tuples and mappings, nested in any way, with values in place of their formulas; anything else in them stays.
+
+    Raises
+    ------
+    AttributeError
+        As `values`.
+    """
+    found = iter(values(formulas_in(structure), arithmetic))
+    return mapped(structure, lambda _: next(found))
+
+
+def formulas_in(structure: Any) -> list[Formula]:
+    """The formulas of such a structure, in their order."""
+    formulas: list[Formula] = []
+    mapped(structure, formulas.append)
+    return formulas
+
+
+def mapped(structure: Any, of: Callable[[Formula], Any]) -> Any:
+    """Such a structure with something else in place of each formula."""
+    if isinstance(structure, Formula):
+        return of(structure)
+    if isinstance(structure, Mapping):
+        return {key: mapped(part, of) for key, part in structure.items()}
+    if isinstance(structure, tuple):
+        make = getattr(structure, "_make", tuple)  # of a named tuple its own
+        return make(mapped(part, of) for part in structure)
+    return structure
 
 
 def substituted(formula: Formula, places: Mapping[int, Formula]) -> Formula:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.regionmap import Cell, RegionMap
-from ptmcad.ask.fields.equations import Floats, State, determinant, eigenvalues, newton_step, state_at
+from ptmcad.ask.fields.equations import Floats, State, apart, determinant, newton, state_at
 from ptmcad.model import Model
 from ptmcad.question.doubles import within_doubles
 from ptmcad.question.slice import Slice
@@ -35,8 +35,6 @@ SMALL = 1e-9
 """The last step, against the solution's size."""
 APART = 1e-7
 """Solutions are different when they are further apart, and than a thousand last steps."""
-_TOO_FAR = 1.0
-"""A longer step is not taken whole."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,44 +134,29 @@ class Follower:
 
     def _led(self, rows: Labels, columns: Labels, start: Floats) -> tuple[Floats, Floats, Flags]:
         """Where Newton's method leads, the lengths of its last steps, and where it has converged or had no start."""
-        at = start.copy()
-        empty = np.isnan(start[0])
-        at[:, empty] = 0.0
-        step = np.zeros_like(at)
-        with np.errstate(all="ignore"):
-            for _ in range(STEPS):
-                step = newton_step(self.state(rows, columns, at))
-                length = np.sqrt((step**2).sum(axis=0))
-                step = np.where(np.isfinite(step), step, np.nan)
-                at = at - step * np.minimum(1.0, _TOO_FAR / np.maximum(length, 1e-300))
-                if not np.nanmax(np.where(empty, 0.0, length), initial=0.0) > SMALL / 100:
-                    break
-            length = np.sqrt((step**2).sum(axis=0))
-            size = np.sqrt((at**2).sum(axis=0))
-            converged = (length <= SMALL * (1 + size)) | empty
-            at[: self.angles] = np.remainder(at[: self.angles] + np.pi, 2 * np.pi) - np.pi
-        return at, length, converged
+        at, length = newton(lambda at: self.state(rows, columns, at), start, STEPS, SMALL / 100)
+        converged = (length <= SMALL * (1 + np.sqrt((at**2).sum(axis=0)))) | np.isnan(start[0])
+        return apart(at, np.zeros_like(at), self.angles), length, converged
 
     def _different(self, at: Floats, length: Floats, empty: Flags) -> Flags:
         """Whether no two of a pixel's solutions are the same."""
         good = np.ones(at.shape[1], dtype=np.bool_)
         for a in range(at.shape[2]):
             for b in range(a):
-                gap = at[:, :, a] - at[:, :, b]
-                gap[: self.angles] = np.remainder(gap[: self.angles] + np.pi, 2 * np.pi) - np.pi
+                gap = apart(at[:, :, a], at[:, :, b], self.angles)
                 near = np.abs(gap).max(axis=0) <= np.maximum(APART, 1000 * (length[:, a] + length[:, b]))
                 good &= ~near | empty[:, a] | empty[:, b]
         return good
 
     def _right_kinds(self, rows: Labels, columns: Labels, at: Floats, empty: Flags) -> Flags:
         """Whether the solutions count, and as many have each index as the map says."""
-        state = self.state(rows, columns, at)
+        state = self.state(rows, columns, np.nan_to_num(at))
         good: Flags = np.ones(at.shape[1], dtype=np.bool_)
         for condition in state.conditions:
             good &= ((condition > 0) | empty).all(axis=1)
         if not self.model.has_potential:
             return np.asarray(good & ((determinant(state.jacobian) != 0) | empty).all(axis=1))
-        negative = (eigenvalues(state.jacobian) < 0).sum(axis=0)
+        negative = state.negatives
         if self.wanted.only_stable:
             return np.asarray(good & ((negative == 0) | empty).all(axis=1))
         cells = self.wanted.cell[rows, columns]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -50,6 +50,18 @@ class Choice:
 
     def __str__(self) -> str:
         return f"{self.kind}:{self.rank}"
+
+    def numbers(self, poses: Poses) -> list[int]:
+        """Those of the poses that are of the kind."""
+        last = len(poses.model.unknowns)
+        fits: Mapping[str, Callable[[Pose], bool]] = {
+            "pose": lambda pose: True,
+            "stable": lambda pose: pose.stable is True,
+            "unstable": lambda pose: pose.stable is False,
+            "saddle": lambda pose: pose.index is not None and 0 < pose.index < last,
+            "maximum": lambda pose: pose.index == last,
+        }
+        return [k for k, pose in enumerate(poses.equilibria) if fits[self.kind](pose)]
 
 
 def choice_of(text: str, model: Model) -> Choice:
@@ -266,7 +278,7 @@ def _in_order(
     order = np.lexsort((*(-np.round(p, 9) for p in at[::-1]), rank, ~stable, ~there), axis=1)
     kinds = {"pose": there, "stable": stable, "unstable": there & ~stable}
     if choice.kind in ("saddle", "maximum"):
-        negative = (eigenvalues(state.jacobian) < 0).sum(axis=0)
+        negative = state.negatives
         n = len(at)
         kinds |= {"saddle": there & (negative > 0) & (negative < n), "maximum": there & (negative == n)}
     return order, kinds[choice.kind]

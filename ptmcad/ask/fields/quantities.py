@@ -62,7 +62,7 @@ def _values(quantity: Quantity) -> Values:
     number, part = quantity.number, quantity.part
     match quantity.kind:
         case Kind.ENERGY | Kind.BARRIER:
-            return lambda state, at, values: _known(state.energy)
+            return lambda state, at, values: state.known_energy
         case Kind.STIFFNESS:
             return lambda state, at, values: eigenvalues(state.jacobian)[0]
         case Kind.FORCE:
@@ -75,12 +75,7 @@ def _values(quantity: Quantity) -> Values:
             return lambda state, at, values: at[number]
         case Kind.X | Kind.Y:
             side = int(quantity.kind is Kind.Y)
-            return lambda state, at, values: _known(state.points)[part][side]
-
-
-def _known(value: Any) -> Any:
-    assert value is not None
-    return value
+            return lambda state, at, values: state.points[part][side]
 
 
 def _expression(text: str, slice: Slice) -> Valued:

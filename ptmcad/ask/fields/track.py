@@ -9,7 +9,7 @@ import numpy as np
 from ptmcad.answer.motion import Place
 from ptmcad.ask.fields.branches import parameters_at
 from ptmcad.ask.fields.course import Course
-from ptmcad.ask.fields.descent import negatives, newton
+from ptmcad.ask.fields.descent import solution
 from ptmcad.ask.fields.equations import Floats, State, state_at
 from ptmcad.question.slice import Slice
 
@@ -36,7 +36,7 @@ class Track:
 
     def solved(self, share: float, start: Floats) -> tuple[Floats, State] | None:
         """Where Newton's method leads from unknowns of shape (n,), with the model there."""
-        return newton(lambda at: self.at(share, at), start)
+        return solution(lambda at: self.at(share, at), start)
 
 
 def followed(track: Track, at: Floats, done: float, to: float, own: int) -> tuple[Floats, float]:
@@ -50,7 +50,7 @@ def followed(track: Track, at: Floats, done: float, to: float, own: int) -> tupl
     while done < to:
         further = to if to - done <= step * (1 + 1e-9) else done + step
         found = track.solved(further, at)
-        if found and negatives(found[1]) == own and np.linalg.norm(found[0] - at) < ALONG:
+        if found and int(found[1].negatives[0]) == own and np.linalg.norm(found[0] - at) < ALONG:
             at, done, step = found[0], further, step * 2
         elif further - done <= MIN_STEP * 1.001:
             return at, done
