@@ -14,7 +14,7 @@ from typing import NamedTuple
 from flint import arb, ctx
 
 from ptmcad.answer.intervals import Span
-from ptmcad.answer.poses import Pose, Poses
+from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.classification import region_map
 from ptmcad.ask.members import Common, member_map
@@ -261,11 +261,11 @@ def _tree(design: Design) -> Tree:
 def _enclosed(tree: Tree, known: Mapping[str, Enclosure]) -> Enclosure | None:
     """The value of an expression; None where it has none."""
     with ctx.workprec(_BITS):
-        value = interpret(tree, _Balls(known))
+        value = interpret(tree, _TreesInBalls(known))
         return Enclosure(exact(value.lower()), exact(value.upper())) if value.is_finite() else None
 
 
-class _Balls(NamedTuple):
+class _TreesInBalls(NamedTuple):
     """Expressions in balls."""
 
     known: Mapping[str, Enclosure]

@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.ask.fields.equations import Floats, State, apart, eigenvalues
+from ptmcad.ask.fields.equations import Floats, ModelState, apart, eigenvalues
 
 STEPS = 200
 """Of a descent."""
@@ -26,7 +26,7 @@ NEAR = 0.05
 
 Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
-Evaluate = Callable[[Integers, Floats], State]
+Evaluate = Callable[[Integers, Floats], ModelState]
 """The model at pixels, given by their numbers, and points of shape (n, pixels), or (n, pixels, k)."""
 
 
@@ -67,7 +67,7 @@ def barriers(evaluate: Evaluate, at: Floats, stable: Flags, chosen: Integers, an
     return np.where(certain, found, np.nan)
 
 
-def _ends(evaluate: Evaluate, at: Floats, state: State, saddle: Flags, stable: Flags, angles: int) -> Integers:
+def _ends(evaluate: Evaluate, at: Floats, state: ModelState, saddle: Flags, stable: Flags, angles: int) -> Integers:
     """The stable solutions below each saddle on its two sides, shape (2, pixels, most); -1 where none was reached."""
     ends = np.full((2, *saddle.shape), -1, dtype=np.int64)
     pixel, number = np.nonzero(saddle)
@@ -90,7 +90,7 @@ def _ends(evaluate: Evaluate, at: Floats, state: State, saddle: Flags, stable: F
     return ends
 
 
-def _downhill(state: State) -> Floats:
+def _downhill(state: ModelState) -> Floats:
     """Newton's step with the moduli of the curvatures, of at most the largest length."""
     values, vectors = np.linalg.eigh(np.moveaxis(state.jacobian, (0, 1), (-2, -1)))
     size = np.maximum(np.abs(values), 1e-12 * (1e-300 + np.abs(values).max(axis=-1, keepdims=True)))

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.regionmap import Cell, RegionMap
-from ptmcad.ask.fields.equations import Floats, State, apart, determinant, newton, state_at
+from ptmcad.ask.fields.equations import Floats, ModelState, apart, determinant, newton, state_at
 from ptmcad.model import Model
 from ptmcad.question.doubles import within_doubles
 from ptmcad.question.slice import Slice
@@ -38,7 +38,7 @@ APART = 1e-7
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class PixelCounts:
     """How many solutions each pixel has, by the map: all of them, or the stable ones where only these are known.
 
     Attributes
@@ -54,7 +54,7 @@ class Wanted:
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class GridPoints:
     """Points of the window in rows, such that neighbours lie near each other: a grid's pixels, or steps of a path.
 
     All arrays have the shape (rows, columns): coordinates, and the number of the cell, `NONE` where there is none.
@@ -65,10 +65,10 @@ class Places:
     cell: Labels
 
 
-def places_of(grid: Grid) -> Places:
+def places_of(grid: Grid) -> GridPoints:
     """The centres of a grid's pixels."""
     x, y = np.broadcast_arrays(grid.x[None, :], grid.y[:, None])
-    return Places(x, y, grid.cell)
+    return GridPoints(x, y, grid.cell)
 
 
 @dataclass(slots=True)
@@ -79,12 +79,12 @@ class Filling:
     done: Flags
 
 
-def wanted_of(result: RegionMap, cell: Labels) -> Wanted:
+def wanted_of(result: RegionMap, cell: Labels) -> PixelCounts:
     """What the exact map says of each pixel, by the numbers of their cells."""
     only_stable = any(c.total is None or len(c.solutions) < c.total for c in result.cells if c.solutions)
     counts = [c.stable if only_stable else c.total for c in result.cells]
     table = np.array([*(NONE if v is None else v for v in counts), NONE], dtype=np.int64)
-    return Wanted(table[cell], cell, tuple(c.index for c in result.cells), only_stable)
+    return PixelCounts(table[cell], cell, tuple(c.index for c in result.cells), only_stable)
 
 
 def starting_points(model: Model, cell: Cell, only_stable: bool) -> Floats:
@@ -102,16 +102,16 @@ def starting_points(model: Model, cell: Cell, only_stable: bool) -> Floats:
     return found
 
 
-class Follower:
+class PixelSolver:
     """Newton's method for a slice's model at any of some places."""
 
-    def __init__(self, result: RegionMap, places: Places):
+    def __init__(self, result: RegionMap, places: GridPoints):
         self.model = result.slice.model
         self.names, self.places, self.wanted = result.slice.axis_names, places, wanted_of(result, places.cell)
         self.values = parameters_at(result.slice, places.x, places.y)
         self.angles = len(self.model.angles)
 
-    def state(self, rows: Labels, columns: Labels, at: Floats) -> State:
+    def state(self, rows: Labels, columns: Labels, at: Floats) -> ModelState:
         """At pixels, points of shape (n, pixels, solutions)."""
         values = {name: v[rows, columns] if np.ndim(v) else v for name, v in self.values.items()}
         return state_at(self.model, values, at)
@@ -182,7 +182,7 @@ def parameters_at(slice: Slice, x: Floats, y: Floats) -> Mapping[str, Any]:
     return found
 
 
-def filled(result: RegionMap, follower: Follower, check: Callable[[], None] = lambda: None) -> Filling:
+def filled(result: RegionMap, follower: PixelSolver, check: Callable[[], None] = lambda: None) -> Filling:
     """The solutions at every pixel, as far as neighbours lead to them.
 
     Parameters
@@ -211,7 +211,7 @@ def _strides(size: int) -> Iterator[int]:
         stride //= 2
 
 
-def _begin(result: RegionMap, filling: Filling, follower: Follower, seen: Flags, check: Callable[[], None]) -> None:
+def _begin(result: RegionMap, filling: Filling, follower: PixelSolver, seen: Flags, check: Callable[[], None]) -> None:
     """In each cell of which no pixel is done: from the sample's solutions to the pixels that are nearest to it."""
     cells = follower.wanted.cell
     finished = set(np.unique(cells[filling.done & (cells != NONE)]).tolist())
@@ -236,7 +236,7 @@ def _begin(result: RegionMap, filling: Filling, follower: Follower, seen: Flags,
             _take(filling, follower, rows[nearest], columns[nearest], guess)
 
 
-def _spread(filling: Filling, follower: Follower, seen: Flags, stride: int, check: Callable[[], None]) -> None:
+def _spread(filling: Filling, follower: PixelSolver, seen: Flags, stride: int, check: Callable[[], None]) -> None:
     """From pixels that are done to their neighbours of the same count, until none is left that this helps."""
     total = follower.wanted.total
     steps = [
@@ -259,7 +259,7 @@ def _spread(filling: Filling, follower: Follower, seen: Flags, stride: int, chec
                 moved |= _take(filling, follower, rows, columns, filling.at[:, s, t])
 
 
-def _take(filling: Filling, follower: Follower, rows: Labels, columns: Labels, guess: Floats) -> bool:
+def _take(filling: Filling, follower: PixelSolver, rows: Labels, columns: Labels, guess: Floats) -> bool:
     """Solutions at pixels from a guess, kept where they are all; whether some are."""
     found = False
     for first in range(0, len(rows), BATCH):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ptmcad.ask.fields.equations import Evaluation, Floats, State, newton
+from ptmcad.ask.fields.equations import Evaluation, Floats, ModelState, newton
 
 STRIDE = 0.05
 """The longest step, in radians or units."""
@@ -61,16 +61,16 @@ def _aside(evaluate: Evaluation, start: Floats) -> Floats:
     return chosen
 
 
-def _height(state: State) -> float:
+def _height(state: ModelState) -> float:
     assert state.height is not None  # what has no energy does not descend
     return float(state.height[0])
 
 
-def _rounding(state: State) -> float:
+def _rounding(state: ModelState) -> float:
     return 1e-12 * (1 + abs(_height(state)))
 
 
-def solution(evaluate: Evaluation, start: Floats) -> tuple[Floats, State] | None:
+def solution(evaluate: Evaluation, start: Floats) -> tuple[Floats, ModelState] | None:
     """The solution to which Newton's method leads, with the model there; None where it does not converge."""
     at, length = newton(evaluate, start[:, None], STEPS_TO_SOLUTION, NEAR * (1 + float(np.linalg.norm(start))))
     if not length[0] <= NEAR * (1 + float(np.linalg.norm(at))):

@@ -20,7 +20,7 @@ from ptmcad.model.compile import CompiledSystem, compiled
 Floats = NDArray[np.float64]
 
 
-class State(NamedTuple):
+class ModelState(NamedTuple):
     """A model at points of shape S.
 
     Attributes
@@ -31,7 +31,7 @@ class State(NamedTuple):
     conditions : what is positive at solutions that count.
     stability : without a potential what is positive at stable ones.
     points : of a mechanism without closed loops, by name.
-    lengths, forces : of its springs, in their order; a force is positive where the spring pulls.
+    stretches : of its springs, in their order, length, free length and force, which is positive where the spring pulls.
     work : of moments, shape S; None where none works.
     """
 
@@ -41,8 +41,7 @@ class State(NamedTuple):
     conditions: tuple[Floats, ...] = ()
     stability: tuple[Floats, ...] = ()
     points: Mapping[str, tuple[Floats, Floats]] = MappingProxyType({})
-    lengths: tuple[Floats, ...] = ()
-    forces: tuple[Floats, ...] = ()
+    stretches: tuple[tuple[Floats, Floats, Floats], ...] = ()
     work: Floats | None = None
 
     @property
@@ -62,7 +61,7 @@ class State(NamedTuple):
         return np.asarray((eigenvalues(self.jacobian) < 0).sum(axis=0))
 
 
-def state_at(model: Model, values: Mapping[str, Any], at: Floats) -> State:
+def state_at(model: Model, values: Mapping[str, Any], at: Floats) -> ModelState:
     """The model at values of its parameters (arrays that fit S; a free length that is not there is zero) and points.
 
     Parameters
@@ -75,17 +74,17 @@ def state_at(model: Model, values: Mapping[str, Any], at: Floats) -> State:
     given |= dict(zip(system.unknowns, at, strict=True))
     with np.errstate(divide="ignore", invalid="ignore"):  # a spring without length has no direction: nan
         # a root has no slope at zero, so that there is none where no free length is
-        relaxed = tuple(k for k, length in enumerate(_free_lengths(system).at(given)) if np.any(length))
+        relaxed = tuple(k for k, free in enumerate(_free_lengths(system).at(given)) if np.any(free))
         found = _formulas(system, relaxed).at(given, lambda value: np.broadcast_to(value, at.shape[1:]))
     jacobian = np.stack([np.stack(row) for row in found["jacobian"]])
     if relaxed and system.tangent:  # along loops, of which the compiled conditions are without free lengths
         found["stability"] = (determinant(jacobian),)
-    return State(**found | {"residuals": np.stack(found["residuals"]), "jacobian": jacobian})
+    return ModelState(**found | {"residuals": np.stack(found["residuals"]), "jacobian": jacobian})
 
 
 @lru_cache(maxsize=16)
 def _free_lengths(system: CompiledSystem) -> Doubles:
-    return Doubles(system.free_lengths, np)
+    return Doubles(tuple(free for _, free, _ in system.stretches), np)
 
 
 @lru_cache(maxsize=16)
@@ -103,7 +102,7 @@ def _formulas(system: CompiledSystem, relaxed: tuple[int, ...]) -> Doubles:
         "stability": system.stability,
     }
     if system.are_slopes:
-        found |= {"points": system.points, "lengths": system.lengths, "forces": system.forces}
+        found |= {"points": system.points, "stretches": system.stretches}
         found["work"] = system.work if system.acting else None
     return Doubles(found, np)
 
@@ -133,7 +132,7 @@ def eigenvalues(hessian: Floats) -> Floats:
     return np.moveaxis(np.asarray(np.linalg.eigvalsh(matrices), dtype=np.float64), -1, 0)
 
 
-def newton_step(state: State) -> Floats:
+def newton_step(state: ModelState) -> Floats:
     """What Newton's method subtracts: shape (n, *S); nan where the Jacobian is singular."""
     a, b = state.jacobian, state.residuals
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -151,7 +150,7 @@ def newton_step(state: State) -> Floats:
         return np.stack(columns)
 
 
-Evaluation = Callable[[Floats], State]
+Evaluation = Callable[[Floats], ModelState]
 """From unknowns of shape (n, *S) to the model there."""
 
 

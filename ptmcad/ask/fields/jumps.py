@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.ask.fields.branches import BATCH, Filling, Flags, Follower, Labels, Places
+from ptmcad.ask.fields.branches import BATCH, Filling, Flags, GridPoints, Labels, PixelSolver
 from ptmcad.ask.fields.equations import Floats, apart
 
 PARTS = (1, 4, 16, 64)
@@ -28,7 +28,7 @@ Pixels = tuple[Labels, Labels]
 
 def jumps(
     result: RegionMap,
-    follower: Follower,
+    follower: PixelSolver,
     solutions: Filling,
     chosen: Labels,
     region: Labels,
@@ -65,7 +65,7 @@ def jumps(
 
 
 def _differ(
-    result: RegionMap, follower: Follower, solutions: Filling, chosen: Labels, start: Pixels, end: Pixels
+    result: RegionMap, follower: PixelSolver, solutions: Filling, chosen: Labels, start: Pixels, end: Pixels
 ) -> Flags:
     """Whether following the chosen solutions from pixels does not lead to those that are chosen at others."""
     apart = np.ones(len(start[0]), dtype=np.bool_)
@@ -79,15 +79,15 @@ def _differ(
     return apart
 
 
-def _followed(result: RegionMap, follower: Follower, at: Floats, ends: tuple[Pixels, Pixels], parts: int) -> Floats:
+def _followed(result: RegionMap, follower: PixelSolver, at: Floats, ends: tuple[Pixels, Pixels], parts: int) -> Floats:
     """Solutions of shape (n, pixels), led along straight ways between pixels in equal parts; nan where that fails."""
     shares = np.arange(1, parts + 1) / parts
     x, y = (
         along[ends[0]][:, None] + (along[ends[1]] - along[ends[0]])[:, None] * shares
         for along in (follower.places.x, follower.places.y)
     )
-    ways = Places(x, y, np.full((len(at[0]), parts), NONE))
-    on_way = Follower(result, ways)
+    ways = GridPoints(x, y, np.full((len(at[0]), parts), NONE))
+    on_way = PixelSolver(result, ways)
     rows = np.arange(len(at[0]))
     for step in range(parts):
         at = on_way.converged(rows, np.full(len(rows), step), at[:, :, None])[:, :, 0]

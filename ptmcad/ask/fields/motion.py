@@ -21,7 +21,7 @@ import numpy as np
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.motion import Fall, Motion, Place, Step
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.ask.fields.branches import Follower, Places, filled
+from ptmcad.ask.fields.branches import GridPoints, PixelSolver, filled
 from ptmcad.ask.fields.course import Course, corners_of
 from ptmcad.ask.fields.descent import descent
 from ptmcad.ask.fields.equations import Floats, apart
@@ -118,8 +118,8 @@ def _stops(walk: _Walk, frames: int) -> list[_Stop]:
         points.append(point)
         cells.append(cell)
     x, y = (np.array([[float(point[k]) for point in points]]) for k in (0, 1))
-    places = Places(x, y, np.array([cells], dtype=np.int64))
-    follower = Follower(result, places)
+    places = GridPoints(x, y, np.array([cells], dtype=np.int64))
+    follower = PixelSolver(result, places)
     solutions, wanted = filled(result, follower), follower.wanted
     complete(result, lambda _, column: points[column], solutions, wanted.total, lambda: None)
     stops: list[_Stop] = []

@@ -10,7 +10,7 @@ from ptmcad.answer.motion import Place
 from ptmcad.ask.fields.branches import parameters_at
 from ptmcad.ask.fields.course import Course
 from ptmcad.ask.fields.descent import solution
-from ptmcad.ask.fields.equations import Floats, State, state_at
+from ptmcad.ask.fields.equations import Floats, ModelState, state_at
 from ptmcad.question.slice import Slice
 
 ALONG = 0.08
@@ -25,16 +25,16 @@ class Track:
     def __init__(self, slice: Slice, course: Course):
         self.slice, self.course, self.model = slice, course, slice.model
 
-    def state(self, at: Place, unknowns: Floats) -> State:
+    def state(self, at: Place, unknowns: Floats) -> ModelState:
         """The model at a point of the slice, and unknowns of shape (n, k)."""
         x, y = (np.array([float(value)]) for value in at)
         return state_at(self.model, parameters_at(self.slice, x, y), unknowns)
 
-    def at(self, share: float, unknowns: Floats) -> State:
+    def at(self, share: float, unknowns: Floats) -> ModelState:
         """The same where a share of the course is done."""
         return self.state(self.course.at(Fraction(share)), unknowns)
 
-    def solved(self, share: float, start: Floats) -> tuple[Floats, State] | None:
+    def solved(self, share: float, start: Floats) -> tuple[Floats, ModelState] | None:
         """Where Newton's method leads from unknowns of shape (n,), with the model there."""
         return solution(lambda at: self.at(share, at), start)
 

@@ -132,7 +132,7 @@ def _solutions(
     boxes = [_box(s, model, polynomial) for s in cell.solutions]
     told = _Pose(
         None if polynomial or not system.has_index else system.energy(),
-        *((system.points, system.lengths, system.forces, system.deflections) if system.are_slopes else ()),
+        *((system.points, system.stretches, system.deflections) if system.are_slopes else ()),
     )
     poses: list[_Pose] = [evaluated(told, _Within(system, values, box)) for box in boxes]
     energies = [None if pose.energy is None else pose.energy.bounds for pose in poses]
@@ -173,16 +173,15 @@ class _Pose(NamedTuple):
 
     energy: Any
     points: Mapping[str, tuple[Any, Any]] = MappingProxyType({})
-    lengths: tuple[Any, ...] = ()
-    forces: tuple[Any, ...] = ()
+    stretches: tuple[tuple[Any, Any, Any], ...] = ()
     deflections: tuple[tuple[Any, Any, Any], ...] = ()
 
 
 def _parts(mechanism: Mechanism, poses: Sequence[_Pose]) -> list[dict[str, Any]]:
     """Of each equilibrium the points, and what springs of both sorts do."""
     places = [coordinate for pose in poses for place in pose.points.values() for coordinate in place]
-    length_place = _place(length for pose in poses for length in (*pose.lengths, *places))
-    force_place = _place(force for pose in poses for force in pose.forces)
+    length_place = _place([*places, *(length for pose in poses for length, _, _ in pose.stretches)])
+    force_place = _place(force for pose in poses for _, _, force in pose.stretches)
     moment_place = _place(moment for pose in poses for _, _, moment in pose.deflections)
     found = []
     for pose in poses:
@@ -197,8 +196,8 @@ def _parts(mechanism: Mechanism, poses: Sequence[_Pose]) -> list[dict[str, Any]]
         entry: dict[str, Any] = {
             "nodes": [[_drawn(x.bounds) for x in place] for place in pose.points.values()],
             "places": [shown[name] for name in mechanism.moving],
-            "lengths": [decimal_text(length.bounds, length_place) for length in pose.lengths],
-            "forces": [decimal_text(force.bounds, force_place) for force in pose.forces],
+            "lengths": [decimal_text(length.bounds, length_place) for length, _, _ in pose.stretches],
+            "forces": [decimal_text(force.bounds, force_place) for _, _, force in pose.stretches],
         }
         found.append(entry | ({"deflections": turned} if turned else {}))
     return found
