@@ -55,7 +55,7 @@ def boundaries(result: RegionMap, tolerance: Any = TOLERANCE) -> tuple[Boundary,
 
 
 @dataclass(frozen=True, slots=True)
-class _Piece:
+class _Polyline:
     """A polyline; the regions are those below and above it, or before and behind a line across the base."""
 
     points: tuple[Share, ...]
@@ -65,13 +65,13 @@ class _Piece:
     across: bool = False
 
 
-def _pieces(result: RegionMap, tolerance: Fraction) -> Iterator[_Piece]:
+def _pieces(result: RegionMap, tolerance: Fraction) -> Iterator[_Polyline]:
     chained = chains(result, tolerance)
-    pending: list[_Piece] = []
+    pending: list[_Polyline] = []
     for k, (stack, walls) in enumerate(zip(result.stacks, chained, strict=True)):
         here = [result.cells[n].region for n in stack.cells]
         found = [
-            _Piece(c.points, w.component, sides, c.distance)
+            _Polyline(c.points, w.component, sides, c.distance)
             for w, c, sides in zip(stack.walls, walls, pairwise(here), strict=True)
         ]
         if k:
@@ -82,7 +82,7 @@ def _pieces(result: RegionMap, tolerance: Fraction) -> Iterator[_Piece]:
     yield from _lines(result, chained)
 
 
-def _joined(before: list[_Piece], after: list[_Piece]) -> tuple[list[_Piece], list[_Piece]]:
+def _joined(before: list[_Polyline], after: list[_Polyline]) -> tuple[list[_Polyline], list[_Polyline]]:
     """Pieces that go on, where there is only one that they can be; with those that end."""
     joined, used = [], set()
     for piece in after:
@@ -95,18 +95,18 @@ def _joined(before: list[_Piece], after: list[_Piece]) -> tuple[list[_Piece], li
     return joined, [piece for k, piece in enumerate(before) if k not in used]
 
 
-def _together(left: _Piece, right: _Piece) -> _Piece:
+def _together(left: _Polyline, right: _Polyline) -> _Polyline:
     # at the seam each has a height of its own, and its distance is proved for chords that begin or end there
     points = (*left.points, *right.points[left.points[-1] == right.points[0] :])
-    return _Piece(points, right.component, right.regions, max(left.distance, right.distance))
+    return _Polyline(points, right.component, right.regions, max(left.distance, right.distance))
 
 
-def _continues(left: _Piece, right: _Piece) -> bool:
+def _continues(left: _Polyline, right: _Polyline) -> bool:
     near = abs(left.points[-1][1] - right.points[0][1]) <= left.distance + right.distance
     return near and (left.component, left.regions) == (right.component, right.regions)
 
 
-def _lines(result: RegionMap, chained: tuple[tuple[WallPolyline, ...], ...]) -> Iterator[_Piece]:
+def _lines(result: RegionMap, chained: tuple[tuple[WallPolyline, ...], ...]) -> Iterator[_Polyline]:
     """Lines across the base, from wall to wall."""
     lines = lines_of(result.components, result.base)
     spans = critical_shares(result)
@@ -122,7 +122,7 @@ def _lines(result: RegionMap, chained: tuple[tuple[WallPolyline, ...], ...]) -> 
             for low, high in pairwise(_apart(walls)):
                 middle = (low + high) / 2
                 sides = [own[sum(h < middle for h in heights)] for own, heights in zip(cells, ends, strict=True)]
-                yield _Piece(((at, low), (at, high)), component, (sides[0], sides[1]), radius, across=True)
+                yield _Polyline(((at, low), (at, high)), component, (sides[0], sides[1]), radius, across=True)
 
 
 def _apart(walls: list[tuple[Fraction, Fraction]]) -> list[Fraction]:
@@ -136,7 +136,7 @@ def _apart(walls: list[tuple[Fraction, Fraction]]) -> list[Fraction]:
     return [*(height for height, _ in found), Fraction(1)]
 
 
-def _drawn(result: RegionMap, piece: _Piece) -> Boundary:
+def _drawn(result: RegionMap, piece: _Polyline) -> Boundary:
     """In the axes' order and units."""
     base = result.base
     axes = (result.slice.axes[base], result.slice.axes[1 - base])

@@ -99,7 +99,7 @@ def surface_of(
     ConfigError
         For numbers beyond doubles.
     """
-    search = _Search(common, changes, tolerance, max_members, options)
+    search = _SurfaceSearch(common, changes, tolerance, max_members, options)
     search.run()
     axes, free, runs = common.family.axes, common.family.free, search.runs()
     with within_doubles(common.family.member(changes.between[0])):
@@ -144,7 +144,7 @@ class _Gap(NamedTuple):
         return ((a, self.low, b, self.middle), (b, self.middle, c, self.high))
 
 
-class _Search:
+class _SurfaceSearch:
     """The search for members, worst gaps first.
 
     Attributes

@@ -23,7 +23,7 @@ from ptmcad.answer.changes import TOLERANCE, Change, Changes
 from ptmcad.ask.changewords import described
 from ptmcad.ask.classification import check_count
 from ptmcad.ask.engines import is_certified
-from ptmcad.ask.members import Asked, Common, in_common, in_space
+from ptmcad.ask.members import AskedFamily, Common, in_common, in_space
 from ptmcad.errors import ConfigError, HypothesisError, LimitReached
 from ptmcad.exact.arrangement import Picture, picture_of
 from ptmcad.exact.familyprojection import critical_values
@@ -116,7 +116,7 @@ class Members:
         self._known: dict[Fraction, Picture] = {}
 
     @property
-    def family(self) -> Asked:
+    def family(self) -> AskedFamily:
         return self.common.family
 
     def check(self) -> None:

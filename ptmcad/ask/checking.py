@@ -68,7 +68,7 @@ _BY_INTERVALS = "; --engine certified encloses the map"
 
 
 @dataclass(frozen=True, slots=True)
-class Check:
+class CheckedSlice:
     """What a record asks.
 
     Attributes
@@ -91,7 +91,7 @@ class Check:
     bases: str = ""
 
 
-def check(slice: Slice, sized: bool = True) -> Check:
+def check(slice: Slice, sized: bool = True) -> CheckedSlice:
     """What a slice asks and what that will cost.
 
     Parameters
@@ -126,9 +126,9 @@ def check(slice: Slice, sized: bool = True) -> Check:
             if error.key != "unknowns" or len(slice.model.unknowns) > MAX_UNKNOWNS_AT_POINTS:
                 raise
             cost = f"no map can be made, since {error.message}: ask for single points, by ptmcad solve"
-        return Check(slice, at, None, "certified", f"{cost}; {flat}" if flat else cost)
+        return CheckedSlice(slice, at, None, "certified", f"{cost}; {flat}" if flat else cost)
     if len(slice.model.unknowns) > MAX_UNKNOWNS:
-        return Check(slice, at, None, "exact", _UNCOUNTED)
+        return CheckedSlice(slice, at, None, "exact", _UNCOUNTED)
     found, bound = _counted(slice, at, sized)
     return replace(found, bases=plan_text(bound))
 
@@ -170,36 +170,36 @@ def _check_bounded(slice: Slice) -> None:
         ranges(branch, slice.axes)
 
 
-def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tuple[Check, int]:
+def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tuple[CheckedSlice, int]:
     """The check of a slice that the exact engine takes, and the bound for its solutions by Bezout's theorem."""
     problem = problem_of(slice)
     values = point_values(problem.parameters, (from_fraction(sample[0]), from_fraction(sample[1])))
     degree, bound = degree_bound(problem.system, values)
     if degree > MAX_DEGREE or bound > MAX_BOUND:
-        return Check(slice, sample, None, "exact", _UNCOUNTED, bound), bound
+        return CheckedSlice(slice, sample, None, "exact", _UNCOUNTED, bound), bound
     others = (point_values(problem.parameters, at) for at in points(problem.window))
     try:
         found, doubt = _solutions(problem.system, values)
         everywhere = bool(doubt) and all(_solutions(problem.system, other)[1] for other in others)
     except LimitReached:
-        return Check(slice, sample, None, "exact", _UNCOUNTED, bound), bound
+        return CheckedSlice(slice, sample, None, "exact", _UNCOUNTED, bound), bound
     if everywhere:
         seen = f"at {len(SHARES)} points that were tried {doubt}"
         if (found or 0) > MAX_PROVED:
             refused = f"not known: {seen}; a slice where that is so everywhere is refused"
-            return Check(slice, sample, found, "exact", refused), bound
+            return CheckedSlice(slice, sample, found, "exact", refused), bound
         if not returns_within(MAX_SECONDS, _prove, slice):
             late = "; that it is so everywhere, where the slice is refused, was not proved in the time"
-            return Check(slice, sample, found, "exact", f"not known: {seen}{late}"), bound
+            return CheckedSlice(slice, sample, found, "exact", f"not known: {seen}{late}"), bound
     if not found:
-        return Check(slice, sample, None, "exact", f"not known: at the sample {doubt}"), bound
+        return CheckedSlice(slice, sample, None, "exact", f"not known: at the sample {doubt}"), bound
     foretold = _foretold(problem, found) if not doubt and (sized or found > _LONG) else None
     words = _UNSIZED if foretold is None else in_figures(foretold)
     far = found > _LONG if foretold is None else not foretold.reachable
     if far and foretold is not None:
         words += f"; {OUT_OF_REACH}"
     offered = _BY_INTERVALS if far and _encloses(slice) else ""
-    return Check(slice, sample, found, "exact", words + offered, forecast=foretold), bound
+    return CheckedSlice(slice, sample, found, "exact", words + offered, forecast=foretold), bound
 
 
 def _foretold(problem: SliceProblem, solutions: int) -> Forecast | None:
@@ -327,7 +327,7 @@ def asked_text(slice: Slice) -> Iterator[str]:
     yield f"{'count':<12}{slice.count.value}"
 
 
-def cost_text(found: Check) -> Iterator[str]:
+def cost_text(found: CheckedSlice) -> Iterator[str]:
     """What it will cost as lines of text."""
     slice = found.slice
     at = ", ".join(f"{a.name} = {short_text(value)}" for a, value in zip(slice.axes, found.sample, strict=True))

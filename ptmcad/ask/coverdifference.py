@@ -33,7 +33,7 @@ Held = tuple[int, int]
 
 
 @dataclass(frozen=True, slots=True)
-class Side:
+class ComparedMap:
     """One of the maps: its components, and which region each of those that have one is in."""
 
     result: RegionMap
@@ -53,7 +53,7 @@ class Side:
         return found
 
 
-def side(result: RegionMap, cover: Cover) -> Side:
+def side(result: RegionMap, cover: Cover) -> ComparedMap:
     """A certified map made ready.
 
     Raises
@@ -65,10 +65,10 @@ def side(result: RegionMap, cover: Cover) -> Side:
     region_of = {place: result.cells[cell].region for place, cell in cells.items() if place is not None}
     if not all(region < len(result.regions) for region in region_of.values()):
         raise ConfigError("the map contradicts itself (a cell is in no region); check it with ptmcad verify")
-    return Side(result, complement, region_of)
+    return ComparedMap(result, complement, region_of)
 
 
-def cover_difference(first: Side, second: Side) -> Comparison:
+def cover_difference(first: ComparedMap, second: ComparedMap) -> Comparison:
     """The difference of two certified maps with the same axes, window and count."""
     covers = (first.complement.cover, second.complement.cover)
     steps = max(cover.steps for cover in covers)
@@ -107,7 +107,7 @@ def _finer(cover: Cover, steps: int) -> list[tuple[int, int, int, int]]:
     return [(by * left, by * right, by * bottom, by * top) for left, right, bottom, top in cover.rectangles]
 
 
-def _held(complement: Components, sides: Sequence[Side]) -> dict[int, Held]:
+def _held(complement: Components, sides: Sequence[ComparedMap]) -> dict[int, Held]:
     """For each component outside both covers the regions of both maps that hold it, where both have one."""
     corners = np.array(complement.rectangles, dtype=np.int64).reshape(-1, 4)
     found = []
@@ -122,7 +122,7 @@ def _held(complement: Components, sides: Sequence[Side]) -> dict[int, Held]:
     return {n: (a, b) for n, (a, b) in enumerate(zip(*found, strict=True)) if a is not None and b is not None}
 
 
-def _located(of: Side, complement: Components) -> list[int | None]:
+def _located(of: ComparedMap, complement: Components) -> list[int | None]:
     """The region of a map with slanted pieces that holds the middle of each component's rectangle."""
     scale = Fraction(of.complement.cover.steps, complement.cover.steps)
     regions = []

@@ -15,7 +15,7 @@ from typing import Any
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.design import BestDesign, Evaluation
 from ptmcad.ask.designing.optimiser import Enough, Point, best_of, within
-from ptmcad.ask.designing.proof import Limits, Proof, bounded, bounder_of, exact_maximum, most_on_lines, place_of
+from ptmcad.ask.designing.proof import Proof, ProofLimits, bounded, bounder_of, exact_maximum, most_on_lines, place_of
 from ptmcad.ask.designing.values import Evaluate, Value, evaluator
 from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError
@@ -94,12 +94,12 @@ def design(
         least = 0 if key == "seed" else 1
         if number is not None and (isinstance(number, bool) or not isinstance(number, int) or number < least):
             raise ConfigError(f"{number!r:.60} is not a whole number from {least} on", key=key)
-    search = _Search(asked, timeout, progress)
+    search = _DesignSearch(asked, timeout, progress)
     proof = search.run(share, seed, evaluations, boxes)
     return search.answer(proof, share, seed)
 
 
-class _Search:
+class _DesignSearch:
     """The designs that have been evaluated, and the best of them; ends when the time is over."""
 
     def __init__(self, asked: Design, timeout: float | None, progress: Progress | None) -> None:
@@ -135,7 +135,7 @@ class _Search:
         self._search(seed, evaluations or (UNPROVED * usual if isinstance(bounder, str) else usual))
         if isinstance(bounder, str):
             return Proof(None, bounder)
-        proof = bounded(asked, bounder, self._improved, Limits(tolerance, boxes, self._go_on))
+        proof = bounded(asked, bounder, self._improved, ProofLimits(tolerance, boxes, self._go_on))
         if space is not None:
             self._confirm()
         return proof if proof.bound is None else proof._replace(bound=max(proof.bound, most_on_lines(asked)))

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ptmcad.exact.models import ParametricSystem
 
 
-class Asked(Protocol):
+class AskedFamily(Protocol):
     """A family as a question, read from a record (`Family`) or off its maps (`Restored`)."""
 
     @property
@@ -93,7 +93,7 @@ class Restored:
 class Common(NamedTuple):
     """A family with what its members have in common; nothing where there is no variety of its own."""
 
-    family: Asked
+    family: AskedFamily
     variety: FamilyVariety | None
 
     @property
@@ -129,7 +129,7 @@ def member_map(common: Common, value: Fraction, options: Options = DEFAULTS) -> 
     return region_map(slice, options, partial(common.variety.at, from_fraction(value)))
 
 
-def in_common(asked: Asked, options: Options = DEFAULTS) -> Common:
+def in_common(asked: AskedFamily, options: Options = DEFAULTS) -> Common:
     """What the members of a family have in common, computed once.
 
     Nothing, where all members are certified, where the parameters are too large to be expanded in three variables, or
@@ -145,7 +145,7 @@ def in_common(asked: Asked, options: Options = DEFAULTS) -> Common:
         return Common(asked, None)
 
 
-def in_space(asked: Asked) -> tuple[ParametricSystem, dict[str, Ratio]]:
+def in_space(asked: AskedFamily) -> tuple[ParametricSystem, dict[str, Ratio]]:
     """The system, and its parameters over Z[x, y, z].
 
     Raises

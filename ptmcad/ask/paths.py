@@ -26,8 +26,8 @@ from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
 from ptmcad.answer.poses import Pose
 from ptmcad.ask.branches import Sample, SolutionsOnLine, short
 from ptmcad.ask.fields.course import Course
-from ptmcad.ask.fields.descent import descent, negatives
-from ptmcad.ask.fields.equations import Floats
+from ptmcad.ask.fields.descent import descent
+from ptmcad.ask.fields.equations import Floats, apart
 from ptmcad.ask.fields.field import unknowns_of
 from ptmcad.ask.fields.track import Track, followed
 from ptmcad.certified.intervals import certified_intervals
@@ -124,7 +124,6 @@ class _Walker:
         self.axis, self.varying, self.fixed = axis, varying, fixed
         self.intervals = intervals
         self.moved = moved(slice.model, line.parameters)
-        self.known: dict[Fraction, Sample | None] = {}
 
     def path(self, number: int, here: Sample, pose: Pose) -> PosePath:
         """One pose in both directions."""
@@ -135,12 +134,6 @@ class _Walker:
         sides = [set(point.sides) for point in points]
         upright, reverse = (all(own == {of} for own in sides) for of in (1, -1))
         return PosePath(number, here.value, points, low, high, upright, reverse)
-
-    def at(self, value: Fraction) -> Sample | None:
-        """All solutions at a value, kept for the next path."""
-        if value not in self.known:
-            self.known[value] = self.line.at(value)
-        return self.known[value]
 
     def _place(self, value: Fraction) -> Place:
         return (value, self.fixed) if self.varying == 0 else (self.fixed, value)
@@ -158,7 +151,7 @@ class _Walker:
             at, further = followed(track, current.at, done, share, 0)
             if further < share:
                 return reached, self._ended(track, current, (at, share), value, change)
-            sample = self.at(value)
+            sample = self.line.at(value)
             if sample is None:  # one point less: the pose is looked for among those of the next one
                 passed = change
                 continue
@@ -201,14 +194,12 @@ class _Walker:
         return near[0] if len(near) == 1 else None
 
     def _apart(self, at: Floats, pose: Pose) -> float:
-        gap = np.array(unknowns_of(pose)) - at
-        turns = len(self.slice.model.angles)
-        gap[:turns] = np.remainder(gap[:turns] + np.pi, 2 * np.pi) - np.pi
+        gap = apart(np.array(unknowns_of(pose)), at, len(self.slice.model.angles))
         return float(np.abs(gap).max())
 
     def _is_joined(self, track: Track, current: _Reached, done: float, beyond: Pose, share: float) -> bool:
         """Whether another stable pose goes on as the one beyond a pitchfork, too."""
-        before = self.at(current.value)
+        before = self.line.at(current.value)
         for pose in () if before is None else before.poses:
             if pose.stable and self._apart(current.at, pose) > SAME:
                 at, further = followed(track, np.array(unknowns_of(pose)), done, share, 0)
@@ -232,7 +223,7 @@ class _Walker:
         pitchfork becomes one with others.
         """
         stopped = self._undecided(current, change)
-        before, after = self.at(current.value), self.at(value)
+        before, after = self.line.at(current.value), self.line.at(value)
         if change is None or before is None or after is None:
             return stopped
         counts = [Counter(p.index for p in s.poses if p.index is not None) for s in (before, after)]
@@ -243,7 +234,7 @@ class _Walker:
             goes_on = track.solved(share, at)
             if goes_on is None or sorted(meeting + leaving) != [0, 1]:
                 return stopped
-            own = negatives(goes_on[1])
+            own = int(goes_on[1].negatives[0])
             meeting, leaving = (tuple(sorted((own, *meeting))), (own,)) if meeting else ((0,), (0, *leaving))
         if 0 not in meeting:
             return stopped

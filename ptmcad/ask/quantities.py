@@ -23,7 +23,7 @@ OPTION = "--quantity"
 _TIMES = " × "
 
 
-class Kind(Enum):
+class QuantityKind(Enum):
     """What a quantity is of a solution; where it belongs to a part of the mechanism, the word before the colon."""
 
     ENERGY = "energy"
@@ -40,8 +40,8 @@ class Kind(Enum):
     """an unknown on the line, which has no word before its name"""
 
 
-OF_ENERGY = (Kind.ENERGY, Kind.STIFFNESS, Kind.BARRIER)
-OF_PARTS = (Kind.FORCE, Kind.LENGTH, Kind.ANGLE, Kind.X, Kind.Y)
+OF_ENERGY = (QuantityKind.ENERGY, QuantityKind.STIFFNESS, QuantityKind.BARRIER)
+OF_PARTS = (QuantityKind.FORCE, QuantityKind.LENGTH, QuantityKind.ANGLE, QuantityKind.X, QuantityKind.Y)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ class Quantity:
     """
 
     name: str
-    kind: Kind
+    kind: QuantityKind
     unit: str
     part: str = ""
     number: int = 0
@@ -78,7 +78,7 @@ def quantity(model: Model, text: str, key: str = OPTION) -> Quantity:
         known = quantities(model)
         hint = did_you_mean(text.strip(), known) or _there_are(tuple(known))
         raise ConfigError(f"{text[:60]!r} is no quantity of {model.name}{hint}", key=key)
-    if found.kind is Kind.BARRIER:
+    if found.kind is QuantityKind.BARRIER:
         raise ConfigError("a barrier is no number of a pose alone: `ptmcad map --value barrier` has it", key=key)
     return found
 
@@ -112,12 +112,12 @@ def quantities(model: Model) -> dict[str, Quantity]:
     """
     found = [unknown(model, name) for name in (*model.angles, *model.reals)]
     if model.has_potential:
-        found += [_of_energy(model, kind, OPTION) for kind in (Kind.ENERGY, Kind.STIFFNESS)]
+        found += [_of_energy(model, kind, OPTION) for kind in (QuantityKind.ENERGY, QuantityKind.STIFFNESS)]
     mechanism = told_mechanism(model)
     if mechanism is not None:
-        numbers = mechanism.spring_numbers
-        found += [_of_part(model, kind, name, OPTION) for kind in (Kind.FORCE, Kind.LENGTH) for name in numbers]
-        found += [_of_part(model, kind, name, OPTION) for name in mechanism.moving for kind in (Kind.X, Kind.Y)]
+        *of_springs, _, x, y = OF_PARTS
+        found += [_of_part(model, kind, name, OPTION) for kind in of_springs for name in mechanism.spring_numbers]
+        found += [_of_part(model, kind, name, OPTION) for name in mechanism.moving for kind in (x, y)]
     return {q.name: q for q in found if q is not None}
 
 
@@ -130,19 +130,19 @@ def unit_of(quantity: Quantity, slice: Slice) -> str:
 def of_pose(quantity: Quantity, pose: Pose) -> Enclosure | None:
     """The value, enclosed; None where the pose has none."""
     match quantity.kind:
-        case Kind.ENERGY:
+        case QuantityKind.ENERGY:
             return pose.energy
-        case Kind.STIFFNESS:
+        case QuantityKind.STIFFNESS:
             return pose.eigenvalues[0] if pose.eigenvalues else None
-        case Kind.FORCE:
+        case QuantityKind.FORCE:
             return pose.springs[quantity.number].force
-        case Kind.LENGTH:
+        case QuantityKind.LENGTH:
             return pose.springs[quantity.number].length
-        case Kind.ANGLE | Kind.REAL:
+        case QuantityKind.ANGLE | QuantityKind.REAL:
             return (*pose.degrees, *pose.reals)[quantity.number]
-        case Kind.X | Kind.Y:
-            return pose.nodes[quantity.part][quantity.kind is Kind.Y]
-        case Kind.BARRIER:
+        case QuantityKind.X | QuantityKind.Y:
+            return pose.nodes[quantity.part][quantity.kind is QuantityKind.Y]
+        case QuantityKind.BARRIER:
             return None
 
 
@@ -151,12 +151,12 @@ def unknown(model: Model, name: str) -> Quantity | None:
     names = (*model.angles, *model.reals)
     if name not in names:
         return None
-    kind = Kind.ANGLE if name in model.angles else Kind.REAL
+    kind = QuantityKind.ANGLE if name in model.angles else QuantityKind.REAL
     unit = {UnknownKind.ANGLE: "degrees", UnknownKind.LENGTH: "length", UnknownKind.REAL: ""}[model.unknowns[name]]
     return Quantity(name, kind, unit, number=names.index(name))
 
 
-def _of_energy(model: Model, kind: Kind, key: str) -> Quantity:
+def _of_energy(model: Model, kind: QuantityKind, key: str) -> Quantity:
     if not model.has_potential:
         raise ConfigError(f"solutions of {model.name} have no energy{_there_are(tuple(quantities(model)))}", key=key)
     return Quantity(kind.value, kind, f"force{_TIMES}length" if mechanism_in(model) else "")
@@ -167,22 +167,22 @@ def told_mechanism(model: Model) -> Mechanism | None:
     return mechanism_in(model) if compiled(model).are_slopes else None
 
 
-def _of_part(model: Model, kind: Kind, name: str, key: str) -> Quantity:
+def _of_part(model: Model, kind: QuantityKind, name: str, key: str) -> Quantity:
     mechanism = told_mechanism(model)
     springs = {} if mechanism is None else mechanism.spring_numbers
     match kind:
-        case Kind.ANGLE:
+        case QuantityKind.ANGLE:
             what, known, unit = "unknown angle", model.angles, "degrees"
-        case Kind.FORCE | Kind.LENGTH:
+        case QuantityKind.FORCE | QuantityKind.LENGTH:
             what, known, unit = "spring", tuple(springs), kind.value
         case _:
             what, known, unit = "point", () if mechanism is None else tuple(mechanism.points), "length"
-    if mechanism is not mechanism_in(model) and kind is not Kind.ANGLE:
+    if mechanism is not mechanism_in(model) and kind is not QuantityKind.ANGLE:
         raise ConfigError(f"of closed loops, as {model.name} has, only the unknowns are told yet", key=key)
     if name not in known:
         there = f": they are {', '.join(known)}" if known else ": there are none"
         raise ConfigError(f"{model.name} has no {what} {name[:60]!r}{did_you_mean(name, known) or there}", key=key)
-    number = model.angles.index(name) if kind is Kind.ANGLE else springs.get(name, 0)
+    number = model.angles.index(name) if kind is QuantityKind.ANGLE else springs.get(name, 0)
     return Quantity(f"{kind.value}:{name}", kind, unit, part=name, number=number)
 
 

@@ -6,28 +6,28 @@ Guarantee: none but that of doubles. Where a length is zero, what is divided by 
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from ptmcad.formulas.graph import Formula, Operation
-from ptmcad.formulas.values import nodes_of
+from ptmcad.formulas.graph import Operation
+from ptmcad.formulas.values import formulas_in, mapped, nodes_of
 
 
 class Doubles:
-    """Formulas by names of groups.
+    """Tuples and mappings of formulas, as `ptmcad.formulas.values.evaluated` takes them.
 
     Parameters
     ----------
     functions : a module with ``cos``, ``sin`` and ``sqrt``: `math` for numbers, numpy for arrays that fit each other.
     """
 
-    def __init__(self, formulas: Mapping[str, Sequence[Formula]], functions: Any):
-        self._groups = {name: [formula.number for formula in group] for name, group in formulas.items()}
+    def __init__(self, structure: Any, functions: Any):
+        self._structure = structure
         known = _functions(functions)
         self._constants: dict[int, float] = {}
         self._variables: dict[int, int] = {}
         self._steps: list[tuple[int, Callable[..., Any], list[int]]] = []
-        for node in nodes_of([formula for group in formulas.values() for formula in group]):
+        for node in nodes_of(formulas_in(structure)):
             if node.value is not None:
                 self._constants[node.number] = float(node.value)
             elif node.operation is Operation.VARIABLE:
@@ -36,14 +36,14 @@ class Doubles:
                 operands = [operand.number for operand in (node.a, node.b) if operand is not None]
                 self._steps.append((node.number, known[node.operation], operands))
 
-    def at(self, values: Mapping[int, Any]) -> dict[str, list[Any]]:
-        """The formulas' values, given those of the variables by number."""
+    def at(self, values: Mapping[int, Any], of: Callable[[Any], Any] = lambda value: value) -> Any:
+        """The same with the formulas' values, or something made of each, given those of the variables by number."""
         found: dict[int, Any] = dict(self._constants)
         for number, variable in self._variables.items():
             found[number] = values[variable]
         for number, function, operands in self._steps:
             found[number] = function(*[found[operand] for operand in operands])
-        return {name: [found[number] for number in group] for name, group in self._groups.items()}
+        return mapped(self._structure, lambda formula: of(found[formula.number]))
 
 
 def _functions(functions: Any) -> dict[Operation, Callable[..., Any]]:

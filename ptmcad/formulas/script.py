@@ -5,12 +5,12 @@ Guarantee: the instructions are those of the formulas, each once, with constants
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from math import inf
 from typing import Any
 
-from ptmcad.formulas.graph import Formula, Operation
-from ptmcad.formulas.values import nodes_of
+from ptmcad.formulas.graph import Operation
+from ptmcad.formulas.values import formulas_in, mapped, nodes_of
 
 MAX_CONSTANT = 10**100
 """Of constants: products of a few stay within the range of doubles."""
@@ -28,13 +28,12 @@ _SIGNS = {
 }
 
 
-def script(
-    formulas: Mapping[str, Sequence[Formula]], sources: Mapping[int, Instruction]
-) -> tuple[list[Instruction], dict[str, list[int]]]:
-    """The instructions, and for each group of formulas their places.
+def script(structure: Any, sources: Mapping[int, Instruction]) -> tuple[list[Instruction], Any]:
+    """The instructions, and the structure with places of these in place of its formulas.
 
     Parameters
     ----------
+    structure : tuples and mappings of formulas, as `ptmcad.formulas.values.evaluated` takes them.
     sources : the instructions for variables, by their numbers.
     """
     written: dict[Instruction, int] = {}
@@ -43,7 +42,7 @@ def script(
     def put(*instruction: Any) -> int:
         return written.setdefault(instruction, len(written))
 
-    for node in nodes_of([formula for group in formulas.values() for formula in group]):
+    for node in nodes_of(formulas_in(structure)):
         operation, operands = node.operation, [operand for operand in (node.a, node.b) if operand is not None]
         if node.value is not None:
             place = put("=", float(node.value) if abs(node.value) < MAX_CONSTANT else inf)
@@ -62,4 +61,4 @@ def script(
             else:
                 place = put(_SIGNS[operation], *own)
         places[node.number] = place
-    return list(written), {name: [places[formula.number] for formula in group] for name, group in formulas.items()}
+    return list(written), mapped(structure, lambda formula: places[formula.number])

@@ -84,6 +84,37 @@ def values(formulas: Sequence[Formula], arithmetic: Arithmetic[Any]) -> list[Any
     return list(map(value, formulas))
 
 
+def evaluated(structure: Any, arithmetic: Arithmetic[Any]) -> Any:
+    """Tuples and mappings, nested in any way, with values in place of their formulas; anything else in them stays.
+
+    Raises
+    ------
+    AttributeError
+        As `values`.
+    """
+    found = iter(values(formulas_in(structure), arithmetic))
+    return mapped(structure, lambda _: next(found))
+
+
+def formulas_in(structure: Any) -> list[Formula]:
+    """The formulas of such a structure, in their order."""
+    formulas: list[Formula] = []
+    mapped(structure, formulas.append)
+    return formulas
+
+
+def mapped(structure: Any, of: Callable[[Formula], Any]) -> Any:
+    """Such a structure with something else in place of each formula."""
+    if isinstance(structure, Formula):
+        return of(structure)
+    if isinstance(structure, Mapping):
+        return {key: mapped(part, of) for key, part in structure.items()}
+    if isinstance(structure, tuple | list):
+        make = getattr(structure, "_make", type(structure))  # of a named tuple its own
+        return make(mapped(part, of) for part in structure)
+    return structure
+
+
 def substituted(formula: Formula, places: Mapping[int, Formula]) -> Formula:
     """The formula with others, of its graph, in the place of variables.
 
@@ -94,31 +125,6 @@ def substituted(formula: Formula, places: Mapping[int, Formula]) -> Formula:
     """
     found: Formula = values([formula], Substitution(formula.graph, places))[0]
     return found
-
-
-def evaluated(structure: Any, arithmetic: Arithmetic[Any]) -> Any:
-    """Tuples, lists and mappings, nested in any way, with values for formulas; anything else stays.
-
-    Raises
-    ------
-    AttributeError
-        As `values`.
-    """
-    formulas: list[Formula] = []
-    _mapped(structure, formulas.append)
-    found = iter(values(formulas, arithmetic))
-    return _mapped(structure, lambda _: next(found))
-
-
-def _mapped(structure: Any, of: Callable[[Formula], Any]) -> Any:
-    if isinstance(structure, Formula):
-        return of(structure)
-    if isinstance(structure, Mapping):
-        return {key: _mapped(part, of) for key, part in structure.items()}
-    if isinstance(structure, tuple | list):
-        make = getattr(structure, "_make", type(structure))  # of a named tuple its own
-        return make(_mapped(part, of) for part in structure)
-    return structure
 
 
 def nodes_of(formulas: Iterable[Formula]) -> list[Formula]:

@@ -169,19 +169,9 @@ class CompiledSystem:
         return self.angles + self.reals
 
     @property
-    def lengths(self) -> tuple[Formula, ...]:
-        """Of the springs."""
-        return tuple(spring.length for spring in self.springs)
-
-    @property
-    def forces(self) -> tuple[Formula, ...]:
-        """Of the springs, positive where they pull."""
-        return tuple(spring.force for spring in self.springs)
-
-    @property
-    def free_lengths(self) -> tuple[Formula, ...]:
-        """Of the springs."""
-        return tuple(spring.free for spring in self.springs)
+    def stretches(self) -> tuple[tuple[Formula, Formula, Formula], ...]:
+        """Of each spring its length, its free length, and its force, which is positive where it pulls."""
+        return tuple((spring.length, spring.free, spring.force) for spring in self.springs)
 
     @property
     def deflections(self) -> tuple[tuple[Formula, Formula, Formula], ...]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from random import Random
 
-from ptmcad.ask.checking import Check
+from ptmcad.ask.checking import CheckedSlice
 from ptmcad.question.config.sweeps import Sweeping
 from ptmcad.sweeping.member import Failed, Wanted, Work, compute
 from ptmcad.sweeping.run import axes_of, processors
@@ -21,7 +21,7 @@ ENOUGH = 1.0
 """... until they have taken so many seconds together."""
 
 
-def sweep_text(question: Sweeping, first: Check) -> Iterator[str]:
+def sweep_text(question: Sweeping, first: CheckedSlice) -> Iterator[str]:
     """The number of members and the time that they take here, as lines of text."""
     yield f"{'sweep':<12}{len(question)} members over {', '.join(question.sweep.names)}; above is the first member"
     if first.engine != "exact" or first.complex_solutions is None or first.complex_solutions > MAX_SOLUTIONS:

@@ -19,7 +19,7 @@ from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.fields import equations
 from ptmcad.ask.fields.barrier import barriers
-from ptmcad.ask.fields.equations import State
+from ptmcad.ask.fields.equations import ModelState
 from ptmcad.ask.fields.field import centre, exact_at, field_of, request_of
 from ptmcad.cli import map as command
 from ptmcad.cli import run
@@ -386,9 +386,9 @@ def test_a_barrier_among_more_poses_than_an_integer_has_bits() -> None:
     """-cos 40 x has 40 wells, and all passes between them are as high."""
     waves = 40
 
-    def evaluate(_pixels: Any, points: np.ndarray) -> State:
+    def evaluate(_pixels: Any, points: np.ndarray) -> ModelState:
         angle = waves * points[0]
-        return State(waves * np.sin(angle)[None], waves**2 * np.cos(angle)[None, None], -np.cos(angle))
+        return ModelState(waves * np.sin(angle)[None], waves**2 * np.cos(angle)[None, None], -np.cos(angle))
 
     at = (np.pi * np.arange(2 * waves) / waves)[None, None]
     stable = np.arange(2 * waves)[None] % 2 == 0

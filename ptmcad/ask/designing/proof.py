@@ -31,7 +31,7 @@ Look = Callable[[Mapping[str, Fraction]], Fraction]
 """From a design to a lower bound of the best value that is known after it was evaluated."""
 
 
-class Limits(NamedTuple):
+class ProofLimits(NamedTuple):
     """How far a proof may go.
 
     Attributes
@@ -129,7 +129,7 @@ def _interval(axis: Axis) -> tuple[fmpq, fmpq]:
     return from_fraction(axis.low), from_fraction(axis.high)
 
 
-def bounded(design: Design, bounder: Bounder, look: Look, limits: Limits) -> Proof:
+def bounded(design: Design, bounder: Bounder, look: Look, limits: ProofLimits) -> Proof:
     """A bound by branch and bound."""
     names = [axis.name for axis in design.over]
 

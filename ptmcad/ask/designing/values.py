@@ -14,7 +14,7 @@ from typing import NamedTuple
 from flint import arb, ctx
 
 from ptmcad.answer.intervals import Span
-from ptmcad.answer.poses import Pose, Poses
+from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.classification import region_map
 from ptmcad.ask.members import Common, member_map
@@ -159,20 +159,12 @@ def chosen(design: Design, poses: Poses) -> int | None:
     from ptmcad.ask.fields.field import choice_of
 
     choice = choice_of(design.pose, design.model)
-    unknowns = len(design.model.unknowns)
-    fits: Mapping[str, Callable[[Pose], bool]] = {
-        "pose": lambda pose: True,
-        "stable": lambda pose: pose.stable is True,
-        "unstable": lambda pose: pose.stable is not True,
-        "saddle": lambda pose: pose.index is not None and 0 < pose.index < unknowns,
-        "maximum": lambda pose: pose.index == unknowns,
-    }
-    numbers = [k for k, pose in enumerate(poses.equilibria) if fits[choice.kind](pose)]
+    numbers = choice.numbers(poses)
     return numbers[choice.rank - 1] if choice.rank <= len(numbers) else None
 
 
 def _barrier_of(design: Design) -> Evaluate:
-    from ptmcad.ask.fields.equations import eigenvalues, state_at
+    from ptmcad.ask.fields.equations import state_at
     from ptmcad.ask.fields.field import choice_of
 
     named(design.model, "barrier", KEY)
@@ -189,10 +181,9 @@ def _barrier_of(design: Design) -> Evaluate:
         if poses is None or number is None:
             return None
         given = {name: float(value) for name, value in poses.parameters.items()}
-        given |= {name: 0.0 for name in design.model.free_lengths if name not in given}
         points = [[float(e) for e in (*pose.angles, *pose.reals)] for pose in poses.equilibria]
         at = np.array(points).T[:, None, :]
-        stable = eigenvalues(state_at(design.model, given, at).jacobian)[0] > 0
+        stable = state_at(design.model, given, at).negatives == 0
         found = barriers(
             lambda _pixels, where: state_at(design.model, given, where),
             at,
@@ -265,11 +256,11 @@ def _tree(design: Design) -> Tree:
 def _enclosed(tree: Tree, known: Mapping[str, Enclosure]) -> Enclosure | None:
     """The value of an expression; None where it has none."""
     with ctx.workprec(_BITS):
-        value = interpret(tree, _Balls(known))
+        value = interpret(tree, _TreesInBalls(known))
         return Enclosure(exact(value.lower()), exact(value.upper())) if value.is_finite() else None
 
 
-class _Balls(NamedTuple):
+class _TreesInBalls(NamedTuple):
     """Expressions in balls."""
 
     known: Mapping[str, Enclosure]

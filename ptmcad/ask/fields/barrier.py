@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.ask.fields.equations import Floats, State, eigenvalues
+from ptmcad.ask.fields.equations import Floats, ModelState, apart, eigenvalues
 
 STEPS = 200
 """Of a descent."""
@@ -26,8 +26,8 @@ NEAR = 0.05
 
 Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
-Evaluate = Callable[[Integers, Floats], State]
-"""The model at pixels, given by their numbers, and points of shape (n, pixels, k)."""
+Evaluate = Callable[[Integers, Floats], ModelState]
+"""The model at pixels, given by their numbers, and points of shape (n, pixels), or (n, pixels, k)."""
 
 
 def barriers(evaluate: Evaluate, at: Floats, stable: Flags, chosen: Integers, angles: int) -> Floats:
@@ -44,8 +44,8 @@ def barriers(evaluate: Evaluate, at: Floats, stable: Flags, chosen: Integers, an
     own = np.arange(pixels)
     there = np.nan_to_num(at)
     state = evaluate(own, there)
-    energy = np.where(np.isnan(at[0]), np.inf, known(state.energy))
-    saddle = ((eigenvalues(state.jacobian) < 0).sum(axis=0) == 1) & ~np.isnan(at[0])
+    energy = np.where(np.isnan(at[0]), np.inf, state.known_energy)
+    saddle = (state.negatives == 1) & ~np.isnan(at[0])
     saddle &= (stable.sum(axis=1) > 1)[:, None]
     ends = _ends(evaluate, there, state, saddle, stable, angles)
     # of each solution the lowest number of those that it is joined to
@@ -67,7 +67,7 @@ def barriers(evaluate: Evaluate, at: Floats, stable: Flags, chosen: Integers, an
     return np.where(certain, found, np.nan)
 
 
-def _ends(evaluate: Evaluate, at: Floats, state: State, saddle: Flags, stable: Flags, angles: int) -> Integers:
+def _ends(evaluate: Evaluate, at: Floats, state: ModelState, saddle: Flags, stable: Flags, angles: int) -> Integers:
     """The stable solutions below each saddle on its two sides, shape (2, pixels, most); -1 where none was reached."""
     ends = np.full((2, *saddle.shape), -1, dtype=np.int64)
     pixel, number = np.nonzero(saddle)
@@ -78,7 +78,7 @@ def _ends(evaluate: Evaluate, at: Floats, state: State, saddle: Flags, stable: F
         active = np.arange(len(pixel))
         point = at[:, pixel, number] + sign * ASIDE * directions
         for _ in range(STEPS):
-            here = _at(evaluate, pixel[active], point)
+            here = evaluate(pixel[active], point)
             near = _nearest(at, stable, pixel[active], point, angles)
             reached = (near >= 0) & (eigenvalues(here.jacobian)[0] > 0)
             ends[side, pixel[active[reached]], number[active[reached]]] = near[reached]
@@ -86,17 +86,11 @@ def _ends(evaluate: Evaluate, at: Floats, state: State, saddle: Flags, stable: F
             if not len(active):
                 break
             step = _downhill(here)[:, ~reached]
-            point = point + _falling(evaluate, pixel[active], point, step, known(here.energy)[~reached])
+            point = point + _falling(evaluate, pixel[active], point, step, here.known_energy[~reached])
     return ends
 
 
-def _at(evaluate: Evaluate, pixels: Integers, point: Floats) -> State:
-    """At one point for each pixel: shape (n, pixels)."""
-    state = evaluate(pixels, point[:, :, None])
-    return State(state.residuals[..., 0], state.jacobian[..., 0], known(state.energy)[..., 0])
-
-
-def _downhill(state: State) -> Floats:
+def _downhill(state: ModelState) -> Floats:
     """Newton's step with the moduli of the curvatures, of at most the largest length."""
     values, vectors = np.linalg.eigh(np.moveaxis(state.jacobian, (0, 1), (-2, -1)))
     size = np.maximum(np.abs(values), 1e-12 * (1e-300 + np.abs(values).max(axis=-1, keepdims=True)))
@@ -110,8 +104,8 @@ def _downhill(state: State) -> Floats:
 def _falling(evaluate: Evaluate, pixels: Integers, point: Floats, step: Floats, start: Floats) -> Floats:
     """The step, halved until the energy falls over its middle to its end; zero where it never does."""
     for _ in range(12):
-        middle = known(_at(evaluate, pixels, point + step / 2).energy)
-        end = known(_at(evaluate, pixels, point + step).energy)
+        middle = evaluate(pixels, point + step / 2).known_energy
+        end = evaluate(pixels, point + step).known_energy
         falls = (middle <= start) & (end <= middle)
         if falls.all():
             return step
@@ -119,15 +113,8 @@ def _falling(evaluate: Evaluate, pixels: Integers, point: Floats, step: Floats, 
     return np.where(falls, step, 0.0)
 
 
-def known(energy: Floats | None) -> Floats:
-    """The energy of a model that has one."""
-    assert energy is not None
-    return energy
-
-
 def _nearest(at: Floats, stable: Flags, pixels: Integers, point: Floats, angles: int) -> Integers:
     """The stable solution near each point; -1 where there is none."""
-    gap = point[:, :, None] - at[:, pixels]
-    gap[:angles] = np.remainder(gap[:angles] + np.pi, 2 * np.pi) - np.pi
+    gap = apart(point[:, :, None], at[:, pixels], angles)
     near = stable[pixels] & (np.sqrt((gap**2).sum(axis=0)) < NEAR)
     return np.where(near.any(axis=1), near.argmax(axis=1), -1)

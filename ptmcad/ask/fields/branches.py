@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.regionmap import Cell, RegionMap
-from ptmcad.ask.fields.equations import Floats, State, determinant, eigenvalues, newton_step, state_at
+from ptmcad.ask.fields.equations import Floats, ModelState, apart, determinant, newton, state_at
 from ptmcad.model import Model
 from ptmcad.question.doubles import within_doubles
 from ptmcad.question.slice import Slice
@@ -35,12 +35,10 @@ SMALL = 1e-9
 """The last step, against the solution's size."""
 APART = 1e-7
 """Solutions are different when they are further apart, and than a thousand last steps."""
-_TOO_FAR = 1.0
-"""A longer step is not taken whole."""
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class PixelCounts:
     """How many solutions each pixel has, by the map: all of them, or the stable ones where only these are known.
 
     Attributes
@@ -56,7 +54,7 @@ class Wanted:
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class GridPoints:
     """Points of the window in rows, such that neighbours lie near each other: a grid's pixels, or steps of a path.
 
     All arrays have the shape (rows, columns): coordinates, and the number of the cell, `NONE` where there is none.
@@ -67,10 +65,10 @@ class Places:
     cell: Labels
 
 
-def places_of(grid: Grid) -> Places:
+def places_of(grid: Grid) -> GridPoints:
     """The centres of a grid's pixels."""
     x, y = np.broadcast_arrays(grid.x[None, :], grid.y[:, None])
-    return Places(x, y, grid.cell)
+    return GridPoints(x, y, grid.cell)
 
 
 @dataclass(slots=True)
@@ -81,12 +79,12 @@ class Filling:
     done: Flags
 
 
-def wanted_of(result: RegionMap, cell: Labels) -> Wanted:
+def wanted_of(result: RegionMap, cell: Labels) -> PixelCounts:
     """What the exact map says of each pixel, by the numbers of their cells."""
     only_stable = any(c.total is None or len(c.solutions) < c.total for c in result.cells if c.solutions)
     counts = [c.stable if only_stable else c.total for c in result.cells]
     table = np.array([*(NONE if v is None else v for v in counts), NONE], dtype=np.int64)
-    return Wanted(table[cell], cell, tuple(c.index for c in result.cells), only_stable)
+    return PixelCounts(table[cell], cell, tuple(c.index for c in result.cells), only_stable)
 
 
 def starting_points(model: Model, cell: Cell, only_stable: bool) -> Floats:
@@ -104,16 +102,16 @@ def starting_points(model: Model, cell: Cell, only_stable: bool) -> Floats:
     return found
 
 
-class Follower:
+class PixelSolver:
     """Newton's method for a slice's model at any of some places."""
 
-    def __init__(self, result: RegionMap, places: Places):
+    def __init__(self, result: RegionMap, places: GridPoints):
         self.model = result.slice.model
         self.names, self.places, self.wanted = result.slice.axis_names, places, wanted_of(result, places.cell)
         self.values = parameters_at(result.slice, places.x, places.y)
         self.angles = len(self.model.angles)
 
-    def state(self, rows: Labels, columns: Labels, at: Floats) -> State:
+    def state(self, rows: Labels, columns: Labels, at: Floats) -> ModelState:
         """At pixels, points of shape (n, pixels, solutions)."""
         values = {name: v[rows, columns] if np.ndim(v) else v for name, v in self.values.items()}
         return state_at(self.model, values, at)
@@ -136,44 +134,29 @@ class Follower:
 
     def _led(self, rows: Labels, columns: Labels, start: Floats) -> tuple[Floats, Floats, Flags]:
         """Where Newton's method leads, the lengths of its last steps, and where it has converged or had no start."""
-        at = start.copy()
-        empty = np.isnan(start[0])
-        at[:, empty] = 0.0
-        step = np.zeros_like(at)
-        with np.errstate(all="ignore"):
-            for _ in range(STEPS):
-                step = newton_step(self.state(rows, columns, at))
-                length = np.sqrt((step**2).sum(axis=0))
-                step = np.where(np.isfinite(step), step, np.nan)
-                at = at - step * np.minimum(1.0, _TOO_FAR / np.maximum(length, 1e-300))
-                if not np.nanmax(np.where(empty, 0.0, length), initial=0.0) > SMALL / 100:
-                    break
-            length = np.sqrt((step**2).sum(axis=0))
-            size = np.sqrt((at**2).sum(axis=0))
-            converged = (length <= SMALL * (1 + size)) | empty
-            at[: self.angles] = np.remainder(at[: self.angles] + np.pi, 2 * np.pi) - np.pi
-        return at, length, converged
+        at, length = newton(lambda at: self.state(rows, columns, at), start, STEPS, SMALL / 100)
+        converged = (length <= SMALL * (1 + np.sqrt((at**2).sum(axis=0)))) | np.isnan(start[0])
+        return apart(at, np.zeros_like(at), self.angles), length, converged
 
     def _different(self, at: Floats, length: Floats, empty: Flags) -> Flags:
         """Whether no two of a pixel's solutions are the same."""
         good = np.ones(at.shape[1], dtype=np.bool_)
         for a in range(at.shape[2]):
             for b in range(a):
-                gap = at[:, :, a] - at[:, :, b]
-                gap[: self.angles] = np.remainder(gap[: self.angles] + np.pi, 2 * np.pi) - np.pi
+                gap = apart(at[:, :, a], at[:, :, b], self.angles)
                 near = np.abs(gap).max(axis=0) <= np.maximum(APART, 1000 * (length[:, a] + length[:, b]))
                 good &= ~near | empty[:, a] | empty[:, b]
         return good
 
     def _right_kinds(self, rows: Labels, columns: Labels, at: Floats, empty: Flags) -> Flags:
         """Whether the solutions count, and as many have each index as the map says."""
-        state = self.state(rows, columns, at)
+        state = self.state(rows, columns, np.nan_to_num(at))
         good: Flags = np.ones(at.shape[1], dtype=np.bool_)
         for condition in state.conditions:
             good &= ((condition > 0) | empty).all(axis=1)
         if not self.model.has_potential:
             return np.asarray(good & ((determinant(state.jacobian) != 0) | empty).all(axis=1))
-        negative = (eigenvalues(state.jacobian) < 0).sum(axis=0)
+        negative = state.negatives
         if self.wanted.only_stable:
             return np.asarray(good & ((negative == 0) | empty).all(axis=1))
         cells = self.wanted.cell[rows, columns]
@@ -199,7 +182,7 @@ def parameters_at(slice: Slice, x: Floats, y: Floats) -> Mapping[str, Any]:
     return found
 
 
-def filled(result: RegionMap, follower: Follower, check: Callable[[], None] = lambda: None) -> Filling:
+def filled(result: RegionMap, follower: PixelSolver, check: Callable[[], None] = lambda: None) -> Filling:
     """The solutions at every pixel, as far as neighbours lead to them.
 
     Parameters
@@ -228,7 +211,7 @@ def _strides(size: int) -> Iterator[int]:
         stride //= 2
 
 
-def _begin(result: RegionMap, filling: Filling, follower: Follower, seen: Flags, check: Callable[[], None]) -> None:
+def _begin(result: RegionMap, filling: Filling, follower: PixelSolver, seen: Flags, check: Callable[[], None]) -> None:
     """In each cell of which no pixel is done: from the sample's solutions to the pixels that are nearest to it."""
     cells = follower.wanted.cell
     finished = set(np.unique(cells[filling.done & (cells != NONE)]).tolist())
@@ -253,7 +236,7 @@ def _begin(result: RegionMap, filling: Filling, follower: Follower, seen: Flags,
             _take(filling, follower, rows[nearest], columns[nearest], guess)
 
 
-def _spread(filling: Filling, follower: Follower, seen: Flags, stride: int, check: Callable[[], None]) -> None:
+def _spread(filling: Filling, follower: PixelSolver, seen: Flags, stride: int, check: Callable[[], None]) -> None:
     """From pixels that are done to their neighbours of the same count, until none is left that this helps."""
     total = follower.wanted.total
     steps = [
@@ -276,7 +259,7 @@ def _spread(filling: Filling, follower: Follower, seen: Flags, stride: int, chec
                 moved |= _take(filling, follower, rows, columns, filling.at[:, s, t])
 
 
-def _take(filling: Filling, follower: Follower, rows: Labels, columns: Labels, guess: Floats) -> bool:
+def _take(filling: Filling, follower: PixelSolver, rows: Labels, columns: Labels, guess: Floats) -> bool:
     """Solutions at pixels from a guess, kept where they are all; whether some are."""
     found = False
     for first in range(0, len(rows), BATCH):

@@ -6,11 +6,9 @@ short, and a third where they would go up or too far; Newton's method at the end
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
-from ptmcad.ask.fields.equations import Floats, State, eigenvalues
+from ptmcad.ask.fields.equations import Evaluation, Floats, ModelState, newton
 
 STRIDE = 0.05
 """The longest step, in radians or units."""
@@ -19,11 +17,11 @@ ASIDE = 1e-4
 """By how much the start is moved along the softest direction, to the lower side: at a place of symmetry nothing else
 tells where to go."""
 
-At = Callable[[Floats], State]
-"""The model at points of shape (n, 1)."""
+STEPS_TO_SOLUTION, NEAR = 16, 1e-10
+"""Of Newton's method at one place, and its last one against the solution's size."""
 
 
-def descent(evaluate: At, start: Floats) -> Floats | None:
+def descent(evaluate: Evaluation, start: Floats) -> Floats | None:
     """Places on the way down from a start of shape (n,), the minimum at its end: shape (number, n).
 
     None where no minimum is reached, as under a moment that turns a bar for ever.
@@ -50,12 +48,12 @@ def descent(evaluate: At, start: Floats) -> Floats | None:
         if length < STRIDE / 2:
             time *= 2
         if length < 1e-7 and values[0] * time > 100:
-            end = newton(evaluate, at)
+            end = solution(evaluate, at)
             return None if end is None else np.array([*way, end[0]])
     return None
 
 
-def _aside(evaluate: At, start: Floats) -> Floats:
+def _aside(evaluate: Evaluation, start: Floats) -> Floats:
     """A short step along the softest direction, to the side where it is lower."""
     direction = np.linalg.eigh(evaluate(start[:, None]).jacobian[..., 0])[1][:, 0]
     sides = [sign * ASIDE * direction for sign in (1.0, -1.0)]
@@ -63,37 +61,18 @@ def _aside(evaluate: At, start: Floats) -> Floats:
     return chosen
 
 
-def _height(state: State) -> float:
+def _height(state: ModelState) -> float:
     assert state.height is not None  # what has no energy does not descend
     return float(state.height[0])
 
 
-def _rounding(state: State) -> float:
+def _rounding(state: ModelState) -> float:
     return 1e-12 * (1 + abs(_height(state)))
 
 
-def newton(evaluate: At, start: Floats, most: int = 16) -> tuple[Floats, State] | None:
+def solution(evaluate: Evaluation, start: Floats) -> tuple[Floats, ModelState] | None:
     """The solution to which Newton's method leads, with the model there; None where it does not converge."""
-    at = start
-    for _ in range(most):
-        state = evaluate(at[:, None])
-        try:
-            step = np.linalg.solve(state.jacobian[..., 0], state.residuals[:, 0])
-        except np.linalg.LinAlgError:
-            return None
-        length = float(np.linalg.norm(step))
-        if not np.isfinite(length):
-            return None
-        if length <= 1e-10 * (1 + float(np.linalg.norm(at))):
-            return at, state
-        at = at - step / max(1.0, length)
-    return None
-
-
-def negatives(state: State) -> int:
-    """The number of negative eigenvalues at a point."""
-    return (
-        int((eigenvalues(state.jacobian)[..., 0] < 0).sum())
-        if len(state.jacobian) > 1
-        else int(state.jacobian[0, 0, 0] < 0)
-    )
+    at, length = newton(evaluate, start[:, None], STEPS_TO_SOLUTION, NEAR * (1 + float(np.linalg.norm(start))))
+    if not length[0] <= NEAR * (1 + float(np.linalg.norm(at))):
+        return None
+    return at[:, 0], evaluate(at)

@@ -5,25 +5,22 @@ Guarantee: none but that of the compiled system, whose formulas and their deriva
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
 from functools import lru_cache
-from itertools import product
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.formulas.doubles import Doubles
-from ptmcad.formulas.graph import Formula
 from ptmcad.model import Model
 from ptmcad.model.compile import CompiledSystem, compiled
 
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
-class State:
+class ModelState(NamedTuple):
     """A model at points of shape S.
 
     Attributes
@@ -34,7 +31,7 @@ class State:
     conditions : what is positive at solutions that count.
     stability : without a potential what is positive at stable ones.
     points : of a mechanism without closed loops, by name.
-    lengths, forces : of its springs, in their order; a force is positive where the spring pulls.
+    stretches : of its springs, in their order, length, free length and force, which is positive where the spring pulls.
     work : of moments, shape S; None where none works.
     """
 
@@ -43,18 +40,28 @@ class State:
     energy: Floats | None
     conditions: tuple[Floats, ...] = ()
     stability: tuple[Floats, ...] = ()
-    points: Mapping[str, Floats] = field(default_factory=dict)
-    lengths: tuple[Floats, ...] = ()
-    forces: tuple[Floats, ...] = ()
+    points: Mapping[str, tuple[Floats, Floats]] = MappingProxyType({})
+    stretches: tuple[tuple[Floats, Floats, Floats], ...] = ()
     work: Floats | None = None
+
+    @property
+    def known_energy(self) -> Floats:
+        """Of a model that has one."""
+        assert self.energy is not None
+        return self.energy
 
     @property
     def height(self) -> Floats | None:
         """What descends: the energy less the moments' work, of which the residuals are the slopes; None without one."""
         return self.energy if self.energy is None or self.work is None else self.energy - self.work
 
+    @property
+    def negatives(self) -> NDArray[np.int64]:
+        """The numbers of negative eigenvalues of the Hessian, shape S."""
+        return np.asarray((eigenvalues(self.jacobian) < 0).sum(axis=0))
 
-def state_at(model: Model, values: Mapping[str, Any], at: Floats) -> State:
+
+def state_at(model: Model, values: Mapping[str, Any], at: Floats) -> ModelState:
     """The model at values of its parameters (arrays that fit S; a free length that is not there is zero) and points.
 
     Parameters
@@ -66,68 +73,38 @@ def state_at(model: Model, values: Mapping[str, Any], at: Floats) -> State:
     given = {k: _shaped(known[name], at[0]) for k, name in enumerate(system.names) if name in known}
     given |= dict(zip(system.unknowns, at, strict=True))
     with np.errstate(divide="ignore", invalid="ignore"):  # a spring without length has no direction: nan
-        free = _free_lengths(system).at(given)[""]
         # a root has no slope at zero, so that there is none where no free length is
-        relaxed = tuple(k for k, length in enumerate(free) if np.any(length))
-        values_of = _formulas(system, relaxed).at(given)
-    found = {name: _stacked(group, at.shape[1:]) for name, group in values_of.items()}
-    residuals, jacobian = found["residuals"], found["jacobian"].reshape(len(at), *at.shape)
-    return State(
-        residuals,
-        jacobian,
-        next(iter(found["energy"]), None),
-        tuple(found["conditions"]),
-        (determinant(jacobian),) if relaxed and system.tangent else tuple(found["stability"]),
-        dict(zip(system.points, found["points"].reshape(-1, 2, *at.shape[1:]), strict=False)),
-        tuple(found["lengths"]),
-        tuple(found["forces"]),
-        next(iter(found["work"]), None),
-    )
+        relaxed = tuple(k for k, free in enumerate(_free_lengths(system).at(given)) if np.any(free))
+        found = _formulas(system, relaxed).at(given, lambda value: np.broadcast_to(value, at.shape[1:]))
+    jacobian = np.stack([np.stack(row) for row in found["jacobian"]])
+    if relaxed and system.tangent:  # along loops, of which the compiled conditions are without free lengths
+        found["stability"] = (determinant(jacobian),)
+    return ModelState(**found | {"residuals": np.stack(found["residuals"]), "jacobian": jacobian})
 
 
 @lru_cache(maxsize=16)
 def _free_lengths(system: CompiledSystem) -> Doubles:
-    return Doubles({"": system.free_lengths}, np)
+    return Doubles(tuple(free for _, free, _ in system.stretches), np)
 
 
 @lru_cache(maxsize=16)
 def _formulas(system: CompiledSystem, relaxed: tuple[int, ...]) -> Doubles:
     """What a state consists of, with the free lengths of some springs."""
     equations = system.balance(relaxed)
-    energy = system.energy(relaxed) if system.has_index else None
-    formulas: dict[str, Sequence[Formula]] = dict.fromkeys(("points", "lengths", "forces", "work"), ())
-    formulas |= {
+    rows = [tuple(system.graph.derivative(equation, k) for k in system.unknowns) for equation in equations]
+    if system.has_index:  # a Hessian is symmetric, of which the half is evaluated
+        rows = [tuple(rows[max(i, j)][min(i, j)] for j in range(len(rows))) for i in range(len(rows))]
+    found: dict[str, Any] = {
         "residuals": equations,
-        "jacobian": [
-            system.graph.derivative(equations[i], system.unknowns[j])
-            for i, j in _places(len(equations), symmetric=system.has_index)
-        ],
-        "energy": [] if energy is None else [energy],
+        "jacobian": tuple(rows),
+        "energy": system.energy(relaxed) if system.has_index else None,
         "conditions": system.inequalities,
         "stability": system.stability,
     }
     if system.are_slopes:
-        formulas |= {
-            "points": [coordinate for point in system.points.values() for coordinate in point],
-            "lengths": system.lengths,
-            "forces": system.forces,
-            "work": [system.work] if system.acting else [],
-        }
-    return Doubles(formulas, np)
-
-
-def _places(size: int, symmetric: bool) -> Iterator[tuple[int, int]]:
-    """Of a matrix's entries; with those above the diagonal in place of those below."""
-    for i, j in product(range(size), repeat=2):
-        yield (min(i, j), max(i, j)) if symmetric else (i, j)
-
-
-def _stacked(values: Sequence[Any], shape: tuple[int, ...]) -> Floats:
-    """Numbers and arrays as one array of shape (number, *shape)."""
-    found = np.empty((len(values), *shape))
-    for row, value in zip(found, values, strict=True):
-        row[...] = value
-    return found
+        found |= {"points": system.points, "stretches": system.stretches}
+        found["work"] = system.work if system.acting else None
+    return Doubles(found, np)
 
 
 def _shaped(value: Any, like: Floats) -> Any:
@@ -155,7 +132,7 @@ def eigenvalues(hessian: Floats) -> Floats:
     return np.moveaxis(np.asarray(np.linalg.eigvalsh(matrices), dtype=np.float64), -1, 0)
 
 
-def newton_step(state: State) -> Floats:
+def newton_step(state: ModelState) -> Floats:
     """What Newton's method subtracts: shape (n, *S); nan where the Jacobian is singular."""
     a, b = state.jacobian, state.residuals
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -171,3 +148,34 @@ def newton_step(state: State) -> Floats:
             replaced[:, k] = b
             columns.append(determinant(replaced) / d)
         return np.stack(columns)
+
+
+Evaluation = Callable[[Floats], ModelState]
+"""From unknowns of shape (n, *S) to the model there."""
+
+
+def newton(evaluate: Evaluation, start: Floats, most: int, small: float) -> tuple[Floats, Floats]:
+    """Where Newton's method leads, in steps of at most 1, and the lengths of the last ones, shape S.
+
+    Parameters
+    ----------
+    most : steps; fewer, when all are at most ``small``. What is not a number is left out of this.
+    """
+    at = start
+    length = np.full(start.shape[1:], np.inf)
+    with np.errstate(all="ignore"):
+        for _ in range(most):
+            step = newton_step(evaluate(at))
+            length = np.sqrt((step**2).sum(axis=0))
+            step = np.where(np.isfinite(step), step, np.nan)
+            at = at - step * np.minimum(1.0, 1.0 / np.maximum(length, 1e-300))
+            if not np.nanmax(length, initial=0.0) > small:
+                break
+    return at, length
+
+
+def apart(one: Floats, other: Floats, angles: int) -> Floats:
+    """One place less another, by at most half a turn in the first unknowns, which are angles; shape (n, *S)."""
+    gap = one - other
+    gap[:angles] = np.remainder(gap[:angles] + np.pi, 2 * np.pi) - np.pi
+    return gap

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -16,8 +16,8 @@ from ptmcad.answer.field import Field
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.fields.barrier import barriers
-from ptmcad.ask.fields.branches import Filling, Follower, Places, filled, places_of
-from ptmcad.ask.fields.equations import Floats, State, eigenvalues
+from ptmcad.ask.fields.branches import Filling, GridPoints, PixelSolver, filled, places_of
+from ptmcad.ask.fields.equations import Floats, ModelState, eigenvalues
 from ptmcad.ask.fields.jumps import jumps
 from ptmcad.ask.fields.quantities import OPTION, Valued, quantity_of
 from ptmcad.ask.pixels import grid as grid_of
@@ -51,6 +51,18 @@ class Choice:
     def __str__(self) -> str:
         return f"{self.kind}:{self.rank}"
 
+    def numbers(self, poses: Poses) -> list[int]:
+        """Those of the poses that are of the kind."""
+        last = len(poses.model.unknowns)
+        fits: Mapping[str, Callable[[Pose], bool]] = {
+            "pose": lambda pose: True,
+            "stable": lambda pose: pose.stable is True,
+            "unstable": lambda pose: pose.stable is False,
+            "saddle": lambda pose: pose.index is not None and 0 < pose.index < last,
+            "maximum": lambda pose: pose.index == last,
+        }
+        return [k for k, pose in enumerate(poses.equilibria) if fits[self.kind](pose)]
+
 
 def choice_of(text: str, model: Model) -> Choice:
     """``stable:1`` and the like.
@@ -73,14 +85,14 @@ def choice_of(text: str, model: Model) -> Choice:
 
 
 @dataclass(frozen=True, slots=True)
-class Request:
+class FieldRequest:
     """A quantity of a pose, both of which have a meaning for the slice."""
 
     quantity: Valued
     choice: Choice
 
 
-def request_of(slice: Slice, value: str, pose: str) -> Request:
+def request_of(slice: Slice, value: str, pose: str) -> FieldRequest:
     """What is asked for, before there is a map.
 
     Parameters
@@ -103,12 +115,12 @@ def request_of(slice: Slice, value: str, pose: str) -> Request:
         if system.acting:
             what = acting(slice.model, [system.names[system.unknowns[k]] for k in system.acting])
             raise ConfigError(f"under the {what} a pose's energy is not what a barrier is counted from", key=OPTION)
-    return Request(quantity, choice)
+    return FieldRequest(quantity, choice)
 
 
 def field_of(
     result: RegionMap,
-    request: Request,
+    request: FieldRequest,
     columns: int = 400,
     rows: int | None = None,
     checks: int = CHECKS,
@@ -131,7 +143,7 @@ def field_of(
     """
     model, quantity, choice = result.slice.model, request.quantity, request.choice
     grid = grid_of(result, columns, rows)
-    follower = Follower(result, places_of(grid))
+    follower = PixelSolver(result, places_of(grid))
     wanted = follower.wanted
     if wanted.only_stable and choice.kind != "stable":
         raise ConfigError("this map knows the stable equilibria only: ask for stable:1", key="--pose")
@@ -203,7 +215,7 @@ def _at_pixels(
     model: Model,
     quantity: Valued,
     choice: Choice,
-    follower: Follower,
+    follower: PixelSolver,
     places: tuple[NDArray[np.int64], NDArray[np.int64]],
     at: Floats,
 ) -> tuple[Floats, NDArray[np.int64]]:
@@ -224,7 +236,7 @@ def _at_pixels(
     k = order[own, hit.argmax(axis=1)]
     if quantity.is_barrier:
 
-        def evaluate(pixels: NDArray[np.int64], points: Floats) -> State:
+        def evaluate(pixels: NDArray[np.int64], points: Floats) -> ModelState:
             return follower.state(rows[pixels], columns[pixels], points)
 
         stable = _is_stable(model, state) & there
@@ -238,7 +250,7 @@ def _at_pixels(
     return np.where(found, values, np.nan), np.where(found, k, NONE)
 
 
-def _is_stable(model: Model, state: State) -> NDArray[np.bool_]:
+def _is_stable(model: Model, state: ModelState) -> NDArray[np.bool_]:
     if model.has_potential:
         return np.asarray(eigenvalues(state.jacobian)[0] > 0)
     return (
@@ -249,7 +261,7 @@ def _is_stable(model: Model, state: State) -> NDArray[np.bool_]:
 
 
 def _in_order(
-    model: Model, state: State, at: Floats, there: NDArray[np.bool_], choice: Choice
+    model: Model, state: ModelState, at: Floats, there: NDArray[np.bool_], choice: Choice
 ) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
     """The solutions in the order of `Poses`, shape (pixels, most), and which are of the chosen kind."""
     stable = _is_stable(model, state) & there if model.tells_stability else np.zeros_like(there)
@@ -266,7 +278,7 @@ def _in_order(
     order = np.lexsort((*(-np.round(p, 9) for p in at[::-1]), rank, ~stable, ~there), axis=1)
     kinds = {"pose": there, "stable": stable, "unstable": there & ~stable}
     if choice.kind in ("saddle", "maximum"):
-        negative = (eigenvalues(state.jacobian) < 0).sum(axis=0)
+        negative = state.negatives
         n = len(at)
         kinds |= {"saddle": there & (negative > 0) & (negative < n), "maximum": there & (negative == n)}
     return order, kinds[choice.kind]
@@ -298,7 +310,7 @@ def complete(
     return int((~solutions.done & (total > 0)).sum())
 
 
-def centre(result: RegionMap, grid: Grid | Places, row: int, column: int) -> tuple[Fraction, Fraction]:
+def centre(result: RegionMap, grid: Grid | GridPoints, row: int, column: int) -> tuple[Fraction, Fraction]:
     """A pixel's centre, exactly."""
     (x, y), (rows, columns) = result.slice.axes, grid.cell.shape
     return (
@@ -319,7 +331,7 @@ def unknowns_of(pose: Pose) -> list[float]:
 
 
 def _checked(
-    result: RegionMap, quantity: Valued, choice: Choice, values: Floats, follower: Follower, checks: int
+    result: RegionMap, quantity: Valued, choice: Choice, values: Floats, follower: PixelSolver, checks: int
 ) -> tuple[int, float]:
     """How many random pixels were compared with exact poses, and the largest difference as a share.
 

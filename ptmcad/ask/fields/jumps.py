@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.ask.fields.branches import BATCH, Filling, Flags, Follower, Labels, Places
-from ptmcad.ask.fields.equations import Floats
+from ptmcad.ask.fields.branches import BATCH, Filling, Flags, GridPoints, Labels, PixelSolver
+from ptmcad.ask.fields.equations import Floats, apart
 
 PARTS = (1, 4, 16, 64)
 """Of the way between two pixels: more are taken while the neighbour's solution is not met."""
@@ -28,7 +28,7 @@ Pixels = tuple[Labels, Labels]
 
 def jumps(
     result: RegionMap,
-    follower: Follower,
+    follower: PixelSolver,
     solutions: Filling,
     chosen: Labels,
     region: Labels,
@@ -59,13 +59,13 @@ def jumps(
             check()
             part = slice(first, first + 100 * BATCH)
             own = (r[part], c[part])
-            jump[own] = _apart(result, follower, solutions, chosen, own, (own[0] + up, own[1] + 1 - up))
+            jump[own] = _differ(result, follower, solutions, chosen, own, (own[0] + up, own[1] + 1 - up))
         found.append(jump)
     return found[0], found[1]
 
 
-def _apart(
-    result: RegionMap, follower: Follower, solutions: Filling, chosen: Labels, start: Pixels, end: Pixels
+def _differ(
+    result: RegionMap, follower: PixelSolver, solutions: Filling, chosen: Labels, start: Pixels, end: Pixels
 ) -> Flags:
     """Whether following the chosen solutions from pixels does not lead to those that are chosen at others."""
     apart = np.ones(len(start[0]), dtype=np.bool_)
@@ -79,15 +79,15 @@ def _apart(
     return apart
 
 
-def _followed(result: RegionMap, follower: Follower, at: Floats, ends: tuple[Pixels, Pixels], parts: int) -> Floats:
+def _followed(result: RegionMap, follower: PixelSolver, at: Floats, ends: tuple[Pixels, Pixels], parts: int) -> Floats:
     """Solutions of shape (n, pixels), led along straight ways between pixels in equal parts; nan where that fails."""
     shares = np.arange(1, parts + 1) / parts
     x, y = (
         along[ends[0]][:, None] + (along[ends[1]] - along[ends[0]])[:, None] * shares
         for along in (follower.places.x, follower.places.y)
     )
-    ways = Places(x, y, np.full((len(at[0]), parts), NONE))
-    on_way = Follower(result, ways)
+    ways = GridPoints(x, y, np.full((len(at[0]), parts), NONE))
+    on_way = PixelSolver(result, ways)
     rows = np.arange(len(at[0]))
     for step in range(parts):
         at = on_way.converged(rows, np.full(len(rows), step), at[:, :, None])[:, :, 0]
@@ -96,8 +96,6 @@ def _followed(result: RegionMap, follower: Follower, at: Floats, ends: tuple[Pix
 
 def _nearest(at: Floats, solutions: Floats, angles: int) -> NDArray[np.int64]:
     """The number of the nearest of a pixel's solutions, shape (n, pixels, most); `NONE` for no point."""
-    gap = at[:, :, None] - solutions
-    gap[:angles] = np.remainder(gap[:angles] + np.pi, 2 * np.pi) - np.pi
-    far = np.sqrt((gap**2).sum(axis=0))
+    far = np.sqrt((apart(at[:, :, None], solutions, angles) ** 2).sum(axis=0))
     nearest = np.where(np.isnan(far), np.inf, far).argmin(axis=1)
     return np.where(np.isnan(at[0]), NONE, nearest)

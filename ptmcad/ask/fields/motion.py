@@ -10,7 +10,7 @@ as many parts as keep it near itself; where it ends, the energy descends to the 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -20,12 +20,11 @@ import numpy as np
 
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.motion import Fall, Motion, Place, Step
-from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.ask.fields.branches import Follower, Places, filled
+from ptmcad.ask.fields.branches import GridPoints, PixelSolver, filled
 from ptmcad.ask.fields.course import Course, corners_of
-from ptmcad.ask.fields.descent import descent, negatives
-from ptmcad.ask.fields.equations import Floats
+from ptmcad.ask.fields.descent import descent
+from ptmcad.ask.fields.equations import Floats, apart
 from ptmcad.ask.fields.field import Choice, choice_of, complete, exact_at, unknowns_of
 from ptmcad.ask.fields.track import MIN_STEP, Track, followed
 from ptmcad.ask.location import locate
@@ -119,8 +118,8 @@ def _stops(walk: _Walk, frames: int) -> list[_Stop]:
         points.append(point)
         cells.append(cell)
     x, y = (np.array([[float(point[k]) for point in points]]) for k in (0, 1))
-    places = Places(x, y, np.array([cells], dtype=np.int64))
-    follower = Follower(result, places)
+    places = GridPoints(x, y, np.array([cells], dtype=np.int64))
+    follower = PixelSolver(result, places)
     solutions, wanted = filled(result, follower), follower.wanted
     complete(result, lambda _, column: points[column], solutions, wanted.total, lambda: None)
     stops: list[_Stop] = []
@@ -154,33 +153,24 @@ def _with_others(walk: _Walk, step: Step, known: Floats | None) -> Step:
     state = walk.state(step.at, known)
     if state.energy is None or state.work is not None:
         return replace(step, others=tuple((np.nan, False) for _ in range(known.shape[1])))
-    stable = [negatives(walk.state(step.at, known[:, k : k + 1])) == 0 for k in range(known.shape[1])]
-    return replace(step, others=tuple(zip(map(float, state.energy), stable, strict=True)))
+    return replace(step, others=tuple(zip(state.energy.tolist(), (state.negatives == 0).tolist(), strict=True)))
 
 
 def _start(result: RegionMap, at: Place, choice: Choice) -> Floats:
     """The chosen pose at the path's start, of the exact ones."""
-    model, poses = result.slice.model, exact_at(result, *at)
-    last = len(model.unknowns)
-    kinds: Mapping[str, Callable[[Pose], bool]] = {
-        "pose": lambda pose: True,
-        "stable": lambda pose: pose.stable is True,
-        "unstable": lambda pose: pose.stable is False,
-        "saddle": lambda pose: pose.index is not None and 0 < pose.index < last,
-        "maximum": lambda pose: pose.index == last,
-    }
-    found = [pose for pose in poses.equilibria if kinds[choice.kind](pose)]
+    poses = exact_at(result, *at)
+    found = choice.numbers(poses)
     if len(found) < choice.rank:
         where = ", ".join(f"{n} = {v}" for n, v in zip(result.slice.axis_names, at, strict=True))
         raise ConfigError(f"there is no {choice} at the path's start, {where}: only {len(found)} of them", key="--pose")
-    return np.array(unknowns_of(found[choice.rank - 1]))
+    return np.array(unknowns_of(poses.equilibria[found[choice.rank - 1]]))
 
 
 def _walked(
     walk: _Walk, stops: list[_Stop], start: Floats, fall_frames: int, progress: Progress | None
 ) -> tuple[list[Step], list[Fall], str]:
     """All steps; where the pose vanishes those of its fall, as far as it goes."""
-    at, own = start, negatives(walk.state(stops[0][1].at, start[:, None]))
+    at, own = start, int(walk.state(stops[0][1].at, start[:, None]).negatives[0])
     steps: list[Step] = [_taken(walk, stops[0], at)]
     falls: list[Fall] = []
     for number, (last, stop) in enumerate(pairwise(stops), 1):
@@ -228,9 +218,7 @@ def _taken(walk: _Walk, stop: _Stop, at: Floats) -> Step:
     """The step with the pose, which has to be one of the solutions there."""
     share, step, solutions = stop
     if solutions is not None:
-        gap = solutions - at[:, None]
-        turns = len(walk.model.angles)
-        gap[:turns] = np.remainder(gap[:turns] + np.pi, 2 * np.pi) - np.pi
+        gap = apart(solutions, at[:, None], len(walk.model.angles))
         if not np.abs(gap).max(axis=0).min(initial=np.inf) < SAME * (1 + np.abs(at).max()):
             raise LostError(f"at {_where(walk, float(share))} the followed pose is none of those that are counted")
     return _seen(walk, step, at)
@@ -240,7 +228,7 @@ def _seen(walk: _Walk, step: Step, at: Floats) -> Step:
     """The step with unknowns, and with what follows from them."""
     state = walk.state(step.at, at[:, None])
     height = None if state.height is None else float(state.height[0])
-    points = tuple((float(np.ravel(x)[0]), float(np.ravel(y)[0])) for x, y in (state.points or {}).values())
+    points = tuple((float(x[0]), float(y[0])) for x, y in state.points.values())
     return replace(step, unknowns=tuple(map(float, at)), height=height, points=points)
 
 

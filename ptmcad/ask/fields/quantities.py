@@ -12,15 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from ptmcad.ask.fields.equations import Floats, State, eigenvalues
-from ptmcad.ask.quantities import Kind, Quantity, named, quantities, unit_of, unknown
+from ptmcad.ask.fields.equations import Floats, ModelState, eigenvalues
+from ptmcad.ask.quantities import Quantity, QuantityKind, named, quantities, unit_of, unknown
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.question.slice import Slice
 from ptmcad.text.syntax import did_you_mean, parse
 from ptmcad.text.tree import Call, Name, Number, Power, Step, interpret, names_of
 
 OPTION = "--value"
-Values = Callable[[State, Floats, Mapping[str, Any]], Floats]
+Values = Callable[[ModelState, Floats, Mapping[str, Any]], Floats]
 """From a state, its points of shape (n, *S), angles first, and the values of parameters and axes."""
 
 
@@ -55,32 +55,27 @@ def quantity_of(text: str, slice: Slice) -> Valued:
     known = named(slice.model, text, OPTION) or unknown(slice.model, text.strip())
     if known is None or known.name in slice.model.angles:  # by itself an angle is in radians, as in any expression
         return _expression(text, slice)
-    return Valued(known.name, unit_of(known, slice), _values(known), known.kind is Kind.BARRIER)
+    return Valued(known.name, unit_of(known, slice), _values(known), known.kind is QuantityKind.BARRIER)
 
 
 def _values(quantity: Quantity) -> Values:
     number, part = quantity.number, quantity.part
     match quantity.kind:
-        case Kind.ENERGY | Kind.BARRIER:
-            return lambda state, at, values: _known(state.energy)
-        case Kind.STIFFNESS:
+        case QuantityKind.ENERGY | QuantityKind.BARRIER:
+            return lambda state, at, values: state.known_energy
+        case QuantityKind.STIFFNESS:
             return lambda state, at, values: eigenvalues(state.jacobian)[0]
-        case Kind.FORCE:
-            return lambda state, at, values: state.forces[number]
-        case Kind.LENGTH:
-            return lambda state, at, values: state.lengths[number]
-        case Kind.ANGLE:
+        case QuantityKind.FORCE:
+            return lambda state, at, values: state.stretches[number][2]
+        case QuantityKind.LENGTH:
+            return lambda state, at, values: state.stretches[number][0]
+        case QuantityKind.ANGLE:
             return lambda state, at, values: np.degrees(at[number])
-        case Kind.REAL:
+        case QuantityKind.REAL:
             return lambda state, at, values: at[number]
-        case Kind.X | Kind.Y:
-            side = int(quantity.kind is Kind.Y)
-            return lambda state, at, values: _known(state.points)[part][side]
-
-
-def _known(value: Any) -> Any:
-    assert value is not None
-    return value
+        case QuantityKind.X | QuantityKind.Y:
+            side = int(quantity.kind is QuantityKind.Y)
+            return lambda state, at, values: state.points[part][side]
 
 
 def _expression(text: str, slice: Slice) -> Valued:
@@ -105,7 +100,7 @@ def _expression(text: str, slice: Slice) -> Valued:
     except (OverflowError, ValueError) as error:  # an exponent may be infinite, or no number
         raise ConfigError(f"{text[:60]!r} has a number beyond doubles, 1.8e308", key=OPTION) from error
 
-    def values(_state: State, at: Floats, given: Mapping[str, Any]) -> Floats:
+    def values(_state: ModelState, at: Floats, given: Mapping[str, Any]) -> Floats:
         unknowns = dict(zip((*model.angles, *model.reals), at, strict=True))
         with np.errstate(all="ignore"):
             found = interpret(tree, _Arrays({**given, **unknowns}))

@@ -9,8 +9,8 @@ import numpy as np
 from ptmcad.answer.motion import Place
 from ptmcad.ask.fields.branches import parameters_at
 from ptmcad.ask.fields.course import Course
-from ptmcad.ask.fields.descent import negatives, newton
-from ptmcad.ask.fields.equations import Floats, State, state_at
+from ptmcad.ask.fields.descent import solution
+from ptmcad.ask.fields.equations import Floats, ModelState, state_at
 from ptmcad.question.slice import Slice
 
 ALONG = 0.08
@@ -25,18 +25,18 @@ class Track:
     def __init__(self, slice: Slice, course: Course):
         self.slice, self.course, self.model = slice, course, slice.model
 
-    def state(self, at: Place, unknowns: Floats) -> State:
+    def state(self, at: Place, unknowns: Floats) -> ModelState:
         """The model at a point of the slice, and unknowns of shape (n, k)."""
         x, y = (np.array([float(value)]) for value in at)
         return state_at(self.model, parameters_at(self.slice, x, y), unknowns)
 
-    def at(self, share: float, unknowns: Floats) -> State:
+    def at(self, share: float, unknowns: Floats) -> ModelState:
         """The same where a share of the course is done."""
         return self.state(self.course.at(Fraction(share)), unknowns)
 
-    def solved(self, share: float, start: Floats) -> tuple[Floats, State] | None:
+    def solved(self, share: float, start: Floats) -> tuple[Floats, ModelState] | None:
         """Where Newton's method leads from unknowns of shape (n,), with the model there."""
-        return newton(lambda at: self.at(share, at), start)
+        return solution(lambda at: self.at(share, at), start)
 
 
 def followed(track: Track, at: Floats, done: float, to: float, own: int) -> tuple[Floats, float]:
@@ -50,7 +50,7 @@ def followed(track: Track, at: Floats, done: float, to: float, own: int) -> tupl
     while done < to:
         further = to if to - done <= step * (1 + 1e-9) else done + step
         found = track.solved(further, at)
-        if found and negatives(found[1]) == own and np.linalg.norm(found[0] - at) < ALONG:
+        if found and int(found[1].negatives[0]) == own and np.linalg.norm(found[0] - at) < ALONG:
             at, done, step = found[0], further, step * 2
         elif further - done <= MIN_STEP * 1.001:
             return at, done

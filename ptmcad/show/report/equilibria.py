@@ -6,15 +6,16 @@ equilibrium, as `ptmcad.verify` checks. Numbers that are not texts are for drawi
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, TypeVar
+from operator import gt
+from types import MappingProxyType
+from typing import Any, NamedTuple, TypeVar
 
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution
 from ptmcad.answer.words import kind_name
 from ptmcad.errors import ConfigError, PoleError
-from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.values import evaluated
 from ptmcad.model import Mechanism, Model, mechanism_in
 from ptmcad.model.compile import CompiledSystem, compiled
@@ -74,14 +75,14 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     )
     system = compiled(model)
     known = dict.fromkeys(model.free_lengths, Fraction(0)) | values
-    here = evaluated(_acting(system) if drawn else {}, _Within(system, known))
-    moments = [float(moment.bounds[0]) for moment in here.get("moments", ())]
+    acting = (system.dead_forces if system.are_slopes else (), system.moments if system.has_index else ())
+    loads, moments = evaluated(acting if drawn else ((), ()), _Within(system, known))
     others = {n: v for n, v in distinct_parameters(values, model).items() if n not in cell.sample.names}
     return {
         "parameters": [[n, both(v)] for n, v in others.items()],
-        "loads": [[float(x.bounds[0]), float(y.bounds[0])] for x, y in _pairs(here.get("loads", ()))],
+        "loads": [[float(component.bounds[0]) for component in force] for force in loads],
         "potential": [[*exponents, float(c)] for exponents, c in (potential or {}).items()] if drawn else [],
-        "moments": moments if any(moments) else [],
+        "moments": [float(moment.bounds[0]) for moment in moments if any(any(m.bounds) for m in moments)],
         "equilibria": _solutions(model, cell, known, potential, polynomial) if drawn else [],
     }
 
@@ -123,26 +124,20 @@ def both(value: Fraction) -> str:
     return f"{text_of(value)} {_plain(value)}".rstrip()
 
 
-def _acting(system: CompiledSystem) -> dict[str, Sequence[Formula]]:
-    """What acts at a sample, whatever the pose."""
-    loads = [component for force in system.dead_forces for component in force]
-    return {
-        "loads": loads if system.are_slopes else [],
-        "moments": system.moments if system.has_index else [],
-    }
-
-
 def _solutions(
     model: Model, cell: Cell, values: Mapping[str, Fraction], potential: Potential | None, polynomial: bool
 ) -> list[dict[str, Any]]:
     """The solutions, the stable ones first, then by energy; all numbers of a kind to the same last place."""
     system = compiled(model)
-    boxes = [_box(s, model) if polynomial else _box_of_angles(s, model) for s in cell.solutions]
-    formulas = _formulas(system, with_energy=not polynomial)
-    poses = [evaluated(formulas, _Within(system, values, box)) for box in boxes]
-    energies = [None if potential is None else energy(potential, box) for box in boxes]
-    if not polynomial:
-        energies = [next((total.bounds for total in pose["energy"]), None) for pose in poses]
+    boxes = [_box(s, model, polynomial) for s in cell.solutions]
+    told = _Pose(
+        None if polynomial or not system.has_index else system.energy(),
+        *((system.points, system.stretches, system.deflections) if system.are_slopes else ()),
+    )
+    poses: list[_Pose] = [evaluated(told, _Within(system, values, box)) for box in boxes]
+    energies = [None if pose.energy is None else pose.energy.bounds for pose in poses]
+    if potential is not None:
+        energies = [energy(potential, box) for box in boxes]
     known = [bounds for bounds in energies if bounds is not None]
     energy_place = last_place(known, _DIGITS)
     turns = 2 * len(model.angles)
@@ -173,53 +168,43 @@ def _solutions(
     return found
 
 
-def _formulas(system: CompiledSystem, with_energy: bool) -> dict[str, Sequence[Formula]]:
-    """What is told of a pose."""
-    energy = system.energy() if with_energy and system.has_index else None
-    found: dict[str, Sequence[Formula]] = {"energy": [] if energy is None else [energy]}
-    if system.are_slopes:
-        found["points"] = [coordinate for point in system.points.values() for coordinate in point]
-        found |= {"lengths": system.lengths, "forces": system.forces}
-        found["deflections"] = [part for deflection in system.deflections for part in deflection]
-    return found
+class _Pose(NamedTuple):
+    """What is told of a pose, as formulas, or as their bounds."""
+
+    energy: Any
+    points: Mapping[str, tuple[Any, Any]] = MappingProxyType({})
+    stretches: tuple[tuple[Any, Any, Any], ...] = ()
+    deflections: tuple[tuple[Any, Any, Any], ...] = ()
 
 
-def _parts(mechanism: Mechanism, poses: Sequence[Mapping[str, list[_Bounded]]]) -> list[dict[str, Any]]:
+def _parts(mechanism: Mechanism, poses: Sequence[_Pose]) -> list[dict[str, Any]]:
     """Of each equilibrium the points, and what springs of both sorts do."""
-    lengths, forces = ([[value.bounds for value in pose[name]] for pose in poses] for name in ("lengths", "forces"))
-    of_points = [value.bounds for pose in poses for value in pose["points"]]
-    length_place = last_place([length for row in lengths for length in row] + of_points, _DIGITS)
-    force_place = last_place([force for row in forces for force in row], _DIGITS)
-    turned = _deflections(poses)
+    places = [coordinate for pose in poses for place in pose.points.values() for coordinate in place]
+    length_place = _place([*places, *(length for pose in poses for length, _, _ in pose.stretches)])
+    force_place = _place(force for pose in poses for _, _, force in pose.stretches)
+    moment_place = _place(moment for pose in poses for _, _, moment in pose.deflections)
     found = []
-    for pose, long, strong, angles in zip(poses, lengths, forces, turned, strict=True):
-        where = dict(zip(mechanism.points, _pairs(pose["points"]), strict=True))
-        texts = {name: [decimal_text(x.bounds, length_place) for x in where[name]] for name in mechanism.moving}
-        entry: dict[str, Any] = {
-            "nodes": [[_drawn(x.bounds) for x in place] for place in where.values()],
-            "places": [f"({x}, {y})" for x, y in texts.values()],
-            "lengths": [decimal_text(length, length_place) for length in long],
-            "forces": [decimal_text(force, force_place) for force in strong],
+    for pose in poses:
+        shown = {
+            name: f"({decimal_text(x.bounds, length_place)}, {decimal_text(y.bounds, length_place)})"
+            for name, (x, y) in pose.points.items()
         }
-        found.append(entry | ({"deflections": angles} if angles else {}))
+        turned = [
+            (_angle_text(degrees(cosine.bounds, sine.bounds)), decimal_text(moment.bounds, moment_place))
+            for cosine, sine, moment in pose.deflections
+        ]
+        entry: dict[str, Any] = {
+            "nodes": [[_drawn(x.bounds) for x in place] for place in pose.points.values()],
+            "places": [shown[name] for name in mechanism.moving],
+            "lengths": [decimal_text(length.bounds, length_place) for length, _, _ in pose.stretches],
+            "forces": [decimal_text(force.bounds, force_place) for _, _, force in pose.stretches],
+        }
+        found.append(entry | ({"deflections": turned} if turned else {}))
     return found
 
 
-def _deflections(poses: Sequence[Mapping[str, list[_Bounded]]]) -> list[list[tuple[str, str]]]:
-    """Of each equilibrium the deflections of springs between directions with their moments, as texts."""
-    rows = [[value.bounds for value in pose["deflections"]] for pose in poses]
-    place = last_place([moment for row in rows for moment in row[2::3]], _DIGITS)
-    return [
-        [
-            (_angle_text(degrees(cosine, sine)), decimal_text(moment, place))
-            for cosine, sine, moment in zip(row[::3], row[1::3], row[2::3], strict=True)
-        ]
-        for row in rows
-    ]
-
-
-def _pairs(coordinates: Sequence[_Bounded]) -> list[tuple[_Bounded, _Bounded]]:
-    return list(zip(coordinates[::2], coordinates[1::2], strict=True))
+def _place(values: Iterable[_Bounded]) -> int:
+    return last_place([value.bounds for value in values], _DIGITS)
 
 
 def _drawn(value: Bounds) -> float:
@@ -235,33 +220,19 @@ def _angle_text(angle: Bounds | None) -> str:
     return f"{text.lstrip('−') if text in ('−180.0000', '−0.0000') else text}°"
 
 
-def _box(solution: Solution, model: Model) -> tuple[Bounds, ...]:
-    turns = 2 * len(model.angles)
-    size = turns + len(model.reals)
-    if (
-        len(solution.center) != size
-        or not 0 <= solution.radius < (1 if turns else MAX_DRAWN)
-        or any(abs(x) > (2 if n < turns else MAX_DRAWN) for n, x in enumerate(solution.center))
-    ):
-        raise ConfigError(
-            "a stored solution is no box around cosines, sines and unknowns on the line; check it with ptmcad verify"
-        )
-    return tuple((c - solution.radius, c + solution.radius) for c in solution.center)
-
-
-def _box_of_angles(solution: Solution, model: Model) -> tuple[Bounds, ...]:
-    """Cosines and sines from a box around the angles themselves, as a certified map stores it."""
-    angles, reals = solution.center[: len(model.angles)], solution.center[len(model.angles) :]
-    if (
-        len(solution.center) != len(model.unknowns)
-        or not 0 <= solution.radius < 1
-        or any(abs(x) > _MAX_TURNED for x in angles)
-        or any(abs(x) > MAX_DRAWN for x in reals)
-    ):
-        raise ConfigError("a stored solution is no box around the unknowns; check it with ptmcad verify")
-    ends = [(c - solution.radius, c + solution.radius) for c in solution.center]
-    turns = [bounds for end in ends[: len(model.angles)] for bounds in cosine_sine(end)]
-    return (*turns, *ends[len(model.angles) :])
+def _box(solution: Solution, model: Model, polynomial: bool) -> tuple[Bounds, ...]:
+    """Cosines, sines and unknowns on the line, from a box around them, or around the angles, as certified maps have."""
+    angles = len(model.angles)
+    turns, kind = (2 * angles, "cosines, sines and unknowns on the line") if polynomial else (angles, "the unknowns")
+    widest = 1 if turns or not polynomial else MAX_DRAWN
+    most = [2 if polynomial else _MAX_TURNED] * turns + [MAX_DRAWN] * len(model.reals)
+    center, radius = solution.center, solution.radius
+    if len(center) != len(most) or not 0 <= radius < widest or any(map(gt, map(abs, center), most)):
+        raise ConfigError(f"a stored solution is no box around {kind}; check it with ptmcad verify")
+    ends = [(c - radius, c + radius) for c in center]
+    if polynomial:
+        return tuple(ends)
+    return (*(bounds for end in ends[:angles] for bounds in cosine_sine(end)), *ends[angles:])
 
 
 @dataclass(frozen=True, slots=True)

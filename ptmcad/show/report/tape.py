@@ -6,15 +6,15 @@ known by name, and nothing is computed here.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 from math import isfinite
 from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import kind_name
-from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.script import MAX_CONSTANT, Instruction, script
-from ptmcad.model.compile import CompiledSystem, Vector, compiled
+from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.question.slice import Slice, relaxed_springs
 
 MAX_OPERATIONS = 2000
@@ -39,14 +39,11 @@ def tape(result: RegionMap) -> dict[str, Any] | None:
     constants = [instruction[1] for instruction in instructions if instruction[0] == "="]
     if len(instructions) > MAX_OPERATIONS or not all(map(isfinite, constants)):
         return None
-    n, force = len(model.unknowns), next(iter(places["force"]), None)
+    n = len(model.unknowns)
     return {
         **places,
-        "force": force,
-        "energy": force if system.has_energy else None,
-        "moments": list(zip(system.acting, places["moments"], strict=True)),
-        "points": _pairs(places["points"]),
-        "loads": _pairs(places["loads"]),
+        "moments": list(places["moments"].items()),
+        "points": list(places["points"].values()),
         "operations": instructions,
         "parameters": [
             [[[i, j, float(c)] for i, j, c in side] for side in (e.numerator, e.denominator)]
@@ -60,27 +57,21 @@ def tape(result: RegionMap) -> dict[str, Any] | None:
     }
 
 
-def _formulas(system: CompiledSystem, relaxed: Sequence[int]) -> dict[str, Sequence[Formula]]:
+def _formulas(system: CompiledSystem, relaxed: Sequence[int]) -> dict[str, Any]:
     """What the script draws and follows; what a model does not have is empty."""
-    found: dict[str, Sequence[Formula]] = dict.fromkeys(("force", "equations", "moments", "points", "loads"), ())
-    found |= {"conditions": system.inequalities, "stability": system.stability}
     force = system.stored(relaxed)
-    if force is None or not system.are_slopes:
-        return found | {"equations": system.equations}
-    return found | {
-        "force": [force],
-        "moments": list(system.acting.values()),
-        "points": _coordinates(system.points.values()),
-        "loads": _coordinates(system.dead_forces),
+    if not system.are_slopes:
+        force, system = None, replace(system, points={}, loads=())
+    return {
+        "force": force,
+        "energy": force if system.has_energy else None,
+        "equations": () if system.are_slopes else system.equations,
+        "conditions": system.inequalities,
+        "stability": system.stability,
+        "moments": system.acting,
+        "points": system.points,
+        "loads": system.dead_forces,
     }
-
-
-def _coordinates(vectors: Iterable[Vector]) -> list[Formula]:
-    return [coordinate for vector in vectors for coordinate in vector]
-
-
-def _pairs(places: Sequence[int]) -> list[tuple[int, int]]:
-    return list(zip(places[::2], places[1::2], strict=True))
 
 
 def _sources(system: CompiledSystem, names: Sequence[str]) -> dict[int, Instruction]:
