@@ -46,8 +46,7 @@ def two(items: Mapping[str, str]) -> dict[str, Any]:
 
 def faulty_entries(faults: Faults, part: str) -> frozenset[str]:
     """The entries of a part of a description of which something is noted."""
-    keys = ((fault.key or "").split(".") for fault in faults.found)
-    return frozenset(steps[1] for steps in keys if len(steps) > 1 and steps[0] == part)
+    return frozenset(steps[1] for steps in faults.steps if len(steps) > 1 and steps[0] == part)
 
 
 # ------------------------------------------------------------------------------------------------------------- names
@@ -376,16 +375,14 @@ def parsed(entry: Node) -> Tree:
     value = entry.plain
     if isinstance(value, bool) or not isinstance(value, int | str):
         raise entry.fault(f"{as_written(value)} is neither an exact number nor an expression as text")
-    return located(lambda: parse(str(value)), entry)
+    found: Tree = entry.place.read(str(value), parse)
+    return found
 
 
 def located(work: Callable[[], _T], entry: Node) -> _T:
     """What the work returns; its `ExpressionError` as one that names the entry."""
-    try:
-        return work()
-    except ExpressionError as error:
-        fault: ConfigError = entry.place.located(error, str(entry.plain))
-        raise fault from None
+    found: _T = entry.place.read(str(entry.plain), lambda _: work())
+    return found
 
 
 def constant(entry: Node, instead: str = "") -> str:

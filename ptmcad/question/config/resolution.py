@@ -56,24 +56,18 @@ def described_record(tree: Tree) -> tuple[Record, Faults]:
 
 def _unread(record: Record, tree: Tree, faults: Faults) -> frozenset[str]:
     """The names in a record's values of which nothing can be said, because what would tell what they are is faulty."""
-    faulty = {fault.key or "" for fault in faults.found}
     found, hidden = set(), False
     for key in ("axes", "free", "sweep"):
         node = tree.entries.get(key)
         if isinstance(node, Tree):
-            found |= {name for name in node.entries if key != "axes" or _is_faulty(f"{key}.{name}", faulty)}
-        hidden = hidden or (key in faulty and not isinstance(node, Tree))
+            found |= {name for name in node.entries if key != "axes" or faults.concern(f"{key}.{name}")}
+        hidden = hidden or ([key] in faults.steps and not isinstance(node, Tree))
     if hidden:  # any name may be one of those, and any parameter without a value
         found |= record.model.parameters.keys() - record.values.keys()
         for scalar in record.values.values():
             with Faults():  # a text that cannot be read is told with the others
                 found.update(names_in_scalar(scalar))
     return frozenset(found - record.axes.keys())
-
-
-def _is_faulty(key: str, faulty: Iterable[str]) -> bool:
-    """Whether a fault is that of a key, or of an entry of its value."""
-    return any(f"{other}.".startswith(f"{key}.") for other in faulty)
 
 
 def note_values(record: Record, faults: Faults) -> None:
@@ -112,8 +106,9 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
         record = record._replace(unread=record.unread | {record.free[0]})
     axes, resolved, signs = _resolved(record, faults)
     with faults:
-        described = (fault for fault in faults.found if (fault.key or "").startswith(("mechanism", "system")))
-        if not any(described) and all(fault.file == record.place.file for fault in faults.found):
+        if not faults.parts & {"mechanism", "system"} and all(
+            fault.file == record.place.file for fault in faults.found
+        ):
             if faults.found:
                 _note_unnamed_axes(record, faults)
             _check_count(record, resolved)
@@ -123,7 +118,7 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
 
 def _note_unnamed_axes(record: Record, faults: Faults) -> None:
     """Note axes of which no text has the name, beside faults because of which it is not known what depends on what."""
-    told, named = {fault.key or "" for fault in faults.found}, set[str]()
+    named = set[str]()
     for scalar in record.values.values():
         try:
             named.update(names_of(parse(scalar.text)))
@@ -133,7 +128,7 @@ def _note_unnamed_axes(record: Record, faults: Faults) -> None:
         return  # an unknown name may be a slip of the axis's
     for name in _needed_axes(record)[:2]:
         place = record.axes[name].place
-        if name not in named and name not in record.model.parameters and not _is_faulty(f"axes.{name}", told):
+        if name not in named and name not in record.model.parameters and not faults.concern(f"axes.{name}"):
             with faults:
                 raise place.error(f"the axis {name} is not used: no parameter depends on it")
 
@@ -157,7 +152,7 @@ def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[s
     Faults are noted, and none that follows from another.
     """
     with faults:
-        if not record.axes and not _is_faulty("axes", [fault.key or "" for fault in faults.found]):
+        if not record.axes and not faults.concern("axes"):
             raise record.place.below("axes").error(f"is missing: a slice needs two axes, such as {AXES}")
     for name in record.axes:
         with faults:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
 
-from ptmcad.errors import ConfigError, ExpressionError, Faults, Place
+from ptmcad.errors import ConfigError, Faults, Place
 from ptmcad.model.reading import MAX_TITLE, title_of
 from ptmcad.text.entry import Scalar, Written
 from ptmcad.text.expressions import Expression
@@ -43,18 +43,12 @@ def number_of(scalar: Scalar, what: str = "the end of a range") -> Fraction:
 
 def names_in_scalar(scalar: Scalar) -> tuple[str, ...]:
     """The names in a scalar's text."""
-    try:
-        return names_in(scalar.text)
-    except ExpressionError as error:
-        raise scalar.place.located(error, scalar.text) from error
+    return scalar.place.read(scalar.text, names_in)
 
 
 def parsed(scalar: Scalar, names: Mapping[str, Expression]) -> Expression:
     """The function of the axes that a scalar is, where names are such functions."""
-    try:
-        return parse(scalar.text, names)
-    except ExpressionError as error:
-        raise scalar.place.located(error, scalar.text) from error
+    return scalar.place.read(scalar.text, lambda text: parse(text, names))
 
 
 # ------------------------------------------------------------------------------------------- texts and names of files

@@ -22,7 +22,7 @@ from ptmcad.question.config.scalars import names_in_scalar, number_of, number_te
 from ptmcad.question.examples import A_SWEEP, FIRST
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Slice
-from ptmcad.question.sweep import Listed, Product, Spaced, Sweep, Values
+from ptmcad.question.sweep import Product, Spaced, Sweep, Values
 from ptmcad.text.codec import Codec, part, reading, record
 from ptmcad.text.entry import Sequence, Tree
 from ptmcad.text.node import Node
@@ -124,10 +124,10 @@ def _read(sweep: Node, record: Record) -> Sweep | None:
         first.extend(entries if not first else ())
         if {*entries} != {*first}:
             raise part.fault(f"each mapping of the list sweeps the same parameters: {', '.join(first)}")
-        return Product(dict(part.gathered(lambda entry: (entry.name, _swept(entry, record)), entries.values())))
+        return dict(part.gathered(lambda entry: (entry.name, _swept(entry, record)), entries.values()))
 
     products = sweep.gathered(product, parts)
-    if len(products) < max(len(parts), 1) or not all(product.values for product in products):
+    if len(products) < max(len(parts), 1) or not all(products):
         return None
     found = Sweep(tuple(products))
     if len(found) > MAX_MEMBERS:
@@ -150,8 +150,8 @@ def _swept(entry: Node, record: Record) -> Values:
         )
     found = _values(entry)
     if name in record.model.parameters:
-        for value in found.extremes:
-            check_number(name, record.model.kind(name), value, entry.place)
+        ends = (found[0], found[len(found) - 1]) if isinstance(found, Spaced) else found
+        check_number(name, record.model.kind(name), min(ends), entry.place)
     return found
 
 
@@ -172,7 +172,7 @@ def _values(entry: Node) -> Values:
     items = entry.items(expected=expected, most=MAX_MEMBERS)
     if not items:
         raise entry.fault("the list is empty: give the values, such as [-10, -20]")
-    return Listed(tuple(number_of(number_text(item), "a value") for item in items))
+    return tuple(number_of(number_text(item), "a value") for item in items)
 
 
 def _number(entry: Node) -> Fraction:
