@@ -28,7 +28,6 @@ from ptmcad.question.config.record import (
     Record,
     check_axis_name,
     record_of,
-    swept_names,
     with_place,
 )
 from ptmcad.question.config.resolution import checked_slice, slice_of
@@ -193,10 +192,9 @@ def record_from_options(typed: Typed) -> Record:
         check_axis_name(name, window.place)
         values = {n: value for n, value in record.values.items() if n != name}
         record = record._replace(free=(name, window), members=None, values=values, title="", reference={})
-    released = None if record.free is None else record.free[0]
-    given_sets, given_ranges = settings_of(sets, record.model, released_names(record, released)), ranges_of(ranges)
+    given_sets, given_ranges = settings_of(sets, record), ranges_of(ranges)
     names = [] if slice is None else [name.strip() for name in slice.split(",")]
-    if record.free is not None and released in names and released not in given_sets:
+    if record.free is not None and record.free[0] in names and record.free[0] not in given_sets:
         given_ranges = dict([record.free]) | given_ranges  # an axis is free, too
         record = record._replace(free=None, members=None)
     if slice is not None:
@@ -230,5 +228,4 @@ def names_in_record(config: str | Path) -> tuple[tuple[str, ...], frozenset[str]
         For keys and shapes that are wrong; values are not looked at.
     """
     record = record_of(record_tree(config))
-    others = [record.free[0]] if record.free is not None else []
-    return tuple(record.axes), frozenset((*record.model.parameters, *others, *swept_names(record)))
+    return tuple(record.axes), frozenset((*record.model.parameters, *released_names(record)))

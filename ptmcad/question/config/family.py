@@ -93,14 +93,14 @@ def family_of(record: Record, faults: Faults | None = None) -> Family:
         free = axis_of(name, window, record.model)
         values = _values(free, record.members, faults)
     if free is None or faults.found:  # of the values only what does not depend on the free parameter
-        note_values(record._replace(unread=record.unread | {name}), faults)
+        note_values(record, faults, {name})
     assert free is not None
     slices = [_located(record, name, value, faults) for value in values]
     faults.check()
     first = slices[0]
     assert first is not None
     text = written_in(record, first)
-    if name not in record.model.parameters and not any(name in names_in(s.text) for s in record.values.values()):
+    if name not in record.model.parameters and not record.uses(name):
         example = next((n for n in record.model.parameters if n not in record.axes), "")
         use = f": use it in an expression, such as {example}: {name}" if example else ""
         raise window.place.error(f"the free parameter {name} is not used: no parameter depends on it{use}")

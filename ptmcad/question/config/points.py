@@ -116,16 +116,15 @@ def units_of(question: str | Path | Mapping[str, Any] | Slice) -> Mapping[str, s
 def _at_point(
     record: Record, at: Mapping[str, Scalar], sets: Iterable[str], option: str | None = "--at"
 ) -> tuple[Model, dict[str, Fraction]]:
-    released = None if record.free is None else record.free[0]
-    given = settings_of(sets, record.model, released_names(record, released))
+    given = settings_of(sets, record)
     axes: dict[str, Expression] = {}
     where = record.place.file or "the record"
-    if released is not None and released not in at and released not in given:
-        raise ConfigError(f"{released} is free in {where} and has no value: add {released}=VALUE", key=option)
+    if record.free is not None and (free := record.free[0]) not in {*at, *given}:
+        raise ConfigError(f"{free} is free in {where} and has no value: add {free}=VALUE", key=option)
     for name, scalar in at.items():
         if name in given:
             raise scalar.place.error("is given with --set too: leave one out")
-        if name in record.model.parameters or name in released_names(record, released):
+        if name in record.model.parameters or name in released_names(record):
             given[name] = scalar
         elif name in record.axes:
             axes[name] = constant(number_of(scalar, "the value of this axis"))

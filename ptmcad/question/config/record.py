@@ -83,6 +83,10 @@ class Record(NamedTuple):
             return self.values[name].place
         return self.described.place_of(name) or (self.values_place or self.place).below(name)
 
+    def uses(self, name: str) -> bool:
+        """Whether some value names it."""
+        return any(name in names_in_scalar(scalar) for scalar in self.values.values())
+
     @property
     def doubtful(self) -> frozenset[str]:
         """Names of which nothing can be said, because what describes them is faulty."""

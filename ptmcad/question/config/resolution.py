@@ -70,19 +70,19 @@ def _unread(record: Record, tree: Tree, faults: Faults) -> frozenset[str]:
     return frozenset(found - record.axes.keys())
 
 
-def note_values(record: Record, faults: Faults) -> None:
+def note_values(record: Record, faults: Faults, unread: Iterable[str] = ()) -> None:
     """Note what is wrong with the axes and values of a record that asks nothing yet, and raise all that is known.
 
     Parameters
     ----------
-    record : whose `unread` are the names of which nothing can be said.
+    unread : further names of which nothing can be said.
 
     Raises
     ------
     ConfigError
         When anything was noted, there or before.
     """
-    _resolved(record, faults)
+    _resolved(record._replace(unread=record.unread.union(unread)), faults)
     faults.check()
 
 

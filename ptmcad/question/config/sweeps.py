@@ -18,7 +18,7 @@ from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.objects import tree_of
 from ptmcad.question.config.record import AXIS_NAME, Record, check_axis_name, swept_names
 from ptmcad.question.config.resolution import check_number, described_record, note_values, slice_of
-from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
+from ptmcad.question.config.scalars import number_of, number_text
 from ptmcad.question.examples import A_SWEEP, FIRST
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Slice
@@ -104,7 +104,7 @@ def checked_sweep(tree: Tree) -> Sweeping:
         with faults:
             raise tree.place.below("sweep").error(f"is missing: say what is swept, such as {A_SWEEP}")
     if sweep is None:  # of the values only what does not depend on what is swept
-        note_values(record._replace(unread=record.unread | swept_names(record).keys()), faults)
+        note_values(record, faults, swept_names(record))
     assert sweep is not None
     slice_of(with_values(record, sweep[0]), faults)
     return Sweeping(record, sweep)
@@ -143,7 +143,7 @@ def _swept(entry: Node, record: Record) -> Values:
         raise entry.fault(f"{name} is an axis and cannot be swept too: remove it here or from the axes")
     if name in record.values:
         raise entry.fault(f"{name} has a value under 'parameters' and cannot be swept too: leave one out")
-    if name not in record.model.parameters and not _used(name, record):
+    if name not in record.model.parameters and not record.uses(name):
         hint = did_you_mean(name, record.model.parameters) or ";"
         raise entry.fault(
             f"no parameter is called {name[:40]}{hint} or use it in an expression, {_example(record.model, name)}"
@@ -158,10 +158,6 @@ def _swept(entry: Node, record: Record) -> Values:
 def _example(model: Model, name: str) -> str:
     parameter = next(iter(model.forces), next(iter(model.parameters), FIRST))
     return f"such as {parameter}: {name[:40]} under 'parameters'"
-
-
-def _used(name: str, record: Record) -> bool:
-    return any(name in names_in_scalar(scalar) for scalar in record.values.values())
 
 
 def _values(entry: Node) -> Values:
