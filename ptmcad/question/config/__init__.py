@@ -142,10 +142,10 @@ def slice_from_options(
     ConfigError
         For anything wrong, with file, line and key, or the option.
     """
-    sets, ranges = tuple(sets), tuple(ranges)
-    if config is not None and mechanism is None and slice is None and count is None and not sets and not ranges:
+    typed = Typed(config, slice, tuple(sets), tuple(ranges), count, mechanism)
+    if config is not None and typed == Typed(config):
         return load(config)
-    return slice_of(record_from_options(Typed(config, slice, sets, ranges, count, mechanism)))
+    return slice_of(record_from_options(typed))
 
 
 def question_from_options(typed: Typed) -> Slice | Family:

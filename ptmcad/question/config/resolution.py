@@ -22,7 +22,7 @@ from ptmcad.question.config.scalars import names_in_scalar, number_of
 from ptmcad.question.domain import MAX_DEGREE, sign_of, sign_of_part
 from ptmcad.question.examples import AXES
 from ptmcad.question.positivity import READING_WORK, window_of
-from ptmcad.question.signs import PROVED, Judgement, Subject
+from ptmcad.question.signs import PROVED, Finding, Subject
 from ptmcad.question.slice import NOTHING_ADMISSIBLE, Axis, Count, Slice, have_free_lengths
 from ptmcad.text.entry import Scalar, Tree
 from ptmcad.text.expressions import Expression, axis, constant
@@ -146,7 +146,7 @@ def refuse_free(name: str, window: Window) -> None:
     )
 
 
-def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[str, Expression], list[Judgement]]:
+def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[str, Expression], list[Finding]]:
     """The axes, every parameter as a function of them, and the signs of these and of what springs are given.
 
     Faults are noted, and none that follows from another.
@@ -167,7 +167,7 @@ def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[s
     known = [a for a in axes[:2] if a is not None]
     window = (known[0], known[1]) if len(known) == 2 else None
     wrong: set[str] = set()
-    signs: list[Judgement] = []
+    signs: list[Finding] = []
     for name in sorted(resolved, key=lambda name: bool(_inherited(name, record))):
         if name in record.axes or name in resolution.faulty or _inherited(name, record) in wrong:
             continue  # what has the value of another one is wrong with that one, where it stands
@@ -208,7 +208,7 @@ def _inherited(name: str, record: Record) -> str:
 
 
 def _slice(
-    record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expression], signs: Sequence[Judgement]
+    record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expression], signs: Sequence[Finding]
 ) -> Slice:
     """The slice of a record whose entries are right one by one."""
     mechanism = record.model
@@ -307,7 +307,7 @@ def _is_left_out(name: str, mechanism: Model, given: set[str]) -> bool:
     return mechanism.kind(name) is Kind.FREE_LENGTH or given.issuperset(mechanism.shorthands[name])
 
 
-def _texts(effective: Iterable[str], record: Record, signs: Iterable[Judgement]) -> dict[str, str]:
+def _texts(effective: Iterable[str], record: Record, signs: Iterable[Finding]) -> dict[str, str]:
     """What the parameters were written as, and every name in those texts, but for the axes.
 
     A k that the springs do not have by default, say, is no parameter of the mechanism, but "k/10" says nothing without
@@ -368,7 +368,7 @@ def axis_of(name: str, window: Window, model: Model) -> Axis:
 
 def _signs_of_value(
     name: str, expression: Expression, record: Record, axes: tuple[Axis, Axis] | None
-) -> tuple[Judgement, ...]:
+) -> tuple[Finding, ...]:
     """The sign of a parameter, where the window is known.
 
     What the geometry excludes is refused, and so is a denominator that vanishes in the window.
@@ -381,11 +381,11 @@ def _signs_of_value(
     if axes is None:
         return ()
     if expression.is_constant:
-        return (Judgement(subject, window_of(axes), PROVED),)
+        return (Finding(subject, window_of(axes), PROVED),)
     return (_accepted(sign_of(subject, axes, READING_WORK), place),)
 
 
-def _accepted(sign: Judgement, place: Place) -> Judgement:
+def _accepted(sign: Finding, place: Place) -> Finding:
     """A sign that is not known to be wrong."""
     if sign.problem and sign.is_final:
         raise place.error(sign.problem)
