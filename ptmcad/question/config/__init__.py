@@ -5,8 +5,8 @@ of the two axes, its window is a nonempty rectangle, and no length or stiffness 
 geometry needs. Whatever is wrong with the input is a `ConfigError` that names file, line and key, and the remedy;
 nothing unknown is ignored.
 
-Not guaranteed: that a length given by an expression is positive in the whole window, where `ptmcad.question.positivity`
-answers that it is undecided. The certified engine refuses such a slice, the exact one decides it with its cells.
+Not guaranteed: that a length given by an expression is positive in the whole window, where that was not decided at
+once. The slice carries what is known, and an engine decides the rest or refuses (`ptmcad.question.domain.proved`).
 """
 
 from __future__ import annotations
