@@ -270,11 +270,11 @@ def _check_count(record: Record, resolved: Mapping[str, Expression]) -> None:
         raise record.count_place.error(problem)
 
 
-def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fraction]:
-    """Resolve a record to a point; ``axes`` holds the values of its axes that are no parameters."""
+def point_of(record: Record) -> dict[str, Fraction]:
+    """Resolve a record to a point; its axes that are no parameters have numbers in place of their names."""
     mechanism = record.model
     faults, values = Faults(), {}
-    resolved = Resolution(record, axes, faults).run()
+    resolved = Resolution(record, {}, faults).run()
     faults.check()
     for name, expression in resolved.items():
         place = record.place_of(name)
