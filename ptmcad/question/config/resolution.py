@@ -16,7 +16,7 @@ from ptmcad.model import ClosedMechanism, Kind, Mechanism, Model, System
 from ptmcad.model.evaluate import value_at
 from ptmcad.model.moments import foreign
 from ptmcad.model.parts import fault_of_number, parts
-from ptmcad.question.config.names import Resolution
+from ptmcad.question.config.names import resolved
 from ptmcad.question.config.record import Record, Window, read_record, swept_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of
 from ptmcad.question.domain import MAX_DEGREE, sign_of, sign_of_part
@@ -82,7 +82,7 @@ def note_values(record: Record, faults: Faults, unread: Iterable[str] = ()) -> N
     ConfigError
         When anything was noted, there or before.
     """
-    _resolved(record._replace(unread=record.unread.union(unread)), faults)
+    _judged(record._replace(unread=record.unread.union(unread)), faults)
     faults.check()
 
 
@@ -104,16 +104,16 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
         with faults:
             refuse_free(*record.free)
         record = record._replace(unread=record.unread | {record.free[0]})
-    axes, resolved, signs = _resolved(record, faults)
+    axes, values, signs = _judged(record, faults)
     with faults:
         if not faults.parts & {"mechanism", "system"} and all(
             fault.file == record.place.file for fault in faults.found
         ):
             if faults.found:
                 _note_unnamed_axes(record, faults)
-            _check_count(record, resolved)
+            _check_count(record, values)
     faults.check()
-    return _slice(record, axes, resolved, signs)
+    return _slice(record, axes, values, signs)
 
 
 def _note_unnamed_axes(record: Record, faults: Faults) -> None:
@@ -146,7 +146,7 @@ def refuse_free(name: str, window: Window) -> None:
     )
 
 
-def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[str, Expression], list[Finding]]:
+def _judged(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[str, Expression], list[Finding]]:
     """The axes, every parameter as a function of them, and the signs of these and of what springs are given.
 
     Faults are noted, and none that follows from another.
@@ -162,29 +162,28 @@ def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[s
     axes = [_judged_axis(name, window, record, faults) for name, window in record.axes.items()]
     unread = record.unread | set(tuple(record.axes)[2:])  # of three axes the last one
     record = record._replace(unread=unread)
-    resolution = Resolution(record, {name: axis(index) for index, name in enumerate(tuple(record.axes)[:2])}, faults)
-    resolved = resolution.run()
+    values, faulty = resolved(record, {name: axis(k) for k, name in enumerate(tuple(record.axes)[:2])}, faults)
     known = [a for a in axes[:2] if a is not None]
     window = (known[0], known[1]) if len(known) == 2 else None
     wrong: set[str] = set()
     signs: list[Finding] = []
-    for name in sorted(resolved, key=lambda name: bool(_inherited(name, record))):
-        if name in record.axes or name in resolution.faulty or _inherited(name, record) in wrong:
+    for name in sorted(values, key=lambda name: bool(_inherited(name, record))):
+        if name in record.axes or name in faulty or _inherited(name, record) in wrong:
             continue  # what has the value of another one is wrong with that one, where it stands
         with faults:
             wrong.add(name)
-            signs += _signs_of_value(name, resolved[name], record, window)
+            signs += _signs_of_value(name, values[name], record, window)
             wrong.remove(name)
-    doubtful = wrong | resolution.faulty
+    doubtful = wrong | faulty
     for part in parts(record.model):
         with faults:
             if window is not None and not doubtful & {*names_of(part.tree)}:
-                sign = sign_of_part(record.model, part, resolved, window, READING_WORK)
+                sign = sign_of_part(record.model, part, values, window, READING_WORK)
                 signs.append(_accepted(sign, record.place_of_part(part.key)))
     if window is None:
         faults.check()
         raise AssertionError("what is wrong with an axis was noted")
-    return window, resolved, signs
+    return window, values, signs
 
 
 def _judged_axis(name: str, window: Window, record: Record, faults: Faults) -> Axis | None:
@@ -273,14 +272,12 @@ def _check_count(record: Record, resolved: Mapping[str, Expression]) -> None:
 def point_of(record: Record) -> dict[str, Fraction]:
     """Resolve a record to a point; its axes that are no parameters have numbers in place of their names."""
     mechanism = record.model
-    faults, values = Faults(), {}
-    resolved = Resolution(record, {}, faults).run()
+    faults = Faults()
+    expressions, _ = resolved(record, {}, faults)
     faults.check()
-    for name, expression in resolved.items():
-        place = record.place_of(name)
-        value = expression.constant()
-        check_number(name, mechanism.kind(name), value, place)
-        values[name] = value
+    values = {name: expression.constant() for name, expression in expressions.items()}
+    for name, value in values.items():
+        check_number(name, mechanism.kind(name), value, record.place_of(name))
     for part in parts(mechanism):
         if problem := fault_of_number(part, value_at(part.tree, values)):
             raise record.place_of_part(part.key).error(problem)
