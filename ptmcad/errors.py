@@ -22,16 +22,17 @@ as they are, whatever the input that it quotes.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from types import TracebackType
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 MAX_MESSAGE = 1000
 """Characters of a message."""
 MAX_FAULTS = 50
 """Of one record: whoever wrote it has enough to mend, and a hostile one costs a bounded time."""
 _MAX_PLACE = 300
+T = TypeVar("T")
 
 
 def shown(text: str, most: int = MAX_MESSAGE) -> str:
@@ -118,11 +119,14 @@ class Place(NamedTuple):
         """A `ConfigError` that names this place."""
         return ConfigError(message, **self._asdict())
 
-    def located(self, error: ExpressionError, text: str) -> ConfigError:
-        """What is wrong with an expression that stands here, with the part of its text that is meant."""
-        at = error.position
-        where = "" if at is None or len(text) < 2 else f" (character {at + 1} of {excerpt(text, at)})"
-        return self.error(f"{error.message}{where}")
+    def read(self, text: str, read: Callable[[str], T]) -> T:
+        """What is read of a text that stands here; of what is wrong with it the part that is meant is shown."""
+        try:
+            return read(text)
+        except ExpressionError as error:
+            at = error.position
+            where = "" if at is None or len(text) < 2 else f" (character {at + 1} of {excerpt(text, at)})"
+            raise self.error(f"{error.message}{where}") from error
 
 
 class ConfigError(PtmcadError):
@@ -224,6 +228,21 @@ class Faults:
         if len(self.found) >= MAX_FAULTS:
             self.check()
         return True
+
+    @property
+    def steps(self) -> list[list[str]]:
+        """The keys of what is wrong, each as its steps."""
+        return [(fault.key or "").split(".") for fault in self.found]
+
+    @property
+    def parts(self) -> frozenset[str]:
+        """The first steps of these: the parts of a record, or of a description, in which something is wrong."""
+        return frozenset(step for step, *_ in self.steps)
+
+    def concern(self, key: str) -> bool:
+        """Whether something is wrong at a key, or below it."""
+        sought = key.split(".")
+        return any(steps[: len(sought)] == sought for steps in self.steps)
 
     def check(self) -> None:
         """Raise what was found, if anything was.

@@ -11,7 +11,7 @@ from ptmcad.cli.paths import record_argument
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import MAX_FAULTS, ConfigError, HypothesisError
 from ptmcad.question.config import Family, with_place
-from ptmcad.question.config.asked import load_asked
+from ptmcad.question.config.inquiry import load_inquiry
 from ptmcad.question.config.record import record_of
 from ptmcad.question.shipped import record_tree
 from ptmcad.text.numerals import shortest_text
@@ -33,7 +33,7 @@ def command(*, record: Path, limits: ResourceLimits) -> int:
         ptmcad check fig4
     """
     try:
-        asked, sweeping, designed = load_asked(record)
+        asked, sweeping, designed = load_inquiry(record)
     except ConfigError as error:
         for fault in error.faults:
             click.echo(f"error: {fault}", err=True)

@@ -7,7 +7,7 @@ who writes them into the record. No value is rounded.
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -17,6 +17,7 @@ from ptmcad.model import Kind, Model
 from ptmcad.options import Options
 from ptmcad.question.config.binding import bound, member_name
 from ptmcad.question.config.family import family_of
+from ptmcad.question.config.options import ranges_of
 from ptmcad.question.config.record import Record
 from ptmcad.question.config.resolution import slice_of, written_in
 from ptmcad.question.config.scalars import number_of
@@ -164,7 +165,7 @@ def panel_of(record: Record, ranges: Iterable[str] = ()) -> SliderPanel:
         axis = family.free
         first = min(family.values, key=lambda v: abs(2 * v - axis.low - axis.high))
         member = family.member(first)
-    ends = dict(_end(text) for text in ranges)
+    ends = dict(_ends(ranges))
     sliders = []
     if record.free is not None:
         assert first is not None
@@ -216,19 +217,13 @@ def number_within(name: str, text: str, low: Fraction, high: Fraction) -> Fracti
     return value
 
 
-def _end(text: str) -> tuple[str, tuple[Fraction, Fraction]]:
-    """``NAME=LO:HI`` of a slider."""
-    name, equals, window = (part.strip() for part in text.partition("="))
-    low, colon, high = (part.strip() for part in window.partition(":"))
-    if not (equals and name and colon):
-        raise ConfigError(f"{shown(text, 80)} is not NAME=LO:HI, such as k=50:200", key="--slider")
-    try:
-        ends = (rational(low), rational(high))
-    except ExpressionError as error:
-        raise ConfigError(f"{shown(text, 80)}: {error.message}", key="--slider") from error
-    if ends[0] >= ends[1]:
-        raise ConfigError(f"the range of {shown(name, 40)} is empty or reversed", key="--slider")
-    return name, ends
+def _ends(ranges: Iterable[str]) -> Iterator[tuple[str, tuple[Fraction, Fraction]]]:
+    """Texts ``NAME=LO:HI`` of sliders."""
+    for name, window in ranges_of(ranges, "--slider").items():
+        low, high = number_of(window.low), number_of(window.high)
+        if low >= high:
+            raise window.place.error("the range is empty or reversed")
+        yield name, (low, high)
 
 
 def _around(model: Model, name: str, value: Fraction) -> tuple[Fraction, Fraction]:

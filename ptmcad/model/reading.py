@@ -16,7 +16,7 @@ from ptmcad.model.elements import Kind, Parameter, UnknownKind
 from ptmcad.model.evaluate import evaluate, value_at
 from ptmcad.model.sizes import Size, Sizes
 from ptmcad.text.codec import Codec, Key, choice, part, reading, record
-from ptmcad.text.entry import as_written
+from ptmcad.text.entry import Scalar, as_written
 from ptmcad.text.node import MAX_ENTRIES, Node
 from ptmcad.text.numerals import FINITE
 from ptmcad.text.syntax import NAME, NOT_NUMBERS, did_you_mean, parse
@@ -46,8 +46,7 @@ def two(items: Mapping[str, str]) -> dict[str, Any]:
 
 def faulty_entries(faults: Faults, part: str) -> frozenset[str]:
     """The entries of a part of a description of which something is noted."""
-    keys = ((fault.key or "").split(".") for fault in faults.found)
-    return frozenset(steps[1] for steps in keys if len(steps) > 1 and steps[0] == part)
+    return frozenset(steps[1] for steps in faults.steps if len(steps) > 1 and steps[0] == part)
 
 
 # ------------------------------------------------------------------------------------------------------------- names
@@ -72,25 +71,29 @@ def name_of(entry: Node) -> str:
     return new_name(entry.plain, entry.key, {})
 
 
-def title_of(title: object) -> str:
-    """A title as one line: YAML's folded and literal texts end with a line break.
+def text_in(entry: Node, limit: int) -> str:
+    """A text of at most so many characters."""
+    if not isinstance(entry.value, Scalar) or entry.value.is_null:
+        raise entry.fault("expected a text")
+    if len(entry.value.text) > limit:
+        raise entry.fault(f"the text is longer than {limit} characters")
+    return entry.value.text
 
-    Raises
-    ------
-    ConfigError
-        For what is no text, or a long one, or one with a character that is not printed.
-    """
-    if not isinstance(title, str):
-        raise ConfigError(f"{as_written(title)} is no text", key="title")
-    if len(title) > MAX_TITLE:
-        raise ConfigError(f"the text is longer than {MAX_TITLE} characters", key="title")
-    line = " ".join(title.split())
+
+def title_in(entry: Node) -> str:
+    """A title as one line: YAML's folded and literal texts end with a line break."""
+    line = " ".join(text_in(entry, MAX_TITLE).split())
     if not line.isprintable():
         hidden = next(c for c in line if not c.isprintable())
-        raise ConfigError(
-            f"the title has a character that cannot be printed, U+{ord(hidden):04X}: remove it", key="title"
-        )
+        raise entry.fault(f"the title has a character that cannot be printed, U+{ord(hidden):04X}: remove it")
     return line
+
+
+def _title(entry: Node) -> str:
+    """The title of a description, which is no number."""
+    if not isinstance(entry.plain, str):
+        raise entry.fault(f"{as_written(entry.plain)} is no text")
+    return title_in(entry)
 
 
 class Unread(dict[str, tuple[Tree, Tree]]):
@@ -252,7 +255,7 @@ class Context:
         return {
             "name": part(reading(name_of, **NAME_SCHEMA), "A name of its own.", name, shown=name),
             "title": part(
-                reading(lambda entry: title_of(entry.plain), type="string", maxLength=MAX_TITLE),
+                reading(_title, type="string", maxLength=MAX_TITLE),
                 "What the report calls it, by default its name.", "",
             ),
             "parameters": part(reading(self.parameters_of, **known), parameters, {}),
@@ -376,16 +379,14 @@ def parsed(entry: Node) -> Tree:
     value = entry.plain
     if isinstance(value, bool) or not isinstance(value, int | str):
         raise entry.fault(f"{as_written(value)} is neither an exact number nor an expression as text")
-    return located(lambda: parse(str(value)), entry)
+    found: Tree = entry.place.read(str(value), parse)
+    return found
 
 
 def located(work: Callable[[], _T], entry: Node) -> _T:
     """What the work returns; its `ExpressionError` as one that names the entry."""
-    try:
-        return work()
-    except ExpressionError as error:
-        fault: ConfigError = entry.place.located(error, str(entry.plain))
-        raise fault from None
+    found: _T = entry.place.read(str(entry.plain), lambda _: work())
+    return found
 
 
 def constant(entry: Node, instead: str = "") -> str:

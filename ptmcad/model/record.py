@@ -71,7 +71,7 @@ def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = Fal
     read["bars"] += tuple(bar for joint in read["xjoints"] for bar in joint.rigid)
     found = Mechanism(**read, source=record)
     if not proved:
-        if not {(fault.key or "").partition(".")[0] for fault in faults.found} - _FORCELESS:
+        if not faults.parts - _FORCELESS:
             check_sizes(found, faults)
         _prove(found, faults)
     return found
@@ -220,7 +220,7 @@ _FORCELESS = frozenset({"name", "title", "bars", "supports", "symmetries"})
 
 def _prove(found: Mechanism, faults: Faults) -> None:
     """Note what the parts show together only, where the parts that are concerned are right."""
-    faulty = {(fault.key or "").partition(".")[0] for fault in faults.found}
+    faulty = faults.parts
     if not faulty & _SHAPE:
         check_bars(found, faults)
         if found.closing and "closing" not in faulty:

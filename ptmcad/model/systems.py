@@ -69,7 +69,7 @@ def read_system(record: Mapping[str, Any], faults: Faults) -> System:
         with faults:
             if wrong:
                 raise ConfigError(problem, key=key)
-    faulty = {(fault.key or "").partition(".")[0] for fault in faults.found}
+    faulty = faults.parts
     if not faulty & (_HOLDING | {"positive", "stable"}):
         check_sizes(system, faults)
     if not misspelt and not faulty & _HOLDING:

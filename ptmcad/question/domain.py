@@ -16,12 +16,12 @@ from ptmcad.errors import ExpressionError, GeometryError
 from ptmcad.model import Kind, Model
 from ptmcad.model.parts import Part, fault_of_number, parts
 from ptmcad.question.positivity import Axes, Need, decide, middle_of, named, number, place, window_of
-from ptmcad.question.signs import PROVED, Judgement, Subject, Undecided, Witness
+from ptmcad.question.signs import PROVED, Finding, Subject, Undecided, Witness
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.parsing import value_in_axes
 
-_NOTHING: Mapping[Subject, Judgement] = {}
+_NOTHING: Mapping[Subject, Finding] = {}
 MAX_DEGREE = 32
 """Of a parameter in the two axes; F3 = F^24 takes a minute and a half, and a dense polynomial far more."""
 
@@ -34,14 +34,14 @@ def need(kind: Kind, expression: Expression) -> Need:
     return Need.NOT_NEGATIVE if kind.may_vanish else Need.NO_POLE
 
 
-def sign_of(subject: Subject, axes: Axes, max_work: int | None = None) -> Judgement:
+def sign_of(subject: Subject, axes: Axes, max_work: int | None = None) -> Finding:
     """The sign of a subject: a pole or a point that contradicts it, or else what is proved.
 
     Parameters
     ----------
     max_work : see `ptmcad.question.positivity.decide`.
     """
-    found = Judgement(subject, window_of(axes), PROVED)
+    found = Finding(subject, window_of(axes), PROVED)
     for asked in dict.fromkeys((Need.NO_POLE, need(subject.kind, subject.value))):
         verdict = decide(subject.value, axes, asked, max_work)
         if isinstance(verdict, Witness):
@@ -75,8 +75,8 @@ def sign_of_part(
     parameters: Mapping[str, Expression],
     axes: Axes,
     max_work: int | None = None,
-    known: Mapping[Subject, Judgement] = _NOTHING,
-) -> Judgement:
+    known: Mapping[Subject, Finding] = _NOTHING,
+) -> Finding:
     """The same of what a spring is given; free lengths that a slice does not name are zero.
 
     Parameters
@@ -88,21 +88,21 @@ def sign_of_part(
     try:
         value = value_in_axes(part.tree, {**dict.fromkeys(model.free_lengths, constant(0)), **parameters})
     except ExpressionError as error:
-        return Judgement(subject, window, Undecided(()), f"cannot be judged: {error.message}")
+        return Finding(subject, window, Undecided(()), f"cannot be judged: {error.message}")
     subject = subject._replace(value=value)
     if value.is_constant:
         problem = fault_of_number(part, value.constant())
         verdict = Witness(middle_of(window), value.constant()) if problem else PROVED
-        return Judgement(subject, window, verdict, problem)
+        return Finding(subject, window, verdict, problem)
     if value.degree > MAX_DEGREE:
         problem = f"{part.text} has degree {value.degree} in the axes: at most {MAX_DEGREE} can be computed"
-        return Judgement(subject, window, Undecided(()), problem)
+        return Finding(subject, window, Undecided(()), problem)
     return known.get(subject) or sign_of(subject, axes, max_work)
 
 
-def signs_of(slice: Slice) -> Iterator[Judgement]:
+def signs_of(slice: Slice) -> Iterator[Finding]:
     """The signs of all parameters of a slice, and of what its springs are given: as it carries them, or proved here."""
-    window, final = window_of(slice.axes), dict[Subject, Judgement]()
+    window, final = window_of(slice.axes), dict[Subject, Finding]()
     final.update((sign.subject, sign) for sign in slice.signs if sign.is_final and sign.window == window)
     for name, value in slice.parameters.items():
         subject = Subject(name, slice.model.kind(name), value)

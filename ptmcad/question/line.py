@@ -15,7 +15,7 @@ from ptmcad.model import Model
 from ptmcad.question.slice import Axis, Slice, have_free_lengths, without_free_lengths
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.numerals import shortest_text
-from ptmcad.text.parsing import number_for, rational
+from ptmcad.text.parsing import number_for
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,8 +41,10 @@ def varying_axis(slice: Slice, along: str, at: Mapping[str, Any]) -> tuple[int, 
     ConfigError
         When ``along`` is no axis, or ``at`` does not name exactly the other one with an exact number.
     """
-    _expect(slice, along, at)
+    expect(slice, Slice, "slice", A_SLICE)
     names = slice.axis_names
+    expect(along, str, "along", f"an axis of the slice, {names[0]} or {names[1]}")
+    expect(at, Mapping, "at", "a mapping of the other axis to its value")
     if along not in names:
         raise ConfigError(f"{along} is not an axis of the slice: choose {names[0]} or {names[1]}", key="along")
     varying = names.index(along)
@@ -53,14 +55,6 @@ def varying_axis(slice: Slice, along: str, at: Mapping[str, Any]) -> tuple[int, 
             f"a line along {along} needs a value of {other} and of nothing else, not of {given}", key="at"
         )
     return varying, other, number_for(f"at {other}", at[other])
-
-
-def _expect(slice: object, along: object, at: object) -> None:
-    """Refuse what is no slice, no name of an axis, or no mapping."""
-    expect(slice, Slice, "slice", A_SLICE)
-    assert isinstance(slice, Slice)
-    expect(along, str, "along", f"an axis of the slice, {' or '.join(slice.axis_names)}")
-    expect(at, Mapping, "at", "a mapping of the other axis to its value")
 
 
 def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:
@@ -110,15 +104,8 @@ def _restricted(expression: Expression, varying: int, value: Fraction) -> Expres
 
 def has_free_lengths(slice: Slice, along: str, at: Mapping[str, Any]) -> bool:
     """Whether a spring has a free length on the line; where none has, algebra answers, or refuses the line."""
-    _expect(slice, along, at)
-    if along not in slice.axis_names:
-        return False
-    varying = slice.axis_names.index(along)
-    other = slice.axis_names[1 - varying]
-    if other not in at:
-        return False
     try:
-        value = rational(at[other])
+        varying, _, value = varying_axis(slice, along, at)
         return have_free_lengths(slice.model, on_line(slice, varying, value))
-    except ExpressionError:
+    except (ConfigError, ExpressionError):
         return False

@@ -16,7 +16,7 @@ from enum import Enum
 from fractions import Fraction
 from functools import lru_cache
 from heapq import heappop, heappush
-from itertools import count
+from itertools import count, product
 from math import comb, lcm
 from typing import NamedTuple
 
@@ -167,33 +167,25 @@ def _is_proved(part: _Part, window: Box, strict: bool) -> bool:
         return False
     if not strict:
         return True
-    degrees = len(rows) - 1, len(rows[0]) - 1
-    # for each axis: the indices of coefficients inside, and those of the ends that are inside of the window
-    faces = [[slice(None), *_inner_ends(part.box[k], window[k], degrees[k])] for k in (0, 1)]
-    return all(any(any(row[across]) for row in rows[along]) for along in faces[0] for across in faces[1])
+    # for each axis: all coefficients, and those of the ends that are inside of the window
+    faces = [[slice(None), *(slice(i, i + 1 or None) for i, _ in _inner_ends(part, window, k))] for k in (0, 1)]
+    return all(any(any(row[up]) for row in rows[across]) for across in faces[0] for up in faces[1])
 
 
-def _inner_ends(interval: Interval, window: Interval, degree: int) -> list[slice]:
-    """The first and the last coefficient, as slices, where they belong to points inside of the window."""
-    if degree == 0:
-        return []
-    ends = [slice(0, 1)] if interval[0] > window[0] else []
-    return ends + ([slice(degree, None)] if interval[1] < window[1] else [])
+def _inner_ends(part: _Part, window: Box, k: int) -> list[tuple[int, Fraction]]:
+    """The ends of the box along an axis that are inside of the window, each after the number of its coefficients."""
+    low, high = part.box[k]
+    return [(i, end) for i, end in ((0, low), (-1, high)) if window[k][0] < end < window[k][1]]
 
 
 def _inner_corners(part: _Part, window: Box) -> Iterator[tuple[Corner, Fraction]]:
     """Corners of the box inside of the window, with the polynomial's values; an axis that does not occur is halved."""
-    places = []
-    for k in (0, 1):
-        degree = (len(part.rows), len(part.rows[0]))[k] - 1
-        low, high = part.box[k]
-        if degree == 0:
-            places.append([(0, (low + high) / 2)])
-        else:
-            places.append([(i, end) for i, end in ((0, low), (-1, high)) if window[k][0] < end < window[k][1]])
-    for i, x in places[0]:
-        for j, y in places[1]:
-            yield (x, y), Fraction(part.rows[i][j], 1 << part.shift)
+    across, up = (
+        _inner_ends(part, window, k) if size > 1 else [(0, middle_of(part.box)[k])]
+        for k, size in enumerate((len(part.rows), len(part.rows[0])))
+    )
+    for (i, x), (j, y) in product(across, up):
+        yield (x, y), Fraction(part.rows[i][j], 1 << part.shift)
 
 
 def _halves(part: _Part) -> tuple[_Part, _Part]:

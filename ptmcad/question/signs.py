@@ -1,6 +1,6 @@
 """What is known of the signs of a question's quantities in its window, as data that the question carries.
 
-Guarantee: a `Judgement` says of which function and in which window it holds, so that it cannot be taken for that of
+Guarantee: a `Finding` says of which function and in which window it holds, so that it cannot be taken for that of
 another one: a question whose parameters or axes were changed by hand carries none of the new ones.
 """
 
@@ -70,7 +70,7 @@ class Subject(NamedTuple):
     part: str = ""
 
 
-class Judgement(NamedTuple):
+class Finding(NamedTuple):
     """Whether a subject is in the whole open window what its kind asks for.
 
     Attributes

@@ -17,7 +17,7 @@ from ptmcad.model import Kind, Model
 from ptmcad.model.evaluate import value_among
 from ptmcad.model.parts import written_parts
 from ptmcad.model.work import split_moments
-from ptmcad.question.signs import Judgement
+from ptmcad.question.signs import Finding
 from ptmcad.text.expressions import Expression, constant
 
 NOTHING_ADMISSIBLE = "admissible asks that every spring is longer than its free length, and none has a free length here"
@@ -84,7 +84,7 @@ class Slice:
     reference: Mapping[str, Any] = field(default_factory=dict)
     text: Mapping[str, str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
-    signs: tuple[Judgement, ...] = field(default=(), compare=False, repr=False)
+    signs: tuple[Finding, ...] = field(default=(), compare=False, repr=False)
 
     @property
     def axis_names(self) -> tuple[str, str]:

@@ -13,24 +13,6 @@ from math import prod
 
 
 @dataclass(frozen=True, slots=True)
-class Listed:
-    """Values one by one."""
-
-    values: tuple[Fraction, ...]
-
-    def __len__(self) -> int:
-        return len(self.values)
-
-    def __getitem__(self, number: int) -> Fraction:
-        return self.values[number]
-
-    @property
-    def extremes(self) -> tuple[Fraction, Fraction]:
-        """The least and the greatest value."""
-        return min(self.values), max(self.values)
-
-
-@dataclass(frozen=True, slots=True)
 class Spaced:
     """``number`` values, each a ``step`` from the one before; the step may be negative."""
 
@@ -44,32 +26,10 @@ class Spaced:
     def __getitem__(self, number: int) -> Fraction:
         return self.first + number * self.step
 
-    @property
-    def extremes(self) -> tuple[Fraction, Fraction]:
-        """The least and the greatest value."""
-        ends = (self.first, self[self.number - 1])
-        return min(ends), max(ends)
 
-
-Values = Listed | Spaced
-
-
-@dataclass(frozen=True, slots=True)
-class Product:
-    """Every combination of the parameters' values."""
-
-    values: Mapping[str, Values]
-
-    def __len__(self) -> int:
-        return prod(map(len, self.values.values()))
-
-    def __getitem__(self, number: int) -> dict[str, Fraction]:
-        """The values of a member, the last parameter's changing fastest."""
-        chosen = {}
-        for name, values in reversed(tuple(self.values.items())):
-            number, place = divmod(number, len(values))
-            chosen[name] = values[place]
-        return {name: chosen[name] for name in self.values}
+Values = Spaced | tuple[Fraction, ...]
+Product = Mapping[str, Values]
+"""Every combination of the parameters' values."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +37,7 @@ class Sweep:
     """Products of values, one after another; all of them are of the same parameters.
 
     >>> half = Spaced(Fraction(0), Fraction(1, 2), 3)
-    >>> sweep = Sweep((Product({"F3": Listed((Fraction(-10),)), "F4": half}),))
+    >>> sweep = Sweep(({"F3": (Fraction(-10),), "F4": half},))
     >>> len(sweep), sweep[1]
     (3, {'F3': Fraction(-10, 1), 'F4': Fraction(1, 2)})
     """
@@ -87,10 +47,10 @@ class Sweep:
     @property
     def names(self) -> tuple[str, ...]:
         """What is swept, in the record's order."""
-        return tuple(self.products[0].values)
+        return tuple(self.products[0])
 
     def __len__(self) -> int:
-        return sum(map(len, self.products))
+        return sum(map(_size, self.products))
 
     def __getitem__(self, number: int) -> dict[str, Fraction]:
         """The values of a member.
@@ -102,7 +62,21 @@ class Sweep:
         """
         rest = number
         for product in self.products:
-            if 0 <= rest < len(product):
-                return {name: product[rest][name] for name in self.names}
-            rest -= len(product)
+            if 0 <= rest < _size(product):
+                chosen = _chosen(product, rest)
+                return {name: chosen[name] for name in self.names}
+            rest -= _size(product)
         raise IndexError(f"there is no member {number} of {len(self)}")
+
+
+def _size(product: Product) -> int:
+    return prod(map(len, product.values()))
+
+
+def _chosen(product: Product, number: int) -> dict[str, Fraction]:
+    """The values of one combination, the last parameter's changing fastest."""
+    chosen = {}
+    for name, values in reversed(tuple(product.items())):
+        number, place = divmod(number, len(values))
+        chosen[name] = values[place]
+    return chosen

@@ -26,6 +26,7 @@ from ptmcad.extras import Extra, require
 from ptmcad.options import Progress
 from ptmcad.question.config.sweeps import Sweeping, sweep_from
 from ptmcad.question.slice import Slice
+from ptmcad.question.sweep import Values
 from ptmcad.sweeping.index import Index, opened, read_sweep
 from ptmcad.sweeping.member import Failed, Wanted, Work, reason
 from ptmcad.sweeping.pool import Pool
@@ -164,16 +165,17 @@ def _asked(question: Sweeping, wanted: Wanted) -> str:
     """A digest of all that results depend on."""
     record, sweep = question.record, question.sweep
     first = _slice_data(question.slice(0))
-    values = [[[name, *_values_data(v)] for name, v in product.values.items()] for product in sweep.products]
+    values = [[[name, *_values_data(v)] for name, v in product.items()] for product in sweep.products]
     texts = {name: scalar.text for name, scalar in record.values.items()}
     options = [None if value is None else str(value) for value in dataclasses.astuple(wanted)]
     return hashlib.sha256(json.dumps([first, values, texts, options]).encode()).hexdigest()
 
 
-def _values_data(values: Any) -> Iterator[str]:
+def _values_data(values: Values) -> list[str]:
     """A list of values or a progression, as texts."""
-    for field in (values.values,) if hasattr(values, "values") else (values.first, values.step, values.number):
-        yield ",".join(map(text_of, field)) if isinstance(field, tuple) else text_of(field)
+    if isinstance(values, tuple):
+        return [",".join(map(text_of, values))]
+    return [text_of(field) for field in (values.first, values.step, values.number)]
 
 
 def _slice_data(slice: Slice) -> Any:

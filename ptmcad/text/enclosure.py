@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from ptmcad.text.numerals import decimal_places, integer_text, magnitude, text_of
+from ptmcad.text.numerals import decimal_places, integer_text, magnitude, pointed, text_of
 
 DIGITS = 10
 """Significant digits of a text unless another number is asked for."""
@@ -145,18 +145,12 @@ def _decimal(mantissa: int, exponent: int, digits: int, shorten: bool) -> str:
     """m 10^e as text, m having so many digits; zeros at the end of the decimals are dropped when asked for."""
     written = integer_text(mantissa)
     point = digits + exponent  # where the point comes, counted from the first digit
-    suffix = ""
-    if -_MAX_PLAIN_ZEROS < point <= 0:
-        whole, decimals = "0", "0" * -point + written
-    elif 0 < point <= digits:
-        whole, decimals = written[:point], written[point:]
-    elif shorten and digits < point <= digits + _MAX_PLAIN_ZEROS:
-        whole, decimals = written + "0" * (point - digits), ""
-    else:
-        whole, decimals, suffix = written[0], written[1:], f"e{point - 1}"
-    if shorten:
-        decimals = decimals.rstrip("0")
-    return whole + (f".{decimals}" if decimals else "") + suffix
+    most = digits + _MAX_PLAIN_ZEROS if shorten else digits
+    plain = -_MAX_PLAIN_ZEROS < point <= most
+    text = pointed(written, exponent if plain else 1 - digits)
+    if shorten and "." in text:
+        text = text.rstrip("0").rstrip(".")
+    return text if plain else f"{text}e{point - 1}"
 
 
 _SHOWN_BITS = 64

@@ -46,6 +46,18 @@ def integer_of(digits: str) -> int:
     return integer_of(digits[:-half]) * power + integer_of(digits[-half:])
 
 
+def pointed(digits: str, exponent: int) -> str:
+    """Digits times a power of ten, written without an exponent.
+
+    >>> pointed("125", -2), pointed("125", -5), pointed("125", 1)
+    ('1.25', '0.00125', '1250')
+    """
+    point = len(digits) + exponent
+    if exponent >= 0:
+        return digits + "0" * exponent
+    return f"{digits[:point]}.{digits[point:]}" if point > 0 else f"0.{'0' * -point}{digits}"
+
+
 def exactly(number: object) -> Fraction:
     """The value of a number: an integer, a rational of any library's, or a float.
 
@@ -117,8 +129,7 @@ def shortest_text(value: Fraction) -> str:
     scaled = value.numerator * (10**digits // value.denominator)
     if abs(scaled) == 1 and digits > 6:
         return f"{scaled}e-{digits}"
-    text = integer_text(abs(scaled)).zfill(digits + 1)
-    return f"{'-' if scaled < 0 else ''}{text[:-digits]}.{text[-digits:]}"
+    return ("-" if scaled < 0 else "") + pointed(integer_text(abs(scaled)), -digits)
 
 
 MAX_SHORT = 24
@@ -207,12 +218,9 @@ def decimal(value: Fraction, up: bool, digits: int = 18) -> str:
     mantissa = -((-scaled.numerator) // scaled.denominator) if up else scaled.numerator // scaled.denominator
     text = str(mantissa)
     point = len(text) + exponent
-    if -7 < point <= 0:
-        return ("0." + "0" * -point + text).rstrip("0")
-    if 0 < point < len(text):
-        return (text[:point] + "." + text[point:]).rstrip("0").rstrip(".")
-    if len(text) <= point <= 21:
-        return text + "0" * (point - len(text))
+    if -7 < point <= max(21, len(text) - 1):
+        plain = pointed(text, exponent)
+        return plain.rstrip("0").rstrip(".") if exponent < 0 else plain
     return f"{text[0]}.{text[1:].rstrip('0') or '0'}e{point - 1}"
 
 

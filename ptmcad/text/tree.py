@@ -12,7 +12,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import NamedTuple, Protocol, TypeVar
 
-from ptmcad.text.numerals import decimal_places
+from ptmcad.text.numerals import decimal_places, pointed
 
 MAX_DIGITS = 2_000
 MAX_DECIMAL_EXPONENT = 1_000
@@ -237,9 +237,7 @@ def _number_text(value: Fraction) -> str:
         zeros = min(len(digits) - len(digits.rstrip("0")), MAX_DECIMAL_EXPONENT)
         return f"{sign}{digits[: len(digits) - zeros]}e{zeros}"
     scale = min(places, MAX_DECIMAL_EXPONENT) if places > _MAX_PLACES else 0
-    shown = digits.rjust(places - scale + 1, "0")
-    point = len(shown) - (places - scale)
-    text = f"{shown[:point]}.{shown[point:]}" if places > scale else shown
+    text = pointed(digits, scale - places)
     if len(text) > MAX_DIGITS:
         text = text.removeprefix("0")
     return sign + text + (f"e-{scale}" if scale else "")

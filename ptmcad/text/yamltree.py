@@ -90,7 +90,7 @@ def _document(events: Iterator[Any], root: Place) -> Written:
         if isinstance(event, yaml.DocumentStartEvent):
             documents += 1
             if documents > 1:
-                raise Place(file=root.file, line=_line(event)).error("a second document starts here: one record a file")
+                raise root._replace(line=_line(event)).error("a second document starts here: one record a file")
         elif isinstance(event, yaml.NodeEvent):
             node = _node(event, events, root, 0)
     return node
@@ -102,8 +102,7 @@ def _counted(events: Iterator[Any], root: Place) -> Iterator[Any]:
     for event in events:
         values += isinstance(event, yaml.NodeEvent)
         if values > MAX_VALUES:
-            raise Place(file=root.file, line=_line(event)).error(f"more than {MAX_VALUES} values: this is not a "
-                                                                 "problem record")  # fmt: skip
+            raise root._replace(line=_line(event)).error(f"more than {MAX_VALUES} values: this is not a problem record")
         yield event
 
 
@@ -131,9 +130,9 @@ def _node(event: Any, events: Iterator[Any], place: Place, depth: int) -> Writte
         key = _node(event, events, place._replace(line=None), depth + 1)
         line = _line(event)
         if not isinstance(key, Scalar) or key.is_null:
-            raise Place(place.key, place.file, line).error("a key must be a name")
+            raise place._replace(line=line).error("a key must be a name")
         if len(key.text) > MAX_KEY:
-            raise Place(place.key, place.file, line).error(f"a key has more than {MAX_KEY} characters")
+            raise place._replace(line=line).error(f"a key has more than {MAX_KEY} characters")
         at = place.below(key.text, line)
         if key.text == "<<":
             raise at.error("merge keys are not accepted: write the entries out")

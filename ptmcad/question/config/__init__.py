@@ -5,8 +5,8 @@ of the two axes, its window is a nonempty rectangle, and no length or stiffness 
 geometry needs. Whatever is wrong with the input is a `ConfigError` that names file, line and key, and the remedy;
 nothing unknown is ignored.
 
-Not guaranteed: that a length given by an expression is positive in the whole window, where `ptmcad.question.positivity`
-answers that it is undecided. The certified engine refuses such a slice, the exact one decides it with its cells.
+Not guaranteed: that a length given by an expression is positive in the whole window, where that was not decided at
+once. The slice carries what is known, and an engine decides the rest or refuses (`ptmcad.question.domain.proved`).
 """
 
 from __future__ import annotations
@@ -28,7 +28,6 @@ from ptmcad.question.config.record import (
     Record,
     check_axis_name,
     record_of,
-    swept_names,
     with_place,
 )
 from ptmcad.question.config.resolution import checked_slice, slice_of
@@ -143,10 +142,10 @@ def slice_from_options(
     ConfigError
         For anything wrong, with file, line and key, or the option.
     """
-    sets, ranges = tuple(sets), tuple(ranges)
-    if config is not None and mechanism is None and slice is None and count is None and not sets and not ranges:
+    typed = Typed(config, slice, tuple(sets), tuple(ranges), count, mechanism)
+    if config is not None and typed == Typed(config):
         return load(config)
-    return slice_of(record_from_options(Typed(config, slice, sets, ranges, count, mechanism)))
+    return slice_of(record_from_options(typed))
 
 
 def question_from_options(typed: Typed) -> Slice | Family:
@@ -193,10 +192,9 @@ def record_from_options(typed: Typed) -> Record:
         check_axis_name(name, window.place)
         values = {n: value for n, value in record.values.items() if n != name}
         record = record._replace(free=(name, window), members=None, values=values, title="", reference={})
-    released = None if record.free is None else record.free[0]
-    given_sets, given_ranges = settings_of(sets, record.model, released_names(record, released)), ranges_of(ranges)
+    given_sets, given_ranges = settings_of(sets, record), ranges_of(ranges)
     names = [] if slice is None else [name.strip() for name in slice.split(",")]
-    if record.free is not None and released in names and released not in given_sets:
+    if record.free is not None and record.free[0] in names and record.free[0] not in given_sets:
         given_ranges = dict([record.free]) | given_ranges  # an axis is free, too
         record = record._replace(free=None, members=None)
     if slice is not None:
@@ -230,5 +228,4 @@ def names_in_record(config: str | Path) -> tuple[tuple[str, ...], frozenset[str]
         For keys and shapes that are wrong; values are not looked at.
     """
     record = record_of(record_tree(config))
-    others = [record.free[0]] if record.free is not None else []
-    return tuple(record.axes), frozenset((*record.model.parameters, *others, *swept_names(record)))
+    return tuple(record.axes), frozenset((*record.model.parameters, *released_names(record)))

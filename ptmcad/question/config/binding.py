@@ -36,9 +36,9 @@ def with_numbers(record: Record, numbers: Mapping[str, Fraction], places: Mappin
     return record._replace(values={**record.values, **values, **fixed}, unread=record.unread - numbers.keys())
 
 
-def released_names(record: Record, free: str | None) -> set[str]:
+def released_names(record: Record) -> set[str]:
     """What has no value in a record and may be given one: what is free, and what is swept."""
-    return {*swept_names(record), *(() if free is None else (free,))}
+    return {*swept_names(record), *(record.free or ())[:1]}
 
 
 def bound(record: Record, name: str, value: Fraction) -> Record:

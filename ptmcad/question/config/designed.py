@@ -113,7 +113,7 @@ class Design:
         ConfigError
             When the mechanism does not take such values.
         """
-        return point_of(with_numbers(_without(self.record, self.over), values, {}), {})
+        return point_of(with_numbers(_without(self.record, self.over), values, {}))
 
     def holds(self, values: Mapping[str, Fraction]) -> bool:
         """Whether a design satisfies the conditions."""

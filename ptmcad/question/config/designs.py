@@ -18,7 +18,7 @@ from ptmcad.question.config.objects import plain, tree_of
 from ptmcad.question.config.options import ranges_of
 from ptmcad.question.config.record import AXIS_NAME, Record, Window, check_axis_name, window_of, with_ranges
 from ptmcad.question.config.resolution import axis_of, described_record, note_values
-from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
+from ptmcad.question.config.scalars import number_of, number_text
 from ptmcad.question.design import Inequality, condition_of, named
 from ptmcad.question.examples import A_DESIGN, FIRST, SECOND
 from ptmcad.question.shipped import record_tree
@@ -185,7 +185,7 @@ def checked_design(tree: Tree, given: Mapping[str, Written] | None = None) -> De
                 raise tree.entries[other].place.error(f"a design has no {other!r}: its parameters are those of 'over'")
     unread = record.unread | _entries(entries.get("over")).keys()
     if faults.found and (not entries or len(record.axes) != 2):
-        note_values(record._replace(unread=unread), faults)
+        note_values(record, faults, unread)
     record = record._replace(design=None, unread=unread if faults.found else frozenset())
     return _design(record, Node.of(Tree(entries, place), faults))
 
@@ -219,8 +219,7 @@ def _design(record: Record, asked: Node) -> Design:
             raise asked.at("where").at("tension").fault("a system has no springs that would be in tension")
     found = Design(record, maximise, along, over, where["stable"], tuple(conditions), where["tension"], said["pose"])
     if faults.found:
-        unread = record.unread | _entries(asked.at("over").value).keys()
-        note_values(record._replace(unread=unread), faults)
+        note_values(record, faults, _entries(asked.at("over").value))
     # read in the middle of the bounds, so that what no design can be asked is said at once
     middle = {axis.name: (axis.low + axis.high) / 2 for axis in over}
     _ = found.slice(middle) if found.aim in (Aim.RANGE, Aim.AREA) else found.point(middle)
@@ -256,8 +255,7 @@ def _bounds(record: Record, entry: Node, needed: tuple[str, ...]) -> Window:
     check_axis_name(name, entry.place)
     if name in record.axes and name not in needed:
         raise entry.fault(f"{name} varies over its whole window in every design: it is no design parameter")
-    used = any(name in names_in_scalar(scalar) for scalar in record.values.values())
-    if name not in record.axes and name not in record.model.parameters and not used:
+    if name not in record.axes and name not in record.model.parameters and not record.uses(name):
         hint = did_you_mean(name, record.model.parameters) or ": use it in an expression under 'parameters'"
         raise entry.fault(f"no parameter is called {name[:40]}{hint}")
     return window_of(entry, "bounds", "[1/2, 2]")

@@ -93,14 +93,14 @@ def family_of(record: Record, faults: Faults | None = None) -> Family:
         free = axis_of(name, window, record.model)
         values = _values(free, record.members, faults)
     if free is None or faults.found:  # of the values only what does not depend on the free parameter
-        note_values(record._replace(unread=record.unread | {name}), faults)
+        note_values(record, faults, {name})
     assert free is not None
     slices = [_located(record, name, value, faults) for value in values]
     faults.check()
     first = slices[0]
     assert first is not None
     text = written_in(record, first)
-    if name not in record.model.parameters and not any(name in names_in(s.text) for s in record.values.values()):
+    if name not in record.model.parameters and not record.uses(name):
         example = next((n for n in record.model.parameters if n not in record.axes), "")
         use = f": use it in an expression, such as {example}: {name}" if example else ""
         raise window.place.error(f"the free parameter {name} is not used: no parameter depends on it{use}")
@@ -132,14 +132,13 @@ def fault_of_member(slice: Slice, text: Mapping[str, str], free: str, value: Fra
     ----------
     text : of the family's parameters, as `Family.text`.
     """
+    try:
+        wanted = member_like(slice, text, free, value).parameters
+    except ExpressionError as error:
+        return error.message
     for name, found in slice.parameters.items():
-        try:
-            wanted = _resolved(name, text, _coordinates(slice.axis_names, free, value))
-        except ExpressionError as error:
-            return error.message
-        if wanted != found:
-            shown = (expression.to_text(slice.axis_names) for expression in (found, wanted))
-            return "{} is {}, not {}".format(name, *shown)
+        if wanted[name] != found:
+            return "{} is {}, not {}".format(name, *(e.to_text(slice.axis_names) for e in (found, wanted[name])))
     return ""
 
 
@@ -157,13 +156,9 @@ def member_like(slice: Slice, text: Mapping[str, str], free: str, value: Fractio
         When the texts say nothing of a parameter, or divide by zero at this value.
     """
     axes = (slice.axes[1], slice.axes[0]) if turned else slice.axes
-    known = _coordinates((axes[0].name, axes[1].name), free, value)
+    known = {own.name: axis(k) for k, own in enumerate(axes)} | {free: constant(value)}
     parameters = {name: _resolved(name, text, known) for name in slice.parameters}
     return replace(slice, axes=axes, parameters=parameters, reference={}, text={})
-
-
-def _coordinates(axes: tuple[str, str], free: str, value: Fraction) -> dict[str, Expression]:
-    return {name: axis(k) for k, name in enumerate(axes)} | {free: constant(value)}
 
 
 def _resolved(

@@ -23,13 +23,14 @@ from ptmcad.model import (
     without_loops,
 )
 from ptmcad.model.parts import check_numbers
+from ptmcad.model.reading import faulty_entries
 from ptmcad.question.config.starters import mechanism_names, starter_mechanism
 from ptmcad.text.entry import Scalar, Tree, place_at, plain_data, scalars
 from ptmcad.text.syntax import NAME, did_you_mean, names_in
 from ptmcad.text.yamltree import read_file
 
-_EXPRESSIONS = ("equations", "potential", "positive", "stable")
-"""The keys of a system that hold them."""
+_TOLD = frozenset({"parameters", "name", "title", "equations", "potential", "positive", "stable"})
+"""The keys of a system below which no fault hides what a name is that an equation holds."""
 
 
 class Described(NamedTuple):
@@ -182,15 +183,14 @@ def _read(node: Tree, faults: Faults, used: Iterable[str] = (), is_system: bool 
     model: Model | None = None
     with suppress(ConfigError):  # so many faults that no more are looked for: they still have to be put in their places
         model = _system(data, {*used}, found) if is_system else _mechanism(data, {*used}, found)
-    keys = [fault.key or "" for fault in found.found]
-    placed = [place_at(node, key).error(fault.message) for key, fault in zip(keys, found.found, strict=True)]
+    placed = [place_at(node, fault.key or "").error(fault.message) for fault in found.found]
     if model is None:
         raise ConfigError.of(placed)
     for error in placed:
         with faults:
             raise error
-    doubtful = _doubtful(model, keys)
-    return Described(model, node, doubtful | _undeclared(model, keys) if is_system and keys else doubtful)
+    doubtful = _doubtful(model, found)
+    return Described(model, node, doubtful | _undeclared(model, found) if is_system and placed else doubtful)
 
 
 def _mechanism(data: Mapping[str, Any], used: set[str], faults: Faults) -> Model:
@@ -223,7 +223,7 @@ def _check_use(model: Model, used: set[str], where: str, faults: Faults) -> None
     ----------
     where : a description uses one.
     """
-    if {(fault.key or "").partition(".")[0] for fault in faults.found} - _WITHOUT_PARAMETERS:
+    if faults.parts - _WITHOUT_PARAMETERS:
         return  # what could not be read may use it
     for name in model.idle:
         with faults:
@@ -247,17 +247,16 @@ def _names_in_values(record: Tree) -> Iterator[str]:
                 continue  # a fault of that value
 
 
-def _doubtful(model: Model, keys: Iterable[str]) -> frozenset[str]:
-    """The parameters of which nothing can be said with faults at such keys."""
-    steps = [key.split(".") for key in keys]
-    names = {step[1] for step in steps if step[0] == "parameters" and len(step) > 1}
-    if any(step[0] == "parameters" and len(step) == 1 for step in steps):
+def _doubtful(model: Model, faults: Faults) -> frozenset[str]:
+    """The parameters of which nothing can be said with such faults."""
+    if ["parameters"] in faults.steps:
         return frozenset(model.parameters)
+    names = faulty_entries(faults, "parameters")
     return frozenset(names | {name for name, p in model.parameters.items() if p.alias_of in names})
 
 
-def _undeclared(model: Model, keys: Iterable[str]) -> frozenset[str]:
+def _undeclared(model: Model, faults: Faults) -> frozenset[str]:
     """The parameters of a system that are not listed: they may be something else, where faults hide what they are."""
     undeclared = model.parameters.keys() - model.source.get("parameters", {})
-    told = all(key.partition(".")[0] in ("parameters", "name", "title", *_EXPRESSIONS) for key in keys)
+    told = faults.parts <= _TOLD
     return frozenset(undeclared - {*model.variables} if told else undeclared)

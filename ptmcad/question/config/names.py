@@ -15,52 +15,46 @@ from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.syntax import NOT_NUMBERS, did_you_mean
 
 
-class Resolution:
-    """Replaces names by what they stand for, depth first, refusing cycles.
+def resolved(record: Record, free: Mapping[str, Expression], faults: Faults) -> tuple[dict[str, Expression], set[str]]:
+    """What the parameters stand for, depth first, and the names of those that are faulty or depend on such a one.
 
-    Attributes
+    Parameters
     ----------
-    done : names to what they stand for; 1 for one that could not be resolved, of which the fault is noted.
-    faulty : those, and what depends on them.
+    free : names to what they stand for already.
+    faults : where it is noted that a parameter cannot be resolved, which then is 1; a cycle is refused.
     """
+    parameters = record.model.parameters
+    faulty = set(record.doubtful - free.keys())
+    done = {**dict.fromkeys(faulty, constant(1)), **free}
+    known = tuple(dict.fromkeys((*free, *parameters, *sorted(record.unread))))
 
-    def __init__(self, record: Record, free: Mapping[str, Expression], faults: Faults):
-        self.record = record
-        self.faults = faults
-        self.faulty = set(record.doubtful - free.keys())
-        self.done = {**dict.fromkeys(self.faulty, constant(1)), **free}
-        self.parameters = record.model.parameters
-        self.known = tuple(dict.fromkeys((*free, *self.parameters, *sorted(record.unread))))
+    def value(name: str, chain: tuple[str, ...]) -> Expression:
+        if name not in done:
+            with faults:
+                done[name] = found(name, chain)
+                return done[name]
+            faulty.add(name)
+            done[name] = constant(1)
+        return done[name]
 
-    def run(self) -> dict[str, Expression]:
-        """What the parameters stand for."""
-        return {name: self._resolve(name, ()) for name in self.parameters}
-
-    def _resolve(self, name: str, chain: tuple[str, ...]) -> Expression:
-        if name not in self.done:
-            with self.faults:
-                self.done[name] = self._found(name, chain)
-                return self.done[name]
-            self.faulty.add(name)
-            self.done[name] = constant(1)
-        return self.done[name]
-
-    def _found(self, name: str, chain: tuple[str, ...]) -> Expression:
-        scalar = self.record.values.get(name)
+    def found(name: str, chain: tuple[str, ...]) -> Expression:
+        scalar = record.values.get(name)
         if scalar is None:
-            scalar = Scalar(self.parameters[name].default, self.record.place_of(name))
+            scalar = Scalar(parameters[name].default, record.place_of(name))
             if not scalar.text:
                 raise scalar.place.error(f"{name} has no value: give it one under 'parameters', or make it an axis")
         if name in chain:
             cycle = " -> ".join((*chain[chain.index(name) :], name))
             raise scalar.place.error(f"the definition goes round in a circle: {cycle}")
         names = names_in_scalar(scalar)
-        misnamed = [other for other in names if other not in self.known and other.lower() not in NOT_NUMBERS]
+        misnamed = [other for other in names if other not in known and other.lower() not in NOT_NUMBERS]
         for other in misnamed[:1]:
-            with self.faults:
-                known = f"; the names are {', '.join(self.known)}" if self.known else "; no name is known here"
-                raise scalar.place.error(f"unknown name '{other[:40]}'{did_you_mean(other, self.known) or known}")
-        resolved = {other: self._resolve(other, (*chain, name)) for other in names if other in self.known}
-        if misnamed or resolved.keys() & self.faulty:
-            self.faulty.add(name)
-        return constant(1) if misnamed else parsed(scalar, resolved)
+            with faults:
+                those = f"; the names are {', '.join(known)}" if known else "; no name is known here"
+                raise scalar.place.error(f"unknown name '{other[:40]}'{did_you_mean(other, known) or those}")
+        values = {other: value(other, (*chain, name)) for other in names if other in known}
+        if misnamed or values.keys() & faulty:
+            faulty.add(name)
+        return constant(1) if misnamed else parsed(scalar, values)
+
+    return {name: value(name, ()) for name in parameters}, faulty

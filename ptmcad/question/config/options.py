@@ -3,12 +3,12 @@
 Guarantee: whatever is wrong is a `ConfigError` that names the option.
 """
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, Place
-from ptmcad.model import Model
+from ptmcad.question.config.binding import released_names
 from ptmcad.question.config.record import Record, Window, check_axis_name, unknown_parameter
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Count
@@ -37,7 +37,7 @@ class Typed(NamedTuple):
     members: str | None = None
 
 
-def settings_of(sets: Iterable[str], model: Model, released: Collection[str] = ()) -> dict[str, Scalar]:
+def settings_of(sets: Iterable[str], record: Record) -> dict[str, Scalar]:
     """``NAME=VALUE`` texts, for parameters of a model and what is free or swept in a record."""
     settings: dict[str, Scalar] = {}
     for text in sets:
@@ -45,8 +45,8 @@ def settings_of(sets: Iterable[str], model: Model, released: Collection[str] = (
         if not equals or not name or not value:
             raise ConfigError(f"{text[:80]!r} is not NAME=VALUE, such as {FIRST}=3/2", key="--set")
         place = Place(f"--set {name[:40]}")
-        if name not in model.parameters and name not in released:
-            raise place.error(unknown_parameter(name, model))
+        if name not in record.model.parameters and name not in released_names(record):
+            raise place.error(unknown_parameter(name, record.model))
         if name in settings:
             raise place.error("is given twice: leave one out")
         settings[name] = Scalar(value, place)

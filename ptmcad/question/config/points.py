@@ -9,7 +9,7 @@ from typing import Any
 
 from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, Place
 from ptmcad.model import Model, ptm
-from ptmcad.question.config.binding import released_names, settled
+from ptmcad.question.config.binding import released_names, settled, with_numbers
 from ptmcad.question.config.objects import plain, tree_of
 from ptmcad.question.config.options import settings_of
 from ptmcad.question.config.record import Record, record_of, unknown_parameter
@@ -18,7 +18,6 @@ from ptmcad.question.config.scalars import number_of, number_text
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Scalar, from_python
-from ptmcad.text.expressions import Expression, constant
 
 _EXPECTED = f"{A_SLICE}, {A_RECORD}"
 
@@ -47,7 +46,7 @@ def point_from_mapping(values: Mapping[str, object], model: Model | None = None)
         if name not in model.parameters:
             raise ConfigError(unknown_parameter(name, model))
         given[name] = number_text(from_python(value, place, plain))
-    return point_of(Record(model, values=given), {})
+    return point_of(Record(model, values=given))
 
 
 def point_from_options(
@@ -116,22 +115,21 @@ def units_of(question: str | Path | Mapping[str, Any] | Slice) -> Mapping[str, s
 def _at_point(
     record: Record, at: Mapping[str, Scalar], sets: Iterable[str], option: str | None = "--at"
 ) -> tuple[Model, dict[str, Fraction]]:
-    released = None if record.free is None else record.free[0]
-    given = settings_of(sets, record.model, released_names(record, released))
-    axes: dict[str, Expression] = {}
+    given = settings_of(sets, record)
+    axes: dict[str, Fraction] = {}
     where = record.place.file or "the record"
-    if released is not None and released not in at and released not in given:
-        raise ConfigError(f"{released} is free in {where} and has no value: add {released}=VALUE", key=option)
+    if record.free is not None and (free := record.free[0]) not in {*at, *given}:
+        raise ConfigError(f"{free} is free in {where} and has no value: add {free}=VALUE", key=option)
     for name, scalar in at.items():
         if name in given:
             raise scalar.place.error("is given with --set too: leave one out")
-        if name in record.model.parameters or name in released_names(record, released):
+        if name in record.model.parameters or name in released_names(record):
             given[name] = scalar
         elif name in record.axes:
-            axes[name] = constant(number_of(scalar, "the value of this axis"))
+            axes[name] = number_of(scalar, "the value of this axis")
         else:
             raise scalar.place.error(unknown_parameter(name, record.model))
     for name in record.axes:
         if name not in given and name not in axes:
             raise ConfigError(f"{name} is an axis of {where} and has no value: add {name}=VALUE", key=option)
-    return record.model, point_of(settled(record, given), axes)
+    return record.model, point_of(with_numbers(settled(record, given), axes, {}))

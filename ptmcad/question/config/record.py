@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from ptmcad.errors import ConfigError, Faults, HypothesisError, Place, PtmcadError, shown
 from ptmcad.model import Model, ptm
 from ptmcad.model.reading import MAX_NAME as MAX_AXIS_NAME
-from ptmcad.model.reading import MAX_TITLE, NUMBER, VALUE, two
+from ptmcad.model.reading import MAX_TITLE, NUMBER, VALUE, text_in, title_in, two
 from ptmcad.question.config.model import Described, described_in
 from ptmcad.question.config.scalars import (
     MAX_NAME,
@@ -20,8 +20,6 @@ from ptmcad.question.config.scalars import (
     name_of_file,
     names_in_scalar,
     number_text,
-    text_in,
-    title_in,
 )
 from ptmcad.question.examples import A_DESIGN, A_SWEEP, AXES, FORCE, SECOND, THIRD
 from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count
@@ -84,6 +82,10 @@ class Record(NamedTuple):
         if name in self.values:
             return self.values[name].place
         return self.described.place_of(name) or (self.values_place or self.place).below(name)
+
+    def uses(self, name: str) -> bool:
+        """Whether some value names it."""
+        return any(name in names_in_scalar(scalar) for scalar in self.values.values())
 
     @property
     def doubtful(self) -> frozenset[str]:

@@ -16,13 +16,13 @@ from ptmcad.model import ClosedMechanism, Kind, Mechanism, Model, System
 from ptmcad.model.evaluate import value_at
 from ptmcad.model.moments import foreign
 from ptmcad.model.parts import fault_of_number, parts
-from ptmcad.question.config.names import Resolution
+from ptmcad.question.config.names import resolved
 from ptmcad.question.config.record import Record, Window, read_record, swept_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of
 from ptmcad.question.domain import MAX_DEGREE, sign_of, sign_of_part
 from ptmcad.question.examples import AXES
 from ptmcad.question.positivity import READING_WORK, window_of
-from ptmcad.question.signs import PROVED, Judgement, Subject
+from ptmcad.question.signs import PROVED, Finding, Subject
 from ptmcad.question.slice import NOTHING_ADMISSIBLE, Axis, Count, Slice, have_free_lengths
 from ptmcad.text.entry import Scalar, Tree
 from ptmcad.text.expressions import Expression, axis, constant
@@ -56,13 +56,12 @@ def described_record(tree: Tree) -> tuple[Record, Faults]:
 
 def _unread(record: Record, tree: Tree, faults: Faults) -> frozenset[str]:
     """The names in a record's values of which nothing can be said, because what would tell what they are is faulty."""
-    faulty = {fault.key or "" for fault in faults.found}
     found, hidden = set(), False
     for key in ("axes", "free", "sweep"):
         node = tree.entries.get(key)
         if isinstance(node, Tree):
-            found |= {name for name in node.entries if key != "axes" or _is_faulty(f"{key}.{name}", faulty)}
-        hidden = hidden or (key in faulty and not isinstance(node, Tree))
+            found |= {name for name in node.entries if key != "axes" or faults.concern(f"{key}.{name}")}
+        hidden = hidden or ([key] in faults.steps and not isinstance(node, Tree))
     if hidden:  # any name may be one of those, and any parameter without a value
         found |= record.model.parameters.keys() - record.values.keys()
         for scalar in record.values.values():
@@ -71,24 +70,19 @@ def _unread(record: Record, tree: Tree, faults: Faults) -> frozenset[str]:
     return frozenset(found - record.axes.keys())
 
 
-def _is_faulty(key: str, faulty: Iterable[str]) -> bool:
-    """Whether a fault is that of a key, or of an entry of its value."""
-    return any(f"{other}.".startswith(f"{key}.") for other in faulty)
-
-
-def note_values(record: Record, faults: Faults) -> None:
+def note_values(record: Record, faults: Faults, unread: Iterable[str] = ()) -> None:
     """Note what is wrong with the axes and values of a record that asks nothing yet, and raise all that is known.
 
     Parameters
     ----------
-    record : whose `unread` are the names of which nothing can be said.
+    unread : further names of which nothing can be said.
 
     Raises
     ------
     ConfigError
         When anything was noted, there or before.
     """
-    _resolved(record, faults)
+    _judged(record._replace(unread=record.unread.union(unread)), faults)
     faults.check()
 
 
@@ -110,20 +104,21 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
         with faults:
             refuse_free(*record.free)
         record = record._replace(unread=record.unread | {record.free[0]})
-    axes, resolved, signs = _resolved(record, faults)
+    axes, values, signs = _judged(record, faults)
     with faults:
-        described = (fault for fault in faults.found if (fault.key or "").startswith(("mechanism", "system")))
-        if not any(described) and all(fault.file == record.place.file for fault in faults.found):
+        if not faults.parts & {"mechanism", "system"} and all(
+            fault.file == record.place.file for fault in faults.found
+        ):
             if faults.found:
                 _note_unnamed_axes(record, faults)
-            _check_count(record, resolved)
+            _check_count(record, values)
     faults.check()
-    return _slice(record, axes, resolved, signs)
+    return _slice(record, axes, values, signs)
 
 
 def _note_unnamed_axes(record: Record, faults: Faults) -> None:
     """Note axes of which no text has the name, beside faults because of which it is not known what depends on what."""
-    told, named = {fault.key or "" for fault in faults.found}, set[str]()
+    named = set[str]()
     for scalar in record.values.values():
         try:
             named.update(names_of(parse(scalar.text)))
@@ -133,7 +128,7 @@ def _note_unnamed_axes(record: Record, faults: Faults) -> None:
         return  # an unknown name may be a slip of the axis's
     for name in _needed_axes(record)[:2]:
         place = record.axes[name].place
-        if name not in named and name not in record.model.parameters and not _is_faulty(f"axes.{name}", told):
+        if name not in named and name not in record.model.parameters and not faults.concern(f"axes.{name}"):
             with faults:
                 raise place.error(f"the axis {name} is not used: no parameter depends on it")
 
@@ -151,13 +146,13 @@ def refuse_free(name: str, window: Window) -> None:
     )
 
 
-def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[str, Expression], list[Judgement]]:
+def _judged(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[str, Expression], list[Finding]]:
     """The axes, every parameter as a function of them, and the signs of these and of what springs are given.
 
     Faults are noted, and none that follows from another.
     """
     with faults:
-        if not record.axes and not _is_faulty("axes", [fault.key or "" for fault in faults.found]):
+        if not record.axes and not faults.concern("axes"):
             raise record.place.below("axes").error(f"is missing: a slice needs two axes, such as {AXES}")
     for name in record.axes:
         with faults:
@@ -167,29 +162,28 @@ def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[s
     axes = [_judged_axis(name, window, record, faults) for name, window in record.axes.items()]
     unread = record.unread | set(tuple(record.axes)[2:])  # of three axes the last one
     record = record._replace(unread=unread)
-    resolution = Resolution(record, {name: axis(index) for index, name in enumerate(tuple(record.axes)[:2])}, faults)
-    resolved = resolution.run()
+    values, faulty = resolved(record, {name: axis(k) for k, name in enumerate(tuple(record.axes)[:2])}, faults)
     known = [a for a in axes[:2] if a is not None]
     window = (known[0], known[1]) if len(known) == 2 else None
     wrong: set[str] = set()
-    signs: list[Judgement] = []
-    for name in sorted(resolved, key=lambda name: bool(_inherited(name, record))):
-        if name in record.axes or name in resolution.faulty or _inherited(name, record) in wrong:
+    signs: list[Finding] = []
+    for name in sorted(values, key=lambda name: bool(_inherited(name, record))):
+        if name in record.axes or name in faulty or _inherited(name, record) in wrong:
             continue  # what has the value of another one is wrong with that one, where it stands
         with faults:
             wrong.add(name)
-            signs += _signs_of_value(name, resolved[name], record, window)
+            signs += _signs_of_value(name, values[name], record, window)
             wrong.remove(name)
-    doubtful = wrong | resolution.faulty
+    doubtful = wrong | faulty
     for part in parts(record.model):
         with faults:
             if window is not None and not doubtful & {*names_of(part.tree)}:
-                sign = sign_of_part(record.model, part, resolved, window, READING_WORK)
+                sign = sign_of_part(record.model, part, values, window, READING_WORK)
                 signs.append(_accepted(sign, record.place_of_part(part.key)))
     if window is None:
         faults.check()
         raise AssertionError("what is wrong with an axis was noted")
-    return window, resolved, signs
+    return window, values, signs
 
 
 def _judged_axis(name: str, window: Window, record: Record, faults: Faults) -> Axis | None:
@@ -213,7 +207,7 @@ def _inherited(name: str, record: Record) -> str:
 
 
 def _slice(
-    record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expression], signs: Sequence[Judgement]
+    record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expression], signs: Sequence[Finding]
 ) -> Slice:
     """The slice of a record whose entries are right one by one."""
     mechanism = record.model
@@ -275,17 +269,15 @@ def _check_count(record: Record, resolved: Mapping[str, Expression]) -> None:
         raise record.count_place.error(problem)
 
 
-def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fraction]:
-    """Resolve a record to a point; ``axes`` holds the values of its axes that are no parameters."""
+def point_of(record: Record) -> dict[str, Fraction]:
+    """Resolve a record to a point; its axes that are no parameters have numbers in place of their names."""
     mechanism = record.model
-    faults, values = Faults(), {}
-    resolved = Resolution(record, axes, faults).run()
+    faults = Faults()
+    expressions, _ = resolved(record, {}, faults)
     faults.check()
-    for name, expression in resolved.items():
-        place = record.place_of(name)
-        value = expression.constant()
-        check_number(name, mechanism.kind(name), value, place)
-        values[name] = value
+    values = {name: expression.constant() for name, expression in expressions.items()}
+    for name, value in values.items():
+        check_number(name, mechanism.kind(name), value, record.place_of(name))
     for part in parts(mechanism):
         if problem := fault_of_number(part, value_at(part.tree, values)):
             raise record.place_of_part(part.key).error(problem)
@@ -312,7 +304,7 @@ def _is_left_out(name: str, mechanism: Model, given: set[str]) -> bool:
     return mechanism.kind(name) is Kind.FREE_LENGTH or given.issuperset(mechanism.shorthands[name])
 
 
-def _texts(effective: Iterable[str], record: Record, signs: Iterable[Judgement]) -> dict[str, str]:
+def _texts(effective: Iterable[str], record: Record, signs: Iterable[Finding]) -> dict[str, str]:
     """What the parameters were written as, and every name in those texts, but for the axes.
 
     A k that the springs do not have by default, say, is no parameter of the mechanism, but "k/10" says nothing without
@@ -373,7 +365,7 @@ def axis_of(name: str, window: Window, model: Model) -> Axis:
 
 def _signs_of_value(
     name: str, expression: Expression, record: Record, axes: tuple[Axis, Axis] | None
-) -> tuple[Judgement, ...]:
+) -> tuple[Finding, ...]:
     """The sign of a parameter, where the window is known.
 
     What the geometry excludes is refused, and so is a denominator that vanishes in the window.
@@ -386,11 +378,11 @@ def _signs_of_value(
     if axes is None:
         return ()
     if expression.is_constant:
-        return (Judgement(subject, window_of(axes), PROVED),)
+        return (Finding(subject, window_of(axes), PROVED),)
     return (_accepted(sign_of(subject, axes, READING_WORK), place),)
 
 
-def _accepted(sign: Judgement, place: Place) -> Judgement:
+def _accepted(sign: Finding, place: Place) -> Finding:
     """A sign that is not known to be wrong."""
     if sign.problem and sign.is_final:
         raise place.error(sign.problem)

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
 
-from ptmcad.errors import ConfigError, ExpressionError, Faults, Place
-from ptmcad.model.reading import MAX_TITLE, title_of
+from ptmcad.errors import Faults, Place
+from ptmcad.model.reading import text_in
 from ptmcad.text.entry import Scalar, Written
 from ptmcad.text.expressions import Expression
 from ptmcad.text.node import Node
@@ -43,38 +43,15 @@ def number_of(scalar: Scalar, what: str = "the end of a range") -> Fraction:
 
 def names_in_scalar(scalar: Scalar) -> tuple[str, ...]:
     """The names in a scalar's text."""
-    try:
-        return names_in(scalar.text)
-    except ExpressionError as error:
-        raise scalar.place.located(error, scalar.text) from error
+    return scalar.place.read(scalar.text, names_in)
 
 
 def parsed(scalar: Scalar, names: Mapping[str, Expression]) -> Expression:
     """The function of the axes that a scalar is, where names are such functions."""
-    try:
-        return parse(scalar.text, names)
-    except ExpressionError as error:
-        raise scalar.place.located(error, scalar.text) from error
+    return scalar.place.read(scalar.text, lambda text: parse(text, names))
 
 
 # ------------------------------------------------------------------------------------------- texts and names of files
-
-
-def text_in(entry: Node, limit: int) -> str:
-    """A text of at most so many characters."""
-    if not isinstance(entry.value, Scalar) or entry.value.is_null:
-        raise entry.fault("expected a text")
-    if len(entry.value.text) > limit:
-        raise entry.fault(f"the text is longer than {limit} characters")
-    return entry.value.text
-
-
-def title_in(entry: Node) -> str:
-    """A title as one line."""
-    try:
-        return title_of(text_in(entry, MAX_TITLE))
-    except ConfigError as error:
-        raise entry.fault(error.message) from error
 
 
 def file_name(name: str, option: str) -> str:

@@ -18,11 +18,11 @@ from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.objects import tree_of
 from ptmcad.question.config.record import AXIS_NAME, Record, check_axis_name, swept_names
 from ptmcad.question.config.resolution import check_number, described_record, note_values, slice_of
-from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
+from ptmcad.question.config.scalars import number_of, number_text
 from ptmcad.question.examples import A_SWEEP, FIRST
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Slice
-from ptmcad.question.sweep import Listed, Product, Spaced, Sweep, Values
+from ptmcad.question.sweep import Product, Spaced, Sweep, Values
 from ptmcad.text.codec import Codec, part, reading, record
 from ptmcad.text.entry import Sequence, Tree
 from ptmcad.text.node import Node
@@ -104,7 +104,7 @@ def checked_sweep(tree: Tree) -> Sweeping:
         with faults:
             raise tree.place.below("sweep").error(f"is missing: say what is swept, such as {A_SWEEP}")
     if sweep is None:  # of the values only what does not depend on what is swept
-        note_values(record._replace(unread=record.unread | swept_names(record).keys()), faults)
+        note_values(record, faults, swept_names(record))
     assert sweep is not None
     slice_of(with_values(record, sweep[0]), faults)
     return Sweeping(record, sweep)
@@ -124,10 +124,10 @@ def _read(sweep: Node, record: Record) -> Sweep | None:
         first.extend(entries if not first else ())
         if {*entries} != {*first}:
             raise part.fault(f"each mapping of the list sweeps the same parameters: {', '.join(first)}")
-        return Product(dict(part.gathered(lambda entry: (entry.name, _swept(entry, record)), entries.values())))
+        return dict(part.gathered(lambda entry: (entry.name, _swept(entry, record)), entries.values()))
 
     products = sweep.gathered(product, parts)
-    if len(products) < max(len(parts), 1) or not all(product.values for product in products):
+    if len(products) < max(len(parts), 1) or not all(products):
         return None
     found = Sweep(tuple(products))
     if len(found) > MAX_MEMBERS:
@@ -143,25 +143,21 @@ def _swept(entry: Node, record: Record) -> Values:
         raise entry.fault(f"{name} is an axis and cannot be swept too: remove it here or from the axes")
     if name in record.values:
         raise entry.fault(f"{name} has a value under 'parameters' and cannot be swept too: leave one out")
-    if name not in record.model.parameters and not _used(name, record):
+    if name not in record.model.parameters and not record.uses(name):
         hint = did_you_mean(name, record.model.parameters) or ";"
         raise entry.fault(
             f"no parameter is called {name[:40]}{hint} or use it in an expression, {_example(record.model, name)}"
         )
     found = _values(entry)
     if name in record.model.parameters:
-        for value in found.extremes:
-            check_number(name, record.model.kind(name), value, entry.place)
+        ends = (found[0], found[len(found) - 1]) if isinstance(found, Spaced) else found
+        check_number(name, record.model.kind(name), min(ends), entry.place)
     return found
 
 
 def _example(model: Model, name: str) -> str:
     parameter = next(iter(model.forces), next(iter(model.parameters), FIRST))
     return f"such as {parameter}: {name[:40]} under 'parameters'"
-
-
-def _used(name: str, record: Record) -> bool:
-    return any(name in names_in_scalar(scalar) for scalar in record.values.values())
 
 
 def _values(entry: Node) -> Values:
@@ -172,7 +168,7 @@ def _values(entry: Node) -> Values:
     items = entry.items(expected=expected, most=MAX_MEMBERS)
     if not items:
         raise entry.fault("the list is empty: give the values, such as [-10, -20]")
-    return Listed(tuple(number_of(number_text(item), "a value") for item in items))
+    return tuple(number_of(number_text(item), "a value") for item in items)
 
 
 def _number(entry: Node) -> Fraction:

@@ -18,7 +18,7 @@ from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Slice
 
 
-class Asked(NamedTuple):
+class Inquiry(NamedTuple):
     """What a record asks.
 
     Attributes
@@ -31,7 +31,7 @@ class Asked(NamedTuple):
     design: Design | None
 
 
-def load_asked(path: str | Path) -> Asked:
+def load_inquiry(path: str | Path) -> Inquiry:
     """Read a record.
 
     Raises
@@ -53,4 +53,4 @@ def load_asked(path: str | Path) -> Asked:
         design = checked_design(tree) if "design" in tree.entries else None
     faults.check()
     assert question is not None
-    return Asked(question, sweep, design)
+    return Inquiry(question, sweep, design)
