@@ -16,7 +16,7 @@ from ptmcad.cli.gathering import gathered
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.maps import made_map, stored_map, tolerance_option
 from ptmcad.cli.paths import name_option, out_option
-from ptmcad.cli.pictures import picture, report_written
+from ptmcad.cli.pictures import figure, report_written
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_of
 from ptmcad.cli.slices import SliceOptions, slice_options
@@ -93,7 +93,7 @@ def command(
 
         with stored_in(asked.config if stored else None):
             motion = motion_of(result, path, pose, frames, progress)
-            write_files(out, {each: picture(each, partial(_draw, motion, style, fps, dpi)) for each in names})
+            write_files(out, {each: figure(each, partial(_draw, motion, style, fps, dpi)) for each in names})
     click.echo(f"{question_of(result.slice)}\n{summary(motion)}")
     report_written(out, names)
 

@@ -16,7 +16,7 @@ from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import idle_output, report_idle
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
 from ptmcad.cli.paths import name_option, out_option, record_argument
-from ptmcad.cli.pictures import picture, report_written, write_result
+from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_in
 from ptmcad.cli.values import names, settings
@@ -139,7 +139,7 @@ def command(
 
 def _save(found: BestDesign, wanted: tuple[str, ...], folder: Path) -> None:
     """Write the pictures and, last, the JSON."""
-    pictures = {name: picture(name, partial(_draw, found)) for name in wanted if not name.endswith(".json")}
+    pictures = {name: figure(name, partial(_draw, found)) for name in wanted if not name.endswith(".json")}
     file = next((name for name in wanted if name not in pictures), "")
     write_result(folder, pictures, file, found.to_json() if file else "")
 

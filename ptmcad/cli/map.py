@@ -18,6 +18,7 @@ from ptmcad.cli.idle import idle_style, report_idle
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.maps import made_map, stored_map, tolerance_option
 from ptmcad.cli.paths import out_option
+from ptmcad.cli.pictures import figure as figure_of
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_of
@@ -166,7 +167,7 @@ def _writers(result: Any, field: Field, names: tuple[str, ...], figure: Figure) 
         else:
             path.write_bytes(field_npz(field))
 
-    return {name: picture(name, tabulate if name.endswith(DATA) else draw) for name in names}
+    return {name: picture(name, tabulate) if name.endswith(DATA) else figure_of(name, draw) for name in names}
 
 
 def _expect_values(field: Field) -> None:

@@ -13,10 +13,7 @@ import click
 
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown_path
 from ptmcad.process.output import Writer, save_stopped, text_writer, write_files
-from ptmcad.show.render.backend import load_matplotlib
 from ptmcad.show.style import PictureStyle
-
-_NO_PICTURES = (".csv", ".npz", ".html")
 
 
 def report_written(folder: Path, names: Iterable[str]) -> None:
@@ -27,15 +24,13 @@ def report_written(folder: Path, names: Iterable[str]) -> None:
 
 
 def picture(name: str, draw: Writer) -> Writer:
-    """A writer of the picture of this name, or of a table, which is made by a function of the path.
+    """A writer of the picture of this name, which is drawn by a function of the path.
 
-    What all pictures need is loaded first. Failures are of one kind, `PictureError`, but for lack of memory.
+    Its failures are of one kind, `PictureError`, but for lack of memory.
     """
 
     def write(path: Path) -> None:
         try:
-            if not name.endswith(_NO_PICTURES):
-                load_matplotlib()
             draw(path)
         except MemoryError:
             raise
@@ -43,6 +38,18 @@ def picture(name: str, draw: Writer) -> Writer:
             raise PictureError(f"{name} cannot be drawn: {_reason(error)}") from error
 
     return write
+
+
+def figure(name: str, draw: Writer) -> Writer:
+    """The same of what takes matplotlib, which is loaded first."""
+
+    def load_and_draw(path: Path) -> None:
+        from ptmcad.show.render.backend import load_matplotlib
+
+        load_matplotlib()
+        draw(path)
+
+    return picture(name, load_and_draw)
 
 
 def _reason(error: Exception) -> str:

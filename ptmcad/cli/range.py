@@ -16,7 +16,7 @@ from ptmcad.cli.idle import idle_output, report_idle
 from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.paths import name_option, out_option, record_argument
-from ptmcad.cli.pictures import picture, report_written, write_result
+from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.range_answers import RangeAnswer, RangeRequest, answer, is_enclosed, request_codec
 from ptmcad.cli.slices import range_option, set_option
@@ -222,7 +222,7 @@ def _save(
 
         asked = {"slice": SLICE.write(slice), "request": request_codec().write(request)}
         text = document(slice.name, slice.mechanism, {**found.parts, **asked})
-    write_result(out, {name: picture(name, found.pictures[part]) for name, part in pictures.items()}, file, text)
+    write_result(out, {name: figure(name, found.pictures[part]) for name, part in pictures.items()}, file, text)
 
 
 def _parts(request: RangeRequest, *, enclosed: bool) -> list[str]:

@@ -15,7 +15,7 @@ from ptmcad.cli.idle import idle_output, report_idle
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.paths import name_option, out_option, record_argument
-from ptmcad.cli.pictures import picture, report_written, write_result
+from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import set_option
 from ptmcad.cli.values import point
@@ -67,7 +67,7 @@ def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
     """
     landscape = f"{name}-landscape."
     pictures = [file for file in names if not file.endswith(".json")]
-    writers = {file: picture(file, partial(_write_picture, file.startswith(landscape), poses)) for file in pictures}
+    writers = {file: figure(file, partial(_write_picture, file.startswith(landscape), poses)) for file in pictures}
     file = next((file for file in names if file not in writers), "")
     write_result(folder, writers, file, poses.to_json() if file else "")
 

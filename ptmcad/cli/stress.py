@@ -13,7 +13,7 @@ import click
 from ptmcad.cli.formats import format_option
 from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
 from ptmcad.cli.paths import out_option
-from ptmcad.cli.pictures import picture, report_written, write_result
+from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.process.output import Writer, check_writable, text_writer
@@ -45,7 +45,7 @@ def save(found: Row, folder: Path, formats: tuple[str, ...]) -> tuple[str, ...]:
         if suffix in texts:
             writers[f"{name}.{suffix}"] = text_writer(texts[suffix](found))
         elif suffix not in ("table", "json"):
-            writers[f"{name}.{suffix}"] = picture(f"{name}.{suffix}", partial(_draw, found))
+            writers[f"{name}.{suffix}"] = figure(f"{name}.{suffix}", partial(_draw, found))
     file = f"{name}.json" if "json" in formats else ""
     if writers or file:
         write_result(folder, writers, file, to_json(found) if file else "")

@@ -159,6 +159,9 @@ def _atlas(sweep: Sweep, jobs: int | None, progress: ProgressBar, path: Path) ->
 
 
 def _film(sweep: Sweep, fps: int, progress: ProgressBar, path: Path) -> None:
+    from ptmcad.show.render.backend import load_matplotlib
+
+    load_matplotlib()
     from ptmcad.show.render.sweepfilm import save_sweep_film
 
     done = [member for member in sweep if member.state is State.DONE]

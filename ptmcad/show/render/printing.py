@@ -114,9 +114,8 @@ def printed(figure: Figure, suffix: str, dpi: int, title: str, description: str)
     """The picture as a file's content, without dates and versions; to be called within `settings`."""
     data = BytesIO()
     metadata = {**_UNDATED[suffix], "Title": _ascii(title) if suffix == "eps" else title}
-    figure.set_dpi(dpi)
     with _opaque():
-        figure.savefig(data, format=suffix, metadata=metadata)
+        figure.savefig(data, format=suffix, dpi=dpi, metadata=metadata)
     if suffix == "eps":
         return _CHANGING.sub(b"", data.getvalue())
     if suffix != "svg":
