@@ -11,7 +11,7 @@ from ptmcad.model import ptm
 
 PACKAGE = Path(__file__).resolve().parents[2] / "ptmcad"
 DATA = {".js", ".json", ".yaml", ".html", ".css"}
-FILES = sorted(p for p in PACKAGE.rglob("*") if p.suffix in {".py", *DATA} and p.parent.name != "mechanism")
+FILES = sorted(p for p in PACKAGE.rglob("*") if p.suffix in {".py", *DATA} and p.parent.name != "model")
 OWN = {*ptm().parameters, *ptm().unknowns, *ptm().points}
 VAGUE = {"k", "l0"}
 """Also short names of other things: as identifiers they say nothing, nor does k in a text."""
