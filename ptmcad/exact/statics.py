@@ -21,7 +21,7 @@ from ptmcad.algebra.points import RealPoint, value_at
 from ptmcad.answer.poses import Pose, Spring, TorsionSpring, Vector
 from ptmcad.exact.models.system import RationalPolynomial
 from ptmcad.exact.stiffness import Number, Stiffness, eigenvalues, square_root, stiffness_of
-from ptmcad.model.xjoint import second_bar
+from ptmcad.model.elements import second_bar
 from ptmcad.text.balls import ball_of
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.flint_numbers import from_fraction

@@ -21,11 +21,10 @@ from itertools import permutations
 from typing import NamedTuple
 
 from ptmcad.errors import ExpressionError
-from ptmcad.model.closed import mechanism_in
 from ptmcad.model.description import Model, System
 from ptmcad.model.elements import UnknownKind
 from ptmcad.model.evaluate import evaluate
-from ptmcad.model.proofs import Image, Monomial, Polynomial, Ring, felt
+from ptmcad.model.proofs import Monomial, Points, Polynomial, Ring, felt
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.tree import Tree
 
@@ -200,30 +199,31 @@ def _parts(model: Model, ring: _Slice) -> Iterator[_Part]:
     def felt_by_unknowns(p: Polynomial) -> list[_Terms]:
         return [{m: c for m, c in p.terms.items() if any(v in unknowns for v, _ in m)}]
 
-    def marked(parts: Mapping[str, Iterable[tuple[Monomial, Fraction]]]) -> _Terms:
-        return {tuple(sorted(((mark, 1), *m))): c for mark, terms in parts.items() for m, c in terms}
+    def marked(parts: Mapping[str, Polynomial]) -> _Terms:
+        return {tuple(sorted(((mark, 1), *m))): c for mark, p in parts.items() for m, c in p.terms.items()}
 
     def values(trees: Iterable[Tree]) -> list[_Terms]:
         return [evaluate(tree, ring).terms for tree in trees]
 
-    mechanism = mechanism_in(model)
-    if mechanism is model:
-        energy, springs, work = felt(mechanism, Image(ring, {}))
-        # how many are the same is said in their polynomial
-        lengths = [
-            marked({f"spring {n}": part for n, part in enumerate((*spring, (((), Fraction(number)),)))})
-            for spring, number in springs.items()
-        ]
-        kept = [felt_by_unknowns(energy), [marked({f"d {u}": terms for u, terms in work.items()})], lengths]
-    else:
-        assert isinstance(model, System)
-        if mechanism is not None and any(evaluate(s.free, ring).terms for s in mechanism.springs):
+    whole = model.whole
+    if isinstance(model, System):
+        roots = () if whole is None else (element.root for element in whole.elements.values() if element.root)
+        if any(evaluate(root.free, ring).terms for root in roots):
             raise ExpressionError("free lengths are in none of a closed loop's equations")
         kept = [values(model.inequalities), values(model.stability)]
         if model.potential is not None:
             kept.append(felt_by_unknowns(evaluate(model.potential, ring)))
         equations = values(model.equations)
         yield from (_Part(f, equations, True) for f in equations)
+    else:
+        assert whole is not None
+        energy, springs, work = felt(Points(whole, ring))
+        # how many are the same is said in their polynomial
+        lengths = [
+            marked({f"spring {n}": p for n, p in enumerate((*spring, ring.constant(Fraction(number))))})
+            for spring, number in springs.items()
+        ]
+        kept = [felt_by_unknowns(energy), [marked({f"d {u}": p for u, p in work.items()})], lengths]
     yield from (_Part(f, images) for images in kept for f in images)
 
 

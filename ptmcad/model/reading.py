@@ -11,9 +11,8 @@ from functools import cached_property
 from typing import Any, TypeVar
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
-from ptmcad.model.angles import PI, split_angle, without_quarter_turns
 from ptmcad.model.elements import Kind, Parameter, UnknownKind
-from ptmcad.model.evaluate import evaluate, value_at
+from ptmcad.model.evaluate import PI, evaluate, split_angle, value_at, without_quarter_turns
 from ptmcad.model.sizes import Size, Sizes
 from ptmcad.text.codec import Codec, Key, choice, part, reading, record
 from ptmcad.text.entry import as_written

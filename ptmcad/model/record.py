@@ -11,17 +11,14 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
-from ptmcad.model.angles import angle_name
-from ptmcad.model.bodies import bodies
+from ptmcad.model.bodies import bodies, second_angles, xjoints
 from ptmcad.model.description import Mechanism
 from ptmcad.model.elements import Closing, Load, Moment, Spring, Support, TorsionSpring
-from ptmcad.model.evaluate import value_at
-from ptmcad.model.parts import check_numbers
-from ptmcad.model.proofs import check_bars, check_springs, check_symmetries, check_unknowns
+from ptmcad.model.evaluate import angle_name, value_at
+from ptmcad.model.proofs import check_bars, check_elements, check_numbers, check_symmetries, check_unknowns
 from ptmcad.model.reading import NAME_SCHEMA, NUMBER, POINTS, VALUE, ZERO, Context, constant, new_name, two
 from ptmcad.model.sizes import check_sizes
 from ptmcad.model.work import split_moments
-from ptmcad.model.xjoints import second_angles, xjoints
 from ptmcad.text.codec import Codec, Key, choice, converted, listed, named, part, reading, record
 from ptmcad.text.entry import Place, as_written, from_python
 from ptmcad.text.node import MAX_ENTRIES, Node
@@ -228,17 +225,15 @@ def _prove(found: Mechanism, faults: Faults) -> None:
 
             check_closing(found, faults)
         if "springs" not in faulty and "torsion" not in faulty:
-            check_springs(found, faults)
+            check_elements(found, faults)
     if not faulty - _FORCELESS:
         check_unknowns(found, faults)
         check_symmetries(found, faults)
         check_moments(found, faults)
         if found.closing or found.xjoints:  # most mechanisms have neither, and do not wait for what reads them
-            from ptmcad.model.crossed import check_crossed
             from ptmcad.model.loops import check_loops
 
             check_loops(found, faults)
-            check_crossed(found, faults)
 
 
 def check_moments(mechanism: Mechanism, faults: Faults) -> None:

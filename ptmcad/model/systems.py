@@ -9,9 +9,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from ptmcad.errors import ConfigError, Faults
-from ptmcad.model.angles import PI
 from ptmcad.model.description import System
-from ptmcad.model.evaluate import value_at
+from ptmcad.model.evaluate import PI, value_at
 from ptmcad.model.reading import VALUE, Context, new_name, parsed
 from ptmcad.model.sizes import check_sizes
 from ptmcad.text.codec import Codec, listed, part, reading, record

@@ -1,20 +1,22 @@
-"""Moments that depend on their own unknown alone, split into a constant part and the slope of an energy.
+"""What moments do: those that depend on their own unknown alone have a constant part and the slope of an energy.
 
 Guarantee: exact. With M = m + w', where m is free of unknowns and w is a polynomial in the unknown's cosine and sine,
 or in an unknown on the line, that is zero where the unknown is, equilibria are those of the energy less w under the
 moment m. On the circle m is the mean of M, whose work is another one after each turn; w has one value for each pose.
+The energy less the work of m has many values on the circle, so that whatever is said of an energy's descent has to ask
+for moments first.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
-from ptmcad.model.description import Mechanism
+from ptmcad.model.description import Mechanism, Model
 from ptmcad.model.elements import Moment
-from ptmcad.model.evaluate import evaluate
+from ptmcad.model.evaluate import evaluate, value_at
 from ptmcad.model.proofs import Monomial, Polynomial, Ring
 from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree, names_of
 
@@ -48,16 +50,54 @@ def split_moments(mechanism: Mechanism) -> Split:
     if not mechanism.has_potential:
         return Split(mechanism.moments, ())
     steady, energies = [], []
-    for moment in mechanism.moments:
-        if moment.unknown not in names_of(moment.value):
-            steady.append(moment)
+    for unknown, moment in mechanism.work.items():
+        if unknown not in names_of(moment):
+            steady.append(Moment(unknown, moment))
             continue
-        constant, work = _integrated(evaluate(moment.value, Ring(MAX_WORK)), moment.unknown)
+        constant, work = _integrated(evaluate(moment, Ring(MAX_WORK)), unknown)
         if constant:
-            steady.append(Moment(moment.unknown, _tree(constant, mechanism.angles)))
+            steady.append(Moment(unknown, _tree(constant, mechanism.angles)))
         if work:
             energies.append(_tree([(factors, -c) for factors, c in work], mechanism.angles))
     return Split(tuple(steady), tuple(energies))
+
+
+def acting(model: Model, unknowns: Iterable[str]) -> str:
+    """What works on some unknowns, in words: moments on angles, forces on what is no angle."""
+    names = [name for name in model.unknowns if name in set(unknowns)]
+    angles = [name for name in names if name in model.angles]
+    lengths = [name for name in names if name not in model.angles]
+    parts = ["moments" if len(angles) > 1 else "moment"] if angles else []
+    if lengths:
+        parts.append(f"force{'s' * (len(lengths) > 1)} on {' and '.join(lengths)}")
+    return " and the ".join(parts)
+
+
+def foreign(mechanism: Mechanism) -> str:
+    """What depends on another unknown than its own, so that there is no potential."""
+    if any(name in mechanism.angles for name in mechanism.coupled):
+        return "a moment"
+    return f"the force on {next(name for name in mechanism.unknowns if name in mechanism.coupled)}"
+
+
+def moments_at(model: Model, parameters: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """The unknowns on which a moment that is not zero works, to the moment.
+
+    Parameters
+    ----------
+    model : one that has a potential: no moment depends on another unknown than its own.
+    parameters : all of the model's; free lengths are zero where they are not among them.
+
+    Raises
+    ------
+    ExpressionError
+        When a moment depends on another unknown.
+    """
+    if not isinstance(model, Mechanism):
+        return {}
+    known = dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters)
+    found = {unknown: value_at(tree, known) for unknown, tree in split_moments(model).steady}
+    return {unknown: value for unknown, value in found.items() if value}
 
 
 _Terms = list[tuple[_Factors, Fraction]]

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 
 from ptmcad.errors import ExpressionError, GeometryError
 from ptmcad.model import Kind, Model
-from ptmcad.model.parts import Part, fault_of_number, parts
+from ptmcad.model.elements import Part
 from ptmcad.question.positivity import Axes, Need, Undecided, Witness, decide, named, number, place
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, constant
@@ -82,7 +82,7 @@ def prove(model: Model, parameters: Mapping[str, Expression], axes: Axes) -> Non
         problem = fault(name, kind, expression, axes) or unproved(name, kind, expression, axes)
         if problem:
             raise GeometryError(problem, parameter=name)
-    for part in parts(model):
+    for part in model.parts:
         problem = fault_of_part(model, part, parameters, axes) or unproved_of_part(model, part, parameters, axes)
         if problem:
             raise GeometryError(problem, part=part.key)
@@ -97,7 +97,7 @@ def fault_of_part(
     except ExpressionError as error:
         return f"cannot be judged: {error.message}"
     if value.is_constant:
-        return fault_of_number(part, value.constant())
+        return part.fault(value.constant())
     if value.degree > MAX_DEGREE:
         return f"{part.text} has degree {value.degree} in the axes: at most {MAX_DEGREE} can be computed"
     return fault(part.text, part.kind, value, axes, max_work)

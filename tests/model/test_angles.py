@@ -9,8 +9,7 @@ import pytest
 import ptmcad
 from ptmcad.errors import ConfigError
 from ptmcad.model import described, described_system
-from ptmcad.model.angles import split_angle
-from ptmcad.model.evaluate import evaluate
+from ptmcad.model.evaluate import evaluate, split_angle
 from ptmcad.model.proofs import Ring
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import to_text

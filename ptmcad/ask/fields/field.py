@@ -25,8 +25,7 @@ from ptmcad.ask.pixels import grid as grid_of
 from ptmcad.ask.solving import poses_at
 from ptmcad.errors import ConfigError, expect
 from ptmcad.model import Mechanism, Model
-from ptmcad.model.moments import acting
-from ptmcad.model.work import split_moments
+from ptmcad.model.work import acting, split_moments
 from ptmcad.options import Progress
 from ptmcad.question.slice import Slice
 

@@ -23,7 +23,7 @@ from ptmcad.model import (
     recognised,
     without_loops,
 )
-from ptmcad.model.parts import check_numbers
+from ptmcad.model.proofs import check_numbers
 from ptmcad.question.config.starters import mechanism_names, starter_mechanism
 from ptmcad.text.entry import Place, Scalar, Tree, place_at, plain_data, scalars
 from ptmcad.text.syntax import NAME, did_you_mean, names_in

@@ -13,8 +13,7 @@ from fractions import Fraction
 from ptmcad.errors import ExpressionError, Faults
 from ptmcad.model import ClosedMechanism, Kind, Mechanism, Model, System
 from ptmcad.model.evaluate import value_at
-from ptmcad.model.moments import foreign
-from ptmcad.model.parts import fault_of_number, parts
+from ptmcad.model.work import foreign
 from ptmcad.question.config.names import Resolution
 from ptmcad.question.config.record import Record, Window, read_record, swept_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of
@@ -170,7 +169,7 @@ def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[s
             _check_value(name, resolved[name], record, window)
             wrong.remove(name)
     doubtful = wrong | resolution.faulty
-    for part in parts(record.model):
+    for part in record.model.parts:
         with faults:
             if window is not None and not doubtful & {*names_of(part.tree)}:
                 problem = fault_of_part(record.model, part, resolved, window, READING_WORK)
@@ -275,8 +274,8 @@ def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fracti
         value = expression.constant()
         check_number(name, mechanism.kind(name), value, place)
         values[name] = value
-    for part in parts(mechanism):
-        if problem := fault_of_number(part, value_at(part.tree, values)):
+    for part in mechanism.parts:
+        if problem := part.fault(value_at(part.tree, values)):
             raise record.place_of_part(part.key).error(problem)
     _check_shorthands_are_used(record, mechanism, set(record.values))
     return without_shorthands(values, mechanism)

@@ -15,7 +15,7 @@ from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, T
 from ptmcad.answer.widths import Maximum, OperationWidths
 from ptmcad.answer.words import kind_name, noun
 from ptmcad.model import Mechanism, Model, built_in
-from ptmcad.model.moments import acting
+from ptmcad.model.work import acting
 from ptmcad.show.ranges.numbers import end_text, narrowly_known, settled, width_text
 from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import Enclosure

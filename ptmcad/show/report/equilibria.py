@@ -17,7 +17,7 @@ from ptmcad.errors import ConfigError, PoleError
 from ptmcad.model import Mechanism, Model, System
 from ptmcad.model.energy import points_in, with_springs
 from ptmcad.model.evaluate import evaluate, value_at
-from ptmcad.model.moments import moments_at
+from ptmcad.model.work import moments_at
 from ptmcad.question.slice import merged
 from ptmcad.show.report.bounds import (
     Bounds,
