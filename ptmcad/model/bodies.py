@@ -13,9 +13,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ptmcad.errors import ConfigError
-from ptmcad.model.derivative import ZERO, negative, product, total
 from ptmcad.model.elements import LEVEL, Place, XJoint
-from ptmcad.model.evaluate import cosine_and_sine
 from ptmcad.model.reading import (
     MAX_BODIES,
     MAX_UNKNOWNS,
@@ -27,6 +25,7 @@ from ptmcad.model.reading import (
     new_name,
     two,
 )
+from ptmcad.model.trees import ZERO, cosine_and_sine, negative, product, total
 from ptmcad.text.codec import Codec, part, reading, record
 from ptmcad.text.entry import as_written
 from ptmcad.text.node import Node

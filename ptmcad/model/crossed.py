@@ -20,12 +20,12 @@ from fractions import Fraction
 from math import prod
 
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.model.derivative import determinant
 from ptmcad.model.description import ClosedMechanism, Mechanism
 from ptmcad.model.elements import XJoint, second_bar
 from ptmcad.model.evaluate import evaluate
 from ptmcad.model.proofs import Points, Polynomial, Ring
 from ptmcad.model.sizes import MAX_TERMS, TOO_LARGE
+from ptmcad.model.trees import determinant
 from ptmcad.model.work import split_moments, tree_of
 
 MAX_PRODUCTS = 2_000_000

@@ -307,10 +307,6 @@ class Mechanism(Model):
         ends = {f"{s.start}{s.end}": k for k, s in enumerate(self.springs)}
         return ends | {s.name: k for k, s in enumerate(self.springs)}
 
-    def held(self, support: Support) -> str:
-        """The first point that is held so; an empty name when there is none."""
-        return next((name for name, kind in self.supports.items() if kind is support), "")
-
     def _trees(self) -> Iterator[Tree]:
         yield from self.coordinates.values()
         yield from (part.tree for element in self.elements.values() for part in element.written)

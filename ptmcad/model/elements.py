@@ -12,8 +12,8 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from ptmcad.errors import shown
-from ptmcad.model.derivative import ZERO, negative, product, total
-from ptmcad.model.evaluate import cosine_and_sine, multiples
+from ptmcad.model.evaluate import multiples
+from ptmcad.model.trees import ZERO, cosine_and_sine, negative, product, total
 from ptmcad.text.numerals import text_of as value_text
 from ptmcad.text.tree import Call, Chain, Name, Number, Power, Step, Tree
 from ptmcad.text.tree import to_text as text_of
@@ -244,21 +244,20 @@ class TorsionSpring(NamedTuple):
     @property
     def energy(self) -> Tree:
         """As a tree; the cosine of the difference is expanded, since only the rest's cosine and sine are known."""
-        turned = [
-            Chain(Number(value), (Step("*", Call(function, self.angle)),))
-            for value, function in zip(self.rest, ("cos", "sin"), strict=True)
-        ]
-        return Chain(self.stiffness, (Step("*", Chain(Number(Fraction(1)), tuple(Step("-", t) for t in turned))),))
+        turned = tuple(Step("-", part) for part in self._parts("cos", "sin"))
+        return Chain(self.stiffness, (Step("*", Chain(Number(Fraction(1)), turned)),))
 
     @property
     def deflection(self) -> tuple[Tree, Tree]:
         """Cosine and sine of angle - rest, expanded in the same way."""
-        c, s = (Number(value) for value in self.rest)
-        cosine, sine = (Call(function, self.angle) for function in ("cos", "sin"))
-        return (
-            Chain(Chain(c, (Step("*", cosine),)), (Step("+", Chain(s, (Step("*", sine),))),)),
-            Chain(Chain(c, (Step("*", sine),)), (Step("-", Chain(s, (Step("*", cosine),))),)),
-        )
+        (c, s), (cosine, sine) = self._parts("cos", "sin"), self._parts("sin", "cos")
+        return Chain(c, (Step("+", s),)), Chain(cosine, (Step("-", sine),))
+
+    def _parts(self, *functions: str) -> tuple[Tree, Tree]:
+        """Cosine and sine of the rest times functions of the angle."""
+        pairs = zip(self.rest, functions, strict=True)
+        one, other = (Chain(Number(value), (Step("*", Call(function, self.angle)),)) for value, function in pairs)
+        return one, other
 
     def element(self, points: Mapping[str, Place]) -> Element:
         """For traversals."""
@@ -313,17 +312,14 @@ class XJoint(NamedTuple):
     @property
     def upper(self) -> tuple[Tree, int]:
         """Direction and quarter turns of the top."""
-        here = Chain(Name(self.angle), (Step("+", Name(self.other)),))
-        if isinstance(self.direction, Number):
-            return here, (self.turns + 2) % 4
-        return Chain(self.direction, (Step("+", here),)), (self.turns + 2) % 4
+        return self._towards(Chain(Name(self.angle), (Step("+", Name(self.other)),))), (self.turns + 2) % 4
 
     def bar(self, angle: str) -> tuple[Tree, Tree]:
         """Cosine and sine of the direction of a bar at this angle against the base."""
-        towards: Tree = Name(angle)
-        if not isinstance(self.direction, Number):
-            towards = Chain(self.direction, (Step("+", towards),))
-        return cosine_and_sine(towards, self.turns)
+        return cosine_and_sine(self._towards(Name(angle)), self.turns)
+
+    def _towards(self, angle: Tree) -> Tree:
+        return angle if isinstance(self.direction, Number) else Chain(self.direction, (Step("+", angle),))
 
     def element(self, points: Mapping[str, Place]) -> Element:
         """For traversals."""

@@ -39,11 +39,11 @@ from itertools import combinations
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.model.crossed import without_xjoints
-from ptmcad.model.derivative import ZERO, cofactors, derivative, determinant, negative, product, total
 from ptmcad.model.description import ClosedMechanism, Mechanism, Model
 from ptmcad.model.elements import Closing, UnknownKind, squared_distance
 from ptmcad.model.proofs import Points
 from ptmcad.model.sizes import check_sizes
+from ptmcad.model.trees import ZERO, cofactors, derivative, determinant, negative, product, total
 from ptmcad.model.work import split_moments
 from ptmcad.text.tree import Chain, Name, Number, Power, Step, Tree
 

@@ -10,15 +10,15 @@ The ring is a small one of its own: readers and checkers load no algebra.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.model.description import Mechanism, Model
 from ptmcad.model.elements import UnknownKind, squared_distance
-from ptmcad.model.evaluate import PI, Named, evaluate, multiples, value_at, without_quarter_turns
-from ptmcad.text.tree import Chain, Name, Negative, Number, Step, Tree, mapped, names_of
+from ptmcad.model.evaluate import Named, evaluate, multiples, value_at
+from ptmcad.text.tree import Name, Tree, mapped, names_of
 
 MAX_WORK = 12_000
 """Products of terms for one question, a fraction of a second; two bars and a spring take some hundred."""
@@ -219,7 +219,9 @@ def check_symmetries(mechanism: Mechanism, faults: Faults) -> None:
         key = f"symmetries.{n}"
         with faults:
             try:
-                holds = _are_the_same(mechanism, {}, images)
+                here, there = felt(Points(mechanism)), felt(Points(mechanism, images=images))
+                change = here.energy - there.energy
+                holds = here[1:] == there[1:] and not any(change.derivative(u).terms for u in mechanism.unknowns)
             except ExpressionError as error:
                 raise ConfigError(f"it is not proved to be a symmetry: {error.message}", key=key) from None
             if not holds:
@@ -230,40 +232,9 @@ def check_symmetries(mechanism: Mechanism, faults: Faults) -> None:
                 )
 
 
-def energy_is_kept(
-    mechanism: Mechanism, parameters: Mapping[str, Fraction], reflected: Iterable[str], turned: Collection[str]
-) -> bool:
-    """Whether a reflection is proved to take equilibria at values of the parameters to equilibria.
-
-    Parameters
-    ----------
-    reflected : unknowns u that become -u.
-    turned : those angles of them that become pi - u instead.
-    """
-    numbers: dict[str, Tree] = {name: Number(value) for name, value in parameters.items()}
-    images = {name: Chain(Name(PI), (Step("-", Name(name)),)) if name in turned else Negative(Name(name))
-              for name in reflected}  # fmt: skip
-    try:
-        return _are_the_same(mechanism, numbers, numbers | images)
-    except ExpressionError:  # too large to be multiplied out
-        return False
-
-
-def _are_the_same(mechanism: Mechanism, one: Mapping[str, Tree], other: Mapping[str, Tree]) -> bool:
-    """Whether the equilibria with these images of names are those of the same energy and the same work of moments, but
-    for numbers.
-
-    Springs with a free length have roots in their energies: they are the same when stiffness, free length and squared
-    length are.
-    """
-    here, there = (felt(Points(mechanism, images=images)) for images in (one, other))
-    change = here.energy - there.energy
-    return here[1:] == there[1:] and not any(change.derivative(u).terms for u in mechanism.unknowns)
-
-
 class Felt(NamedTuple):
     """What unknowns feel: the energy without springs of free length, these (stiffness, free length, squared length),
-    and the moments' work along each unknown."""
+    and the moments' work along each unknown. Equilibria are the same where these are, but for numbers in the energy."""
 
     energy: Polynomial
     springs: Counter[tuple[Polynomial, Polynomial, Polynomial]]
@@ -305,13 +276,7 @@ class Points:
         self.placed = Named(self.ring, {name: self._image(tree) for name, tree in mechanism.coordinates.items()})
 
     def _image(self, tree: Tree) -> Tree:
-        if not self.images:
-            return tree
-
-        def image(part: Tree) -> Tree | None:
-            return self.images.get(part.name) if isinstance(part, Name) else None
-
-        return without_quarter_turns(mapped(tree, image))
+        return mapped(tree, lambda part: self.images.get(part.name) if isinstance(part, Name) else None)
 
     def value(self, tree: Tree) -> Polynomial:
         """Of an expression, in which coordinates are names ``P.x``."""

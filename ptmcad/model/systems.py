@@ -10,9 +10,10 @@ from typing import Any
 
 from ptmcad.errors import ConfigError, Faults
 from ptmcad.model.description import System
-from ptmcad.model.evaluate import PI, value_at
+from ptmcad.model.evaluate import value_at
 from ptmcad.model.reading import VALUE, Context, new_name, parsed
 from ptmcad.model.sizes import check_sizes
+from ptmcad.model.trees import PI
 from ptmcad.text.codec import Codec, listed, part, reading, record
 from ptmcad.text.entry import Place, from_python
 from ptmcad.text.node import MAX_ENTRIES, Node

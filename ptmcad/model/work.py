@@ -18,11 +18,13 @@ from ptmcad.model.description import Mechanism, Model
 from ptmcad.model.elements import Moment
 from ptmcad.model.evaluate import evaluate, value_at
 from ptmcad.model.proofs import Monomial, Polynomial, Ring
+from ptmcad.model.trees import product, total
 from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree, names_of
 
 MAX_WORK = 200_000
 """Products of terms for one moment."""
 _Factors = dict[str, int]
+_ITSELF: _Factors = {"": 1}
 
 
 class Split(NamedTuple):
@@ -54,11 +56,11 @@ def split_moments(mechanism: Mechanism) -> Split:
         if unknown not in names_of(moment):
             steady.append(Moment(unknown, moment))
             continue
-        constant, work = _integrated(evaluate(moment, Ring(MAX_WORK)), unknown)
-        if constant:
-            steady.append(Moment(unknown, _tree(constant, mechanism.angles)))
-        if work:
-            energies.append(_tree([(factors, -c) for factors, c in work], mechanism.angles))
+        constant, energy = _integrated(evaluate(moment, Ring(MAX_WORK)), unknown)
+        if constant.terms:
+            steady.append(Moment(unknown, tree_of(constant, mechanism.angles)))
+        if energy.terms:
+            energies.append(tree_of(energy, mechanism.angles))
     return Split(tuple(steady), tuple(energies))
 
 
@@ -100,33 +102,25 @@ def moments_at(model: Model, parameters: Mapping[str, Fraction]) -> dict[str, Fr
     return {unknown: value for unknown, value in found.items() if value}
 
 
-_Terms = list[tuple[_Factors, Fraction]]
-
-
-def _integrated(moment: Polynomial, unknown: str) -> tuple[_Terms, _Terms]:
-    """The constant part, and the antiderivative of the rest that is zero where the unknown is."""
-    constant: _Terms = []
-    total = Polynomial(moment.ring, {})
+def _integrated(moment: Polynomial, unknown: str) -> tuple[Polynomial, Polynomial]:
+    """The constant part, and the energy of the rest that is zero where the unknown is."""
+    constant = energy = Polynomial(moment.ring, {})
+    own = {unknown, f"cos {unknown}", f"sin {unknown}"}
     for monomial, c in moment.terms.items():
-        own = {unknown, f"cos {unknown}", f"sin {unknown}"}
         rest = {v: e for v, e in monomial if v not in own}
-        parts = list(_antiderivative({v: e for v, e in monomial if v in own}, unknown))
-        for factors, part in parts:
-            if factors == {"": 1}:
-                constant.append((rest, c * part))
+        for factors, part in _antiderivative({v: e for v, e in monomial if v in own}, unknown):
+            if factors == _ITSELF:
+                constant += Polynomial(moment.ring, {_monomial(rest): c * part})
             else:
-                total += Polynomial(moment.ring, {_monomial(rest | factors): c * part})
-    collected = Polynomial(moment.ring, {})
-    for factors, c in constant:
-        collected += Polynomial(moment.ring, {_monomial(factors): c})
-    return _listed(collected), _listed(total)
+                energy -= Polynomial(moment.ring, {_monomial(rest | factors): c * part})
+    return constant, energy
 
 
 def _antiderivative(own: _Factors, unknown: str) -> Iterator[tuple[_Factors, Fraction]]:
-    """That of a power of an unknown on the line, or of sin^n or sin^n cos; the unknown itself as the empty name."""
+    """That of a power of an unknown on the line, or of sin^n or sin^n cos; `_ITSELF` is that of a constant."""
     cosine, sine = f"cos {unknown}", f"sin {unknown}"
     if not own:
-        yield {"": 1}, Fraction(1)
+        yield _ITSELF, Fraction(1)
     elif unknown in own:
         yield {unknown: own[unknown] + 1}, Fraction(1, own[unknown] + 1)
     elif cosine in own:
@@ -147,30 +141,20 @@ def _monomial(factors: _Factors) -> Monomial:
     return tuple(sorted(factors.items()))
 
 
-def _listed(p: Polynomial) -> _Terms:
-    return [(dict(monomial), c) for monomial, c in sorted(p.terms.items())]
-
-
 def tree_of(p: Polynomial, angles: Sequence[str]) -> Tree:
     """A polynomial as a sum of products."""
-    return _tree(_listed(p), angles) if p.terms else Number(Fraction(0))
+    terms = [(_product(monomial, abs(c), angles), c) for monomial, c in sorted(p.terms.items())]
+    return total(*(term if c > 0 else Negative(term) for term, c in terms))
 
 
-def _tree(terms: Sequence[tuple[_Factors, Fraction]], angles: Sequence[str]) -> Tree:
-    """A sum of products."""
-    (first, c), *rest = terms
-    start = _product(first, abs(c), angles)
-    steps = tuple(Step("+" if c > 0 else "-", _product(factors, abs(c), angles)) for factors, c in rest)
-    start = start if c > 0 else Negative(start)
-    return Chain(start, steps) if steps else start
-
-
-def _product(factors: _Factors, c: Fraction, angles: Sequence[str]) -> Tree:
-    parts: list[Tree] = [Number(Fraction(c.numerator))] if c.numerator != 1 or not factors else []
-    for variable, e in factors.items():
+def _product(monomial: Monomial, c: Fraction, angles: Sequence[str]) -> Tree:
+    parts: list[Tree] = []
+    for variable, e in monomial:
         function, _, angle = variable.partition(" ")
         base: Tree = Call(function, Name(angle)) if angle in angles else Name(variable)
         parts.append(base if e == 1 else Power(base, Number(Fraction(e))))
-    steps = [Step("*", part) for part in parts[1:]]
-    steps += [Step("/", Number(Fraction(c.denominator)))] if c.denominator != 1 else []
-    return Chain(parts[0], tuple(steps)) if steps else parts[0]
+    found = product(Number(Fraction(c.numerator)), *parts)
+    if c.denominator == 1:
+        return found
+    first, steps = (found.first, found.steps) if isinstance(found, Chain) else (found, ())
+    return Chain(first, (*steps, Step("/", Number(Fraction(c.denominator)))))
