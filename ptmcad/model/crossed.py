@@ -21,8 +21,7 @@ from math import prod
 
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.model.description import ClosedMechanism, Mechanism
-from ptmcad.model.elements import XJoint, second_bar
-from ptmcad.model.evaluate import evaluate
+from ptmcad.model.elements import second_bar
 from ptmcad.model.proofs import Points, Polynomial, Ring
 from ptmcad.model.sizes import MAX_TERMS, TOO_LARGE
 from ptmcad.model.trees import determinant
@@ -69,35 +68,30 @@ def without_xjoints(mechanism: Mechanism) -> ClosedMechanism:
 def _equations(mechanism: Mechanism) -> tuple[list[Polynomial], list[Polynomial]]:
     """The polynomials e_i by the unknowns, and each joint's D."""
     ring = Ring(MAX_PRODUCTS)
-    joints = mechanism.xjoints
-    bars = {joint.name: _second_bar(joint, ring) for joint in joints}
-    points, energy = Points(mechanism, ring), ring.constant(Fraction(0))
+    points, energy, below = Points(mechanism, ring), ring.constant(Fraction(0)), ring.constant(Fraction(1))
+    moments = split_moments(mechanism)
     energies = (tree for trees in mechanism.polynomials.values() for tree in trees)
-    for tree in (*energies, *split_moments(mechanism).energies):  # with the second bars' angles as angles of their own
+    for tree in (*energies, *moments.energies):  # with the second bars' angles as angles of their own
         energy += points.value(tree)
-    powers = {joint.name: _degree(energy, joint.other) for joint in joints}
-    for joint in joints:
-        energy = _substituted(energy, joint.other, bars[joint.name], powers[joint.name])
-    below = ring.constant(Fraction(1))
-    for joint in joints:
-        below = _times(below, bars[joint.name][2], powers[joint.name])
-    steady = {m.unknown: evaluate(m.value, ring) for m in split_moments(mechanism).steady}
-    of_angle = {joint.angle: joint for joint in joints}
+    far: dict[str, Polynomial] = {}
+    powers = {joint.angle: _degree(energy, joint.other) for joint in mechanism.xjoints}
+    for joint in mechanism.xjoints:
+        length, bars = points.value(joint.length), points.value(joint.bars)
+        second = second_bar(bars, length, ring.cos(joint.angle), ring.sin(joint.angle))
+        energy = _substituted(energy, joint.other, second, powers[joint.angle])
+        far[joint.angle] = second[2]
+        below = _times(below, second[2], powers[joint.angle])
+    steady = {m.unknown: points.value(m.value) for m in moments.steady}
     equations = []
     for unknown in (*mechanism.angles, *mechanism.reals):
         slope = energy.derivative(unknown)
         if unknown in steady:
-            slope = slope - steady[unknown] * below
-        if unknown in of_angle and (power := powers[of_angle[unknown].name]):
-            far = bars[of_angle[unknown].name][2]
-            slope = far * slope - ring.constant(Fraction(power)) * energy * far.derivative(unknown)
+            slope -= steady[unknown] * below
+        if power := powers.get(unknown):
+            own = far[unknown]
+            slope = own * slope - ring.constant(Fraction(power)) * energy * own.derivative(unknown)
         equations.append(slope)
-    return equations, [bars[joint.name][2] for joint in joints]
-
-
-def _second_bar(joint: XJoint, ring: Ring) -> tuple[Polynomial, Polynomial, Polynomial]:
-    length, bars = evaluate(joint.length, ring), evaluate(joint.bars, ring)
-    return second_bar(bars, length, ring.cos(joint.angle), ring.sin(joint.angle))
+    return equations, list(far.values())
 
 
 def _degree(p: Polynomial, angle: str) -> int:
