@@ -6,8 +6,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from fractions import Fraction
 
 from ptmcad.model import Model, mechanism_in
-from ptmcad.model.moments import acting, foreign, moments_at
-from ptmcad.model.work import split_moments
+from ptmcad.model.work import acting, foreign, moments_at, split_moments
 
 
 def noun(model: Model, number: int = 2) -> str:

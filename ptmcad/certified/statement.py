@@ -12,7 +12,7 @@ from ptmcad.answer.regionmap import PlanStep, System
 from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.plan import beforehand
 from ptmcad.model import Model
-from ptmcad.model.closed import equations_in, mechanism_in
+from ptmcad.model.description import equations_in, mechanism_in
 from ptmcad.model.involutions import Involution
 from ptmcad.model.statement import energy_text
 from ptmcad.model.work import Split, split_moments

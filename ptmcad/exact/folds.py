@@ -19,8 +19,8 @@ from ptmcad.exact.models.potential import elements_of
 from ptmcad.exact.models.system import ParametricSystem, at_point, polynomial_at
 from ptmcad.exact.witness import Point
 from ptmcad.model import Mechanism, Model
-from ptmcad.model.closed import looped
 from ptmcad.model.compile import compiled
+from ptmcad.model.description import looped
 from ptmcad.model.fourbars import IN_TWO_WAYS, closed_by, four_bars
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.flint_numbers import to_fraction

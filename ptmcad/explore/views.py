@@ -14,7 +14,7 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.words import stable_of
 from ptmcad.model import Model
-from ptmcad.model.moments import loads_at
+from ptmcad.model.work import loads_at
 from ptmcad.show.posetable import kind_of
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import fill_of

@@ -8,8 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ptmcad.errors import ConfigError
-from ptmcad.model.closed import ClosedMechanism, mechanism_in
-from ptmcad.model.description import Mechanism, Model, System
+from ptmcad.model.description import ClosedMechanism, Mechanism, Model, System, mechanism_in
 from ptmcad.model.elements import Kind, Parameter, Support
 from ptmcad.model.ptm import ptm
 from ptmcad.model.record import described, read_mechanism

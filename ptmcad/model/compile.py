@@ -19,11 +19,10 @@ from typing import Generic, NamedTuple, TypeVar
 from ptmcad.errors import ExpressionError
 from ptmcad.formulas.graph import Formula, Graph, length
 from ptmcad.formulas.values import values
-from ptmcad.model.closed import ClosedMechanism, mechanism_in
-from ptmcad.model.description import Mechanism, Model, System
+from ptmcad.model.description import ClosedMechanism, Mechanism, Model, System, mechanism_in
+from ptmcad.model.elements import second_bar
 from ptmcad.model.evaluate import Element, Ring, evaluate, evaluated
 from ptmcad.model.work import split_moments
-from ptmcad.model.xjoint import second_bar
 from ptmcad.text.tree import Tree
 
 Vector = tuple[Formula, Formula]

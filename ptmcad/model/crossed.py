@@ -19,41 +19,18 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import prod
 
-from ptmcad.errors import ConfigError, ExpressionError, Faults
-from ptmcad.model.closed import ClosedMechanism
-from ptmcad.model.derivative import determinant
-from ptmcad.model.description import Mechanism
-from ptmcad.model.energy import with_springs
-from ptmcad.model.evaluate import evaluate
+from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.model.description import ClosedMechanism, Mechanism
+from ptmcad.model.elements import second_bar
 from ptmcad.model.proofs import Points, Polynomial, Ring
 from ptmcad.model.sizes import MAX_TERMS, TOO_LARGE
+from ptmcad.model.trees import determinant
 from ptmcad.model.work import split_moments, tree_of
-from ptmcad.model.xjoint import XJoint, second_bar
-from ptmcad.text.tree import Number
 
 MAX_PRODUCTS = 2_000_000
 """Products of terms while the energy is made: some seconds. Two joints with symbolic lengths take a tenth of that."""
 MAX_MINOR = 20 * MAX_TERMS
 """Of a condition for stability, multiplied out by the engine."""
-
-
-def check_crossed(mechanism: Mechanism, faults: Faults) -> None:
-    """Note what is not computed with X-joints, by its key."""
-    if not mechanism.xjoints:
-        return
-    with faults:
-        if mechanism.closing:
-            raise ConfigError("closing bars beside x-joints are not computed yet", key="closing")
-    with faults:
-        if mechanism.symmetries:
-            raise ConfigError("symmetries are not used with x-joints: leave them out", key="symmetries")
-    with faults:
-        if not mechanism.has_potential:
-            raise ConfigError("a moment beside x-joints depends on no unknown but its own", key="moments")
-    for n, spring in enumerate(mechanism.springs, 1):
-        with faults:
-            if not (isinstance(spring.free, Number) and spring.free.value == 0):
-                raise ConfigError("free lengths are not computed with x-joints yet", key=f"springs.{n}.free")
 
 
 def without_xjoints(mechanism: Mechanism) -> ClosedMechanism:
@@ -91,42 +68,30 @@ def without_xjoints(mechanism: Mechanism) -> ClosedMechanism:
 def _equations(mechanism: Mechanism) -> tuple[list[Polynomial], list[Polynomial]]:
     """The polynomials e_i by the unknowns, and each joint's D."""
     ring = Ring(MAX_PRODUCTS)
-    joints = mechanism.xjoints
-    bars = {joint.name: _second_bar(joint, ring) for joint in joints}
-    energy = _energy(Points(mechanism, ring))
-    powers = {joint.name: _degree(energy, joint.other) for joint in joints}
-    for joint in joints:
-        energy = _substituted(energy, joint.other, bars[joint.name], powers[joint.name])
-    below = ring.constant(Fraction(1))
-    for joint in joints:
-        below = _times(below, bars[joint.name][2], powers[joint.name])
-    steady = {m.unknown: evaluate(m.value, ring) for m in split_moments(mechanism).steady}
-    of_angle = {joint.angle: joint for joint in joints}
+    points, energy, below = Points(mechanism, ring), ring.constant(Fraction(0)), ring.constant(Fraction(1))
+    moments = split_moments(mechanism)
+    energies = (tree for trees in mechanism.polynomials.values() for tree in trees)
+    for tree in (*energies, *moments.energies):  # with the second bars' angles as angles of their own
+        energy += points.value(tree)
+    far: dict[str, Polynomial] = {}
+    powers = {joint.angle: _degree(energy, joint.other) for joint in mechanism.xjoints}
+    for joint in mechanism.xjoints:
+        length, bars = points.value(joint.length), points.value(joint.bars)
+        second = second_bar(bars, length, ring.cos(joint.angle), ring.sin(joint.angle))
+        energy = _substituted(energy, joint.other, second, powers[joint.angle])
+        far[joint.angle] = second[2]
+        below = _times(below, second[2], powers[joint.angle])
+    steady = {m.unknown: points.value(m.value) for m in moments.steady}
     equations = []
     for unknown in (*mechanism.angles, *mechanism.reals):
         slope = energy.derivative(unknown)
         if unknown in steady:
-            slope = slope - steady[unknown] * below
-        if unknown in of_angle and (power := powers[of_angle[unknown].name]):
-            far = bars[of_angle[unknown].name][2]
-            slope = far * slope - ring.constant(Fraction(power)) * energy * far.derivative(unknown)
+            slope -= steady[unknown] * below
+        if power := powers.get(unknown):
+            own = far[unknown]
+            slope = own * slope - ring.constant(Fraction(power)) * energy * own.derivative(unknown)
         equations.append(slope)
-    return equations, [bars[joint.name][2] for joint in joints]
-
-
-def _second_bar(joint: XJoint, ring: Ring) -> tuple[Polynomial, Polynomial, Polynomial]:
-    length, bars = evaluate(joint.length, ring), evaluate(joint.bars, ring)
-    return second_bar(bars, length, ring.cos(joint.angle), ring.sin(joint.angle))
-
-
-def _energy(points: Points) -> Polynomial:
-    """With the second bars' angles as angles of their own."""
-    mechanism, ring = points.mechanism, points.ring
-    twice = ring.constant(Fraction(0))
-    for spring in mechanism.springs:
-        twice = twice + points.value(spring.stiffness) * points.squared(spring.start, spring.end)
-    loaded = {load.point: points.at(load.point) for load in mechanism.loads}
-    return with_springs(mechanism, ring, loaded, twice * ring.constant(Fraction(1, 2)))
+    return equations, list(far.values())
 
 
 def _degree(p: Polynomial, angle: str) -> int:

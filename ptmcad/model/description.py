@@ -1,31 +1,37 @@
-"""A planar mechanism as data: parameters, unknowns, points, bars, springs and loads (`elements`), made of expressions.
+"""A planar mechanism as data: parameters, unknowns, points, bars, and its `elements`, made of expressions.
 
-And any other parametric system: equations or a potential, and what a solution has to satisfy.
+And any other parametric system: equations or a potential, and what a solution has to satisfy; so are a mechanism's
+closed loops.
 
 Guarantee: what `ptmcad.model.record` has read is consistent: every name that occurs is a parameter, an unknown or a
 point, angles stand inside of cosines and sines only, and every tree has a value in any ring (`evaluate`).
 """
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 from ptmcad.errors import ExpressionError
 from ptmcad.model.elements import (
     Closing,
+    Element,
     Kind,
     Load,
     Moment,
     Parameter,
+    Part,
+    Place,
     Spring,
     Support,
     TorsionSpring,
     UnknownKind,
+    XJoint,
 )
 from ptmcad.model.evaluate import multiples
-from ptmcad.model.xjoint import XJoint
-from ptmcad.text.tree import Tree, names_of
+from ptmcad.text.tree import Name, Tree, names_of
 
 Unit = tuple[str, ...]
 """Quantities, ``length`` and ``force``, and between two of them what joins them."""
@@ -79,7 +85,7 @@ class Model:
     energy_unit: ClassVar[Unit] = ()
 
     @property
-    def drawable(self) -> "Mechanism | None":
+    def drawable(self) -> Mechanism | None:
         """The mechanism whose points, bars and springs pages and films show; none of what has equations."""
         return None
 
@@ -87,6 +93,11 @@ class Model:
     def record_key(self) -> str:
         """The key of a record under which its source stands."""
         return "mechanism"
+
+    @property
+    def whole(self) -> Mechanism | None:
+        """The mechanism that it is, or of whose poses it has the equations; None of another system."""
+        return None
 
     @property
     def has_potential(self) -> bool:
@@ -190,9 +201,48 @@ class Model:
         """What a parameter is measured in; empty of a number, and of what is no parameter."""
         return _UNITS.get(self.kind(name), ()) if name in self.parameters else ()
 
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        """What is written in elements and has to be positive, or not negative, and is no parameter of such a kind
+        itself; by the keys of the description."""
+        elements = {} if self.whole is None else self.whole.elements
+        found = (
+            part._replace(key=f"{key}.{part.key}") for key, element in elements.items() for part in element.written
+        )
+        return tuple(part for part in found if self._has_to_be_shown(part))
+
+    def _has_to_be_shown(self, part: Part) -> bool:
+        if not (part.kind.is_positive or part.kind.may_vanish):
+            return False
+        known = self.kind(part.tree.name) if isinstance(part.tree, Name) else Kind.NUMBER
+        return not (known.is_positive or (known.may_vanish and part.kind.may_vanish))
+
+    @cached_property
+    def work(self) -> Mapping[str, Tree]:
+        """The unknowns on which moments work, to these."""
+        return {}
+
+    @cached_property
+    def coordinates(self) -> Mapping[str, Tree]:
+        """What the names ``P.x`` and ``P.y`` of its points stand for."""
+        return {}
+
+    @cached_property
+    def polynomials(self) -> Mapping[str, tuple[Tree, ...]]:
+        """What its equations or its energy are made of, by the keys of the description; points have names there."""
+        raise NotImplementedError
+
     def _trees(self) -> Iterator[Tree]:
         """All expressions."""
-        raise NotImplementedError
+        for trees in self.polynomials.values():
+            yield from trees
+
+
+class _Names(dict[str, Place]):
+    """The names of points' coordinates, in place of what these are."""
+
+    def __missing__(self, point: str) -> Place:
+        return Name(f"{point}.x"), Name(f"{point}.y")
 
 
 @dataclass(frozen=True)
@@ -208,7 +258,7 @@ class Mechanism(Model):
     bodies : to the points fixed to them, for drawings.
     moments : generalised forces that need not come from a potential.
     torsion : springs between directions, in the record's order.
-    closing, xjoints : bars that close loops, and X-joints; with any, `ptmcad.model.closed` makes a
+    closing, xjoints : bars that close loops, and X-joints; with any, `ptmcad.model.loops` makes a
         `ClosedMechanism` of it.
     """
 
@@ -231,13 +281,57 @@ class Mechanism(Model):
     __repr__ = Model.__repr__
 
     @property
-    def drawable(self) -> "Mechanism | None":
+    def drawable(self) -> Mechanism | None:
         return self
+
+    @property
+    def whole(self) -> Mechanism:
+        return self
+
+    def elements_with(self, points: Mapping[str, Place]) -> Mapping[str, Element]:
+        """What it is made of, by the keys of the description, given the points' coordinates."""
+        found = {
+            **_numbered("springs", self.springs),
+            **_numbered("torsion", self.torsion),
+            **_named("loads", self.loads),
+            **_named("moments", self.moments),
+            **_numbered("closing", self.closing),
+            **_named("x-joint", self.xjoints),
+        }
+        return {key: each.element(points) for key, each in found.items()}
+
+    @cached_property
+    def elements(self) -> Mapping[str, Element]:
+        """The same with the points' coordinates as names, ``P.x`` and ``P.y``."""
+        return self.elements_with(_Names())
+
+    def written(self, kind: Kind) -> tuple[Tree, ...]:
+        """What is written for a kind of quantity, element by element."""
+        return tuple(part.tree for element in self.elements.values() for part in element.written if part.kind is kind)
+
+    @cached_property
+    def coordinates(self) -> Mapping[str, Tree]:
+        return {
+            f"{point}.{c}": tree for point, place in self.points.items() for c, tree in zip("xy", place, strict=True)
+        }
+
+    @cached_property
+    def polynomials(self) -> Mapping[str, tuple[Tree, ...]]:
+        return {key: element.energies for key, element in self.elements.items() if element.energies}
+
+    @cached_property
+    def work(self) -> Mapping[str, Tree]:
+        return {moment.unknown: moment.value for moment in self.moments}
+
+    @cached_property
+    def coupled(self) -> tuple[str, ...]:
+        """The unknowns on which a moment works that depends on another one, so that there is no potential."""
+        return tuple(u for u, value in self.work.items() if self.unknowns.keys() & set(names_of(value)) - {u})
 
     @property
     def has_potential(self) -> bool:
         """A moment that depends on no unknown but its own has one, though of several values on a circle."""
-        return all(self.unknowns.keys() & set(names_of(moment.value)) <= {moment.unknown} for moment in self.moments)
+        return not self.coupled
 
     @cached_property
     def followers(self) -> Mapping[str, str]:
@@ -296,25 +390,18 @@ class Mechanism(Model):
         pulling = any(names & set(names_of(spring.stiffness)) for spring in self.springs)
         return self.energy_unit if turning and not pulling and all(map(_is_multiple, turning)) else known
 
-    def held(self, support: Support) -> str:
-        """The first point that is held so; an empty name when there is none."""
-        return next((name for name, kind in self.supports.items() if kind is support), "")
-
     def _trees(self) -> Iterator[Tree]:
-        for point in self.points.values():
-            yield from point
-        for spring in self.springs:
-            yield from (spring.stiffness, spring.free)
-        for load in self.loads:
-            yield from (load.x, load.y)
-        for moment in self.moments:
-            yield moment.value
-        for torsion in self.torsion:
-            yield from (torsion.angle, torsion.stiffness)
-        for closing in self.closing:
-            yield closing.length
-        for joint in self.xjoints:
-            yield from (joint.length, joint.bars)
+        yield from self.coordinates.values()
+        yield from (part.tree for element in self.elements.values() for part in element.written)
+
+
+def _numbered(key: str, entries: Iterable[Any]) -> dict[str, Any]:
+    return {f"{key}.{n}": entry for n, entry in enumerate(entries, 1)}
+
+
+def _named(key: str, entries: Iterable[Any]) -> dict[str, Any]:
+    """By their names, which come first in each."""
+    return {f"{key}.{entry[0]}": entry for entry in entries}
 
 
 def _is_multiple(tree: Tree) -> bool:
@@ -358,9 +445,62 @@ class System(Model):
         """Whether it is known what a stable solution is."""
         return self.has_potential or bool(self.stability)
 
+    @cached_property
+    def polynomials(self) -> Mapping[str, tuple[Tree, ...]]:
+        lists = {"equations": self.equations, "positive": self.inequalities, "stable": self.stability}
+        found = {key: (tree,) for name, trees in lists.items() for key, tree in _numbered(name, trees).items()}
+        return found if self.potential is None else {**found, "potential": (self.potential,)}
+
+
+@dataclass(frozen=True, eq=False)  # equal where the systems are: nothing more is compared
+class ClosedMechanism(System):
+    """A mechanism with closed loops, or with X-joints, as the equations of its equilibria; without its springs' free
+    lengths, as `without_free_lengths` has none of their parameters.
+
+    Its conditions for stability hold together where a symmetric matrix is positive definite, and the last one is the
+    determinant of that matrix, times what is positive: so off its zeros no other one matters where it changes its sign.
+
+    Attributes
+    ----------
+    mechanism : as it was described.
+    tangent : the direction in which loops with one degree of freedom let the unknowns move; zero where one folds flat.
+    multipliers : the last unknowns, where more degrees of freedom are left: of each closing bar its tension divided by
+        its length.
+    """
+
+    mechanism: Mechanism = field(kw_only=True, compare=False)
+    tangent: tuple[Tree, ...] = field(kw_only=True, compare=False)
+    multipliers: tuple[str, ...] = field(default=(), kw_only=True, compare=False)
+
+    __hash__ = Model.__hash__
+    __repr__ = Model.__repr__
+
+    @property
+    def record_key(self) -> str:
+        return "mechanism"
+
+    @cached_property
+    def whole(self) -> Mechanism:
+        """The mechanism with the bars that close its loops among the bars, and their tensions among the unknowns, for
+        what shows its poses."""
+        closing = tuple((closing.start, closing.end) for closing in self.mechanism.closing)
+        return replace(self.mechanism, bars=self.mechanism.bars + closing, unknowns=self.unknowns)
+
     def _trees(self) -> Iterator[Tree]:
-        yield from self.equations
-        if self.potential is not None:
-            yield self.potential
-        yield from self.inequalities
-        yield from self.stability
+        yield from super()._trees()
+        yield from self.mechanism._trees()
+
+
+def looped(model: Model) -> Mechanism | None:
+    """The mechanism whose loops a model closes, as it was described; None where there are none."""
+    return model.mechanism if isinstance(model, ClosedMechanism) else None
+
+
+def equations_in(model: Model) -> System | None:
+    """The system that a model is, also in the place of closed loops; None of another mechanism."""
+    return model if isinstance(model, System) else None
+
+
+def mechanism_in(model: Model) -> Mechanism | None:
+    """The mechanism that a model is, or of whose poses it has the equations; None of another system."""
+    return model.whole

@@ -1,11 +1,30 @@
-"""What descriptions are made of: parameters, springs, loads and moments, each with its expressions as trees."""
+"""What descriptions are made of: parameters, springs, loads, moments and joints, with their expressions as trees.
 
+Guarantee: each says by `element` all that a traversal of a description needs of it: what is written in it, its energy,
+and what an unknown has to change in it. So a new law of a spring is a class here, and no list of kinds elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
 from enum import Enum
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from ptmcad.text.tree import Call, Chain, Number, Step, Tree
+from ptmcad.errors import shown
+from ptmcad.model.evaluate import multiples
+from ptmcad.model.trees import ZERO, cosine_and_sine, negative, product, total
+from ptmcad.text.numerals import text_of as value_text
+from ptmcad.text.tree import Call, Chain, Name, Number, Power, Step, Tree
 from ptmcad.text.tree import to_text as text_of
+
+MAX_SHOWN = 60
+"""Characters of an expression."""
+LEVEL: Tree = ZERO
+"""The direction of a base from left to right."""
+_HALF: Tree = Number(Fraction(1, 2))
+_TWO: Tree = Number(Fraction(2))
+Place = tuple[Tree, Tree]
 
 
 class Kind(Enum):
@@ -80,6 +99,70 @@ class Parameter(NamedTuple):
     alias_of: str = ""
 
 
+class Part(NamedTuple):
+    """An expression that is written in an element.
+
+    Attributes
+    ----------
+    key : where it stands, such as ``k`` in a spring and ``springs.2.k`` in a description.
+    kind : what it measures, which decides which values make sense.
+    meaning : what has to hold, in place of what its kind says.
+    """
+
+    key: str
+    kind: Kind
+    tree: Tree
+    meaning: str = ""
+
+    @property
+    def text(self) -> str:
+        """As it is written, for messages."""
+        return shown(text_of(self.tree), MAX_SHOWN)
+
+    def fault(self, value: Fraction) -> str:
+        """What is wrong with its value, in words; empty where nothing is."""
+        if not self.kind.excludes(value):
+            return ""
+        number = value_text(value)
+        is_what = number if self.text == number else f"{self.text} = {number}"
+        if self.meaning:
+            return f"{self.meaning}, but {self.text} = {number}"
+        return f"a {self.kind.noun} is {self.kind.demand}, but this is {is_what}"
+
+
+class Root(NamedTuple):
+    """An energy stiffness/2 (length - free)^2 that is no polynomial, as the length is a root."""
+
+    stiffness: Tree
+    free: Tree
+    squared: Tree
+
+
+class Element(NamedTuple):
+    """What a traversal of a description needs of one of its elements.
+
+    Attributes
+    ----------
+    written : its expressions.
+    energies : the summands of its energy, where there is a root without the free length.
+    root : its energy with the free length, where that is not written as zero.
+    varying : what an unknown has to change.
+    idle : what is wrong where none does; without ``varying`` what is wrong at sight.
+    """
+
+    written: tuple[Part, ...]
+    energies: tuple[Tree, ...] = ()
+    root: Root | None = None
+    varying: Tree | None = None
+    idle: str = ""
+
+
+def squared_distance(points: Mapping[str, Place], start: str, end: str) -> Tree:
+    """The square of a distance, given the coordinates as trees."""
+    pairs = zip(points[start], points[end], strict=True)
+    return total(*(Power(total(b, negative(a)), _TWO) for a, b in pairs))
+
+
 class Spring(NamedTuple):
     """A spring between two points; its name, which no other has, is that of its stiffness or is made of its points'."""
 
@@ -88,6 +171,19 @@ class Spring(NamedTuple):
     end: str
     stiffness: Tree
     free: Tree
+
+    def element(self, points: Mapping[str, Place]) -> Element:
+        """For traversals, given the points' coordinates."""
+        squared = squared_distance(points, self.start, self.end)
+        is_zero = isinstance(self.free, Number) and not self.free.value
+        return Element(
+            (Part("k", Kind.STIFFNESS, self.stiffness), Part("free", Kind.FREE_LENGTH, self.free)),
+            (product(_HALF, self.stiffness, squared),),
+            None if is_zero else Root(self.stiffness, self.free, squared),
+            squared,
+            f"the length of {self.start}{self.end} is constant, so that this spring does nothing: leave it out, or put "
+            "an end where it moves",
+        )
 
 
 class Load(NamedTuple):
@@ -102,12 +198,24 @@ class Load(NamedTuple):
         """Its components as text: the forces' names where they are parameters."""
         return text_of(self.x), text_of(self.y)
 
+    def element(self, points: Mapping[str, Place]) -> Element:
+        """For traversals, given the points' coordinates."""
+        forces = self.x, self.y
+        return Element(
+            tuple(Part(key, Kind.FORCE, force) for key, force in zip("12", forces, strict=True)),
+            tuple(negative(product(f, place)) for f, place in zip(forces, points[self.point], strict=True)),
+        )
+
 
 class Moment(NamedTuple):
     """A generalised force that works on an unknown: a moment on an angle, a force on a length."""
 
     unknown: str
     value: Tree
+
+    def element(self, points: Mapping[str, Place]) -> Element:
+        """For traversals; its work is no energy, or one that takes integration (`ptmcad.model.work`)."""
+        return Element((Part("", Kind.NUMBER, self.value),))
 
 
 class Closing(NamedTuple):
@@ -116,6 +224,10 @@ class Closing(NamedTuple):
     start: str
     end: str
     length: Tree
+
+    def element(self, points: Mapping[str, Place]) -> Element:
+        """For traversals, given the points' coordinates."""
+        return Element((Part("length", Kind.LENGTH, self.length),))
 
 
 class TorsionSpring(NamedTuple):
@@ -141,18 +253,98 @@ class TorsionSpring(NamedTuple):
     @property
     def energy(self) -> Tree:
         """As a tree; the cosine of the difference is expanded, since only the rest's cosine and sine are known."""
-        turned = [
-            Chain(Number(value), (Step("*", Call(function, self.angle)),))
-            for value, function in zip(self.rest, ("cos", "sin"), strict=True)
-        ]
-        return Chain(self.stiffness, (Step("*", Chain(Number(Fraction(1)), tuple(Step("-", t) for t in turned))),))
+        turned = tuple(Step("-", part) for part in self._parts("cos", "sin"))
+        return Chain(self.stiffness, (Step("*", Chain(Number(Fraction(1)), turned)),))
 
     @property
     def deflection(self) -> tuple[Tree, Tree]:
         """Cosine and sine of angle - rest, expanded in the same way."""
-        c, s = (Number(value) for value in self.rest)
-        cosine, sine = (Call(function, self.angle) for function in ("cos", "sin"))
-        return (
-            Chain(Chain(c, (Step("*", cosine),)), (Step("+", Chain(s, (Step("*", sine),))),)),
-            Chain(Chain(c, (Step("*", sine),)), (Step("-", Chain(s, (Step("*", cosine),))),)),
+        (c, s), (cosine, sine) = self._parts("cos", "sin"), self._parts("sin", "cos")
+        return Chain(c, (Step("+", s),)), Chain(cosine, (Step("-", sine),))
+
+    def _parts(self, *functions: str) -> tuple[Tree, Tree]:
+        """Cosine and sine of the rest times functions of the angle."""
+        pairs = zip(self.rest, functions, strict=True)
+        one, other = (Chain(Number(value), (Step("*", Call(function, self.angle)),)) for value, function in pairs)
+        return one, other
+
+    def element(self, points: Mapping[str, Place]) -> Element:
+        """For traversals."""
+        return Element(
+            (Part("angle", Kind.ANGLE, self.angle), Part("k", Kind.STIFFNESS, self.stiffness)),
+            (self.energy,),
+            idle="" if any(multiples(self.angle).values())
+            else "no unknown changes its angle, so that this spring does nothing",
+        )  # fmt: skip
+
+
+class XJoint(NamedTuple):
+    """An X-joint: two crossed bars of one length between a base and a top of another, an antiparallelogram.
+
+    The second bar's angle psi follows from the first one's, th, on the branch on which the bars stay crossed:
+
+        cos psi = ((L^2 + b^2) cos th - 2 L b)/D,   sin psi = (L^2 - b^2) sin th/D,   D = L^2 + b^2 - 2 L b cos th
+
+    with L the bars' length and b the base's, both angles against the base. That is tan(psi/2) = (L + b)/(L - b)
+    tan(th/2), and D, the squared distance of the two ends on the right, is positive where L and b differ. The top is
+    turned by th + psi - pi.
+
+    Source: elementary; Furet and Wenger, Kinetostatic analysis and actuation strategy of a planar tensegrity 2-X
+    manipulator, J. Mech. Robotics 11 (2019), name it.
+
+    Attributes
+    ----------
+    base : the points A0 and A1.
+    top : the points B0 and B1; the bars are A0 B1 and A1 B0.
+    angle : of the bar A0 B1 against the base: an unknown.
+    other : of the bar A1 B0, which follows from it.
+    length, bars : the base's and the bars'.
+    direction, turns : of the base: a sum of angles, and the quarter turns that are added to it.
+    """
+
+    name: str
+    base: tuple[str, str]
+    top: tuple[str, str]
+    angle: str
+    other: str
+    length: Tree
+    bars: Tree
+    direction: Tree
+    turns: int
+
+    @property
+    def rigid(self) -> tuple[tuple[str, str], ...]:
+        """The bars and the top."""
+        (a, c), (b, d) = self.base, self.top
+        return (a, d), (c, b), (b, d)
+
+    @property
+    def upper(self) -> tuple[Tree, int]:
+        """Direction and quarter turns of the top."""
+        return self._towards(Chain(Name(self.angle), (Step("+", Name(self.other)),))), (self.turns + 2) % 4
+
+    def bar(self, angle: str) -> tuple[Tree, Tree]:
+        """Cosine and sine of the direction of a bar at this angle against the base."""
+        return cosine_and_sine(self._towards(Name(angle)), self.turns)
+
+    def _towards(self, angle: Tree) -> Tree:
+        return angle if isinstance(self.direction, Number) else Chain(self.direction, (Step("+", angle),))
+
+    def element(self, points: Mapping[str, Place]) -> Element:
+        """For traversals."""
+        off = total(self.bars, negative(self.length))
+        meaning = "the bars of an x-joint are longer or shorter than its base"
+        return Element(
+            (
+                Part("base", Kind.LENGTH, self.length),
+                Part("bars", Kind.LENGTH, self.bars),
+                Part("bars", Kind.LENGTH, Power(off, _TWO), meaning),
+            )
         )
+
+
+def second_bar(bars: Any, length: Any, cosine: Any, sine: Any) -> tuple[Any, Any, Any]:
+    """D cos psi, D sin psi and D, of L, b, cos th and sin th, in any numbers that can be added and multiplied."""
+    far, near = bars * bars, length * length
+    twice = bars * length + bars * length
+    return (far + near) * cosine - twice, (far - near) * sine, far + near - twice * cosine

@@ -97,6 +97,23 @@ def value_among(tree: Tree, parameters: Mapping[str, E], constant: Callable[[Fra
     return evaluate(tree, _Values(parameters, constant))
 
 
+class Named(Generic[E]):
+    """A ring in which further names stand for expressions, each of which is evaluated once."""
+
+    def __init__(self, ring: Ring[E], trees: Mapping[str, Tree]):
+        self.ring = ring
+        self.trees = trees
+        self.known: dict[str, E] = {}
+        self.constant, self.cos, self.sin = ring.constant, ring.cos, ring.sin
+
+    def parameter(self, name: str) -> E:
+        if name not in self.trees:
+            return self.ring.parameter(name)
+        if name not in self.known:
+            self.known[name] = evaluate(self.trees[name], self.ring)
+        return self.known[name]
+
+
 class _Values(Generic[E]):
     """A ring of values of parameters."""
 

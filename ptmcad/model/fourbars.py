@@ -38,6 +38,18 @@ _MIRRORED = (
     "angle and the length of {far} as unknowns, with {image} as the mirror image of {object} about {mirror} and "
     "{closing} as the closing bar: each pose is found twice then, once with a negative length"
 )
+_PARALLELOGRAM = (
+    "{a}{p} and {b}{q} are parallel, on the other they cross; where the two meet, {singular}. Describe the parallel "
+    "branch as an open chain, with {q} as far from {p} as {b} from {a}, and the crossed one by "
+)
+_RHOMBUS = (
+    "{a}{p} and {b}{q} are parallel, on the others {p} stays at {b} or {q} at {a}; where they meet, {singular}. "
+    "Describe each branch as an open chain"
+)
+_KITE = (
+    "{image} stays at {object} and two bars turn about it, the other is symmetric about {far}; where the two meet, "
+    "{singular}. Describe the symmetric branch by the {mirrored}; the other branch is an open chain"
+)
 
 
 _PLACE = Fraction(355, 113), Fraction(1393, 985)
@@ -118,35 +130,25 @@ class FourBar:
         ----------
         free_lengths : whether springs have some, with which X-joints are not computed.
         """
-        a, p, q, b = self.corners
-        singular = _SINGULAR.format(a=a, p=p, q=q, b=b)
         if fold is Fold.EQUAL_SUMS:
             return IN_TWO_WAYS
-        named = f": {a} {p} {q} {b} is {fold.words}, on one"
-        if fold is Fold.PARALLELOGRAM:
-            crossed = "by 'x-joint:'"
-            if free_lengths:
-                crossed = "by the " + _MIRRORED.format(
-                    far=f"{a}{q}", image=p, object=b, mirror=f"{a}{q}'s perpendicular bisector", closing=f"{q}{b}"
-                )
-            return (
-                f"{named} {a}{p} and {b}{q} are parallel, on the other they cross; where the two meet, {singular}. "
-                f"Describe the parallel branch as an open chain, with {q} as far from {p} as {b} from {a}, and the "
-                f"crossed one {crossed}"
-            )
+        a, p, q, b = self.corners
+        corners = dict(zip("apqb", self.corners, strict=True))
+        corners["singular"] = _SINGULAR.format(**corners)
         if fold is Fold.RHOMBUS:
-            return (
-                f"{named} {a}{p} and {b}{q} are parallel, on the others {p} stays at {b} or {q} at {a}; where they "
-                f"meet, {singular}. Describe each branch as an open chain"
+            branches = _RHOMBUS.format(**corners)
+        elif fold is Fold.PARALLELOGRAM:
+            far = f"{a}{q}"
+            mirrored = _MIRRORED.format(
+                far=far, image=p, object=b, mirror=f"{far}'s perpendicular bisector", closing=f"{q}{b}"
             )
-        still, centre, far, closing = (p, b, (a, q), f"{q}{b}") if fold is Fold.KITE_P else (q, a, (b, p), f"{p}{a}")
-        line = "".join(far)
-        mirrored = _MIRRORED.format(far=line, image=still, object=centre, mirror=line, closing=closing)
-        return (
-            f"{named} {still} stays at {centre} and two bars turn about it, the other is symmetric about {line}; where "
-            f"the two meet, {singular}. Describe the symmetric branch by the {mirrored}; the other branch is an open "
-            "chain"
-        )
+            branches = _PARALLELOGRAM.format(**corners) + (f"the {mirrored}" if free_lengths else "'x-joint:'")
+        else:
+            image, centre, far, closing = (p, b, a + q, q + b) if fold is Fold.KITE_P else (q, a, b + p, p + a)
+            there = {"image": image, "object": centre, "far": far}
+            mirrored = _MIRRORED.format(**there, mirror=far, closing=closing)
+            branches = _KITE.format(**corners, **there, mirrored=mirrored)
+        return f": {a} {p} {q} {b} is {fold.words}, on one {branches}"
 
     def in_short(self, fold: Fold) -> str:
         """The same in one sentence, for a single point; no how-to."""

@@ -21,11 +21,10 @@ from itertools import permutations
 from typing import NamedTuple
 
 from ptmcad.errors import ExpressionError
-from ptmcad.model.closed import mechanism_in
 from ptmcad.model.description import Model, System
 from ptmcad.model.elements import UnknownKind
 from ptmcad.model.evaluate import evaluate
-from ptmcad.model.proofs import Image, Monomial, Polynomial, Ring, felt
+from ptmcad.model.proofs import Monomial, Points, Polynomial, Ring, felt
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.tree import Tree
 
@@ -35,8 +34,9 @@ MAX_UNKNOWNS = 6
 """Of six unknowns there are 76 involutions without signs, and of seven three times as many."""
 
 Window = tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]
-_AXES = ("axis 0", "axis 1")
-_Two = tuple[int, int]
+_AXES = ("axis:0", "axis:1")
+_AXIS_SIGNS = [(1, 1), (-1, -1), (1, -1), (-1, 1)]
+"""In which order they are looked for."""
 _Terms = Mapping[Monomial, Fraction]
 _Bits = Mapping[int, int]
 """Linear equations over the field of two elements, by the length of their numbers; bit 0 is the constant."""
@@ -134,34 +134,22 @@ def involutions(model: Model, parameters: Mapping[str, Expression], window: Wind
         parts = list(_parts(model, ring))
     except ExpressionError:
         return []
-    kinds = tuple(model.unknowns.values())
-    size = range(len(kinds))
+    size = len(model.unknowns)
+    kinds = (*model.unknowns.values(), UnknownKind.REAL, UnknownKind.REAL)
+    is_fixed = window is None or ring.has_denominators
+    low, high = zip(*window, strict=True) if window is not None else ((0, 0), (0, 0))
+    is_square = high[0] - low[0] == high[1] - low[1]
     found = []
-    for axes, signs, shifts in _axis_changes(None if ring.has_denominators else window):
-        for images in permutations(size):
-            if any(images[images[k]] != k or kinds[images[k]] is not kinds[k] for k in size):
+    for axes in ((0, 1),) if is_fixed or not is_square else ((0, 1), (1, 0)):
+        for own in permutations(range(size)):
+            images = (*own, *(size + k for k in axes))
+            if any(images[images[k]] != k or kinds[images[k]] is not kinds[k] for k in range(size)):
                 continue
-            change = _Change(tuple(model.unknowns), images, axes, signs)
-            for system in _kept(change, parts, change.known(kinds)):
-                found += [
-                    Involution(images, *change.read(bits), axes, signs, shifts)
-                    for bits in _solutions(system, len(kinds))
-                ]
+            change = _Change((*model.unknowns, *_AXES), images)
+            for system in _kept(change, parts, change.known(kinds, is_fixed)):
+                found += [change.involution(bits, axes, ring.middle) for bits in _solutions(system, size + 2)]
+    found.sort(key=lambda each: (each.axes, _AXIS_SIGNS.index(each.axis_signs), each.images))
     return list(dict.fromkeys(found))[1:]  # the identity comes first
-
-
-def _axis_changes(window: Window | None) -> Iterator[tuple[_Two, _Two, tuple[Fraction, Fraction]]]:
-    """The involutions of the window, reflections and exchanges of axes, with their shifts; the identity first."""
-    if window is None:
-        yield (0, 1), (1, 1), (Fraction(0), Fraction(0))
-        return
-    middle = [(low + high) / 2 for low, high in window]
-    wide, high = (high - low for low, high in window)
-    for axes in ((0, 1), (1, 0)) if wide == high else ((0, 1),):
-        for signs in ((1, 1), (-1, -1), (1, -1), (-1, 1)):
-            if axes == (0, 1) or signs[0] == signs[1]:
-                x, y = (middle[k] - s * middle[j] for k, (j, s) in enumerate(zip(axes, signs, strict=True)))
-                yield axes, signs, (x, y)
 
 
 class _Slice(Ring):
@@ -174,8 +162,8 @@ class _Slice(Ring):
         super().__init__(MAX_WORK)
         self.unknowns, self.parameters = unknowns, parameters
         self.has_denominators = False
-        middle = [Fraction(0)] * 2 if window is None else [(low + high) / 2 for low, high in window]
-        self.axes = [self.variable(name) + self.constant(m) for name, m in zip(_AXES, middle, strict=True)]
+        self.middle = [Fraction(0)] * 2 if window is None else [(low + high) / 2 for low, high in window]
+        self.axes = [self.variable(name) + self.constant(m) for name, m in zip(_AXES, self.middle, strict=True)]
 
     def parameter(self, name: str) -> Polynomial:
         if name in self.unknowns:
@@ -200,94 +188,94 @@ def _parts(model: Model, ring: _Slice) -> Iterator[_Part]:
     def felt_by_unknowns(p: Polynomial) -> list[_Terms]:
         return [{m: c for m, c in p.terms.items() if any(v in unknowns for v, _ in m)}]
 
-    def marked(parts: Mapping[str, Iterable[tuple[Monomial, Fraction]]]) -> _Terms:
-        return {tuple(sorted(((mark, 1), *m))): c for mark, terms in parts.items() for m, c in terms}
+    def marked(parts: Mapping[str, Polynomial]) -> _Terms:
+        return {tuple(sorted(((mark, 1), *m))): c for mark, p in parts.items() for m, c in p.terms.items()}
 
     def values(trees: Iterable[Tree]) -> list[_Terms]:
         return [evaluate(tree, ring).terms for tree in trees]
 
-    mechanism = mechanism_in(model)
-    if mechanism is model:
-        energy, springs, work = felt(mechanism, Image(ring, {}))
-        # how many are the same is said in their polynomial
-        lengths = [
-            marked({f"spring {n}": part for n, part in enumerate((*spring, (((), Fraction(number)),)))})
-            for spring, number in springs.items()
-        ]
-        kept = [felt_by_unknowns(energy), [marked({f"d {u}": terms for u, terms in work.items()})], lengths]
-    else:
-        assert isinstance(model, System)
-        if mechanism is not None and any(evaluate(s.free, ring).terms for s in mechanism.springs):
+    whole = model.whole
+    if isinstance(model, System):
+        roots = () if whole is None else (element.root for element in whole.elements.values() if element.root)
+        if any(evaluate(root.free, ring).terms for root in roots):
             raise ExpressionError("free lengths are in none of a closed loop's equations")
         kept = [values(model.inequalities), values(model.stability)]
         if model.potential is not None:
             kept.append(felt_by_unknowns(evaluate(model.potential, ring)))
         equations = values(model.equations)
         yield from (_Part(f, equations, True) for f in equations)
+    else:
+        assert whole is not None
+        energy, springs, work = felt(Points(whole, ring))
+        # how many are the same is said in their polynomial
+        lengths = [
+            marked({f"spring {n}": p for n, p in enumerate((*spring, ring.constant(Fraction(number))))})
+            for spring, number in springs.items()
+        ]
+        kept = [felt_by_unknowns(energy), [marked({f"d {u}": p for u, p in work.items()})], lengths]
     yield from (_Part(f, images) for images in kept for f in images)
 
 
 class _Change(NamedTuple):
-    """A permutation of unknowns, and a change of the axes, the signs of unknowns being open.
+    """A permutation of the unknowns and of the axes, which are as unknowns on the line, the signs being open.
 
     Those of an unknown's cosine and sine are two bits, of two that are exchanged those of the first one; of one on the
     line the second bit is its sign.
     """
 
-    unknowns: tuple[str, ...]
+    names: tuple[str, ...]
     images: tuple[int, ...]
-    axes: _Two
-    axis_signs: _Two
 
     def bits(self, k: int) -> tuple[int, int]:
         """Those of an unknown's cosine and sine."""
         first = min(k, self.images[k])
         return 2 << 2 * first, 4 << 2 * first
 
-    def known(self, kinds: Sequence[UnknownKind]) -> _Bits:
-        """The equations for bits that nothing stands for."""
-        found: _Bits = {}
+    def known(self, kinds: Sequence[UnknownKind], with_axes: bool) -> _Bits:
+        """The equations for bits that nothing stands for, and with those of the axes, if they have to stay."""
+        found: dict[int, int] = {}
         for k, (kind, j) in enumerate(zip(kinds, self.images, strict=True)):
-            for bit in (2 << 2 * k, 4 << 2 * k) if j < k else (2 << 2 * k,) if kind is not UnknownKind.ANGLE else ():
-                found = {**found, bit.bit_length(): bit}
+            cosine, sine = 2 << 2 * k, 4 << 2 * k
+            if j < k or kind is not UnknownKind.ANGLE:
+                found[cosine.bit_length()] = cosine
+            if j < k or (with_axes and self.names[k] in _AXES):
+                found[sine.bit_length()] = sine
         return found
 
-    def read(self, bits: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """Signs and half turns of the unknowns."""
+    def involution(self, bits: int, axes: tuple[int, int], middle: Sequence[Fraction]) -> Involution:
+        """That of some bits; the axes are measured from their middle."""
         halves = [bool(bits & self.bits(k)[0]) for k in range(len(self.images))]
-        signs = [-1 if h != bool(bits & self.bits(k)[1]) else 1 for k, h in enumerate(halves)]
-        return tuple(signs), tuple(map(int, halves))
+        signs = [-1 if half != bool(bits & self.bits(k)[1]) else 1 for k, half in enumerate(halves)]
+        x, y = (middle[k] - s * middle[j] for k, (j, s) in enumerate(zip(axes, signs[-2:], strict=True)))
+        own = self.images[:-2], tuple(signs[:-2]), tuple(map(int, halves[:-2]))
+        return Involution(*own, axes, (signs[-2], signs[-1]), (x, y))
 
-    def variable(self, name: str) -> tuple[str, int, int]:
-        """What becomes of a variable: another one, its sign, and the bits that may change that."""
-        if name in _AXES:
-            k = _AXES.index(name)
-            return _AXES[self.axes[k]], self.axis_signs[k], 0
+    def variable(self, name: str) -> tuple[str, int]:
+        """What becomes of a variable: another one, and the bits that may change its sign."""
         mark, _, own = name.rpartition(" ")
-        if own not in self.unknowns:
-            return name, 1, 0
-        k = self.unknowns.index(own)
+        if own not in self.names:
+            return name, 0
+        k = self.names.index(own)
         cosine, sine = self.bits(k)
-        image = self.unknowns[self.images[k]]
-        return f"{mark} {image}".strip(), 1, {"cos": cosine, "d": cosine | sine}.get(mark, sine)
+        return f"{mark} {self.names[self.images[k]]}".strip(), {"cos": cosine, "d": cosine | sine}.get(mark, sine)
 
-    def monomial(self, m: Monomial, c: Fraction) -> tuple[Monomial, Fraction, int]:
-        """What becomes of a term, and the bits that may change its sign."""
+    def monomial(self, m: Monomial) -> tuple[Monomial, int]:
+        """What becomes of a monomial, and the bits that may change its sign."""
         powers, mask = [], 0
         for name, e in m:
-            image, sign, bits = self.variable(name)
+            image, bits = self.variable(name)
             powers.append((image, e))
-            c *= sign**e
             mask ^= bits * (e % 2)
-        return tuple(sorted(powers)), c, mask
+        return tuple(sorted(powers)), mask
 
 
 def _kept(change: _Change, parts: Sequence[_Part], known: _Bits) -> list[_Bits]:
     """The equations for the bits with which all polynomials are kept, for each choice of what they become."""
     systems = [known]
     for n, part in enumerate(parts):
-        moved = {m: (c, mask) for m, c, mask in (change.monomial(*term) for term in part.polynomial.items())}
-        own = 2 << 2 * len(change.unknowns) + n if part.may_be_negated else 0
+        images = ((change.monomial(m), c) for m, c in part.polynomial.items())
+        moved = {m: (c, mask) for (m, mask), c in images}
+        own = 2 << 2 * len(change.names) + n if part.may_be_negated else 0
         found = (_same(moved, image, own, system) for system in systems for image in part.images)
         systems = [system for system in found if system is not None]
         if not systems:

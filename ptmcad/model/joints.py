@@ -13,6 +13,7 @@ neither part. What is told is for drawings alone.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from fractions import Fraction
 from functools import lru_cache
 from itertools import combinations
 from typing import NamedTuple
@@ -25,9 +26,8 @@ from ptmcad.model.proofs import Points, Ring
 
 MAX_WORK = 20_000
 """Products of terms for all the points' coordinates; larger ones have no derived joints."""
-Direction = frozenset[tuple[str, int]]
-"""The angles with their multiples, none of them zero."""
-_FRAME: Direction = frozenset()
+Direction = tuple[Fraction, ...]
+"""The multiples of the angles."""
 
 
 class Joint(NamedTuple):
@@ -78,13 +78,14 @@ def _derived(
     mechanism: Mechanism, meeting: Mapping[str, Mapping[Direction, _Part]], spring: TorsionSpring
 ) -> Joint | None:
     """The joint by the parts that meet at each point."""
-    angle = frozenset((name, int(m)) for name, m in multiples(spring.angle).items() if m)
-    if not angle:
+    turned = multiples(spring.angle)
+    angle = [turned.get(name, Fraction(0)) for name in _turning(mechanism)]
+    if not any(angle):
         return None
     found: dict[str, _Part] = {}
     for point, parts in meeting.items():
         for direction in parts:
-            other = _difference(direction, angle)
+            other = tuple(m - n for m, n in zip(direction, angle, strict=True))
             if other in parts:
                 # the later one: the frame, which is no arm, is the first of all
                 found[point] = parts[max(direction, other, key=list(parts).index)]
@@ -94,21 +95,19 @@ def _derived(
     return Joint(point, next(name for name in arm.points if name != point))
 
 
-def _difference(one: Direction, other: Direction) -> Direction:
-    total = dict(one)
-    for name, m in other:
-        total[name] = total.get(name, 0) - m
-    return frozenset((name, m) for name, m in total.items() if m)
+def _turning(mechanism: Mechanism) -> tuple[str, ...]:
+    return (*mechanism.angles, *mechanism.followers)
 
 
 def _parts(mechanism: Mechanism) -> Iterator[_Part]:
     """The frame, then bars and bodies, as far as they have a direction."""
     sliding = [name for name, kind in mechanism.supports.items() if kind is not Support.PIN]
-    yield _Part(tuple(n for n in mechanism.points if n not in mechanism.moving or n in sliding), _FRAME)
+    frame = tuple(n for n in mechanism.points if n not in mechanism.moving or n in sliding)
+    yield _Part(frame, tuple(Fraction(0) for _ in _turning(mechanism)))
     places = Points(mechanism, Ring(MAX_WORK))
     for points in (*mechanism.bars, *mechanism.bodies.values()):
         for pair in combinations(points, 2):
             turns = places.turning(*pair)
             if turns is not None and not any(turns[name] for name in mechanism.reals):
-                yield _Part(points, frozenset((name, int(n)) for name, n in turns.items() if n))
+                yield _Part(points, tuple(turns[name] for name in _turning(mechanism)))
                 break

@@ -14,57 +14,78 @@ A spring with a free length takes K |d| off the energy, K its stiffness times th
 takes K (T . grad) |d| off E: a root, so that it is in no tree. The equations here are those without it, which exact
 algebra solves where no spring has a free length; `ptmcad.certified.plain.problem` takes it off.
 
-Source: elementary (Lagrange's condition in one dimension); no multiplier is among the unknowns. Where more degrees of
-freedom are left there is no such vector, and `ptmcad.model.multipliers` has the equations.
+With several degrees of freedom left there is one multiplier for each closing bar. Let g_i = (d_i^2 - l_i^2)/2 with d_i
+the distance of the ends of closing bar i and l_i its length, in n unknowns u, and U the energy. An equilibrium is a
+zero of g and of the derivatives of U + sum t_i g_i by u; t_i is the bar's tension divided by its length. With B(s) the
+symmetric matrix of the second derivatives of this sum by u, s added on the diagonal, bordered by the derivatives of g,
+
+    det B(s) = (-1)^m (c_0 s^f + ... + c_(f-1) s + c_f),
+
+m bars, f = n - m: c_0 > 0 where the derivatives of g are independent, and the roots of the polynomial, all real, are
+the eigenvalues of the Hessian on the loops' tangent space with the other sign. So that is positive definite where
+c_1, ..., c_f are all positive (Descartes' rule). The determinant of the Jacobian of the equations is det B(0), so that
+c_f is that but for its sign. A tension that leaves every bounded set is noticed, as it is an unknown on the line: loops
+fold flat on curves at infinity, which are part of the variety.
+
+Source: elementary (Lagrange); for the bordered determinant Mann, Amer. Math. Monthly 50 (1943).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import combinations
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
-from ptmcad.model.closed import ClosedMechanism
 from ptmcad.model.crossed import without_xjoints
-from ptmcad.model.derivative import cofactors, derivative, determinant, negative, product, total
-from ptmcad.model.description import Mechanism, Model
-from ptmcad.model.elements import Closing, UnknownKind
-from ptmcad.model.multipliers import stationary, tensions
+from ptmcad.model.description import ClosedMechanism, Mechanism, Model
+from ptmcad.model.elements import Closing, UnknownKind, squared_distance
 from ptmcad.model.proofs import Points
 from ptmcad.model.sizes import check_sizes
+from ptmcad.model.trees import ZERO, cofactors, derivative, determinant, negative, product, total
 from ptmcad.model.work import split_moments
-from ptmcad.text.tree import Number, Power, Tree
+from ptmcad.text.tree import Chain, Name, Number, Power, Step, Tree
 
+MAX_ENTRIES = 8
+"""Rows of the bordered matrix: its minors are multiplied out, and their number grows with the factorial."""
 _TWO: Tree = Number(Fraction(2))
-_HALF: Tree = Number(Fraction(1, 2))
 
 
 def check_loops(mechanism: Mechanism, faults: Faults) -> None:
-    """Note what is not computed with closed loops, by its key."""
-    if not mechanism.closing:
-        return
+    """Note what is not computed with closed loops, or with X-joints, by its key."""
     free = len(mechanism.unknowns) - len(mechanism.closing)
-    with faults:
-        if free < 1:
-            raise ConfigError("no degree of freedom is left: there have to be more unknowns than closing bars",
-                              key="closing")  # fmt: skip
-        if free > 1 and not mechanism.has_potential:
-            raise ConfigError(
+    roots = [f"{key}.free" for key, element in mechanism.elements.items() if element.root is not None]
+    wrong: list[tuple[object, str, str]] = []
+    if mechanism.closing:
+        wrong += [
+            (free < 1, "closing", "no degree of freedom is left: there have to be more unknowns than closing bars"),
+            (
+                free > 1 and not mechanism.has_potential, "moments",
                 "a moment depends on another unknown than its own: then closed loops are computed where they leave one "
                 f"degree of freedom, not {free}",
-                key="moments",
-            )
-    for n, spring in enumerate(mechanism.springs if free > 1 else (), 1):
-        with faults:
-            if not (isinstance(spring.free, Number) and spring.free.value == 0):
-                raise ConfigError(
+            ),
+            *(
+                (
+                    free > 1, key,
                     f"free lengths in closed loops are computed where these leave one degree of freedom, not {free}",
-                    key=f"springs.{n}.free",
                 )
-    with faults:
-        if mechanism.symmetries:
-            raise ConfigError("symmetries are not used in closed loops: leave them out", key="symmetries")
+                for key in roots
+            ),
+            (mechanism.symmetries, "symmetries", "symmetries are not used in closed loops: leave them out"),
+        ]  # fmt: skip
+    if mechanism.xjoints:
+        coupled = not mechanism.has_potential
+        wrong += [
+            (mechanism.closing, "closing", "closing bars beside x-joints are not computed yet"),
+            (mechanism.symmetries, "symmetries", "symmetries are not used with x-joints: leave them out"),
+            (coupled, "moments", "a moment beside x-joints depends on no unknown but its own"),
+            *((True, key, "free lengths are not computed with x-joints yet") for key in roots),
+        ]
+    for is_wrong, key, problem in wrong:
+        with faults:
+            if is_wrong:
+                raise ConfigError(problem, key=key)
 
 
 def check_closing(mechanism: Mechanism, faults: Faults) -> None:
@@ -76,7 +97,7 @@ def check_closing(mechanism: Mechanism, faults: Faults) -> None:
             first = known.setdefault(frozenset((closing.start, closing.end)), n)
             if first < n:
                 raise ConfigError(f"number {first} is a bar between the same points", key=f"closing.{n}.between")
-            if not points.moves(closing.start, closing.end):
+            if not points.varies(points.distance(closing.start, closing.end)):
                 raise ConfigError(
                     f"the distance of {closing.start} and {closing.end} is constant, so that a bar between them closes "
                     "no loop",
@@ -100,8 +121,8 @@ def equations_of_loops(model: Mechanism) -> Model:
     further: dict[str, UnknownKind] = {}
     tangent: tuple[Tree, ...] = ()
     if len(names) > len(conditions) + 1:
-        further = tensions(model)
-        equations, stability = stationary(forces, conditions, names, tuple(further))
+        further = _tensions(model)
+        equations, stability = _stationary(forces, conditions, names, tuple(further))
     else:
         rows = [[derivative(g, name) for name in names] for g in conditions]
         tangent = cofactors(rows)
@@ -123,30 +144,69 @@ def equations_of_loops(model: Mechanism) -> Model:
 
 def _condition(mechanism: Mechanism, closing: Closing) -> Tree:
     """Zero where the bar has its length."""
-    return total(_squared(mechanism, closing.start, closing.end), negative(Power(closing.length, _TWO)))
-
-
-def _squared(mechanism: Mechanism, start: str, end: str) -> Tree:
-    return total(
-        *(
-            Power(total(b, negative(a)), _TWO)
-            for a, b in zip(mechanism.points[start], mechanism.points[end], strict=True)
-        )
-    )
+    squared = squared_distance(mechanism.points, closing.start, closing.end)
+    return total(squared, negative(Power(closing.length, _TWO)))
 
 
 def _forces(mechanism: Mechanism, names: Sequence[str]) -> list[Tree]:
     """The energy's derivatives by the unknowns, less the moments that are in no energy."""
-    parts = [
-        *(product(_HALF, s.stiffness, _squared(mechanism, s.start, s.end)) for s in mechanism.springs),
-        *(t.energy for t in mechanism.torsion),
-        *(
-            negative(product(force, place))
-            for load in mechanism.loads
-            for force, place in zip((load.x, load.y), mechanism.points[load.point], strict=True)
-        ),
-        *split_moments(mechanism).energies,
-    ]
-    energy = total(*parts)
-    steady: Mapping[str, Tree] = {m.unknown: m.value for m in split_moments(mechanism).steady}
+    energies = (tree for element in mechanism.elements_with(mechanism.points).values() for tree in element.energies)
+    moments = split_moments(mechanism)
+    energy = total(*energies, *moments.energies)
+    steady: Mapping[str, Tree] = {m.unknown: m.value for m in moments.steady}
     return [total(derivative(energy, name), *([negative(steady[name])] if name in steady else ())) for name in names]
+
+
+def _tensions(mechanism: Mechanism) -> dict[str, UnknownKind]:
+    """The further unknowns: a name for each closing bar."""
+    names = [f"force_density_{closing.start}{closing.end}" for closing in mechanism.closing]
+    taken = {*mechanism.parameters, *mechanism.unknowns}
+    if clash := next((name for name in names if name in taken), None):
+        raise ConfigError(f"'{clash}' is the name of a closing bar's force density: choose another name", key="closing")
+    return dict.fromkeys(names, UnknownKind.REAL)
+
+
+def _stationary(
+    forces: Sequence[Tree], conditions: Sequence[Tree], names: Sequence[str], tension: Sequence[str]
+) -> tuple[tuple[Tree, ...], tuple[Tree, ...]]:
+    """The equations and the conditions c_1, ..., c_f for stability.
+
+    Parameters
+    ----------
+    forces : the energy's derivatives by the unknowns of these names, less the moments.
+    conditions : twice the g_i.
+
+    Raises
+    ------
+    ConfigError
+        When there are too many unknowns and bars.
+    """
+    count, bars = len(names), len(conditions)
+    if count + bars > MAX_ENTRIES:
+        raise ConfigError(
+            f"{count} unknowns and {bars} closing bars: with several degrees of freedom left they may be {MAX_ENTRIES} "
+            "in all",
+            key="closing",
+        )
+    halves = [Chain(g, (Step("/", _TWO),)) for g in conditions]
+    rows = [[derivative(g, name) for name in names] for g in halves]
+    pulls = [
+        total(force, *(_product(Name(t), row[k]) for t, row in zip(tension, rows, strict=True)))
+        for k, force in enumerate(forces)
+    ]
+    matrix = [[*(derivative(p, name) for name in names), *(row[k] for row in rows)] for k, p in enumerate(pulls)]
+    matrix += [[*row, *[ZERO] * bars] for row in rows]
+    return (*pulls, *halves), tuple(_conditions(matrix, count, bars))
+
+
+def _conditions(matrix: Sequence[Sequence[Tree]], count: int, bars: int) -> Iterator[Tree]:
+    """c_k is the sum of the principal minors with the border and k + m of the other rows, but for its sign."""
+    border = tuple(range(count, count + bars))
+    for k in range(1, count - bars + 1):
+        kept = [(*chosen, *border) for chosen in combinations(range(count), k + bars)]
+        minors = total(*(determinant([[matrix[i][j] for j in rows] for i in rows]) for rows in kept))
+        yield negative(minors) if bars % 2 else minors
+
+
+def _product(factor: Tree, tree: Tree) -> Tree:
+    return ZERO if tree == ZERO else Chain(factor, (Step("*", tree),))

@@ -10,14 +10,15 @@ The ring is a small one of its own: readers and checkers load no algebra.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
+from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
-from ptmcad.model.description import Mechanism
-from ptmcad.model.elements import UnknownKind
-from ptmcad.model.evaluate import evaluate, multiples
-from ptmcad.text.tree import Call, Name, Negative, Number, Tree, names_of
+from ptmcad.model.description import Mechanism, Model
+from ptmcad.model.elements import UnknownKind, squared_distance
+from ptmcad.model.evaluate import Named, evaluate, multiples, value_at
+from ptmcad.text.tree import Name, Tree, mapped, names_of
 
 MAX_WORK = 12_000
 """Products of terms for one question, a fraction of a second; two bars and a spring take some hundred."""
@@ -34,6 +35,12 @@ class Polynomial:
     def __init__(self, ring: Ring, terms: dict[Monomial, Fraction]):
         self.ring = ring
         self.terms = terms
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Polynomial) and self.terms == other.terms
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self.terms.items()))
 
     def __add__(self, other: Polynomial) -> Polynomial:
         return self._plus(other, 1)
@@ -120,16 +127,20 @@ def _product(one: Monomial, two: Monomial) -> Iterator[tuple[Monomial, int]]:
     exponents = dict(one)
     for variable, e in two:
         exponents[variable] = exponents.get(variable, 0) + e
-    found: list[tuple[dict[str, int], int]] = [(exponents, 1)]
-    for cosine in [v for v, e in exponents.items() if e > 1 and v.startswith("cos ")]:
-        sine = f"sin {cosine[4:]}"
-        split = []
-        for powers, sign in found:  # cos^2 = 1 - sin^2
-            rest = {v: e for v, e in powers.items() if v != cosine}
-            split += [(rest, sign), ({**rest, sine: rest.get(sine, 0) + 2}, -sign)]
-        found = split
-    for powers, sign in found:
-        yield tuple(sorted(powers.items())), sign
+    return _reduced(exponents)
+
+
+def _reduced(exponents: dict[str, int]) -> Iterator[tuple[Monomial, int]]:
+    """A monomial by cos^2 = 1 - sin^2."""
+    cosine = next((v for v, e in exponents.items() if e > 1 and v.startswith("cos ")), "")
+    if not cosine:
+        yield tuple(sorted(exponents.items())), 1
+        return
+    del exponents[cosine]
+    sine = f"sin {cosine[4:]}"
+    yield from _reduced(dict(exponents))
+    for monomial, sign in _reduced({**exponents, sine: exponents.get(sine, 0) + 2}):
+        yield monomial, -sign
 
 
 def check_bars(mechanism: Mechanism, faults: Faults) -> None:
@@ -154,22 +165,27 @@ def check_bars(mechanism: Mechanism, faults: Faults) -> None:
                 )
 
 
-def check_springs(mechanism: Mechanism, faults: Faults) -> None:
+def check_elements(mechanism: Mechanism, faults: Faults) -> None:
     """Note each spring whose length no unknown changes, and each torsion spring whose angle none does."""
     points = Points(mechanism)
-    closing = {frozenset((bar.start, bar.end)) for bar in mechanism.closing}
-    for n, spring in enumerate(mechanism.springs, 1):
+    closing = [frozenset(names_of(points.distance(bar.start, bar.end))) for bar in mechanism.closing]
+    for key, element in mechanism.elements.items():
+        varying = element.varying
+        if varying is not None and frozenset(names_of(varying)) not in closing and points.varies(varying):
+            continue
         with faults:
-            if frozenset((spring.start, spring.end)) in closing or not points.moves(spring.start, spring.end):
-                raise ConfigError(
-                    f"the length of {spring.start}{spring.end} is constant, so that this spring does nothing: leave it "
-                    "out, or put an end where it moves",
-                    key=f"springs.{n}",
-                )
-    for n, torsion in enumerate(mechanism.torsion, 1):
+            if element.idle:
+                raise ConfigError(element.idle, key=key)
+
+
+def check_numbers(model: Model, faults: Faults) -> None:
+    """Note each stiffness or length that is a number, and one that makes no sense."""
+    for part in model.parts:
+        if names_of(part.tree):
+            continue  # a slice tells what it is in its window
         with faults:
-            if not any(multiples(torsion.angle).get(angle) for angle in (*mechanism.angles, *mechanism.followers)):
-                raise ConfigError("no unknown changes its angle, so that this spring does nothing", key=f"torsion.{n}")
+            if problem := part.fault(value_at(part.tree, {})):
+                raise ConfigError(problem, key=part.key)
 
 
 def check_unknowns(mechanism: Mechanism, faults: Faults) -> None:
@@ -192,23 +208,13 @@ def check_unknowns(mechanism: Mechanism, faults: Faults) -> None:
 def _held(mechanism: Mechanism) -> set[str]:
     """The unknowns whose equations do not vanish identically."""
     points = Points(mechanism)
-    ring = points.ring
-    held = {moment.unknown for moment in mechanism.moments if points.value(moment.value).terms}
-    for closing in mechanism.closing:
-        squared = points.squared(closing.start, closing.end)
-        held.update(u for u in mechanism.unknowns if squared.derivative(u).terms)
-    energy = ring.constant(Fraction(0))
-    for spring in mechanism.springs:
-        squared = points.squared(spring.start, spring.end)
-        if isinstance(spring.free, Number) and not spring.free.value:
-            energy += points.value(spring.stiffness) * squared
-        else:  # the root of the squared length does not cancel against the rest, but where the stiffness does
-            held.update(u for u in mechanism.unknowns if squared.derivative(u).terms)
-        if len(held) == len(mechanism.unknowns):
-            return held
-    energy += points.energy_without_springs()  # twice the energy throughout
-    held |= {first for second, first in mechanism.followers.items() if energy.derivative(second).terms}
-    return held | {u for u in mechanism.unknowns if energy.derivative(u).terms}
+    energy, springs, work = felt(points)
+    held = {unknown for unknown, moment in work.items() if moment.terms}
+    # a root does not cancel against the rest
+    lengths = [squared for _, _, squared in springs]
+    lengths += [points.squared(bar.start, bar.end) for bar in mechanism.closing]
+    held.update(u for u in mechanism.unknowns for p in (energy, *lengths) if p.derivative(u).terms)
+    return held | {first for second, first in mechanism.followers.items() if energy.derivative(second).terms}
 
 
 def check_symmetries(mechanism: Mechanism, faults: Faults) -> None:
@@ -217,11 +223,11 @@ def check_symmetries(mechanism: Mechanism, faults: Faults) -> None:
         key = f"symmetries.{n}"
         with faults:
             try:
-                holds = _are_the_same(mechanism, Image(Ring(), {}), Image(Ring(), images))
+                here, there = felt(Points(mechanism)), felt(Points(mechanism, images=images))
+                change = here.energy - there.energy
+                holds = here[1:] == there[1:] and not any(change.derivative(u).terms for u in mechanism.unknowns)
             except ExpressionError as error:
-                raise ConfigError(
-                    f"it is not proved to be a symmetry: {error.message}", key=f"symmetries.{n}"
-                ) from None
+                raise ConfigError(f"it is not proved to be a symmetry: {error.message}", key=key) from None
             if not holds:
                 raise ConfigError(
                     "this is no symmetry: with these substitutions the energy changes by something that varies with an "
@@ -230,122 +236,78 @@ def check_symmetries(mechanism: Mechanism, faults: Faults) -> None:
                 )
 
 
-class Image:
-    """A ring in which names have the values of their images, in another ring; of some angles half a turn more."""
+class Felt(NamedTuple):
+    """What unknowns feel: the energy without springs of free length, these (stiffness, free length, squared length),
+    and the moments' work along each unknown. Equilibria are the same where these are, but for numbers in the energy."""
 
-    def __init__(self, ring: Ring, images: Mapping[str, Tree], turned: Collection[str] = ()):
-        self.ring, self.images, self.turned = ring, images, turned
-
-    def constant(self, value: Fraction) -> Polynomial:
-        return self.ring.constant(value)
-
-    def parameter(self, name: str) -> Polynomial:
-        return evaluate(self.images[name], self.ring) if name in self.images else self.ring.parameter(name)
-
-    def cos(self, angle: str) -> Polynomial:
-        return self._wave("cos", angle)
-
-    def sin(self, angle: str) -> Polynomial:
-        return self._wave("sin", angle)
-
-    def _wave(self, function: str, angle: str) -> Polynomial:
-        value = evaluate(Call(function, self.images.get(angle, Name(angle))), self.ring)
-        return self.constant(Fraction(-1)) * value if angle in self.turned else value
+    energy: Polynomial
+    springs: Counter[tuple[Polynomial, Polynomial, Polynomial]]
+    work: dict[str, Polynomial]
 
 
-def energy_is_kept(
-    mechanism: Mechanism, parameters: Mapping[str, Fraction], reflected: Iterable[str], turned: Collection[str]
-) -> bool:
-    """Whether a reflection is proved to take equilibria at values of the parameters to equilibria.
-
-    Parameters
-    ----------
-    reflected : unknowns u that become -u.
-    turned : those angles of them that become pi - u instead.
-    """
-    numbers: dict[str, Tree] = {name: Number(value) for name, value in parameters.items()}
-    images: dict[str, Tree] = {**numbers, **{name: Negative(Name(name)) for name in reflected}}
-    try:
-        return _are_the_same(mechanism, Image(Ring(), numbers), Image(Ring(), images, turned))
-    except ExpressionError:  # too large to be multiplied out
-        return False
-
-
-def _are_the_same(mechanism: Mechanism, one: Image, other: Image) -> bool:
-    """Whether the equilibria are those of the same energy and the same work of moments, but for numbers.
-
-    Springs with a free length have roots in their energies: they are the same when stiffness, free length and squared
-    length are.
-    """
-    (energy, springs, work), (energy2, springs2, work2) = (felt(mechanism, image) for image in (one, other))
-    change = energy - energy2
-    if springs != springs2 or any(change.derivative(u).terms for u in mechanism.unknowns):
-        return False
-    return work == work2
-
-
-_Terms = frozenset[tuple[Monomial, Fraction]]
-_Spring = tuple[_Terms, _Terms, _Terms]
-
-
-def felt(mechanism: Mechanism, ring: Image) -> tuple[Polynomial, Counter[_Spring], dict[str, _Terms]]:
-    """Twice the energy without springs of free length, these springs, and the moments' work along each unknown."""
-    points = Points(mechanism, ring)
-    energy = ring.constant(Fraction(0))
-    springs: list[_Spring] = []
-    for spring in mechanism.springs:
-        squared, k, free = points.squared(spring.start, spring.end), *map(points.value, (spring.stiffness, spring.free))
-        if free.terms:
-            springs.append((_terms(k), _terms(free), _terms(squared)))
-        else:
-            energy += k * squared
-    energy += points.energy_without_springs()
-    work = {u: ring.constant(Fraction(0)) for u in mechanism.unknowns}
-    for moment in mechanism.moments:
-        for unknown, c in multiples(ring.images.get(moment.unknown, Name(moment.unknown))).items():
+def felt(points: Points) -> Felt:
+    """What unknowns feel in a mechanism."""
+    mechanism, zero = points.mechanism, points.ring.constant(Fraction(0))
+    energy, springs = zero, Counter[tuple[Polynomial, Polynomial, Polynomial]]()
+    for element in mechanism.elements.values():
+        if element.root is not None:
+            stiffness, free, squared = map(points.value, element.root)
+            if free.terms:
+                springs[stiffness, free, squared] += 1
+                continue
+        for tree in element.energies:
+            energy += points.value(tree)
+    work = dict.fromkeys(mechanism.unknowns, zero)
+    for own, value in mechanism.work.items():
+        for unknown, c in multiples(points.images.get(own, Name(own))).items():
             if unknown in work:
-                work[unknown] += points.value(moment.value) * ring.constant(c)
-    return energy, Counter(springs), {u: _terms(w) for u, w in work.items()}
-
-
-def _terms(p: Polynomial) -> _Terms:
-    return frozenset(p.terms.items())
+                work[unknown] += points.value(value) * points.ring.constant(c)
+    return Felt(energy, springs, work)
 
 
 class Points:
-    """The coordinates of a mechanism's points, each computed once."""
+    """The coordinates of a mechanism's points, each computed once, and what is made of them.
 
-    def __init__(self, mechanism: Mechanism, ring: Ring | Image | None = None):
+    Parameters
+    ----------
+    images : trees in place of names.
+    """
+
+    def __init__(self, mechanism: Mechanism, ring: Ring | None = None, images: Mapping[str, Tree] | None = None):
         self.mechanism = mechanism
         self.ring = ring or Ring()
-        self.known: dict[str, tuple[Polynomial, Polynomial]] = {}
+        self.images = images or {}
+        self.placed = Named(self.ring, {name: self._image(tree) for name, tree in mechanism.coordinates.items()})
+
+    def _image(self, tree: Tree) -> Tree:
+        return mapped(tree, lambda part: self.images.get(part.name) if isinstance(part, Name) else None)
 
     def value(self, tree: Tree) -> Polynomial:
-        return evaluate(tree, self.ring)
+        """Of an expression, in which coordinates are names ``P.x``."""
+        return evaluate(self._image(tree), self.placed)
 
     def at(self, name: str) -> tuple[Polynomial, Polynomial]:
-        if name not in self.known:
-            x, y = self.mechanism.points[name]
-            self.known[name] = self.value(x), self.value(y)
-        return self.known[name]
+        return self.placed.parameter(f"{name}.x"), self.placed.parameter(f"{name}.y")
 
-    def moves(self, start: str, end: str) -> bool:
-        """Whether a distance changes with an unknown; also where that is too much to be multiplied out."""
-        unknowns = {*self.mechanism.unknowns, *self.mechanism.followers}
-        if not any({*names_of(tree)} & unknowns for point in (start, end) for tree in self.mechanism.points[point]):
-            return False
-        try:
-            squared = self.squared(start, end)
-            return any(squared.derivative(u).terms for u in unknowns)
-        except ExpressionError:
-            return True
+    def distance(self, start: str, end: str) -> Tree:
+        """The square of a distance, in names of coordinates."""
+        return squared_distance({p: (Name(f"{p}.x"), Name(f"{p}.y")) for p in (start, end)}, start, end)
 
     def squared(self, start: str, end: str) -> Polynomial:
         """The square of a distance."""
-        total = self.ring.constant(Fraction(0))
-        for a, b in zip(self.at(start), self.at(end), strict=True):
-            total += (b - a) * (b - a)
-        return total
+        return self.value(self.distance(start, end))
+
+    def varies(self, tree: Tree) -> bool:
+        """Whether an expression changes with an unknown; also where that is too much to be multiplied out."""
+        unknowns = {*self.mechanism.unknowns, *self.mechanism.followers}
+        names = {name for part in names_of(tree) for name in names_of(self.placed.trees.get(part, Name(part)))}
+        if not names & unknowns:
+            return False
+        try:
+            value = self.value(tree)
+            return any(value.derivative(u).terms for u in unknowns)
+        except ExpressionError:
+            return True
 
     def turning(self, start: str, end: str) -> dict[str, Fraction] | None:
         """By how much the way from one point to another, (x, y), turns with each unknown u, in turns of u: n, where
@@ -364,13 +326,3 @@ class Points:
                 return None
             found[unknown] = n
         return found
-
-    def energy_without_springs(self) -> Polynomial:
-        """Twice the energy of torsion springs, and of the dead forces, whose work it is but for the sign."""
-        total = self.ring.constant(Fraction(0))
-        for load in self.mechanism.loads:
-            for force, place in zip((load.x, load.y), self.at(load.point), strict=True):
-                total -= self.value(force) * place
-        for torsion in self.mechanism.torsion:
-            total += self.value(torsion.energy)
-        return total + total

@@ -6,21 +6,20 @@ Guarantee: an expression that leaves here has a value in every ring (`ptmcad.mod
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from fractions import Fraction
 from functools import cached_property
 from typing import Any, TypeVar
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
-from ptmcad.model.angles import PI, split_angle, without_quarter_turns
 from ptmcad.model.elements import Kind, Parameter, UnknownKind
 from ptmcad.model.evaluate import evaluate, value_at
 from ptmcad.model.sizes import Size, Sizes
+from ptmcad.model.trees import PI, ZERO, split_angle, without_quarter_turns
 from ptmcad.text.codec import Codec, Key, choice, part, reading, record
 from ptmcad.text.entry import Scalar, as_written
 from ptmcad.text.node import MAX_ENTRIES, Node
 from ptmcad.text.numerals import FINITE
 from ptmcad.text.syntax import NAME, NOT_NUMBERS, did_you_mean, parse
-from ptmcad.text.tree import FUNCTIONS, Call, Number, Tree, names_of
+from ptmcad.text.tree import FUNCTIONS, Call, Tree, names_of
 from ptmcad.text.tree import to_text as text_of
 
 MAX_NAME = 40
@@ -34,7 +33,6 @@ _EXPRESSIONS = ": what depends on other parameters is written under the record's
 _UNSET = frozenset({Kind.FREE_LENGTH, Kind.FORCE, Kind.ANGLE})
 """Kinds that are zero where nothing is said."""
 _T = TypeVar("_T")
-ZERO: Tree = Number(Fraction(0))
 VALUE, NUMBER, NAME_SCHEMA = ({"$ref": f"#/$defs/{name}"} for name in ("value", "number", "name"))
 """Schemas of a record's leaves: an expression, a number, and a name."""
 

@@ -11,22 +11,20 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults, Place
-from ptmcad.model.angles import angle_name
-from ptmcad.model.bodies import bodies
+from ptmcad.model.bodies import bodies, second_angles, xjoints
 from ptmcad.model.description import Mechanism
 from ptmcad.model.elements import Closing, Load, Moment, Spring, Support, TorsionSpring
 from ptmcad.model.evaluate import value_at
-from ptmcad.model.parts import check_numbers
-from ptmcad.model.proofs import check_bars, check_springs, check_symmetries, check_unknowns
-from ptmcad.model.reading import NAME_SCHEMA, NUMBER, POINTS, VALUE, ZERO, Context, constant, new_name, two
+from ptmcad.model.proofs import check_bars, check_elements, check_numbers, check_symmetries, check_unknowns
+from ptmcad.model.reading import NAME_SCHEMA, NUMBER, POINTS, VALUE, Context, constant, new_name, two
 from ptmcad.model.sizes import check_sizes
+from ptmcad.model.trees import ONE, ZERO, angle_name
 from ptmcad.model.work import split_moments
-from ptmcad.model.xjoints import second_angles, xjoints
 from ptmcad.text.codec import Codec, Key, choice, converted, listed, named, part, reading, record
 from ptmcad.text.entry import as_written, from_python
 from ptmcad.text.node import MAX_ENTRIES, Node
 from ptmcad.text.syntax import parse
-from ptmcad.text.tree import Name, Negative, Number, Tree
+from ptmcad.text.tree import Name, Negative, Tree
 
 DEFAULT_NAME = "mechanism"
 NAMED_RESTS = {
@@ -38,7 +36,6 @@ NAMED_RESTS = {
     "3*pi/2": (0, -1),
 }
 """Cosine and sine of the angles that have both rational and are written with pi."""
-_ONE: Tree = Number(Fraction(1))
 _UNWRITTEN: Callable[[Any], Any] = list
 """Of what is only read."""
 
@@ -184,7 +181,7 @@ def _spring(context: Context) -> Codec[dict[str, Any]]:
         dict,
         "{between: [A, B], k: 1}",
         between=part(context.between(), instead=("", "")),
-        k=part(value, "Stiffness.", instead=_ONE),
+        k=part(value, "Stiffness.", instead=ONE),
         free=part(value, "Free length.", ZERO, shown=0),
     )
 
@@ -198,7 +195,7 @@ def _torsion_spring(context: Context) -> Codec[dict[str, Any]]:
             "A sum of whole multiples of unknown angles, and of quarter turns such as pi/2.",
             instead=(ZERO, 0),
         ),
-        k=part(context.value(), "Stiffness, a moment.", instead=_ONE),
+        k=part(context.value(), "Stiffness, a moment.", instead=ONE),
         rest=part(
             reading(_rest, anyOf=[{"enum": [0, *NAMED_RESTS]}, _DIRECTION.schema]),
             "The angle at which it is relaxed, or its cosine and sine.",
@@ -228,17 +225,15 @@ def _prove(found: Mechanism, faults: Faults) -> None:
 
             check_closing(found, faults)
         if "springs" not in faulty and "torsion" not in faulty:
-            check_springs(found, faults)
+            check_elements(found, faults)
     if not faulty - _FORCELESS:
         check_unknowns(found, faults)
         check_symmetries(found, faults)
         check_moments(found, faults)
         if found.closing or found.xjoints:  # most mechanisms have neither, and do not wait for what reads them
-            from ptmcad.model.crossed import check_crossed
             from ptmcad.model.loops import check_loops
 
             check_loops(found, faults)
-            check_crossed(found, faults)
 
 
 def check_moments(mechanism: Mechanism, faults: Faults) -> None:

@@ -9,11 +9,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from ptmcad.errors import ConfigError, Faults, Place
-from ptmcad.model.angles import PI
 from ptmcad.model.description import System
 from ptmcad.model.evaluate import value_at
 from ptmcad.model.reading import VALUE, Context, new_name, parsed
 from ptmcad.model.sizes import check_sizes
+from ptmcad.model.trees import PI
 from ptmcad.text.codec import Codec, listed, part, reading, record
 from ptmcad.text.entry import from_python
 from ptmcad.text.node import MAX_ENTRIES, Node

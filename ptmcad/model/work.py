@@ -1,26 +1,30 @@
-"""Moments that depend on their own unknown alone, split into a constant part and the slope of an energy.
+"""What moments do: those that depend on their own unknown alone have a constant part and the slope of an energy.
 
 Guarantee: exact. With M = m + w', where m is free of unknowns and w is a polynomial in the unknown's cosine and sine,
 or in an unknown on the line, that is zero where the unknown is, equilibria are those of the energy less w under the
 moment m. On the circle m is the mean of M, whose work is another one after each turn; w has one value for each pose.
+The energy less the work of m has many values on the circle, so that whatever is said of an energy's descent has to ask
+for moments first.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
 from ptmcad.model.description import Mechanism, Model
 from ptmcad.model.elements import Moment
-from ptmcad.model.evaluate import evaluate
+from ptmcad.model.evaluate import evaluate, value_at
 from ptmcad.model.proofs import Monomial, Polynomial, Ring
+from ptmcad.model.trees import product, total
 from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree, names_of
 
 MAX_WORK = 200_000
 """Products of terms for one moment."""
 _Factors = dict[str, int]
+_ITSELF: _Factors = {"": 1}
 
 
 class Split(NamedTuple):
@@ -45,50 +49,93 @@ def split_moments(mechanism: Model) -> Split:
     ExpressionError
         When a moment that depends on its unknown is too large to be multiplied out.
     """
-    if not isinstance(mechanism, Mechanism):
-        return Split((), ())
     if not mechanism.has_potential:
-        return Split(mechanism.moments, ())
+        return Split(tuple(Moment(*each) for each in mechanism.work.items()), ())
     steady, energies = [], []
-    for moment in mechanism.moments:
-        if moment.unknown not in names_of(moment.value):
-            steady.append(moment)
+    for unknown, moment in mechanism.work.items():
+        if unknown not in names_of(moment):
+            steady.append(Moment(unknown, moment))
             continue
-        constant, work = _integrated(evaluate(moment.value, Ring(MAX_WORK)), moment.unknown)
-        if constant:
-            steady.append(Moment(moment.unknown, _tree(constant, mechanism.angles)))
-        if work:
-            energies.append(_tree([(factors, -c) for factors, c in work], mechanism.angles))
+        constant, energy = _integrated(evaluate(moment, Ring(MAX_WORK)), unknown)
+        if constant.terms:
+            steady.append(Moment(unknown, tree_of(constant, mechanism.angles)))
+        if energy.terms:
+            energies.append(tree_of(energy, mechanism.angles))
     return Split(tuple(steady), tuple(energies))
 
 
-_Terms = list[tuple[_Factors, Fraction]]
+def acting(model: Model, unknowns: Iterable[str]) -> str:
+    """What works on some unknowns, in words: moments on angles, forces on what is no angle."""
+    names = [name for name in model.unknowns if name in set(unknowns)]
+    angles = [name for name in names if name in model.angles]
+    lengths = [name for name in names if name not in model.angles]
+    parts = ["moments" if len(angles) > 1 else "moment"] if angles else []
+    if lengths:
+        parts.append(f"force{'s' * (len(lengths) > 1)} on {' and '.join(lengths)}")
+    return " and the ".join(parts)
 
 
-def _integrated(moment: Polynomial, unknown: str) -> tuple[_Terms, _Terms]:
-    """The constant part, and the antiderivative of the rest that is zero where the unknown is."""
-    constant: _Terms = []
-    total = Polynomial(moment.ring, {})
+def foreign(mechanism: Mechanism) -> str:
+    """What depends on another unknown than its own, so that there is no potential."""
+    if any(name in mechanism.angles for name in mechanism.coupled):
+        return "a moment"
+    return f"the force on {next(name for name in mechanism.unknowns if name in mechanism.coupled)}"
+
+
+def moments_at(model: Model, parameters: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """The unknowns on which a moment that is not zero works, to the moment.
+
+    Parameters
+    ----------
+    model : one that has a potential: no moment depends on another unknown than its own.
+    parameters : all of the model's; free lengths are zero where they are not among them.
+
+    Raises
+    ------
+    ExpressionError
+        When a moment depends on another unknown.
+    """
+    known = dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters)
+    found = {unknown: value_at(tree, known) for unknown, tree in split_moments(model).steady}
+    return {unknown: value for unknown, value in found.items() if value}
+
+
+class PointForce(NamedTuple):
+    """A load where the parameters have values: its point, and its components across and up by their names."""
+
+    point: str
+    names: tuple[str, str]
+    force: tuple[Fraction, Fraction]
+
+
+def loads_at(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> tuple[PointForce, ...]:
+    """The loads in the description's order; variables that are not among the parameters are zero."""
+    known = dict.fromkeys(mechanism.variables, Fraction(0)) | dict(parameters)
+    return tuple(
+        PointForce(load.point, load.names, (value_at(load.x, known), value_at(load.y, known)))
+        for load in mechanism.loads
+    )
+
+
+def _integrated(moment: Polynomial, unknown: str) -> tuple[Polynomial, Polynomial]:
+    """The constant part, and the energy of the rest that is zero where the unknown is."""
+    constant = energy = Polynomial(moment.ring, {})
+    own = {unknown, f"cos {unknown}", f"sin {unknown}"}
     for monomial, c in moment.terms.items():
-        own = {unknown, f"cos {unknown}", f"sin {unknown}"}
         rest = {v: e for v, e in monomial if v not in own}
-        parts = list(_antiderivative({v: e for v, e in monomial if v in own}, unknown))
-        for factors, part in parts:
-            if factors == {"": 1}:
-                constant.append((rest, c * part))
+        for factors, part in _antiderivative({v: e for v, e in monomial if v in own}, unknown):
+            if factors == _ITSELF:
+                constant += Polynomial(moment.ring, {_monomial(rest): c * part})
             else:
-                total += Polynomial(moment.ring, {_monomial(rest | factors): c * part})
-    collected = Polynomial(moment.ring, {})
-    for factors, c in constant:
-        collected += Polynomial(moment.ring, {_monomial(factors): c})
-    return _listed(collected), _listed(total)
+                energy -= Polynomial(moment.ring, {_monomial(rest | factors): c * part})
+    return constant, energy
 
 
 def _antiderivative(own: _Factors, unknown: str) -> Iterator[tuple[_Factors, Fraction]]:
-    """That of a power of an unknown on the line, or of sin^n or sin^n cos; the unknown itself as the empty name."""
+    """That of a power of an unknown on the line, or of sin^n or sin^n cos; `_ITSELF` is that of a constant."""
     cosine, sine = f"cos {unknown}", f"sin {unknown}"
     if not own:
-        yield {"": 1}, Fraction(1)
+        yield _ITSELF, Fraction(1)
     elif unknown in own:
         yield {unknown: own[unknown] + 1}, Fraction(1, own[unknown] + 1)
     elif cosine in own:
@@ -109,30 +156,20 @@ def _monomial(factors: _Factors) -> Monomial:
     return tuple(sorted(factors.items()))
 
 
-def _listed(p: Polynomial) -> _Terms:
-    return [(dict(monomial), c) for monomial, c in sorted(p.terms.items())]
-
-
 def tree_of(p: Polynomial, angles: Sequence[str]) -> Tree:
     """A polynomial as a sum of products."""
-    return _tree(_listed(p), angles) if p.terms else Number(Fraction(0))
+    terms = [(_product(monomial, abs(c), angles), c) for monomial, c in sorted(p.terms.items())]
+    return total(*(term if c > 0 else Negative(term) for term, c in terms))
 
 
-def _tree(terms: Sequence[tuple[_Factors, Fraction]], angles: Sequence[str]) -> Tree:
-    """A sum of products."""
-    (first, c), *rest = terms
-    start = _product(first, abs(c), angles)
-    steps = tuple(Step("+" if c > 0 else "-", _product(factors, abs(c), angles)) for factors, c in rest)
-    start = start if c > 0 else Negative(start)
-    return Chain(start, steps) if steps else start
-
-
-def _product(factors: _Factors, c: Fraction, angles: Sequence[str]) -> Tree:
-    parts: list[Tree] = [Number(Fraction(c.numerator))] if c.numerator != 1 or not factors else []
-    for variable, e in factors.items():
+def _product(monomial: Monomial, c: Fraction, angles: Sequence[str]) -> Tree:
+    parts: list[Tree] = []
+    for variable, e in monomial:
         function, _, angle = variable.partition(" ")
         base: Tree = Call(function, Name(angle)) if angle in angles else Name(variable)
         parts.append(base if e == 1 else Power(base, Number(Fraction(e))))
-    steps = [Step("*", part) for part in parts[1:]]
-    steps += [Step("/", Number(Fraction(c.denominator)))] if c.denominator != 1 else []
-    return Chain(parts[0], tuple(steps)) if steps else parts[0]
+    found = product(Number(Fraction(c.numerator)), *parts)
+    if c.denominator == 1:
+        return found
+    first, steps = (found.first, found.steps) if isinstance(found, Chain) else (found, ())
+    return Chain(first, (*steps, Step("/", Number(Fraction(c.denominator)))))

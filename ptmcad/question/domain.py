@@ -14,7 +14,7 @@ from dataclasses import replace
 
 from ptmcad.errors import ExpressionError, GeometryError
 from ptmcad.model import Kind, Model
-from ptmcad.model.parts import Part, fault_of_number, parts
+from ptmcad.model.elements import Part
 from ptmcad.question.positivity import Axes, Need, decide, middle_of, named, number, place, window_of
 from ptmcad.question.signs import PROVED, Finding, Subject, Undecided, Witness
 from ptmcad.question.slice import Slice
@@ -91,7 +91,7 @@ def sign_of_part(
         return Finding(subject, window, Undecided(()), f"cannot be judged: {error.message}")
     subject = subject._replace(value=value)
     if value.is_constant:
-        problem = fault_of_number(part, value.constant())
+        problem = part.fault(value.constant())
         verdict = Witness(middle_of(window), value.constant()) if problem else PROVED
         return Finding(subject, window, verdict, problem)
     if value.degree > MAX_DEGREE:
@@ -107,7 +107,7 @@ def signs_of(slice: Slice) -> Iterator[Finding]:
     for name, value in slice.parameters.items():
         subject = Subject(name, slice.model.kind(name), value)
         yield final.get(subject) or sign_of(subject, slice.axes)
-    for part in parts(slice.model):
+    for part in slice.model.parts:
         yield sign_of_part(slice.model, part, slice.parameters, slice.axes, known=final)
 
 

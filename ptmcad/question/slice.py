@@ -15,7 +15,6 @@ from typing import Any, TypeVar
 from ptmcad.errors import ConfigError
 from ptmcad.model import Kind, Model
 from ptmcad.model.evaluate import value_among
-from ptmcad.model.parts import written_parts
 from ptmcad.model.work import split_moments
 from ptmcad.question.signs import Finding
 from ptmcad.text.expressions import Expression, constant
@@ -166,7 +165,7 @@ def have_free_lengths(model: Model, parameters: Mapping[str, Expression]) -> boo
 def relaxed_springs(model: Model, parameters: Mapping[str, Expression]) -> tuple[int, ...]:
     """The numbers of those springs."""
     known = dict.fromkeys(model.parameters, constant(0)) | dict(parameters)
-    free = (part.tree for part in written_parts(model) if part.kind is Kind.FREE_LENGTH)
+    free = () if model.whole is None else model.whole.written(Kind.FREE_LENGTH)
     return tuple(k for k, tree in enumerate(free) if value_among(tree, known, constant).numerator)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ptmcad.model import Model, mechanism_in
-from ptmcad.model.moments import foreign
+from ptmcad.model.work import foreign
 
 
 def no_drawing(model: Model) -> str:

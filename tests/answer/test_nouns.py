@@ -11,7 +11,7 @@ import ptmcad
 from ptmcad.answer.counts import Counts, operation_number
 from ptmcad.answer.words import assignments, followed, noun, sought, untold
 from ptmcad.model import Model, ptm
-from ptmcad.model.moments import loads_at
+from ptmcad.model.work import loads_at
 from ptmcad.question.config import load
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"

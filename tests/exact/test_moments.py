@@ -16,7 +16,7 @@ from ptmcad.ask.solving import poses_at
 from ptmcad.exact.models import system_from
 from ptmcad.exact.models.system import polynomial_at
 from ptmcad.model import ptm
-from ptmcad.model.moments import moments_at
+from ptmcad.model.work import moments_at
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.table import path_table
 

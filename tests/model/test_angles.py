@@ -9,9 +9,9 @@ import pytest
 import ptmcad
 from ptmcad.errors import ConfigError
 from ptmcad.model import described, described_system
-from ptmcad.model.angles import split_angle
 from ptmcad.model.evaluate import evaluate
 from ptmcad.model.proofs import Ring
+from ptmcad.model.trees import split_angle
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import to_text
 

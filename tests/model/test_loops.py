@@ -23,8 +23,8 @@ from ptmcad.exact.models.potential import system_from
 from ptmcad.exact.models.system import at_point, polynomial_at
 from ptmcad.exact.stages import problem_of, variety_of
 from ptmcad.model import ClosedMechanism
-from ptmcad.model.derivative import derivative
 from ptmcad.model.evaluate import evaluate
+from ptmcad.model.trees import derivative
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.syntax import parse
 from ptmcad.verification.derivation import coordinates_of, derivation_at

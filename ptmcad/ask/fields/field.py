@@ -25,7 +25,7 @@ from ptmcad.ask.solving import poses_at
 from ptmcad.errors import ConfigError, expect
 from ptmcad.model import Model
 from ptmcad.model.compile import compiled
-from ptmcad.model.moments import acting
+from ptmcad.model.work import acting
 from ptmcad.options import Progress
 from ptmcad.question.slice import Slice
 

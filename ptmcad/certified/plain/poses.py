@@ -29,8 +29,8 @@ from ptmcad.formulas.balls import ball, run_arb
 from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.formulas.tape import Tape, record
 from ptmcad.model import Mechanism, Model, ptm
-from ptmcad.model.closed import mechanism_in
 from ptmcad.model.compile import CompiledSystem, compiled_with
+from ptmcad.model.description import mechanism_in
 from ptmcad.model.fourbars import flat_everywhere
 from ptmcad.question.domain import proved
 from ptmcad.question.slice import Axis, Count, Slice

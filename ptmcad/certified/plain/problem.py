@@ -20,8 +20,8 @@ from ptmcad.certified.plain.parallel import shares
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial, Vector
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.formulas.graph import Formula, Graph, length
-from ptmcad.model.closed import equations_in, mechanism_in
 from ptmcad.model.compile import CompiledSystem, compiled
+from ptmcad.model.description import equations_in, mechanism_in
 from ptmcad.model.fourbars import closed_by, flat_everywhere
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant

@@ -17,8 +17,9 @@ from ptmcad.certified.plain.problem import FIRST
 from ptmcad.formulas.graph import OPERATORS, Operation
 from ptmcad.formulas.tape import Tape
 from ptmcad.model import Mechanism
-from ptmcad.model.proofs import energy_is_kept
+from ptmcad.model.involutions import Involution, involutions
 from ptmcad.text.balls import ball_of, exact
+from ptmcad.text.expressions import constant
 
 Point = dict[int, tuple[Fraction, ...]]
 """Values of unknowns by their numbers: of a real its own, of an angle its cosine and sine."""
@@ -50,8 +51,15 @@ def rational_point(
             return at
     names = dict(enumerate(held, FIRST))
     fixed = {k: value for k, value in at.items() if value[-1] == 0 or value[0] == 0}
-    odd = [names[k] for k, value in fixed.items() if value[-1]]
-    return fixed if fixed and energy_is_kept(mechanism, parameters, [names[k] for k in fixed], odd) else {}
+    mirrored = {names[k]: bool(value[-1]) for k, value in fixed.items()}
+    unknowns = mechanism.unknowns
+    mirror = Involution(
+        tuple(range(len(unknowns))),
+        tuple(-1 if name in mirrored else 1 for name in unknowns),
+        tuple(int(mirrored.get(name, False)) for name in unknowns),
+    )
+    known = {name: constant(value) for name, value in parameters.items()}
+    return fixed if fixed and mirror in involutions(mechanism, known) else {}
 
 
 def exact_values(tape: Tape, at: Point) -> list[Fraction | None]:

@@ -22,7 +22,7 @@ from ptmcad.model import (
     recognised,
     without_loops,
 )
-from ptmcad.model.parts import check_numbers
+from ptmcad.model.proofs import check_numbers
 from ptmcad.model.reading import faulty_entries
 from ptmcad.question.config.starters import mechanism_names, starter_mechanism
 from ptmcad.text.entry import Scalar, Tree, place_at, plain_data, scalars

@@ -14,8 +14,7 @@ from fractions import Fraction
 from ptmcad.errors import ExpressionError, Faults, Place
 from ptmcad.model import ClosedMechanism, Kind, Mechanism, Model, System
 from ptmcad.model.evaluate import value_at
-from ptmcad.model.moments import foreign
-from ptmcad.model.parts import fault_of_number, parts
+from ptmcad.model.work import foreign
 from ptmcad.question.config.names import resolved
 from ptmcad.question.config.record import Record, Window, read_record, swept_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of
@@ -175,7 +174,7 @@ def _judged(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[str
             signs += _signs_of_value(name, values[name], record, window)
             wrong.remove(name)
     doubtful = wrong | faulty
-    for part in parts(record.model):
+    for part in record.model.parts:
         with faults:
             if window is not None and not doubtful & {*names_of(part.tree)}:
                 sign = sign_of_part(record.model, part, values, window, READING_WORK)
@@ -278,8 +277,8 @@ def point_of(record: Record) -> dict[str, Fraction]:
     values = {name: expression.constant() for name, expression in expressions.items()}
     for name, value in values.items():
         check_number(name, mechanism.kind(name), value, record.place_of(name))
-    for part in parts(mechanism):
-        if problem := fault_of_number(part, value_at(part.tree, values)):
+    for part in mechanism.parts:
+        if problem := part.fault(value_at(part.tree, values)):
             raise record.place_of_part(part.key).error(problem)
     _check_shorthands_are_used(record, mechanism, set(record.values))
     return without_shorthands(values, mechanism)

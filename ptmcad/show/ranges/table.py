@@ -15,7 +15,7 @@ from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, T
 from ptmcad.answer.widths import Maximum, OperationWidths
 from ptmcad.answer.words import assignments, followed, kind_name, noun, sought
 from ptmcad.model import Model, built_in
-from ptmcad.model.moments import acting
+from ptmcad.model.work import acting
 from ptmcad.question.slice import Axis
 from ptmcad.show.ranges.numbers import end_text, line_head, narrowly_known, settled, width_text
 from ptmcad.text.balls import ball_of, enclosure_of

@@ -21,7 +21,7 @@ from ptmcad.exact.models.system import polynomial_at
 from ptmcad.model import Model
 from ptmcad.model.compile import compiled
 from ptmcad.model.evaluate import value_at
-from ptmcad.model.moments import moments_at
+from ptmcad.model.work import moments_at
 from ptmcad.show.render.view import Floats
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import magnitude

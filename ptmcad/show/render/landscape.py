@@ -31,7 +31,7 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import noun
 from ptmcad.errors import ConfigError
 from ptmcad.model import Model
-from ptmcad.model.moments import moments_at
+from ptmcad.model.work import moments_at
 from ptmcad.show.drawable import no_landscape
 from ptmcad.show.render.axes import Scale, scale_of, symbol
 from ptmcad.show.render.clearance import Box, Label, Position, Stroke, place

@@ -20,7 +20,7 @@ from ptmcad.answer.words import assignments, counted, kind_name, noun, of_what, 
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism, Model, Support, mechanism_in
 from ptmcad.model.joints import torsion_springs
-from ptmcad.model.moments import PointForce, loads_at
+from ptmcad.model.work import PointForce, loads_at
 from ptmcad.question.slice import merged
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import symbol, with_symbols

@@ -18,7 +18,7 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.model import Mechanism, Support, mechanism_in
 from ptmcad.model.elements import Load
 from ptmcad.model.joints import joints_of
-from ptmcad.model.moments import PointForce, loads_at
+from ptmcad.model.work import PointForce, loads_at
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.clearance import Box, Label, Placed, Position, Stroke, distance, place, polyline
 from ptmcad.show.render.view import Point

@@ -26,7 +26,7 @@ from ptmcad.answer.motion import Motion, Step
 from ptmcad.answer.words import assignments, counted, noun
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism
-from ptmcad.model.moments import loads_at
+from ptmcad.model.work import loads_at
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.clearance import Placed, Position

@@ -1,4 +1,7 @@
-"""Derivatives and determinants of trees, as trees: of coordinates, whose divisors are constants.
+"""Trees that are made of trees: sums, products, derivatives, determinants, and angles without quarter turns.
+
+Divisors are constants, as in coordinates. Quarter turns may be added to angles, ``phi - th + pi/2``: their cosine and
+sine are whole numbers, so that what `split_angle` and `without_quarter_turns` return has no pi in it.
 
 Guarantee: exact. What is zero at sight is left out, and no more is simplified: values are expanded where they are made.
 """
@@ -8,9 +11,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from ptmcad.model.evaluate import value_at
-from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree
+from ptmcad.errors import ExpressionError
+from ptmcad.model.evaluate import FIXED_ANGLE, multiples, multiples_with_positions, value_at
+from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree, mapped, names_of
 
+PI = "pi"
 ZERO: Tree = Number(Fraction(0))
 ONE: Tree = Number(Fraction(1))
 
@@ -118,3 +123,64 @@ def cofactors(rows: Sequence[Sequence[Tree]]) -> tuple[Tree, ...]:
         minor = determinant([[*row[:k], *row[k + 1 :]] for row in rows])
         found.append(minor if (len(rows) + k) % 2 == 0 else negative(minor))
     return tuple(found)
+
+
+def split_angle(tree: Tree) -> tuple[Tree, int]:
+    """An angle as the part that varies and the quarter turns, from 0 to 3, that are added to it.
+
+    >>> from ptmcad.text.syntax import parse
+    >>> from ptmcad.text.tree import to_text
+    >>> varying, turns = split_angle(parse("phi - pi/2"))
+    >>> to_text(varying), turns
+    ('phi', 3)
+
+    Raises
+    ------
+    ExpressionError
+        When the angle is no sum of multiples of names, or what is added to it is no multiple of pi/2.
+    """
+    parts, positions = multiples_with_positions(tree)
+    turns = 2 * parts.get(PI, Fraction(0))
+    if parts.get("") or turns.denominator != 1:
+        raise ExpressionError(FIXED_ANGLE)
+    if PI in parts:
+        names = (name for name in parts if name not in ("", PI))
+        tree = total(*(product(Number(parts[name]), Name(name, positions[name])) for name in names))
+    return tree, int(turns) % 4
+
+
+def angle_name(tree: Tree) -> str:
+    """A sum of multiples of angles in the shortest way, such as ``phi-2*th``; empty for the angle zero."""
+    name = ""
+    for angle, multiple in multiples(tree).items():
+        if angle and multiple:
+            sign = "-" if multiple < 0 else "+" if name else ""
+            name += sign + ("" if abs(multiple) == 1 else f"{abs(multiple)}*") + angle
+    return name
+
+
+def cosine_and_sine(angle: Tree, turns: int) -> tuple[Tree, Tree]:
+    """Those of an angle with quarter turns added to it."""
+    c, s = Call("cos", angle), Call("sin", angle)
+    return ((c, s), (Negative(s), c), (Negative(c), Negative(s)), (s, Negative(c)))[turns]
+
+
+def without_quarter_turns(tree: Tree) -> Tree:
+    """A tree in which no argument of a cosine or sine has a fixed part.
+
+    Raises
+    ------
+    ExpressionError
+        When one has a part that is no multiple of pi/2; with its position.
+    """
+    return mapped(tree, _of_varying_angle) if PI in names_of(tree) else tree
+
+
+def _of_varying_angle(part: Tree) -> Tree | None:
+    if not isinstance(part, Call):
+        return None
+    try:
+        pair = cosine_and_sine(*split_angle(part.argument))
+    except ExpressionError as error:
+        raise ExpressionError(error.message, part.position if error.position is None else error.position) from None
+    return pair[0 if part.function == "cos" else 1]
