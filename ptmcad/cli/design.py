@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
 
 import click
@@ -139,12 +138,12 @@ def command(
 
 def _save(found: BestDesign, wanted: tuple[str, ...], folder: Path) -> None:
     """Write the pictures and, last, the JSON."""
-    pictures = {name: figure(name, partial(_draw, found)) for name in wanted if not name.endswith(".json")}
+
+    def draw(path: Path) -> None:
+        from ptmcad.show.render.design import draw_design
+
+        draw_design(found, path)
+
+    pictures = {name: figure(name, draw) for name in wanted if not name.endswith(".json")}
     file = next((name for name in wanted if name not in pictures), "")
     write_result(folder, pictures, file, found.to_json() if file else "")
-
-
-def _draw(found: BestDesign, path: Path) -> None:
-    from ptmcad.show.render.design import draw_design
-
-    draw_design(found, path)

@@ -172,9 +172,8 @@ def _writers(result: Any, field: Field, names: tuple[str, ...], figure: Figure) 
 
 def _expect_values(field: Field) -> None:
     """Refuse a field of which nothing is to be seen, unless it has values that are beyond doubles or were not found."""
-    import numpy as np
 
-    if np.isnan(field.values).all() and not field.beyond and not field.missed:
+    if not field.known.size and not field.beyond and not field.missed:
         raise ConfigError(
             f"no pixel has {field.pose}, or {field.quantity} has no value where it is: there is nothing to show"
             + ("; some pixels are undetermined" if (field.region == NONE).any() else ""),
@@ -183,9 +182,7 @@ def _expect_values(field: Field) -> None:
 
 
 def _summary(field: Field) -> str:
-    import numpy as np
-
-    known = field.values[~np.isnan(field.values)]
+    known = field.known
     if not known.size and field.beyond:
         return f"{field.quantity} of {field.pose} is beyond doubles wherever it has a value"
     if not known.size:

@@ -190,8 +190,13 @@ def _points(key: str, least: float, most: float, why: str) -> Any:
     return read
 
 
+def _parts(value: Any) -> list[Any]:
+    """Of a list, or of a text that is divided by commas."""
+    return [part.strip() for part in value.split(",")] if isinstance(value, str) else list(value)
+
+
 def _family(value: Any) -> tuple[str, ...]:
-    names = [part.strip() for part in value.split(",")] if isinstance(value, str) else list(value)
+    names = _parts(value)
     if not names or not all(isinstance(name, str) and name for name in names):
         raise ConfigError(f"{value!r} is not a font's family such as serif or Times New Roman", key="font_family")
     return tuple(names)
@@ -200,7 +205,7 @@ def _family(value: Any) -> tuple[str, ...]:
 def _palette(value: Any) -> str | tuple[str, ...]:
     if value in PALETTES:
         return str(value)
-    colours = [part.strip() for part in value.split(",")] if isinstance(value, str) else list(value)
+    colours = _parts(value)
     wrong = [c for c in colours if not (isinstance(c, str) and (_COLOUR.fullmatch(c) or c.lower() in NAMED))]
     if wrong or not colours:
         raise ConfigError(

@@ -35,6 +35,8 @@ from ptmcad.show.render.sketch import PanelFrame, Scene, arrow_lengths
 from ptmcad.show.render.view import Point
 from ptmcad.show.style import MAX_SIDE, PictureStyle, Size, styled
 
+DrawnMap = tuple[Figure, tuple[str, ...]]
+"""A picture of a map, and what it leaves out, in words."""
 MAX_POINTS = 12
 _STEPS, _STEP = 60, 1.05
 """How sizes are tried that would do."""
@@ -42,7 +44,7 @@ _STEPS, _STEP = 60, 1.05
 
 def draw_around(
     result: RegionMap, points: Sequence[tuple[Point, Poses]], style: PictureStyle, dpi: int, overlay: Overlay = ()
-) -> tuple[Figure, tuple[str, ...]]:
+) -> DrawnMap:
     """The map in the middle and poses at its sides; within `ptmcad.show.render.printing.settings`.
 
     Parameters
@@ -87,7 +89,7 @@ def _remedy(result: RegionMap, points: Sequence[tuple[Point, Poses]], style: Pic
 
 def _drawn(
     result: RegionMap, points: Sequence[tuple[Point, Poses]], style: PictureStyle, dpi: int, overlay: Overlay
-) -> tuple[Figure, tuple[str, ...]]:
+) -> DrawnMap:
     """The figure, and what of the map had no room.
 
     Raises

@@ -227,14 +227,15 @@ def _frame(shown: Sequence[tuple[Pose, ...]], panel: float) -> PanelFrame:
 
 def _height(page: _PosePage, tall: float, inner: float, style: PictureStyle, points: int) -> float:
     """Of the page, whose poses are so tall and whose map is so wide with its numbers."""
+    natural = max(_MAP[1] / _MAP[0] * inner, tall)
     if page.height is None and style.wide is None:
-        return max(_MAP[1] / _MAP[0] * inner, tall)
+        return natural
     there = PAGE_HEIGHT if page.height is None else page.height
     if tall > there:
         raise ConfigError(
             f"poses at {points} points need a height of {tall + 0.01:.2f} inches, and there are {there:.2f}", key="size"
         )
-    return there if page.height is not None else min(there, max(_MAP[1] / _MAP[0] * inner, tall))
+    return there if page.height is not None else min(there, natural)
 
 
 def _head(result: RegionMap, number: int, at: Point, poses: Poses) -> str:

@@ -25,7 +25,6 @@ from ptmcad.show.render.inches import write_lines
 from ptmcad.show.render.legend import INK
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.rangeplate import LEFT, RIGHT, SIZE, WIDE, axes_in, figure_of, scaled
-from ptmcad.show.style import DEFAULT, PictureStyle
 
 TALL = 3.6
 BAR = 0.16
@@ -35,9 +34,9 @@ COLOURS = "viridis"
 _COLUMNS = 96
 
 
-def draw_design(found: BestDesign, path: Path, dpi: int = 150, style: PictureStyle = DEFAULT) -> None:
+def draw_design(found: BestDesign, path: Path) -> None:
     """Draw the values over the design parameters, with the bounds and the best one, into a file."""
-    save(figure_of_design(found), path, dpi=dpi, style=style)
+    save(figure_of_design(found), path)
 
 
 def figure_of_design(found: BestDesign) -> Figure:

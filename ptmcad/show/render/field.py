@@ -58,7 +58,7 @@ def pose_words(result: RegionMap, field: Field) -> str:
 
 def description(field: Field) -> str:
     """What the picture shows, in words."""
-    known = field.values[~np.isnan(field.values)]
+    known = field.known
     if not known.size:
         return f"{_absent(field)[0].upper()}{_absent(field)[1:]}."
     return f"{field.quantity} of {field.pose} from {known.min():.6g} to {known.max():.6g}, {field.shares}."
@@ -84,7 +84,7 @@ def field_figure(
     axes: Any = figure.add_axes((0.2, 0.2, 0.5, 0.5))
     axes.set_gid("map")
     axes.set_facecolor(_EMPTY)
-    known = field.values[~np.isnan(field.values)]
+    known = field.known
     view = View.whole(result)
     if (field.region == NONE).any():
         fill_empty(axes, field, _extent(view), undetermined_fill(style.palette))
@@ -128,8 +128,7 @@ def show_pixels(axes: Any, values: Any, extent: Sequence[float], **look: Any) ->
 def _fill(figure: Figure, axes: Any, field: Field, view: View, number: int, style: PictureStyle) -> Any:
     """The pixels with their lines, and the scale, whose axes are returned."""
     extent = _extent(view)
-    known = field.values[~np.isnan(field.values)]
-    low, high = float(known.min()), float(known.max())
+    low, high = float(field.known.min()), float(field.known.max())
     span = {"vmin": low, "vmax": high if high > low else low + 1.0}
     image = show_pixels(axes, field.values, extent, cmap=_colours(style), gid="values", **span)
     lines = {**_LINES, "linewidths": 0.6 * style.line_scale}
@@ -180,10 +179,10 @@ def _edge(style: PictureStyle) -> Sequence[tuple[float, str, Any]]:
 def _legend(result: RegionMap, field: Field, boundaries: Sequence[Boundary], style: PictureStyle) -> list[Entry]:
     """What lines, white and grey mean, as far as they are there."""
     told = [Entry(("the count changes",), STRONG)] if any(b.separates for b in boundaries) else []
-    if field.jumps is not None and any(jump.any() for jump in field.jumps):
+    if any(jump.any() for jump in field.jumps or ()):
         told.append(Entry((f"the branch of {pose_words(result, field)} changes",), _edge_mark))
     unknown = field.region == NONE
-    if (np.isnan(field.values) & ~unknown).any() and not np.isnan(field.values).all():
+    if (np.isnan(field.values) & ~unknown).any() and field.known.size:
         what = "barrier" if field.quantity == "barrier" else pose_words(result, field)
         told.append(Entry((f"no {what}" if not field.missed + field.beyond else "no value",), Fill(_EMPTY)))
     if unknown.any():

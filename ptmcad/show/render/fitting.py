@@ -278,15 +278,13 @@ def _over(page: _PageLayout, bottom: float, insets: int) -> tuple[Box, list[Box]
 
 def _chart(page: _PageLayout, width: float, height: float) -> Box | None:
     """The map's place in a part of the page at its left and top; None where that is too small."""
-    em = page.em
-    least = MIN_SIDE * em
     inner = (0.8 * width, 0.8 * height)
     for _ in range(3):  # what numbers take depends on how many there are, hence on the sides
-        if inner[0] < least or inner[1] < least:
+        if min(inner) < MIN_SIDE * page.em:
             return None
         left, below, right, _above = overhang(page.parts, page.parts.views[0], inner, page.dressed(*inner))
         inner = (width - left - right, height - below)
-    if inner[0] < least or inner[1] < least:
+    if min(inner) < MIN_SIDE * page.em:
         return None
     return (page.rim + left, page.top - inner[1], *inner)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from math import cos, hypot, pi, sin
+from math import cos, dist, pi, sin
 
 import numpy as np
 
@@ -112,7 +112,7 @@ def _wider(box: Box, by: float) -> Box:
 
 def _meets(box: Box, a: Position, b: Position) -> bool:
     """Whether an arrow passes through a box, seen at points a few points apart."""
-    n, near = max(2, int(hypot(b[0] - a[0], b[1] - a[1]) / 4)), _wider(box, 6)
+    n, near = max(2, int(dist(a, b) / 4)), _wider(box, 6)
     return any(holds(near, (a[0] + (b[0] - a[0]) * k / n, a[1] + (b[1] - a[1]) * k / n)) for k in range(n + 1))
 
 

@@ -59,6 +59,10 @@ _MARKERS = {
 }
 
 _PLURALS = {"stable (minimum)": "stable (minima)", "saddle": "saddles", "maximum": "maxima"}
+_NUMBER: dict[str, Any] = {
+    "fontsize": 9, "fontweight": "bold", "color": INK, "ha": "center", "va": "center", "zorder": 7,
+}  # fmt: skip
+"""How an equilibrium's number is written."""
 _COLUMNS = 90
 """Characters of a line of the title."""
 _SPACE = "\N{NO-BREAK SPACE}"
@@ -150,7 +154,7 @@ def _draw_curve(poses: Poses, shown: Sequence[Pose]) -> Figure:
             inward = -1 if side.share(x) > 0.9 else 1
             axes.annotate(
                 str(number), (x, level), xytext=(9 * inward, -11 if pose.stable else 11), textcoords="offset points",
-                fontsize=9, fontweight="bold", color=INK, ha="center", va="center", zorder=7, gid=f"number-{number}",
+                gid=f"number-{number}", **_NUMBER,
             )  # fmt: skip
         draw_legend(figure, tuple(_legend(poses, shown)), LEFT + SIDE + 2 * MARGIN, BOTTOM + SIDE)
     return figure
@@ -288,9 +292,8 @@ def _mark(axes: Any, sides: Sequence[UnknownAxis], shown: Sequence[Pose]) -> Non
             line = [back(end) for end in (placed.label.at, placed.leader)]
             axes.add_collection(LineCollection([line], colors=INK, linewidths=0.6, zorder=5), autolim=False)
         axes.text(
-            x, y, placed.label.text, fontsize=9, fontweight="bold", color=INK, ha="center", va="center", zorder=7,
+            x, y, placed.label.text, gid=f"number-{placed.label.text}", **_NUMBER,
             bbox={"boxstyle": "round,pad=0.12", "facecolor": "white", "edgecolor": "none", "alpha": 0.85},
-            gid=f"number-{placed.label.text}",
         )  # fmt: skip
 
 

@@ -220,9 +220,13 @@ def width(legend: Iterable[Entry]) -> float:
     return max(map(Type().entry_width, legend), default=0.0)
 
 
-def in_rows(entries: Sequence[Entry], width: float, type: Type) -> list[list[tuple[float, Entry]]]:
-    """The legend in rows, each entry with its place from the left in inches."""
-    lines: list[list[tuple[float, Entry]]] = [[]]
+Rows = list[list[tuple[float, Entry]]]
+"""A legend in rows, each entry with its place from the left in inches."""
+
+
+def in_rows(entries: Sequence[Entry], width: float, type: Type) -> Rows:
+    """The legend in rows of a width."""
+    lines: Rows = [[]]
     at = 0.0
     for entry in entries:
         each = type.entry_width(entry) + 0.2 * type.scale
@@ -234,9 +238,7 @@ def in_rows(entries: Sequence[Entry], width: float, type: Type) -> list[list[tup
     return lines
 
 
-def draw_rows(
-    figure: Any, rows: Sequence[Sequence[tuple[float, Entry]]], at: Position, step: float, type: Type
-) -> None:
+def draw_rows(figure: Any, rows: Rows, at: Position, step: float, type: Type) -> None:
     """A legend in rows from a place in inches downwards."""
     for k, row in enumerate(rows):
         for left, entry in row:

@@ -24,6 +24,7 @@ from ptmcad.show.render.legend import (
     STRONG,
     THIN,
     Entry,
+    Rows,
     Type,
     draw_rows,
     head_of,
@@ -122,14 +123,12 @@ def _figure(family: FamilyMap, dpi: int, style: PictureStyle) -> Figure:
     gap, head = max(right, 1.9 * em), 1.7 * em
     wide = style.size[0] if style.size is not None else left + columns * (SIDE * font / 9 + gap)
     side = (wide - left) / columns - gap
-    title = title_of(family) if style.title is None else style.title
-    titles = wrapped(title, wide - 1.2 * em, font, True) if title else []
     paint = paint_of(style, *family.members)
     marks = [marks_of(shape, (side, side), dpi, max(MIN_FONT, 0.85 * font)) for shape in seen]
     thin = any(seen_thin_walls(shape, (72 * side, 72 * side)) for shape in seen)
     paint = replace(paint, thin_walls=thin)
     told = family_entries(family, paint, thin, sum(mark.hidden for mark in marks))
-    lines = [] if style.legend is LegendPlace.NONE else in_rows(told, wide - 1.2 * em, type)
+    titles, lines = titles_and_rows(family, style, told, wide, type)
     rest = 1.5 * em * len(titles) + 0.4 * em + rows * head + below + (type.line * 1.35) * len(lines) + 0.7 * em
     between = 0.5 * em * (rows - 1)
     tall = (style.size[1] - rest - between) / rows if style.size is not None else side
@@ -169,7 +168,17 @@ def _strip_inner(axes: Any, has_left: bool, has_below: bool) -> None:
         axes.tick_params(axis="x", labelbottom=False)
 
 
-def draw_flowed(figure: Figure, lines: Sequence[Sequence[tuple[float, Entry]]], em: float, type: Type) -> None:
+def titles_and_rows(
+    family: FamilyMap, style: PictureStyle, told: Sequence[Entry], wide: float, type: Type
+) -> tuple[list[str], Rows]:
+    """The lines of the title and the rows of the legend of a figure of a width in inches, as the style wants them."""
+    title = title_of(family) if style.title is None else style.title
+    inner = wide - 1.2 * style.base_font / 72
+    titles = wrapped(title, inner, style.base_font, True) if title else []
+    return titles, [] if style.legend is LegendPlace.NONE else in_rows(told, inner, type)
+
+
+def draw_flowed(figure: Figure, lines: Rows, em: float, type: Type) -> None:
     """A legend in rows at the figure's foot."""
     step = 1.35 * type.line
     draw_rows(figure, lines, (0.6 * em, 0.5 * em + len(lines) * step), step, type)

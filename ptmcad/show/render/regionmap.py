@@ -40,7 +40,7 @@ from ptmcad.show.render.painting import Paint, paint_map, paint_of
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import MAX_ZOOMS, Sliver, Zoom, seen_thin_walls, thin_regions, unstable_zooms, zooms
-from ptmcad.show.render.thinmarks import RESOLVED, counts_of, draw_marks, placed_marks, ranked
+from ptmcad.show.render.thinmarks import RESOLVED, Marks, counts_of, draw_marks, placed_marks, ranked
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import DEFAULT, LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, areas_are_known, count_text, region_area
@@ -107,7 +107,8 @@ class _Seen:
         """The same but for what has no label of its own in a picture with sides in points, where no inset stands."""
         ranked = self.ranked
         names = [_name_of(self.whole.result, sliver, None) for sliver in ranked]
-        marks = placed_marks(self.whole, ranked, names, counts_of(self.whole.result), sides, size, skip=True)
+        marks = Marks(ranked, names=names)
+        marks = placed_marks(self.whole, marks, counts_of(self.whole.result), sides, size, skip=True)
         kept = [sliver for sliver, mark in zip(ranked, marks.placed, strict=True) if mark.clear]
         if len(kept) == len(ranked):
             return self
@@ -351,7 +352,8 @@ def _mark(
     """An arrow to every sliver, labels apart from each other."""
     sides, told = (layout.chart[2] * 72, layout.chart[3] * 72), counts_of(seen.whole.result)
     skip = not layout.insets
-    draw_marks(axes, placed_marks(seen.whole, slivers, names, told, sides, layout.texts.arrow, skip), paint.scale)
+    marks = placed_marks(seen.whole, Marks(slivers, names=names), told, sides, layout.texts.arrow, skip)
+    draw_marks(axes, marks, paint.scale)
 
 
 def description(result: RegionMap) -> str:

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import hypot
+from math import dist, hypot
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.model import Mechanism, Support, mechanism_in
@@ -212,7 +212,7 @@ def _symbols(mechanism: Mechanism, nodes: Mapping[str, Position]) -> Iterator[Bo
 
 def _spring(start: Position, end: Position, drawn: Sequence[Stroke], turns: int | None) -> tuple[Position, ...]:
     """The zigzag between two nodes, aside when something is already drawn there or they are too near."""
-    length = hypot(end[0] - start[0], end[1] - start[1])
+    length = dist(start, end)
     along = ((end[0] - start[0]) / length, (end[1] - start[1]) / length) if length > 1e-6 else (1.0, 0.0)
     if along[0] < -1e-9 or (abs(along[0]) <= 1e-9 and along[1] < 0):  # aside means above first, not below
         return _spring(end, start, drawn, turns)[::-1]
@@ -224,7 +224,7 @@ def _spring(start: Position, end: Position, drawn: Sequence[Stroke], turns: int 
 
 
 def _zigzag(start: Position, end: Position, along: Position, aside: float, turns: int | None) -> tuple[Position, ...]:
-    length = hypot(end[0] - start[0], end[1] - start[1])
+    length = dist(start, end)
     wound = max(_MIN_LENGTH, length - 2 * _END)
     across = (-along[1], along[0])
     middle = ((start[0] + end[0]) / 2 + across[0] * aside, (start[1] + end[1]) / 2 + across[1] * aside)
@@ -248,10 +248,10 @@ def _covered(line: Sequence[Position], drawn: Sequence[Stroke]) -> bool:
 
 def _arrows(loads: Sequence[Load], nodes: Mapping[str, Position], lengths: Mapping[str, float]) -> Iterator[Arrow]:
     """The loads' arrows; where some would lie on each other, they stand side by side."""
+    at = [nodes[load.point] for load in loads]
     for number, load in enumerate(loads):
-        x, y = nodes[load.point]
-        at = [nodes[other.point] for other in loads]
-        near = [k for k, (u, v) in enumerate(at) if hypot(u - x, v - y) < 5]
+        x, y = at[number]
+        near = [k for k, other in enumerate(at) if dist(other, at[number]) < 5]
         side = 5.2 * (near.index(number) - (len(near) - 1) / 2)
         horizontal, vertical = load.names
         if horizontal in lengths:
@@ -273,7 +273,7 @@ def _labels(nodes: Mapping[str, Position]) -> Iterator[Label]:
     """One label for each node, or for the nodes that coincide on paper."""
     groups: list[list[str]] = []
     for name, at in nodes.items():
-        near = [g for g in groups if hypot(at[0] - nodes[g[0]][0], at[1] - nodes[g[0]][1]) < _SAME]
+        near = [g for g in groups if dist(at, nodes[g[0]]) < _SAME]
         if near:
             near[0].append(name)
         else:

@@ -20,14 +20,14 @@ from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import axis_name, symbol
 from ptmcad.show.render.inches import Box, write_lines
-from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, in_rows
-from ptmcad.show.render.multiples import draw_flowed, family_entries, in_words, title_of, value_text
+from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type
+from ptmcad.show.render.multiples import draw_flowed, family_entries, in_words, title_of, titles_and_rows, value_text
 from ptmcad.show.render.painting import Paint, paint_of
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sheets import BOX, add_sheets, sheet_colours, sheet_entries
-from ptmcad.show.render.textwidth import text_width, wrapped
-from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle
+from ptmcad.show.render.textwidth import text_width
+from ptmcad.show.style import MIN_FONT, PictureStyle
 from ptmcad.show.units import unit_of_free, with_unit
 
 SIZE = (5.8, 5.5)
@@ -63,7 +63,6 @@ def _figure(family: FamilyMap, dpi: int, style: PictureStyle, surface: BoundaryS
     em, small = font / 72, max(MIN_FONT, 0.85 * font)
     wide, tall = style.size or SIZE
     figure = Figure(figsize=(wide, tall), dpi=dpi, facecolor="white")
-    title = title_of(family) if style.title is None else style.title
     paint = paint_of(style, *family.members)
     type = replace(Type.of(style), thin_lines="solid")
     colours = {} if surface is None else sheet_colours(family, surface, paint)
@@ -73,8 +72,7 @@ def _figure(family: FamilyMap, dpi: int, style: PictureStyle, surface: BoundaryS
     else:
         fills = [entry for entry in told if entry.mark != STRONG]
         told = sheet_entries(surface, colours, fills if _lowest(family) else fills[:1])
-    lines = [] if style.legend is LegendPlace.NONE else in_rows(told, wide - 1.2 * em, type)
-    titles = wrapped(title, wide - 1.2 * em, font, True) if title else []
+    titles, lines = titles_and_rows(family, style, told, wide, type)
     head, foot = 1.5 * em * len(titles) + 0.4 * em, 1.35 * type.line * len(lines) + (0.7 * em if lines else 0.0)
     # names of axes are so many letters below the box, whose lowest corner is a tenth above the axes' end
     foot += max(0.0, 4.8 * em - 0.1 * (tall - head - foot))
@@ -109,7 +107,6 @@ def _axes(figure: Figure, box: Box, family: FamilyMap, font: float) -> Any:
     axes.set_proj_type("ortho")
     axes.view_init(elev=22, azim=-62)
     axes.computed_zorder = False
-    axes.set(xlim=_ends(family.axes[0]), ylim=_ends(family.axes[1]), zlim=_ends(family.free))
     how = {"fontsize": 0.95 * font, "labelpad": 0.3 * font}
     axes.set_xlabel(axis_name(slice, 0), **how)
     axes.set_ylabel(axis_name(slice, 1), **how)

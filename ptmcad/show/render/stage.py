@@ -31,7 +31,7 @@ from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.clearance import Placed, Position
 from ptmcad.show.render.inches import axes_at, write
-from ptmcad.show.render.legend import INK, Entry, Type, draw_rows, head_of, in_rows
+from ptmcad.show.render.legend import INK, Entry, Rows, Type, draw_rows, head_of, in_rows
 from ptmcad.show.render.mechanism import PALE, STRONG, draw_sketch
 from ptmcad.show.render.painting import fills_by_count, paint_map, paint_of
 from ptmcad.show.render.regionmap import whole_title
@@ -297,7 +297,7 @@ def _arrows(motion: Motion, mechanism: Mechanism) -> dict[Point, dict[str, float
     return {at: arrows_of(own, largest) for at, own in forces.items()}
 
 
-def _key(motion: Motion, style: PictureStyle, width: float) -> list[list[tuple[float, Entry]]]:
+def _key(motion: Motion, style: PictureStyle, width: float) -> Rows:
     """The legend in rows: each entry with its distance from the left, in inches."""
     result = motion.result
     paint = paint_of(style, result)

@@ -6,7 +6,7 @@ Guarantee: labels are apart from each other and within the drawing; regions whos
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
@@ -52,20 +52,17 @@ def ranked(whole: Shapes, slivers: Sequence[Sliver], thin: Sequence[int]) -> lis
     return [*first, *(sliver for sliver in by_size if sliver not in first)]
 
 
-def placed_marks(
-    whole: Shapes, slivers: Sequence[Sliver], names: Sequence[str], told: Sequence[str], sides: Size,
-    size: float, skip: bool,
-) -> Marks:  # fmt: skip
-    """Marks of thin regions with places for their names.
+def placed_marks(whole: Shapes, marks: Marks, told: Sequence[str], sides: Size, size: float, skip: bool) -> Marks:
+    """The marks with places for their names.
 
     Parameters
     ----------
     told : what is said of each region of the map: the label of one best stands where the same is true.
     sides, size, skip : as of `place`.
     """
-    tips = [whole.view.approximate_position(sliver.at) for sliver in slivers]
-    homes = [[n for n, text in enumerate(told) if text == told[sliver.region]] for sliver in slivers]
-    return Marks(slivers, place(tips, names, whole, sides, size, skip=skip, homes=homes), names)
+    tips = [whole.view.approximate_position(sliver.at) for sliver in marks.slivers]
+    homes = [[n for n, text in enumerate(told) if text == told[sliver.region]] for sliver in marks.slivers]
+    return replace(marks, placed=place(tips, marks.names, whole, sides, size, skip=skip, homes=homes))
 
 
 def counts_of(result: RegionMap) -> list[str]:
@@ -91,7 +88,8 @@ def marks_of(whole: Shapes, sides: Size, dpi: int, size: float, names: Sequence[
         return Marks()
     slivers = ranked(whole, [Sliver(n, inside(whole, n)) for n in thin], thin)
     labels = [told[sliver.region] for sliver in slivers]
-    found = placed_marks(whole, slivers, labels, told, (72 * sides[0], 72 * sides[1]), size, skip=True).placed
+    marks = Marks(slivers, names=labels)
+    found = placed_marks(whole, marks, told, (72 * sides[0], 72 * sides[1]), size, skip=True).placed
     clear = [k for k, placement in enumerate(found) if placement.clear]
     return Marks(
         [slivers[k] for k in clear], [found[k] for k in clear], [labels[k] for k in clear], len(thin) - len(clear)

@@ -21,6 +21,10 @@ Floats = NDArray[np.float64]
 Interval = tuple[Fraction, Fraction]
 Point = tuple[Fraction, Fraction]
 """Of a map, in the order of its axes."""
+CellShape = tuple[int, list[Floats]]
+"""A cell's number and its closed polygons."""
+WallShape = tuple[int, bool, Floats]
+"""The component that a wall lies on, whether it separates two regions, and its polyline."""
 T = TypeVar("T")
 
 
@@ -87,12 +91,12 @@ class Shapes(Protocol):
         """
         ...
 
-    def cells(self, tolerance: float = 0.0) -> Iterator[tuple[int, list[Floats]]]:
+    def cells(self, tolerance: float = 0.0) -> Iterator[CellShape]:
         """Every cell of the view and its closed polygons, with a tolerance as ``polygons`` has one."""
         ...
 
-    def walls(self, tolerance: float = 0.0) -> Iterator[tuple[int, bool, Floats]]:
-        """Every wall as (component, whether it separates two regions, polyline), with such a tolerance."""
+    def walls(self, tolerance: float = 0.0) -> Iterator[WallShape]:
+        """Every wall, with such a tolerance."""
         ...
 
     def edges(self) -> Iterator[Floats]:

@@ -15,6 +15,7 @@ from io import StringIO
 from typing import Any
 
 from ptmcad.answer.sweep import CountedArea, Member, State, Sweep, Widest
+from ptmcad.show.ranges.table import aligned
 from ptmcad.text.numerals import fraction_of, shortest_text
 
 Members = Callable[[], Iterable[Member]]
@@ -45,9 +46,7 @@ def table(sweep: Sweep, members: Members) -> str:
     rows = [head, *(_cells(sweep, member) for member in shown)]
     if left_out:
         rows.insert(1 + _SHOWN // 2, ["…"] + [""] * (len(head) - 1))
-    wide = [max(len(row[k]) for row in rows) for k in range(len(head))]
-    lines += ["  ".join(f"{cell:<{w}}" for cell, w in zip(row, wide, strict=True)).rstrip() for row in rows]
-    return "\n".join(lines)
+    return "\n".join([*lines, *aligned(rows)])
 
 
 def _some(members: Iterable[Member], number: int) -> tuple[list[Member], bool]:
