@@ -34,19 +34,6 @@ class Tape(NamedTuple):
     high: Any
 
 
-def shortened(tape: Tape, first: int, wanted: Sequence[int]) -> tuple[Tape, list[int]]:
-    """The first operations, and those that some values need; and the places of these."""
-    needed = np.arange(len(tape.code)) < first
-    needed[list(wanted)] = True
-    for n in reversed(range(first, len(needed))):
-        if needed[n] and tape.code[n] > VARIABLE:
-            needed[tape.first[n]] = needed[tape.second[n]] = True
-    place, kept = np.cumsum(needed) - 1, [column[needed] for column in tape]
-    is_leaf = kept[0] <= VARIABLE
-    kept[1:3] = (np.where(is_leaf, operands, place[operands]) for operands in kept[1:3])
-    return Tape(*kept), place[list(wanted)].tolist()
-
-
 class Formulas:
     """A list of operations that grows; a value is the number of an operation."""
 

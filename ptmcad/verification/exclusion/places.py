@@ -22,7 +22,7 @@ from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.exclusion.formulas import enclosing
 from ptmcad.verification.exclusion.pieces import Pieces, no_pieces
 from ptmcad.verification.exclusion.search import isolate
-from ptmcad.verification.exclusion.systems import System, halves_over, solutions_of, window_of
+from ptmcad.verification.exclusion.systems import CriticalSystem, halves_over, solutions_of, window_of
 
 BUDGET = 16_000
 """Boxes that are looked at for one place and one choice of sides ..."""
@@ -85,7 +85,7 @@ class Places:
 class _Isolated:
     """The boxes of one system's solutions over a rectangle, which are looked for when they are asked for."""
 
-    system: System
+    system: CriticalSystem
     rectangle: Sequence[tuple[float, float]]
     smallest: float
     pieces: Pieces
