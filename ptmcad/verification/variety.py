@@ -38,7 +38,7 @@ from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import coordinates_of, derivation_of
-from ptmcad.verification.fibre import Fibre
+from ptmcad.verification.fibre import FibreAlgebra
 from ptmcad.verification.plane import factors, polynomial
 from ptmcad.verification.report import Violation
 
@@ -83,7 +83,7 @@ class FibrePoint:
     y: Fraction
     values: tuple[int, ...]
     form: tuple[int, ...]
-    fibre: Fibre
+    fibre: FibreAlgebra
 
     def norm(self) -> Fraction:
         """The product of det H over the solutions."""

@@ -14,7 +14,7 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.verification.certified.counted import check_region, contradiction_in, names_in, needed_for
-from ptmcad.verification.certified.sweep import Sweep, sweep
+from ptmcad.verification.certified.sweep import CoverSweep, sweep
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import kinds_of_count, shorthands_of
 from ptmcad.verification.report import Violation
@@ -29,7 +29,7 @@ class CertifiedClaims(Claims):
     """The result, and what follows from its cover."""
 
     @cached_property
-    def sweep(self) -> Sweep:
+    def sweep(self) -> CoverSweep:
         cover = self.result.cover
         assert cover is not None
         return sweep(cover)

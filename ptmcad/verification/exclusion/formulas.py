@@ -18,7 +18,7 @@ MAX_VARIABLES = 6
 """Both axes, three unknowns, and the direction of a spring; even, as sums over them take two at once."""
 
 
-class Tape(NamedTuple):
+class IntervalTape(NamedTuple):
     """Operations in their order, in arrays.
 
     Attributes
@@ -157,7 +157,7 @@ class Formulas:
             total = self.subtract(total, part) if k % 2 else self.add(total, part)
         return total
 
-    def tape(self, first: Sequence[int], wanted: Sequence[int]) -> tuple[Tape, int, list[int]]:
+    def tape(self, first: Sequence[int], wanted: Sequence[int]) -> tuple[IntervalTape, int, list[int]]:
         """The operations that some values need, those of the first of them first.
 
         Returns
@@ -177,7 +177,7 @@ class Formulas:
             low.append(below)
             high.append(above)
         code, first_of, second = (np.array([row[k] for row in rows], dtype=np.int64) for k in range(3))
-        tape = Tape(code, first_of, second, np.array(low), np.array(high))
+        tape = IntervalTape(code, first_of, second, np.array(low), np.array(high))
         return tape, len(early), [place[n] for n in (*first, *wanted)]
 
     def _needed(self, wanted: Sequence[int]) -> set[int]:

@@ -39,7 +39,7 @@ _ROUNDED_UP = 1 + 2.0**-50
 Range = tuple[Fraction, Fraction]
 
 
-class Places:
+class SolutionPlaces:
     """The boxes of a map's solutions.
 
     Real unknowns may have bounds that are proved over the window; where they have not, each place has its own.

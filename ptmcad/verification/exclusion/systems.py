@@ -24,7 +24,7 @@ from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.waves import Waves, form_of, margins_of
 from ptmcad.verification.exclusion.equations import Equations, Pair, bases
-from ptmcad.verification.exclusion.formulas import Formulas, Tape
+from ptmcad.verification.exclusion.formulas import Formulas, IntervalTape
 
 SHORT_SHARE = 16
 """A spring is short, for total counts, if its length is less than this part of the sum of its vector's factors."""
@@ -66,7 +66,7 @@ class CriticalSystem:
     formulas: Formulas
     zeros: tuple[int, ...]
     signs: tuple[int, ...]
-    tape: Tape
+    tape: IntervalTape
     zero: tuple[int, ...]
     not_negative: tuple[int, ...]
     early: int
