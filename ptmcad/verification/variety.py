@@ -27,7 +27,7 @@ import random
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property, partial, reduce
+from functools import cached_property, partial
 from itertools import permutations
 from math import gcd, lcm, prod
 
@@ -301,7 +301,7 @@ def _check_poles(claims: Claims, points: Iterator[FibrePoint]) -> None:
         raise Violation("solutions have a pole on no stored component")
 
 
-_SMALL_PRIMES = reduce(lambda a, b: a * b, (p for p in range(2, 2000) if all(p % q for q in range(2, p))))
+_SMALL_PRIMES = prod(p for p in range(2, 2000) if all(p % q for q in range(2, p)))
 
 
 def _without(n: int, other: int) -> int:

@@ -140,8 +140,7 @@ def _by_area(claims: CertifiedClaims, rng: random.Random, number: int) -> tuple[
 
 def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[SampleBox]:
     """Points beside rectangles, as many as boxes: from one square of the grid after the other, in random order."""
-    cover = claims.result.cover
-    assert cover is not None
+    cover = claims.cover
     edges = _edges(cover.rectangles, claims.sweep.steps, _side(number))
     for square, places in _along_tubes(cover, _side(number), rng).items():
         edges.setdefault(square, []).extend(places)

@@ -62,8 +62,7 @@ class Equations:
     def __init__(self, claims: CertifiedClaims):
         self.form = form_of(claims.result.slice)
         self.claims, self.list = claims, Formulas()
-        cover = claims.result.cover
-        assert cover is not None
+        cover = claims.cover
         f = self.list
         axes = [
             f.add(f.number(a.low), f.multiply(f.variable(k), f.number((a.high - a.low) / cover.steps)))

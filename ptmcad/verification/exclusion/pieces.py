@@ -66,8 +66,7 @@ def pieces_of(claims: CertifiedClaims, wider: int = 0) -> Pieces:
     ----------
     wider : lattice steps by which tubes and their frames are made wider on all sides; what this adds is not proved.
     """
-    cover = claims.result.cover
-    assert cover is not None
+    cover = claims.cover
     rows: list[PieceRow] = [PieceRow(r) for r in cover.rectangles]
     for patch in cover.patches:
         left, right, bottom, top = patch.frame
@@ -89,8 +88,7 @@ def no_pieces(steps: int) -> Pieces:
 
 def widened(claims: CertifiedClaims, wider: int) -> float:
     """At most this share of the window is added to tubes by making them wider."""
-    cover = claims.result.cover
-    assert cover is not None
+    cover = claims.cover
     total = 0
     for patch in cover.patches:
         length = patch.frame[2 * patch.along + 1] - patch.frame[2 * patch.along]

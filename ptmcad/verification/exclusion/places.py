@@ -51,13 +51,12 @@ class SolutionPlaces:
     """
 
     def __init__(self, claims: CertifiedClaims):
-        assert claims.result.cover is not None
         self._claims = claims
         self._halves: Floats | None = None
         with suppress(Unproved):
             self._halves = halves_over(claims, *window_of(claims))
         self._systems = solutions_of(claims, self._halves)
-        self._steps = claims.result.cover.steps
+        self._steps = claims.cover.steps
         self._pieces = no_pieces(self._steps)
 
     def __call__(self, u: Range, v: Range) -> Where | None:

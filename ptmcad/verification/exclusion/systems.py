@@ -321,8 +321,7 @@ class _Systems:
         unknowns: int | None = None,
     ) -> CriticalSystem:
         """A system, of whose formulas that are zero the first ones are evaluated before all others."""
-        cover = self.claims.result.cover
-        assert cover is not None
+        cover = self.claims.cover
         ranges = [(0.0, float(cover.steps))] * 2
         number = self.form.size if unknowns is None else unknowns
         if number:
