@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from ptmcad.model import Model
+from ptmcad.model import Mechanism, Model, mechanism_in
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import Expression
 from ptmcad.verification.certified.lines import SpringLine, line_of
@@ -203,11 +203,14 @@ def _by(f: Waves, k: int) -> Waves:
 
 def form_of(slice: Slice) -> Form:
     """The form of a slice's model, with springs as one that are parallel all over the slice."""
-    return _form(slice.model, tuple(slice.parameters.items()), slice.axes)
+    return _form(slice.model, mechanism_in(slice.model), tuple(slice.parameters.items()), slice.axes)
 
 
 @lru_cache(maxsize=8)
-def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[Axis, Axis]) -> Form:
+def _form(
+    model: Model, _mechanism: Mechanism | None, values: tuple[tuple[str, Expression], ...], axes: tuple[Axis, Axis]
+) -> Form:
+    """Of models that are equal as systems the mechanisms may be different ones."""
     true = derivation_of(model)
     ring = _Exponentials(model, true.ring)
     unknowns = ring.unknowns
@@ -240,11 +243,13 @@ def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[
     )
 
 
-@lru_cache(maxsize=8)
 def margins_of(model: Model, count: Count) -> tuple[Margin, ...]:
     """What a kind of count asks of stable solutions: of all springs, of which none has a negative free length."""
-    if count is not Count.ADMISSIBLE:
-        return ()
+    return _margins(model, mechanism_in(model)) if count is Count.ADMISSIBLE else ()
+
+
+@lru_cache(maxsize=8)
+def _margins(model: Model, _mechanism: Mechanism | None) -> tuple[Margin, ...]:
     true = derivation_of(model)
     ring, found = _Exponentials(model, true.ring), []
     for spring in true.springs:
