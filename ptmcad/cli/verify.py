@@ -190,7 +190,7 @@ def _verified_sweep(
     from ptmcad.sweeping.index import member_map, members, read_sweep
     from ptmcad.sweeping.member import Wanted, summary_of
     from ptmcad.verification import VerifyReport, verify
-    from ptmcad.verification.report import Headway, Unchecked, Violation, checked
+    from ptmcad.verification.report import CheckProgress, Unchecked, Violation, checked
 
     sweep = read_sweep(folder)
     found = list(members(sweep))
@@ -236,7 +236,7 @@ def _verified_sweep(
 
     steps = [("index", "comparison", numbers)]
     steps += [(f"member {m.number}", "its map, and the index", partial(lambda m, _: check(m), m)) for m in found]
-    return VerifyReport(tuple(checked(None, steps, (), Headway(progress))))
+    return VerifyReport(tuple(checked(None, steps, (), CheckProgress(progress))))
 
 
 def _verified_design(found: BestDesign, versions: Any, seed: int | None, progress: Progress) -> VerifyReport:

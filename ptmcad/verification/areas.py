@@ -21,9 +21,9 @@ from ptmcad.answer.regionmap import CriticalValue, Region
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import approximate_text
-from ptmcad.verification.branches import Branch, Effort, Part, integrals_over
+from ptmcad.verification.branches import PanelEffort, PanelPart, WallBranch, integrals_over
 from ptmcad.verification.claims import Claims, bracket
-from ptmcad.verification.disks import PrecisionTooLow
+from ptmcad.verification.disks import BallsTooWide
 from ptmcad.verification.report import Unchecked, Violation
 
 NARROWEST = 10**60
@@ -34,14 +34,14 @@ ATTEMPTS = 7
 """Times that precision is raised, and strips are narrowed, before bounds count as not checked."""
 
 
-class _Panel(NamedTuple):
+class _WallPanel(NamedTuple):
     """A part of a wall from region ``below`` to region ``above``, and the error that it may have."""
 
-    branch: Branch
+    branch: WallBranch
     below: int
     above: int
-    effort: Effort
-    part: Part
+    effort: PanelEffort
+    part: PanelPart
 
 
 def check_areas(claims: Claims) -> str:
@@ -72,7 +72,7 @@ def check_areas(claims: Claims) -> str:
         with ctx.workprec(bits):
             try:
                 open_region = _attempt(claims, strip, margin, bits)
-            except PrecisionTooLow:
+            except BallsTooWide:
                 bits = 2 * bits
                 continue
         if open_region is None:
@@ -105,16 +105,16 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
     bounds = [(ball_of(r.area[0]), ball_of(r.area[1])) for r in result.regions]
     number = max(1, sum(len(s.walls) for s in result.stacks))
     shares = [ball_of(_width(r)).mid() * margin / number for r in result.regions]
-    effort = Effort(min(shares), width / 2**5, width / 2 ** (bits // 3), (low, high), (2,), (start, stop))
+    effort = PanelEffort(min(shares), width / 2**5, width / 2 ** (bits // 3), (low, high), (2,), (start, stop))
     whole = [arb(0) for _ in result.regions]
-    panels: list[_Panel] = []
+    panels: list[_WallPanel] = []
     for s, stack in enumerate(result.stacks):
         left = start if s == 0 else brackets[s - 1][1]
         right = stop if s == len(brackets) else brackets[s][0]
         whole[result.cells[stack.cells[-1]].region] += arb((right - left) * (high - low))
         for below, above, branch in _borders(claims, s):
             there = replace(effort, share=min(shares[below], shares[above]), points=(points[s], points[s + 1]))
-            panels += [_Panel(branch, below, above, there, p) for p in integrals_over(branch, left, right, there)]
+            panels += [_WallPanel(branch, below, above, there, p) for p in integrals_over(branch, left, right, there)]
     while True:
         areas = list(whole)
         for p in panels:
@@ -149,27 +149,27 @@ def _middle(value: CriticalValue, width: fmpq) -> fmpq:
     return (low + high) / 2
 
 
-def _borders(claims: Claims, s: int) -> Iterator[tuple[int, int, Branch]]:
+def _borders(claims: Claims, s: int) -> Iterator[tuple[int, int, WallBranch]]:
     """The walls of a stack between different regions, with the region below and that above."""
     stack = claims.result.stacks[s]
     curves = {c.number: c for c in claims.curves}
     for level, wall in enumerate(stack.walls):
         below, above = (claims.result.cells[stack.cells[level + k]].region for k in (0, 1))
         if below != above:
-            yield below, above, Branch.of(curves[wall.component], wall.root)
+            yield below, above, WallBranch.of(curves[wall.component], wall.root)
 
 
 def _between(region: Region) -> str:
     return f"between {approximate_text(region.area[0])} and {approximate_text(region.area[1])}"
 
 
-def _halved(panels: Sequence[_Panel], regions: set[int], effort: Effort) -> list[_Panel] | None:
+def _halved(panels: Sequence[_WallPanel], regions: set[int], effort: PanelEffort) -> list[_WallPanel] | None:
     """The panels of the given regions, the worst ones halved or tried for the first time; None when too narrow."""
     concerned = [p for p in panels if regions & {p.below, p.above}]
     worst = max((p.part.integral.rad() for p in concerned), default=arb(0))
     if not worst > effort.share:
         return None
-    refined: list[_Panel] = []
+    refined: list[_WallPanel] = []
     for p in panels:
         left, right, integral, tried, run = p.part
         if not (regions & {p.below, p.above} and integral.rad() * 8 > worst):

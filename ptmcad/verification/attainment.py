@@ -24,7 +24,7 @@ from ptmcad.question.slice import Axis
 from ptmcad.text.numerals import shortest_text
 from ptmcad.verification.algebra import NotFinite
 from ptmcad.verification.fibre import fibre
-from ptmcad.verification.line import Line, NotKnown
+from ptmcad.verification.line import NotKnown, ParameterLine
 from ptmcad.verification.report import Unchecked, Violation
 
 ACROSS = 3
@@ -38,7 +38,7 @@ _LEFT = Fraction(99, 100)
 
 
 @dataclass(frozen=True)
-class Lines:
+class SliceLines:
     """The lines of a slice in both directions.
 
     Attributes
@@ -48,8 +48,8 @@ class Lines:
     working : the wanted count.
     """
 
-    at: Callable[[Fraction], Line]
-    across: Callable[[Fraction], Line]
+    at: Callable[[Fraction], ParameterLine]
+    across: Callable[[Fraction], ParameterLine]
     along: Axis
     over: Axis
     working: int
@@ -72,7 +72,7 @@ class Lines:
                 break
         return None
 
-    def _may_count(self, line: Line, point: Fraction) -> bool:
+    def _may_count(self, line: ParameterLine, point: Fraction) -> bool:
         """Whether there may be the wanted count at a point, at which solutions may be degenerate."""
         try:
             found = fibre(line.model, line.values_at(point))
@@ -102,7 +102,7 @@ def _between(low: Fraction, high: Fraction, number: int) -> list[Fraction]:
     return [low + (high - low) * Fraction(source.randrange(1, 64), 64) for _ in range(number)]
 
 
-def check_maxima(lines: Lines, maxima: Sequence[Maximum]) -> str:
+def check_maxima(lines: SliceLines, maxima: Sequence[Maximum]) -> str:
     """The claims of the longest ranges over one axis.
 
     Raises

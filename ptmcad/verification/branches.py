@@ -25,12 +25,12 @@ from typing import NamedTuple
 from flint import arb, arb_poly, ctx, fmpq
 
 from ptmcad.verification.claims import PlaneCurve
-from ptmcad.verification.disks import Disk, PrecisionTooLow, disk, recentered, shifted
+from ptmcad.verification.disks import BallsTooWide, Disk, disk, recentered, shifted
 from ptmcad.verification.roots import numbered_root
 
 
 @dataclass(frozen=True)
-class Branch:
+class WallBranch:
     """A wall: the curve, the number of its root, and the curve's coefficients, in Z[u] and in Z[v], for balls."""
 
     curve: PlaneCurve
@@ -39,7 +39,7 @@ class Branch:
     columns: list[arb_poly]
 
     @classmethod
-    def of(cls, curve: PlaneCurve, root: int) -> Branch:
+    def of(cls, curve: PlaneCurve, root: int) -> WallBranch:
         return cls(curve, root, [arb_poly(c) for c in curve.in_v], [arb_poly(c) for c in curve.in_u])
 
     def height(self, u: fmpq, low: fmpq, high: fmpq) -> arb | None:
@@ -48,7 +48,7 @@ class Branch:
 
 
 @dataclass(frozen=True)
-class Effort:
+class PanelEffort:
     """What one attempt spends.
 
     Attributes
@@ -69,7 +69,7 @@ class Effort:
     points: tuple[fmpq, fmpq]
 
 
-class Part(NamedTuple):
+class PanelPart(NamedTuple):
     """A part of a panel with the branch's integral over it, from the window's lower edge.
 
     Attributes
@@ -86,7 +86,7 @@ class Part(NamedTuple):
     run: int = 0
 
 
-def integrals_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort, run: int = 0) -> list[Part]:
+def integrals_over(branch: WallBranch, left: fmpq, right: fmpq, effort: PanelEffort, run: int = 0) -> list[PanelPart]:
     """The integral of the branch over a panel, in parts: the best enclosures at hand.
 
     Parameters
@@ -114,10 +114,12 @@ def integrals_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort, run:
         return [_known_by_edges(left, right, effort, True, within)]
     sides = (left, middle - proved, min(run, 0) - 1), (middle + proved, right, max(run, 0) + 1)
     rest = [_known_by_edges(a, b, effort, False, within)._replace(run=k) for a, b, k in sides if a < b]
-    return [Part(middle - proved, middle + proved, found[0] - low * (2 * proved), True), *rest]
+    return [PanelPart(middle - proved, middle + proved, found[0] - low * (2 * proved), True), *rest]
 
 
-def _more_precisely(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> tuple[arb, fmpq] | None:
+def _more_precisely(
+    branch: WallBranch, middle: fmpq, half: fmpq, height: arb, effort: PanelEffort
+) -> tuple[arb, fmpq] | None:
     """`_by_series` at the working precision, or at more, which few panels ask for.
 
     Raises
@@ -131,25 +133,27 @@ def _more_precisely(branch: Branch, middle: fmpq, half: fmpq, height: arb, effor
             assert finer is not None  # there is a root, as there was with fewer bits
             try:
                 return _by_series(branch, middle, half, finer, effort)
-            except PrecisionTooLow:
+            except BallsTooWide:
                 continue
-    raise PrecisionTooLow
+    raise BallsTooWide
 
 
 def _known_by_edges(
-    left: fmpq, right: fmpq, effort: Effort, tried: bool, within: tuple[fmpq, fmpq] | None = None
-) -> Part:
+    left: fmpq, right: fmpq, effort: PanelEffort, tried: bool, within: tuple[fmpq, fmpq] | None = None
+) -> PanelPart:
     """A part of which nothing is known but two heights that it lies between, the window's edges or closer ones."""
     low = effort.heights[0]
     bottom, top = within or effort.heights
-    return Part(left, right, arb(bottom - low).union(arb(top - low)) * (right - left), tried)
+    return PanelPart(left, right, arb(bottom - low).union(arb(top - low)) * (right - left), tried)
 
 
 _POOR = 4
 """A polynomial of higher degree is worth its cost where so small a share of a panel is proved, or none."""
 
 
-def _by_series(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> tuple[arb, fmpq] | None:
+def _by_series(
+    branch: WallBranch, middle: fmpq, half: fmpq, height: arb, effort: PanelEffort
+) -> tuple[arb, fmpq] | None:
     """The integral of the branch over a panel's middle part, by its power series, and half that part's width.
 
     None when no disk of convergence is proved.
@@ -169,7 +173,9 @@ def _by_series(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Ef
     return best
 
 
-def _along(rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effort: Effort) -> tuple[arb, fmpq] | None:
+def _along(
+    rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effort: PanelEffort
+) -> tuple[arb, fmpq] | None:
     """As `_by_series`, of the polynomial with these coefficients of the powers of v."""
     found = disk(rows, half, height, degree)
     if found is None:
@@ -180,7 +186,7 @@ def _along(rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effor
         total += coefficients[k] * power * fmpq(2, k + 1)
         power = power * found.proved * found.proved
     if total.rad() > effort.share and total.rad() * 2**_ROUNDED_BITS > arb(found.proved) * found.reach:
-        raise PrecisionTooLow  # the disk alone says nearly as much as the series
+        raise BallsTooWide  # the disk alone says nearly as much as the series
     return total + arb(0).union(2 * tail) - tail, found.proved
 
 
@@ -202,7 +208,7 @@ _NEAREST = 2**40
 """Part of a panel beside a critical value that is a rational number: so much is left out."""
 
 
-def _beside(branch: Branch, at: fmpq, ends: tuple[fmpq, fmpq], effort: Effort) -> list[Part] | None:
+def _beside(branch: WallBranch, at: fmpq, ends: tuple[fmpq, fmpq], effort: PanelEffort) -> list[PanelPart] | None:
     """The parts of a panel beside a critical value at which the branch meets another one; None where it is not proved.
 
     Parameters
@@ -233,7 +239,7 @@ def _beside(branch: Branch, at: fmpq, ends: tuple[fmpq, fmpq], effort: Effort) -
                     integral = total + (place - low) * abs(end - near)
                     inner = _between(end, far, effort, 1 if far > at else -1)
                     return [
-                        Part(min(near, end), max(near, end), integral, True),
+                        PanelPart(min(near, end), max(near, end), integral, True),
                         *inner,
                         *_between(ends[0], near, effort),
                     ]
@@ -275,7 +281,7 @@ def _meeting_place(over: arb_poly, multiplicity: int, height: arb, away: fmpq) -
     return v if abs(over(v)) * _SPREAD < abs(derivatives[-1](v)) * reach else None
 
 
-def _between(one: fmpq, other: fmpq, effort: Effort, run: int = 0) -> list[Part]:
+def _between(one: fmpq, other: fmpq, effort: PanelEffort, run: int = 0) -> list[PanelPart]:
     """What is left between two places, if anything is."""
     if one == other:
         return []
@@ -283,7 +289,7 @@ def _between(one: fmpq, other: fmpq, effort: Effort, run: int = 0) -> list[Part]
 
 
 def _from_point(
-    rows: Sequence[arb_poly], meeting: _Meeting, near: fmpq, far: fmpq, height: arb, effort: Effort
+    rows: Sequence[arb_poly], meeting: _Meeting, near: fmpq, far: fmpq, height: arb, effort: PanelEffort
 ) -> tuple[arb, fmpq] | None:
     """The integral of the height over distances from `near` on, and up to where; None when no disk is proved.
 
@@ -306,7 +312,7 @@ def _from_point(
         return None
     try:
         found = disk(divided, simple(whole, whole / _NEAREST), root, effort.degrees[0])
-    except PrecisionTooLow:
+    except BallsTooWide:
         return None  # halved panels may do with what precision there is
     # the branch is that of the disk over the nearest place, and so over all others
     if found is None or not (root.rad() < found.reach and abs(there - found.center - found.along(sigma)) < found.reach):
@@ -346,7 +352,7 @@ _ROUNDED_BITS = 20
 """By so many bits is a series to be better known than by the disk's size."""
 
 
-def _enclosed(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> tuple[fmpq, fmpq]:
+def _enclosed(branch: WallBranch, middle: fmpq, half: fmpq, height: arb, effort: PanelEffort) -> tuple[fmpq, fmpq]:
     """Heights below and above the branch at which the curve does not meet the panel."""
     low, high = effort.heights
     center = height.mid().fmpq()
@@ -371,7 +377,7 @@ def _enclosed(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Eff
     return bounds[0], bounds[1]
 
 
-def _misses(branch: Branch, middle: fmpq, half: fmpq, v: fmpq) -> bool:
+def _misses(branch: WallBranch, middle: fmpq, half: fmpq, v: fmpq) -> bool:
     """Whether the curve is proved not to meet the panel at a height."""
     along = arb_poly([row(v) for row in branch.columns])(arb_poly([middle, 1])).coeffs()
     total, power = arb(0), arb(half)

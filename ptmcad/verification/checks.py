@@ -24,7 +24,7 @@ from ptmcad.verification.model import check_system
 from ptmcad.verification.parameters import check_boundary, check_text
 from ptmcad.verification.plan import check_plan, refuse_ablation
 from ptmcad.verification.poses import verify_poses
-from ptmcad.verification.report import Check, Headway, VerifyReport, checked
+from ptmcad.verification.report import Check, CheckProgress, VerifyReport, checked
 from ptmcad.verification.solutions import check_solutions
 from ptmcad.verification.structure import check_critical_values, check_stacks
 from ptmcad.verification.variety import check_conditions, check_irreducible, check_norm
@@ -97,7 +97,7 @@ def verify(
     missing: set[str] = set()
     if result.status is Status.PARTIAL:
         missing = set() if result.stacks else {name for name, _, _ in _SINCE_VARIETY}
-    checks = checked(Claims(result), steps, missing, Headway(progress))
+    checks = checked(Claims(result), steps, missing, CheckProgress(progress))
     checks += [Check(name, "", None, reason) for name, reason in NOT_CHECKED]
     return VerifyReport(tuple(checks))
 

@@ -20,7 +20,7 @@ from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.algebra import NotFinite
 from ptmcad.verification.derivation import has_index
-from ptmcad.verification.fibre import Fibre, fibre
+from ptmcad.verification.fibre import FibreAlgebra, fibre
 from ptmcad.verification.report import Violation
 from ptmcad.verification.roots import numbered_root
 from ptmcad.verification.sturm import ends_of, roots_between, roots_within
@@ -88,7 +88,7 @@ class Claims:
     result: RegionMap
 
     @cached_property
-    def _fibres(self) -> dict[tuple[Fraction, Fraction], Fibre]:
+    def _fibres(self) -> dict[tuple[Fraction, Fraction], FibreAlgebra]:
         return {}
 
     @property
@@ -146,7 +146,7 @@ class Claims:
         one, two = self.result.slice.axis_names
         return f"{one}={text_of(x)}, {two}={text_of(y)}"
 
-    def fibre_at(self, x: Fraction, y: Fraction) -> Fibre:
+    def fibre_at(self, x: Fraction, y: Fraction) -> FibreAlgebra:
         """The solutions over a point.
 
         Raises

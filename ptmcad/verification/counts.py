@@ -13,7 +13,7 @@ from ptmcad.answer.counts import Counts
 from ptmcad.model import Model
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.fibre import Fibre
+from ptmcad.verification.fibre import FibreAlgebra
 from ptmcad.verification.report import Violation
 
 
@@ -37,7 +37,7 @@ def check_counts(claims: Claims) -> str:
     return f"{len(claims.result.cells)} samples"
 
 
-def _euler_sum(fibre: Fibre, counts: Counts) -> int:
+def _euler_sum(fibre: FibreAlgebra, counts: Counts) -> int:
     """The sum of the signs of the Jacobian's determinant, which is zero on a torus (Poincare and Hopf)."""
     if counts.index is None:
         return fibre.balance()

@@ -22,7 +22,7 @@ from ptmcad.text.tree import names_of
 from ptmcad.verification import xjoints
 from ptmcad.verification.coordinates import CoordinateRing, circle_names
 from ptmcad.verification.loops import Loops
-from ptmcad.verification.xjoints import Joint
+from ptmcad.verification.xjoints import CrossedBars
 
 Vector = tuple[fmpq_mpoly, fmpq_mpoly]
 
@@ -243,7 +243,7 @@ def _of_mechanism(model: Model, mechanism: Mechanism, ring: CoordinateRing, unkn
         apart=_has_moments_apart(mechanism),
     )
     if mechanism.xjoints:
-        joints = [Joint(j.angle, j.other, ring.value(j.length), ring.value(j.bars)) for j in mechanism.xjoints]
+        joints = [CrossedBars(j.angle, j.other, ring.value(j.length), ring.value(j.bars)) for j in mechanism.xjoints]
         equations, distances, stability = xjoints.conditions(
             ring, unknowns, joints, _degrees(mechanism), (parts.energy, parts.ring), forces
         )

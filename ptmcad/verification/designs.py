@@ -27,10 +27,10 @@ from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import shortest_text
 from ptmcad.text.parsing import parse
 from ptmcad.text.syntax import names_in
-from ptmcad.verification.attainment import Lines, check_maxima
+from ptmcad.verification.attainment import SliceLines, check_maxima
 from ptmcad.verification.derivation import parameters_of
-from ptmcad.verification.line import Line, NotKnown
-from ptmcad.verification.report import Check, Headway, Unchecked, VerifyReport, Violation, checked
+from ptmcad.verification.line import NotKnown, ParameterLine
+from ptmcad.verification.report import Check, CheckProgress, Unchecked, VerifyReport, Violation, checked
 from ptmcad.verification.signs import Sign, is_in_domain
 
 DESIGNS = 12
@@ -42,7 +42,7 @@ _NOTHING = Enclosure(Fraction(0), Fraction(0))
 
 
 @dataclass(frozen=True, slots=True)
-class _Lines:
+class _DesignLines:
     """A stored design, with the ranges of any one."""
 
     found: BestDesign
@@ -61,9 +61,9 @@ class _Lines:
         known = {name: constant(at) for name, at in design.items()} | {along.name: axis(0)}
         return self.line(known, along).ranges(self.found.working)
 
-    def line(self, known: dict[str, Expression], along: Axis) -> Line:
+    def line(self, known: dict[str, Expression], along: Axis) -> ParameterLine:
         """The line along an axis, by what the other parameters are on it."""
-        return Line(self.found.model, self._parameters(known), along.low, along.high)
+        return ParameterLine(self.found.model, self._parameters(known), along.low, along.high)
 
     def _parameters(self, known: dict[str, Expression]) -> dict[str, Expression]:
         """The model's parameters, by what the document and the model say of them."""
@@ -118,20 +118,20 @@ def verify_design(found: BestDesign, seed: int | None = None, progress: Progress
     """
     claims = f"{found.name} {found.best} {found.bound} {[box.bound for box in found.boxes]}"
     drawn = sha256(claims.encode()).hexdigest()[:16] if seed is None else str(seed)
-    headway = Headway(progress)
-    steps: tuple[tuple[str, str, Callable[[_Lines], str]], ...] = (
+    headway = CheckProgress(progress)
+    steps: tuple[tuple[str, str, Callable[[_DesignLines], str]], ...] = (
         ("form", "comparison", _check_form),
         ("boxes", "disjoint; what is left, halved", _check_boxes),
         ("values", "ranges of each design by itself", partial(_check_values, within=headway.within)),
         ("bound", "ranges of random designs", partial(_check_bound, seed=drawn)),
         ("extremes", "ranges on the lines themselves", _check_extremes),
     )
-    checks = checked(_Lines(found), steps, (), headway)
+    checks = checked(_DesignLines(found), steps, (), headway)
     checks.append(Check("bound of every design", "", None, "that no design exceeds its box's bound, beyond samples"))
     return VerifyReport(tuple(checks))
 
 
-def _check_form(lines: _Lines) -> str:
+def _check_form(lines: _DesignLines) -> str:
     """What entries say of one another."""
     found = lines.found
     of_range = found.maximise == "range"
@@ -168,7 +168,7 @@ def _check_form(lines: _Lines) -> str:
     return f"{len(found.points)} designs, {len(found.boxes)} boxes"
 
 
-def _check_boxes(lines: _Lines) -> str:
+def _check_boxes(lines: _DesignLines) -> str:
     found = lines.found
     if not found.boxes:
         return Unchecked("there are no boxes")
@@ -214,7 +214,7 @@ def _check_boxes(lines: _Lines) -> str:
     return f"{len(found.boxes)} boxes cover the bounds" + (", where the conditions hold" if found.conditions else "")
 
 
-def _fails_all_over(lines: _Lines, part: Sequence[tuple[Fraction, Fraction]]) -> bool:
+def _fails_all_over(lines: _DesignLines, part: Sequence[tuple[Fraction, Fraction]]) -> bool:
     """Whether one condition is seen to fail in all of a part of the bounds that no box holds.
 
     Raises
@@ -233,7 +233,7 @@ def _fails_all_over(lines: _Lines, part: Sequence[tuple[Fraction, Fraction]]) ->
     return any(is_in_domain(e, window, strict=True) is Sign.PROVED for e in lines.excesses(axes))
 
 
-def _check_values(lines: _Lines, within: Callable[[int, int], None]) -> str:
+def _check_values(lines: _DesignLines, within: Callable[[int, int], None]) -> str:
     found = lines.found
     if found.along is None:
         return Unchecked("they are of another aim than a range")
@@ -268,7 +268,7 @@ def _check_values(lines: _Lines, within: Callable[[int, int], None]) -> str:
     return f"{len(found.points)} designs"
 
 
-def _check_bound(lines: _Lines, seed: str) -> str:
+def _check_bound(lines: _DesignLines, seed: str) -> str:
     found = lines.found
     if found.bound is None or found.along is None:
         return Unchecked("nothing is claimed, or not of a range")
@@ -295,7 +295,7 @@ def _check_bound(lines: _Lines, seed: str) -> str:
     return f"at {settled} random designs no range is longer than the bound of their box"
 
 
-def _check_extremes(lines: _Lines) -> str:
+def _check_extremes(lines: _DesignLines) -> str:
     found = lines.found
     if not found.maxima or found.along is None:
         in_words = found.reason.startswith("by exact critical values")
@@ -306,7 +306,7 @@ def _check_extremes(lines: _Lines) -> str:
         raise Violation("the reason does not say what the extremes do")
     if found.bound != max(m.width.high for m in found.maxima):
         raise Violation("the bound is not the largest of the extremes")
-    both = Lines(
+    both = SliceLines(
         lambda value: lines.line({over.name: constant(value), along.name: axis(0)}, along),
         lambda value: lines.line({along.name: constant(value), over.name: axis(0)}, over),
         along,

@@ -25,7 +25,7 @@ from typing import NamedTuple
 from flint import arb, arb_poly, arb_series, ctx, fmpq
 
 
-class PrecisionTooLow(Exception):
+class BallsTooWide(Exception):
     """Rounding alone keeps a panel from being enclosed."""
 
 
@@ -90,7 +90,7 @@ def disk(rows: Sequence[arb_poly], half: fmpq, root: arb, degree: int) -> Disk |
     rounded = sum((c.rad() * half**i for i, c in enumerate(d[0].coeffs())), arb(0))
     blur = _size(d[0].truncate(length), arb(half)) + rounded
     if len(d) > 2 and not blur * _size(d[2], arb(half)) * 2**20 < steepness * steepness:
-        raise PrecisionTooLow  # rounding blurs the branch nearly as far as the next one
+        raise BallsTooWide  # rounding blurs the branch nearly as far as the next one
     absolute, slope = [_absolute(row) for row in d], _absolute(polynomial)
     for proved, factor in ((half, _FAR), (half, fmpq(2)), *((half * share, _NEAR) for share in _PROVED)):
         radius = arb(proved * factor)
@@ -193,7 +193,7 @@ def _series(d: Sequence[arb_poly], start: arb_series, order: int) -> list[arb]:
                 slope = slope * t + value
                 value = value * t + row
             if slope.coeffs() == [] or slope.coeffs()[0].contains(0):
-                raise PrecisionTooLow  # the root is simple
+                raise BallsTooWide  # the root is simple
             ctx.cap = length
             value = _lengthened([], length)
             for row in rows:

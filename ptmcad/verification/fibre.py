@@ -32,7 +32,7 @@ from ptmcad.verification.inertia import bases, determinant, leading_minors, nega
 
 
 @dataclass(frozen=True)
-class Fibre:
+class FibreAlgebra:
     """The algebra Q[coordinates of the unknowns]/(equations) at one point.
 
     Attributes
@@ -246,7 +246,7 @@ class Fibre:
         return traces
 
 
-def fibre(model: Model, values: Mapping[str, Fraction]) -> Fibre:
+def fibre(model: Model, values: Mapping[str, Fraction]) -> FibreAlgebra:
     """The fibre over rational values of the parameters.
 
     Where some solution is degenerate, or an inequality's polynomial vanishes at one, it is that of the solutions at
@@ -259,14 +259,14 @@ def fibre(model: Model, values: Mapping[str, Fraction]) -> Fibre:
     """
     point = derivation_at(model, values)
     if not point.inequalities:
-        return Fibre(*algebra(point.generators(), point.coordinates), point)
+        return FibreAlgebra(*algebra(point.generators(), point.coordinates), point)
     try:
-        found = Fibre(*algebra(point.generators(), point.coordinates), point)
+        found = FibreAlgebra(*algebra(point.generators(), point.coordinates), point)
         if found.norm() != 0 and all(found.matrix(p).det() != 0 for p in point.inequalities):
             return found
     except NotFinite:
         pass
-    return Fibre(*algebra(_saturated(point), point.coordinates + 1), point, saturated=True)
+    return FibreAlgebra(*algebra(_saturated(point), point.coordinates + 1), point, saturated=True)
 
 
 def _saturated(point: Derivation) -> list[fmpq_mpoly]:

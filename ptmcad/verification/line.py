@@ -46,7 +46,7 @@ class NotKnown(ArithmeticError):
 
 
 @dataclass(frozen=True, slots=True)
-class Gap(Span):
+class LineGap(Span):
     """An interval without a critical value, and the counts in it."""
 
     counts: Counts
@@ -59,7 +59,7 @@ class Gap(Span):
 
 
 @dataclass(frozen=True)
-class Line:
+class ParameterLine:
     """A model whose parameters are rational functions of one variable, the first axis, and a range of that."""
 
     model: Model
@@ -135,7 +135,7 @@ class Line:
             norms.append(sum((t * form.getrandbits(10) for t in traces), fmpq(0)))
         return norms
 
-    def gaps(self) -> list[Gap]:
+    def gaps(self) -> list[LineGap]:
         """The intervals between critical values, in increasing order.
 
         Raises
@@ -154,7 +154,7 @@ class Line:
             counts = self.counts_at(sample)
             if counts is None:
                 raise NotKnown("a solution is degenerate between critical values, or a parameter has no meaning")
-            found.append(Gap(a, b, counts, sample))
+            found.append(LineGap(a, b, counts, sample))
         return found
 
     def ranges(self, working: int) -> list[Span]:

@@ -21,7 +21,7 @@ from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.points import check_cell, check_listed, counting_of
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.derivation import has_index, parameters_of, tells_stability
-from ptmcad.verification.report import Headway, Unchecked, VerifyReport, Violation, checked
+from ptmcad.verification.report import CheckProgress, Unchecked, VerifyReport, Violation, checked
 from ptmcad.verification.solutions import check_disjoint, signs_of
 
 _EXACT = Fraction(1, 2**100)
@@ -32,7 +32,7 @@ def verify_poses(found: Poses, progress: Progress | None = None) -> VerifyReport
     """Check stored poses without the code that made them."""
     claims = CertifiedClaims(_map_of(found))
     steps = (("poses", "signatures and interval Newton, or a search in balls", partial(_check_poses, found=found)),)
-    return VerifyReport(tuple(checked(claims, steps, (), Headway(progress))))
+    return VerifyReport(tuple(checked(claims, steps, (), CheckProgress(progress))))
 
 
 def _check_poses(claims: CertifiedClaims, found: Poses) -> str:

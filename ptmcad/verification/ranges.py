@@ -23,16 +23,16 @@ from ptmcad.text.expressions import axis, constant
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import fraction_of, integer_of, shortest_text
 from ptmcad.text.parsing import parse
-from ptmcad.verification.attainment import Lines, check_maxima
+from ptmcad.verification.attainment import SliceLines, check_maxima
 from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.certified.points import counting_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import parameters_of
-from ptmcad.verification.line import Line, NotKnown
+from ptmcad.verification.line import NotKnown, ParameterLine
 from ptmcad.verification.parameters import check_text
 from ptmcad.verification.poses import map_of
-from ptmcad.verification.report import Check, Headway, Unchecked, VerifyReport, Violation, checked
+from ptmcad.verification.report import Check, CheckProgress, Unchecked, VerifyReport, Violation, checked
 from ptmcad.verification.sturm import roots_within
 
 _NEAR = 2**7
@@ -71,7 +71,7 @@ def verify_range(
         )
         if part in data
     ]
-    checks = checked((data, slice), steps, (), Headway(progress))
+    checks = checked((data, slice), steps, (), CheckProgress(progress))
     checks += [Check(name, "", None, words) for part, (name, words) in UNCHECKED.items() if part in data]
     return VerifyReport(tuple(checks))
 
@@ -79,12 +79,12 @@ def verify_range(
 _Asked = tuple[Mapping[str, Any], Slice]
 
 
-def _line(slice: Slice, along: Mapping[str, Any], value: Fraction) -> Line:
+def _line(slice: Slice, along: Mapping[str, Any], value: Fraction) -> ParameterLine:
     """The line along one axis at a value of the other one."""
     low, high = map(fraction_of, along["window"])
     known = {name: axis(0) if name == along["name"] else constant(value) for name in slice.axis_names}
     texts = {name: slice.parameters[name].to_text(slice.axis_names) for name in parameters_of(slice.model)}
-    return Line(slice.model, {name: parse(text, known) for name, text in texts.items()}, low, high)
+    return ParameterLine(slice.model, {name: parse(text, known) for name, text in texts.items()}, low, high)
 
 
 def _check_line(asked: _Asked) -> str:
@@ -122,7 +122,7 @@ def _check_extremes(asked: _Asked, maxima: Sequence[Maximum]) -> str:
     if "stable" not in found:
         return Unchecked("an earlier version made it: attainment is not told")
     along, over = (next(a for a in slice.axes if a.name == found[key]["name"]) for key in ("along", "over"))
-    lines = Lines(
+    lines = SliceLines(
         partial(_line, slice, found["along"]), partial(_line, slice, found["over"]), along, over, found["stable"]
     )
     try:
@@ -131,7 +131,7 @@ def _check_extremes(asked: _Asked, maxima: Sequence[Maximum]) -> str:
         return Unchecked(str(reason))
 
 
-def _check_intervals(line: Line, entries: Sequence[Mapping[str, Any]], working: int | None) -> None:
+def _check_intervals(line: ParameterLine, entries: Sequence[Mapping[str, Any]], working: int | None) -> None:
     """The intervals are those between changes: all of them, or those with so many stable solutions.
 
     Raises
@@ -154,7 +154,7 @@ def _check_intervals(line: Line, entries: Sequence[Mapping[str, Any]], working: 
                 raise Violation(f"{entry['total']} solutions are said to be {where}, where there are {there}")
 
 
-def _end(line: Line, data: Mapping[str, Any]) -> End:
+def _end(line: ParameterLine, data: Mapping[str, Any]) -> End:
     """An end of an interval, if counts can change there."""
     if "window" in data:
         if (edge := fraction_of(data["window"])) not in (line.low, line.high):

@@ -180,7 +180,7 @@ PARTS = 100
 
 
 @dataclass(slots=True)
-class Headway:
+class CheckProgress:
     """How far a verification is, for whoever watches: told as progress(words, done, total), which only grows."""
 
     progress: Progress | None
@@ -206,13 +206,13 @@ def checked(
     claims: C,
     steps: Sequence[tuple[str, str, Callable[[C], str]]],
     missing: Collection[str] = (),
-    headway: Headway | None = None,
+    headway: CheckProgress | None = None,
 ) -> list[Check]:
     """Run checks, given as name, method and function, in their order; none after a failed one, none of the missing."""
     checks: list[Check] = []
     ended, finished = "", FINISHED.get()
     within = FINISHED.set(lambda _check: None)  # of the checks inside of these
-    headway = headway or Headway(None)
+    headway = headway or CheckProgress(None)
     headway.number = len(steps)
     for name, method, check in steps:
         passed: bool | None = None

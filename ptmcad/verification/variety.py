@@ -27,7 +27,7 @@ import random
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property, partial, reduce
+from functools import cached_property, partial
 from itertools import permutations
 from math import gcd, lcm, prod
 
@@ -38,7 +38,7 @@ from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import coordinates_of, derivation_of
-from ptmcad.verification.fibre import Fibre
+from ptmcad.verification.fibre import FibreAlgebra
 from ptmcad.verification.plane import factors, polynomial
 from ptmcad.verification.report import Violation
 
@@ -83,7 +83,7 @@ class FibrePoint:
     y: Fraction
     values: tuple[int, ...]
     form: tuple[int, ...]
-    fibre: Fibre
+    fibre: FibreAlgebra
 
     def norm(self) -> Fraction:
         """The product of det H over the solutions."""
@@ -301,7 +301,7 @@ def _check_poles(claims: Claims, points: Iterator[FibrePoint]) -> None:
         raise Violation("solutions have a pole on no stored component")
 
 
-_SMALL_PRIMES = reduce(lambda a, b: a * b, (p for p in range(2, 2000) if all(p % q for q in range(2, p))))
+_SMALL_PRIMES = prod(p for p in range(2, 2000) if all(p % q for q in range(2, p)))
 
 
 def _without(n: int, other: int) -> int:

@@ -18,7 +18,7 @@ from ptmcad.verification.coordinates import CoordinateRing, circle_names
 from ptmcad.verification.inertia import determinant
 
 
-class Joint(NamedTuple):
+class CrossedBars(NamedTuple):
     """An X-joint: the angles of its bars against its base, and what its base and its bars are long."""
 
     first: str
@@ -52,7 +52,7 @@ Conditions = tuple[tuple[fmpq_mpoly, ...], tuple[fmpq_mpoly, ...], tuple[fmpq_mp
 def conditions(
     ring: CoordinateRing,
     unknowns: Sequence[str],
-    joints: Sequence[Joint],
+    joints: Sequence[CrossedBars],
     degrees: Sequence[int],
     energy: tuple[fmpq_mpoly, CoordinateRing],
     moments: Sequence[fmpq_mpoly],
@@ -80,7 +80,10 @@ def conditions(
 
 
 def _without_second_bars(
-    ring: CoordinateRing, joints: Sequence[Joint], degrees: Sequence[int], energy: tuple[fmpq_mpoly, CoordinateRing]
+    ring: CoordinateRing,
+    joints: Sequence[CrossedBars],
+    degrees: Sequence[int],
+    energy: tuple[fmpq_mpoly, CoordinateRing],
 ) -> fmpq_mpoly:
     """The energy times the powers of the D, in the first bars' coordinates."""
     p, wide = energy

@@ -8,7 +8,7 @@ from fractions import Fraction
 from ptmcad.model import Model, known_of
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.text.expressions import constant
-from ptmcad.verification.certified.counted import Counted
+from ptmcad.verification.certified.counted import CountedPoint
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.points import counting_of
 from ptmcad.verification.certified.structure import CertifiedClaims
@@ -24,7 +24,7 @@ def claims_of(values: Mapping[str, Fraction], count: Count, model: Model = PAPER
     return CertifiedClaims(map_of(Slice("", model, axes, {n: constant(v) for n, v in values.items()}, count), ()))
 
 
-def counted_at(values: Mapping[str, Fraction], count: Count) -> tuple[CertifiedClaims, ModelCounting, Counted]:
+def counted_at(values: Mapping[str, Fraction], count: Count) -> tuple[CertifiedClaims, ModelCounting, CountedPoint]:
     """The window, the way of counting, and what is counted in its middle."""
     claims = claims_of(values, count)
     counting = counting_of(claims)

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from fractions import Fraction
 from itertools import product
 
 import pytest
+import yaml
 from flint import fmpq, fmpq_mpoly
 from mpmath import mp, mpf
+from support.maps import CONFIGS
 from support.mechanisms_energy import energy
 
+import ptmcad
 from ptmcad.exact.models import system_from
 from ptmcad.model import Mechanism, described, ptm
 from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.derivation import derivation_at, derivation_of
 
 # coordinates with quotients, powers and sums of three angles, which the built-in mechanism does not have
@@ -71,3 +76,15 @@ def test_the_polynomials_have_the_values_and_derivatives_of_the_record() -> None
             assert not differs(equation, true(*(int(i == k) for k in range(3))))
         for i, j in product(range(3), repeat=2):
             assert not differs(found.jacobian[i][j], true(*((i == k) + (j == k) for k in range(3))))
+
+
+def test_loops_that_differ_in_a_free_length_only_are_told_apart() -> None:
+    """As systems of equations, which have no free lengths, they are equal."""
+    record = yaml.safe_load((CONFIGS / "mechanisms" / "four-bar-free.yaml").read_text(encoding="utf-8"))
+    record.pop("reference")
+    longer = deepcopy(record)
+    longer["mechanism"]["springs"][0]["free"] = 2
+    slices = [ptmcad.slice_from_mapping(one) for one in (record, longer)]
+    assert slices[0].model == slices[1].model
+    first, second = (form_of(slice).cones[0] for slice in slices)
+    assert str(first.pull) != str(second.pull)

@@ -28,7 +28,7 @@ import numpy as np
 from ptmcad.verification.exclusion import check, running
 from ptmcad.verification.exclusion.check import MAX_EFFORT, NUMBA_NEEDED, check_free_area
 from ptmcad.verification.exclusion.forms import CENTER, ERROR, HIGH, LOW, WIDTH, evaluate
-from ptmcad.verification.exclusion.formulas import MAX_VARIABLES, Formulas, shortened
+from ptmcad.verification.exclusion.formulas import MAX_VARIABLES, Formulas
 from ptmcad.verification.exclusion.holding import holds
 from ptmcad.verification.exclusion.pieces import no_pieces, pieces_of
 from ptmcad.verification.exclusion.running import Rest, search
@@ -274,8 +274,8 @@ def test_a_shortened_tape_has_the_values_of_the_whole_one() -> None:
         f = Formulas()
         wanted = [some_formula(f, rng) for _ in range(4)]
         tape, first, places = f.tape(wanted[:1], wanted[1:])
-        kept, where = shortened(tape, first, places[::3])
-        assert first <= len(kept.code) < len(tape.code)
+        kept, still, where = f.tape(wanted[:1], wanted[3:])
+        assert first == still <= len(kept.code) < len(tape.code)
         at = np.array([rng.uniform(-2, 2) for _ in range(MAX_VARIABLES)])
         box, forms = np.stack([at, at + 0.1], axis=1), [np.empty((len(t.code), WIDTH)) for t in (tape, kept)]
         for t, found in zip((tape, kept), forms, strict=True):

@@ -21,7 +21,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.question.config import load
 from ptmcad.question.slice import Count
 from ptmcad.verification.certified.boxes import Box, Unproved
-from ptmcad.verification.certified.field import Field
+from ptmcad.verification.certified.field import BallEquations
 from ptmcad.verification.certified.kinks import sides
 from ptmcad.verification.certified.parameters import over
 from ptmcad.verification.certified.points import check_points, counting_of
@@ -36,7 +36,7 @@ from ptmcad.verification.exclusion import check, places
 from ptmcad.verification.exclusion.check import places_of
 from ptmcad.verification.exclusion.equations import Equations
 from ptmcad.verification.exclusion.forms import CENTER, WIDTH, evaluate
-from ptmcad.verification.exclusion.places import Places
+from ptmcad.verification.exclusion.places import SolutionPlaces
 from ptmcad.verification.exclusion.systems import halves_over, window_of
 
 PAPER: dict[str, Any] = {
@@ -81,7 +81,7 @@ def test_places_have_bounds_of_their_own_where_the_window_has_none() -> None:
     claims = CertifiedClaims(a_map("apart", "index"))
     with pytest.raises(Unproved, match="no bound of the unknown x"):
         halves_over(claims, *window_of(claims))
-    find, rng = Places(claims), random.Random(1)
+    find, rng = SolutionPlaces(claims), random.Random(1)
     (one, two), steps = at_random(claims, rng), claims.sweep.steps
     point, whole = find((one, one), (two, two)), find((Fraction(0), Fraction(steps)), (Fraction(0), Fraction(steps)))
     assert point is not None
@@ -108,7 +108,7 @@ def at_random(claims: CertifiedClaims, rng: random.Random) -> tuple[Fraction, Fr
 def test_places_have_all_solutions(name: str, count: str) -> None:
     """That balls alone find; and with places they find the same ones."""
     claims, rng, told = CertifiedClaims(a_map(name, count)), random.Random(name + count), 0
-    found, counting = Places(claims), counting_of(claims)
+    found, counting = SolutionPlaces(claims), counting_of(claims)
     for _ in range(12):
         u, v = at_random(claims, rng)
         where = found((u, u), (v, v))
@@ -139,7 +139,7 @@ def test_places_have_all_solutions(name: str, count: str) -> None:
 )
 def test_places_over_a_box_have_those_over_its_points(name: str, count: str) -> None:
     claims, rng, told = CertifiedClaims(a_map(name, count)), random.Random(name), 0
-    found, counting = Places(claims), counting_of(claims)
+    found, counting = SolutionPlaces(claims), counting_of(claims)
     half = Fraction(claims.sweep.steps, 4096)
     for _ in range(6):
         u, v = at_random(claims, rng)
@@ -180,7 +180,7 @@ def test_formulas_are_those_of_the_balls(name: str, count: str) -> None:
             at = [rng.uniform(-2, 2) for _ in range(form.size)]
             x, y = (arb(str(float(c))) for c in claims.off_lattice(u, v))
             values = {n: arb(0) for n in slice.model.free_lengths}
-            jet = Field(form, values | {n: over(e, x, y) for n, e in slice.parameters.items()}, sides=side)(
+            jet = BallEquations(form, values | {n: over(e, x, y) for n, e in slice.parameters.items()}, sides=side)(
                 [arb(c) for c in at]
             )
             box = np.array([[float(c)] * 2 for c in (u, v)] + [[c, c] for c in at])
@@ -206,7 +206,7 @@ def test_a_search_that_is_spent_leaves_what_it_has(name: str, monkeypatch: pytes
     for budget, left in ((1, 512), (5, 512), (40, 512), (4000, 6)):
         monkeypatch.setattr(places, "BUDGET", budget)
         monkeypatch.setattr(places, "MAX_LEFT", left)
-        where = Places(claims)((at[0],) * 2, (at[1],) * 2)
+        where = SolutionPlaces(claims)((at[0],) * 2, (at[1],) * 2)
         assert where is not None
         assert len(list(where.boxes[0])) <= left
         assert all(any(inside(e.center, box) for box in where.boxes[0]) for e in true.found)

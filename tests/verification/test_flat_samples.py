@@ -22,7 +22,7 @@ from ptmcad.ask.fields.equations import newton_step, state_at
 from ptmcad.cover.rectangles import Cover
 from ptmcad.question.slice import Point
 from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.counted import Counted, Where
+from ptmcad.verification.certified.counted import CountedPoint, Where
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.points import _near
 from ptmcad.verification.certified.structure import CertifiedClaims
@@ -46,9 +46,11 @@ def map_of(axes: dict[str, list[str]], **parameters: str) -> RegionMap:
 @pytest.fixture(scope="module", autouse=True)
 def counted_once() -> Iterator[None]:
     """What the checker finds at a point does not depend on what is claimed there."""
-    own, found = ModelCounting.at, dict[tuple[str, Fraction, Fraction], Counted | Unproved]()
+    own, found = ModelCounting.at, dict[tuple[str, Fraction, Fraction], CountedPoint | Unproved]()
 
-    def at(counting: ModelCounting, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> Counted:
+    def at(
+        counting: ModelCounting, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None
+    ) -> CountedPoint:
         slice = claims.result.slice
         key = (f"{slice.parameters} {slice.count}", x, y)
         if key not in found:

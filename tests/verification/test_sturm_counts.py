@@ -13,7 +13,7 @@ from support.examples import examples
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification import sturm
-from ptmcad.verification.branches import Branch
+from ptmcad.verification.branches import WallBranch
 from ptmcad.verification.claims import PlaneCurve
 
 
@@ -63,7 +63,7 @@ def test_a_branch_is_found_by_its_number(root: int) -> None:
     for factor in ([0, 1], [-1, 1], [-2, 1], [-2001, 1000], [-3, 1], [5, 0, 1]):
         p *= fmpz_poly(factor)
     plane = PlanePolynomial.of((i, j, int(c)) for j, c in enumerate(p.coeffs()) for i in (0, 1) if c)
-    branch = Branch.of(PlaneCurve.of(0, plane, 0), root)
+    branch = WallBranch.of(PlaneCurve.of(0, plane, 0), root)
     with ctx.workprec(100):
         height = branch.height(fmpq(1, 3), fmpq(-2), fmpq(4))  # the first middle is a root
         assert height is not None

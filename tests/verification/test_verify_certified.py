@@ -28,7 +28,7 @@ from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Point
 from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import Unproved, halves
-from ptmcad.verification.certified.field import Field
+from ptmcad.verification.certified.field import BallEquations
 from ptmcad.verification.certified.points import counting_of
 from ptmcad.verification.certified.sampling import _beside, _by_area
 from ptmcad.verification.certified.structure import CertifiedClaims
@@ -619,7 +619,7 @@ def test_derivatives_are_those_of_the_potential(seed: int) -> None:
             return potential({**point, "th1": ball_of(th1) + i * h, "th2": ball_of(th2) + j * h})
 
         at, (l1, l2) = (ball_of(th1), ball_of(th2)), (point["L1"], point["L2"])
-        jet = Field(form_of(claims_of(v, Count.TOTAL).result.slice), point)(at)
+        jet = BallEquations(form_of(claims_of(v, Count.TOTAL).result.slice), point)(at)
         ((u11, u12), (u21, u22)), d = jet.jacobian, PaperEnergy(point)(*at)
         mixed = (u(1, 1) - u(1, -1) - u(-1, 1) + u(-1, -1)) / (4 * h**2)
         pairs = [

@@ -34,8 +34,8 @@ from ptmcad.text.expressions import constant
 from ptmcad.text.tree import Chain, Name, Number, Step
 from ptmcad.verification.certified import models, points
 from ptmcad.verification.certified.boxes import Unproved, Zero
-from ptmcad.verification.certified.counted import Counts
-from ptmcad.verification.certified.field import Field
+from ptmcad.verification.certified.counted import CellCounts
+from ptmcad.verification.certified.field import BallEquations
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import zeros
@@ -467,7 +467,7 @@ def test_boxes_that_are_not_decided_hide_no_false_count(name: str, monkeypatch: 
     monkeypatch.setattr(points, "HOPELESS", 1)
     only = models._only
 
-    def open_where_narrow(field: Field, solution: Solution, k: int, budget: int) -> Zero:
+    def open_where_narrow(field: BallEquations, solution: Solution, k: int, budget: int) -> Zero:
         if solution.radius < Fraction(1, 10**39):
             raise Unproved("a solution may be in a box, or beside it")
         return only(field, solution, k, budget)
@@ -517,9 +517,9 @@ class _At:
         return self.values
 
 
-def counts_at(counting: Any, model: Model, values: Mapping[str, Fraction], count: Count) -> Counts:
+def counts_at(counting: Any, model: Model, values: Mapping[str, Fraction], count: Count) -> CellCounts:
     claims: Claims = _At(model, values, count)  # type: ignore[assignment]
-    found: Counts = counting.at(claims, Fraction(0), Fraction(0)).counts
+    found: CellCounts = counting.at(claims, Fraction(0), Fraction(0)).counts
     return found
 
 
@@ -566,7 +566,7 @@ def test_derivatives_are_those_of_the_stored_potential(name: str) -> None:
     with ctx.workprec(400):
         balls = {n: ball_of(v) for n, v in values.items()}
         at = [ball_of(Fraction(rng.randint(-300, 300), 100)) for _ in form.unknowns]
-        jet, h = Field(form, balls)(at), arb(2) ** -60
+        jet, h = BallEquations(form, balls)(at), arb(2) ** -60
         exactly = re.sub(r"\b(\d+)/", r"ball(\1)/", r.system.potential.replace("^", "**"))  # 1/10 is no double
         code = compile(exactly, "potential", "eval")
 
@@ -607,7 +607,7 @@ def test_minima_near_a_spring_without_length(free: str, half: float, bends: bool
     """A box is discarded where all Hessians in it have a negative eigenvalue; a wide one around a weak peak is not."""
     record = {**CHAIN, "mechanism": {**CHAIN["mechanism"], "springs": [{"between": ["A", "Q"], "k": 1, "free": free}]}}
     form = form_of(ptmcad.slice_from_mapping({"name": "c", **record}))
-    field = Field(form, {"a": arb(1), "F": arb(0)})
+    field = BallEquations(form, {"a": arb(1), "F": arb(0)})
     at = (math.pi / 3, -math.pi / 3)  # where Q is A
     jet = field([arb(x, half) for x in at])
     (short,) = jet.short
@@ -635,7 +635,7 @@ def test_a_solution_on_the_edge_of_a_stored_box_is_not_decided() -> None:
 
 def test_nothing_is_proved_of_a_double_solution() -> None:
     form = form_of(ptmcad.slice_from_mapping({"name": "c", **RECORDS["cubic"]}))
-    field = Field(form, {"a": arb(3), "b": arb(2)})
+    field = BallEquations(form, {"a": arb(3), "b": arb(2)})
     with pytest.raises(Unproved, match="degenerate"):
         zeros(field, False, [((0.0,), half_widths(form, field.values))], 5_000)
 

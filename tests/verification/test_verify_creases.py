@@ -21,7 +21,7 @@ from ptmcad.certified.plain import curves as plain_curves
 from ptmcad.options import Options
 from ptmcad.question.slice import Count
 from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.field import Field
+from ptmcad.verification.certified.field import BallEquations
 from ptmcad.verification.certified.kinks import sides
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.points import check_points
@@ -157,12 +157,12 @@ def test_on_its_side_a_line_is_the_springs_direction(mechanism: dict[str, Any]) 
     """Equations and Jacobian are those of springs that may point anywhere, and so they are only where all are ahead."""
     values = {"l": arb(1) / 2, "F": arb(1) / 3, "G": arb(1) / 7}
     of, generator = form(mechanism), np.random.default_rng(5)
-    free = Field(of, values)
+    free = BallEquations(of, values)
     for _ in range(20):
         q = [arb(float(x)) for x in generator.uniform(-pi, pi, of.size)]
         true, ahead = free(q), 0
         for side in sides(of):
-            jet = Field(of, values, sides=side)(q)
+            jet = BallEquations(of, values, sides=side)(q)
             if all(c > 0 for c in jet.conditions):
                 ahead += 1
                 assert all(a.overlaps(b) for a, b in zip(jet.values, true.values, strict=True))
@@ -178,7 +178,7 @@ def test_what_half_of_an_angle_turns_is_another_after_a_full_turn() -> None:
 
     def circles(mechanism: dict[str, Any]) -> tuple[bool, ...]:
         of = form(mechanism)
-        return Field(of, values, sides=next(iter(sides(of)))).circles
+        return BallEquations(of, values, sides=next(iter(sides(of)))).circles
 
     assert circles(CRANK) == (False,)
     assert circles(PAIR) == (False, False)

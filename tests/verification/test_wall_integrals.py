@@ -14,7 +14,7 @@ from support.few import few
 
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification import roots, sturm
-from ptmcad.verification.branches import Branch, Effort, Part, integrals_over
+from ptmcad.verification.branches import PanelEffort, PanelPart, WallBranch, integrals_over
 from ptmcad.verification.claims import PlaneCurve
 from ptmcad.verification.roots import numbered_root
 
@@ -51,10 +51,12 @@ CURVES: dict[str, tuple[list[tuple[int, int, int]], Callable[[arb], arb]]] = {
 PANELS = [(fmpq(1, 4), fmpq(7, 4)), (fmpq(1, 100), fmpq(9, 10)), (fmpq(1, 2), fmpq(3, 5)), (fmpq(1, 10**6), fmpq(1, 2))]
 
 
-def parts(name: str, sign: int, ends: tuple[fmpq, fmpq]) -> list[Part]:
+def parts(name: str, sign: int, ends: tuple[fmpq, fmpq]) -> list[PanelPart]:
     plane = PlanePolynomial.of(CURVES[name][0])
-    branch = Branch.of(PlaneCurve.of(0, plane, 0), 1 if sign > 0 and name.startswith(("v^2", "100 v^2")) else 0)
-    return integrals_over(branch, *ends, Effort(arb(2) ** -60, fmpq(1, 10**9), fmpq(1, 10**12), HEIGHTS, (2, 10), ends))
+    branch = WallBranch.of(PlaneCurve.of(0, plane, 0), 1 if sign > 0 and name.startswith(("v^2", "100 v^2")) else 0)
+    return integrals_over(
+        branch, *ends, PanelEffort(arb(2) ** -60, fmpq(1, 10**9), fmpq(1, 10**12), HEIGHTS, (2, 10), ends)
+    )
 
 
 @pytest.mark.parametrize(
@@ -93,19 +95,19 @@ def test_heights_are_the_roots_that_were_asked_for(share: fmpq) -> None:
         roots = [(arb(value)).sqrt() for value in (share, share + 1, fmpq(2))]
         expected = [-root for root in reversed(roots)] + roots
         for number, root in enumerate(expected):
-            height = Branch.of(curve, number).height(share, fmpq(-3), fmpq(3))
+            height = WallBranch.of(curve, number).height(share, fmpq(-3), fmpq(3))
             assert height is not None
             assert height.overlaps(root)
             assert height.rad() < 2**-60
-        assert Branch.of(curve, 6).height(share, fmpq(-3), fmpq(3)) is None
+        assert WallBranch.of(curve, 6).height(share, fmpq(-3), fmpq(3)) is None
         # from a height between them only those above it are counted
-        above = Branch.of(curve, 0).height(share, fmpq(0), fmpq(3))
+        above = WallBranch.of(curve, 0).height(share, fmpq(0), fmpq(3))
         assert above is not None
         assert above.overlaps(roots[0])
 
 
 Terms = list[tuple[int, int, int]]
-EFFORT = Effort(arb(2) ** -30, fmpq(1, 10**9), fmpq(1, 10**12), HEIGHTS, (2, 10), HEIGHTS)
+EFFORT = PanelEffort(arb(2) ** -30, fmpq(1, 10**9), fmpq(1, 10**12), HEIGHTS, (2, 10), HEIGHTS)
 NEAR, FAR = fmpq(1, 10**9), fmpq(1, 2)
 POINTS: dict[str, tuple[Terms, int, Callable[[arb], arb]]] = {
     "turning point: v^2 = u": ([(0, 2, 1), (1, 0, -1)], 1, lambda u: u * u.sqrt() * 2 / 3),
@@ -140,8 +142,8 @@ POINTS: dict[str, tuple[Terms, int, Callable[[arb], arb]]] = {
 }
 
 
-def branch_of(terms: Terms, root: int) -> Branch:
-    return Branch.of(PlaneCurve.of(0, PlanePolynomial.of(terms), 0), root)
+def branch_of(terms: Terms, root: int) -> WallBranch:
+    return WallBranch.of(PlaneCurve.of(0, PlanePolynomial.of(terms), 0), root)
 
 
 @pytest.mark.parametrize("name", POINTS)
@@ -224,10 +226,12 @@ ROOM = fmpq(1, 10**12)
 """Beside the critical value, which `ROOM` is left out of, as of a stack."""
 
 
-def part_beside(terms: Terms, root: int, at: fmpq, far: fmpq, error: fmpq, heights: tuple[fmpq, fmpq]) -> list[Part]:
+def part_beside(
+    terms: Terms, root: int, at: fmpq, far: fmpq, error: fmpq, heights: tuple[fmpq, fmpq]
+) -> list[PanelPart]:
     """What is proved from a critical value on of a branch, whose critical value is known but for an error."""
     near = at + ROOM * (1 if far > at else -1)
-    effort = Effort(arb(2) ** -40, fmpq(1, 10**9), fmpq(1, 10**15), heights, (2,), (at + error, at + error))
+    effort = PanelEffort(arb(2) ** -40, fmpq(1, 10**9), fmpq(1, 10**15), heights, (2,), (at + error, at + error))
     run = -2 if far > at else 2
     return integrals_over(branch_of(terms, root), min(near, far), max(near, far), effort, run)
 

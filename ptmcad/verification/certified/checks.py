@@ -16,7 +16,7 @@ from ptmcad.verification.certified.sampling import check_boxes
 from ptmcad.verification.certified.structure import CertifiedClaims, check_components, check_form, check_regions
 from ptmcad.verification.certified.system import check_potential
 from ptmcad.verification.parameters import check_text
-from ptmcad.verification.report import Check, Headway, VerifyReport, Violation, checked
+from ptmcad.verification.report import Check, CheckProgress, VerifyReport, Violation, checked
 
 BOXES = 16
 NOT_CHECKED = (
@@ -48,7 +48,7 @@ def verify_certified(
     claims = CertifiedClaims(result)
     drawn = fingerprint(result) if seed is None else str(seed)
     number = BOXES if boxes is None else boxes
-    headway = Headway(progress)
+    headway = CheckProgress(progress)
     within = headway.within
 
     @cache

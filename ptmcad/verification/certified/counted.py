@@ -62,7 +62,7 @@ def check_region(r: RegionMap, number: int, members: Collection[int]) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Counts:
+class CellCounts:
     """What a `Count` asks for; None what it does not need."""
 
     total: int | None
@@ -75,26 +75,26 @@ class Counts:
         return ", ".join(f"{name} {value}" for name, value in parts if value is not None)
 
 
-def with_further(counts: Counts, count: Count, number: Callable[[], int]) -> Counts:
+def with_further(counts: CellCounts, count: Count, number: Callable[[], int]) -> CellCounts:
     """The counts, and the number of those stable solutions of which a kind of count asks more."""
     return replace(counts, admissible=number()) if count is Count.ADMISSIBLE else counts
 
 
-def stored(cell: Cell) -> Counts:
+def stored(cell: Cell) -> CellCounts:
     """The counts of a cell as they are stored."""
-    return Counts(cell.total, cell.stable, cell.index, cell.admissible)
+    return CellCounts(cell.total, cell.stable, cell.index, cell.admissible)
 
 
-def differs(cell: Cell, true: Counts) -> bool:
+def differs(cell: Cell, true: CellCounts) -> bool:
     """Whether the stored counts of a cell are not these."""
     return stored(cell) != true
 
 
 @dataclass(frozen=True, slots=True)
-class Counted:
+class CountedPoint:
     """All solutions at a point, or all minima and perhaps others where no more is asked for, and their counts."""
 
-    counts: Counts
+    counts: CellCounts
     found: Sequence[Any]
     values: Any
 

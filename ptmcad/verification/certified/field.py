@@ -24,7 +24,7 @@ from flint import arb, arb_mat
 from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.kinks import Sides
 from ptmcad.verification.certified.terms import ball, power, square
-from ptmcad.verification.certified.waves import Cone, Form, Multi, Waves
+from ptmcad.verification.certified.waves import Form, Multi, SpringCone, Waves
 from ptmcad.verification.inertia import determinant
 
 Matrix = list[list[arb]]
@@ -82,7 +82,7 @@ class _Turns(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Jet:
+class BallJet:
     """The equations and their derivatives; these without the parts of springs that may have no length.
 
     Attributes
@@ -158,7 +158,7 @@ class Jet:
         return bool(trace.upper() - (s.pull * gram / (xx + yy)).lower() / s.length.upper() < 0)
 
 
-class Field:
+class BallEquations:
     """The equations at given parameters as functions of the unknowns.
 
     Parameters
@@ -225,7 +225,7 @@ class Field:
             column += [cosine, sine]
         return arb_mat(len(column), 1, column)
 
-    def __call__(self, at: Sequence[arb]) -> Jet:
+    def __call__(self, at: Sequence[arb]) -> BallJet:
         """At all configurations in a box."""
         n, waves = self.form.size, self._waves(at)
         rows = self._first(waves)
@@ -242,7 +242,7 @@ class Field:
             cones.append(new)
             place += length
         conditions = [*ahead, *rows[place:]]
-        jet = Jet(values, smooth, tuple(cones), conditions, partial(self._derivatives, waves))
+        jet = BallJet(values, smooth, tuple(cones), conditions, partial(self._derivatives, waves))
         if self._with_determinant:
             ordered = [[row[k] for k in self.form.closing] for row in jet.jacobian]
             conditions.append(arb(0, inf) if jet.short else determinant(ordered))
@@ -302,7 +302,7 @@ class _Pointed(NamedTuple):
         return self._replace(unit=(unit(x * cosine - y * sine), unit(x * sine + y * cosine)))
 
 
-def _pointed(cone: Cone, values: Mapping[str, arb], side: int) -> _Pointed:
+def _pointed(cone: SpringCone, values: Mapping[str, arb], side: int) -> _Pointed:
     """The direction of a spring on one line before that turns."""
     line = cone.line
     assert line is not None
@@ -313,7 +313,7 @@ def _pointed(cone: Cone, values: Mapping[str, arb], side: int) -> _Pointed:
     return _Pointed((x / squared.sqrt(), y / squared.sqrt()), line.twice)
 
 
-def _shape(form: Form, cone: Cone) -> _Shape:
+def _shape(form: Form, cone: SpringCone) -> _Shape:
     n = form.size
     turned = [cone.line is not None or any(pair) for pair in cone.slopes]
     equations = tuple(i for i in range(n) if any(cone.weights[i]))
@@ -378,4 +378,4 @@ def unit(value: arb) -> arb:
     return value if value.rad() < 1 else _ANY
 
 
-__all__ = ["ConeBalls", "Field", "Jet", "Matrix", "size"]
+__all__ = ["BallEquations", "BallJet", "ConeBalls", "Matrix", "size"]

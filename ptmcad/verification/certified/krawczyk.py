@@ -14,7 +14,7 @@ from operator import lt
 from flint import arb, arb_mat
 
 from ptmcad.verification.certified.boxes import Box, Floats, Zero
-from ptmcad.verification.certified.field import Field, Jet, Matrix
+from ptmcad.verification.certified.field import BallEquations, BallJet, Matrix
 from ptmcad.verification.certified.spectrum import inertia
 
 _SHRINKINGS = (1, 0, -1, -2, -3, -4, -5, -6, -8, -10, -12, -15, -18, -22, -26, -30, -34, -38, -42, -46)
@@ -74,12 +74,12 @@ def _steps(values: arb_mat, inverse: arb_mat) -> list[arb]:
     return steps
 
 
-def image_of(field: Field, box: Box, jet: Jet) -> list[arb] | None:
+def image_of(field: BallEquations, box: Box, jet: BallJet) -> list[arb] | None:
     """Krawczyk's image of a box, less its middle."""
     return image(field(list(map(arb, box[0]))).values, jet.jacobian, list(map(arb, box[1])))
 
 
-def newton(field: Field, box: Box) -> Floats | None:
+def newton(field: BallEquations, box: Box) -> Floats | None:
     """Where Newton's method comes to rest from a box's middle, near the box; None when it does not."""
     x, share = list(box[0]), 1.0
     for _ in range(_NEWTON_STEPS):
@@ -99,7 +99,7 @@ def newton(field: Field, box: Box) -> Floats | None:
     return tuple(x) if share < _CLOSE else None
 
 
-def proved(field: Field, center: Floats, shapes: Iterable[Floats]) -> Zero | None:
+def proved(field: BallEquations, center: Floats, shapes: Iterable[Floats]) -> Zero | None:
     """The solution around a point that is alone in a box of some shape; None when it is not proved, nor its signs."""
     jet = field([arb(x) for x in center])
     inverse = None if jet.short else inverse_of(jet.jacobian)
@@ -135,7 +135,7 @@ def _with_steep(jacobian: Matrix, shapes: Iterable[Floats]) -> Iterator[Floats]:
     yield from (first, *others, *narrow)
 
 
-def _narrowed(field: Field, center: Floats, values: arb_mat, radii: Floats, least: Sequence[arb]) -> Floats:
+def _narrowed(field: BallEquations, center: Floats, values: arb_mat, radii: Floats, least: Sequence[arb]) -> Floats:
     """A smaller box that has the only solution of a box, too: its image, and that of that, while it gets narrower.
 
     Parameters
@@ -163,7 +163,7 @@ def _above(reach: arb) -> float:
     return float(reach.upper()) * 1.0001 + 2.0**-1000
 
 
-def _reaches(field: Field, center: Floats, values: arb_mat, radii: Floats) -> list[arb] | None:
+def _reaches(field: BallEquations, center: Floats, values: arb_mat, radii: Floats) -> list[arb] | None:
     """Half widths of Krawczyk's image of a box; None where the Jacobian is not known, or near a singular one."""
     jet = field(list(map(arb, center, radii)))
     inverse = None if jet.short else inverse_of(jet.jacobian)

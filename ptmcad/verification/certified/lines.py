@@ -18,7 +18,7 @@ Coordinate = Mapping[tuple[Multi, Multi, int], fmpq_mpoly]
 """One of a vector, as waves."""
 
 
-class Line(NamedTuple):
+class SpringLine(NamedTuple):
     """A vector e for d = s e, turned by a sum of angles.
 
     Attributes
@@ -52,7 +52,7 @@ class _Complex(NamedTuple):
         return vanishes(self.real) and vanishes(self.imag)
 
 
-def line_of(vector: tuple[Coordinate, Coordinate], vanishes: Vanishes) -> Line | None:
+def line_of(vector: tuple[Coordinate, Coordinate], vanishes: Vanishes) -> SpringLine | None:
     """The line along which a vector stays at all points of a slice, if there is one."""
     parts = {key: part for key, part in _exponentials(vector).items() if not part.vanishes(vanishes)}
     if not parts:
@@ -74,7 +74,7 @@ def line_of(vector: tuple[Coordinate, Coordinate], vanishes: Vanishes) -> Line |
         one, two = other.times(e.conjugate), part.conjugate.times(e)
         if not (vanishes(one.real - two.real) and vanishes(one.imag - two.imag)):
             return None
-    return Line(_simplest(*(0 * f if vanishes(f) else f for f in e)), twice)
+    return SpringLine(_simplest(*(0 * f if vanishes(f) else f for f in e)), twice)
 
 
 def _exponentials(vector: tuple[Coordinate, Coordinate]) -> dict[tuple[Multi, Multi], _Complex]:

@@ -19,8 +19,8 @@ from ptmcad.model import Model
 from ptmcad.question.slice import Count, Point, Slice
 from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import MIN_HALF_WIDTH, Box, Floats, Unproved, Zero, is_same
-from ptmcad.verification.certified.counted import Counted, Counts, Where, with_further
-from ptmcad.verification.certified.field import Field, Matrix
+from ptmcad.verification.certified.counted import CellCounts, CountedPoint, Where, with_further
+from ptmcad.verification.certified.field import BallEquations, Matrix
 from ptmcad.verification.certified.kinks import Sides, sides
 from ptmcad.verification.certified.narrow import Function, judged, only
 from ptmcad.verification.certified.parameters import over
@@ -58,7 +58,7 @@ class ModelCounting:
     form: Form
     margins: tuple[Margin, ...] = ()
 
-    def at(self, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> Counted:
+    def at(self, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> CountedPoint:
         """At a point of the window."""
         values, count = _values_at(claims, self.form, x, y), claims.result.slice.count
         reason: Unproved | None = None
@@ -75,7 +75,7 @@ class ModelCounting:
 
     def _at(
         self, values: Mapping[str, Fraction], count: Count, where: Where | None = None, smallest: float = MIN_HALF_WIDTH
-    ) -> Counted:
+    ) -> CountedPoint:
         """At the context's precision."""
         found = list[Zero]()
         for k, side in enumerate(sides(self.form)):
@@ -84,9 +84,9 @@ class ModelCounting:
             )
         found = self._once(found)
         numbers = {name: ball_of(value) for name, value in values.items()}
-        return Counted(self._counts(numbers, found, count), found, values)
+        return CountedPoint(self._counts(numbers, found, count), found, values)
 
-    def _counts(self, values: Mapping[str, arb], found: Sequence[Zero], count: Count) -> Counts:
+    def _counts(self, values: Mapping[str, arb], found: Sequence[Zero], count: Count) -> CellCounts:
         """The counts, with the number of stable solutions with margins where these are asked for.
 
         Raises
@@ -94,7 +94,7 @@ class ModelCounting:
         Unproved
             When a margin may be zero at a stable solution.
         """
-        field = Field(self.form, values, [margin.squared for margin in self.margins])
+        field = BallEquations(self.form, values, [margin.squared for margin in self.margins])
         stable = (zero for zero in found if "-" not in zero.signs)
         counts = counts_of(self.form, found, count)
         return with_further(counts, count, lambda: sum(_has_margins(field, zero) for zero in stable))
@@ -130,7 +130,9 @@ class ModelCounting:
             fields = [_field_at(self.form, values, side=side) for side in sides(self.form)]
             return [self._in_box(fields, values, solution, k) for k, solution in enumerate(boxes, first)]
 
-    def _in_box(self, fields: Sequence[Field], values: Mapping[str, Fraction], solution: Solution, k: int) -> Zero:
+    def _in_box(
+        self, fields: Sequence[BallEquations], values: Mapping[str, Fraction], solution: Solution, k: int
+    ) -> Zero:
         _check_box(self.form, solution, k)
         # where it may be on several sides of springs' lines, it has to be searched on each of them
         box = [ball_of(x) + arb(0, ball_of(solution.radius)) for x in solution.center]
@@ -154,7 +156,7 @@ class ModelCounting:
         """
         return is_same(one, two, self.form.is_circle)
 
-    def over(self, slice: Slice, x: arb, y: arb, there: Counted, where: Where | None = None) -> Counts:
+    def over(self, slice: Slice, x: arb, y: arb, there: CountedPoint, where: Where | None = None) -> CellCounts:
         """At all points of a box."""
         values = {name: over(expression, x, y) for name, expression in slice.parameters.items()}
         for name, value in values.items():
@@ -185,26 +187,26 @@ def _only_minima(form: Form, count: Count) -> bool:
     return form.is_gradient and count.is_of_stable
 
 
-def _may_be_on_side(field: Field, zero: Zero) -> bool:
+def _may_be_on_side(field: BallEquations, zero: Zero) -> bool:
     """Whether a solution may be on the field's side of the lengths zero."""
     return not any(c < 0 for c in _ahead(field, zero.within))
 
 
-def _ahead(field: Field, box: Sequence[arb]) -> Sequence[arb]:
+def _ahead(field: BallEquations, box: Sequence[arb]) -> Sequence[arb]:
     """What is positive on the field's side of the lengths zero."""
     return field(box).conditions[: len(field.sides)]
 
 
-def _field(form: Form, values: Mapping[str, arb], count: Count | None, side: Sides) -> Field:
+def _field(form: Form, values: Mapping[str, arb], count: Count | None, side: Sides) -> BallEquations:
     """The equations with what is positive at the solutions that are counted, and at no others, if a count is given."""
     if count is None:
-        return Field(form, values, sides=side)
+        return BallEquations(form, values, sides=side)
     stable = count.is_of_stable
     asked = form.inequalities + (form.stability if stable else ())
-    return Field(form, values, asked, stable and bool(form.closing), side)
+    return BallEquations(form, values, asked, stable and bool(form.closing), side)
 
 
-def _counted(field: Field, found: Sequence[Zero], count: Count) -> list[Zero]:
+def _counted(field: BallEquations, found: Sequence[Zero], count: Count) -> list[Zero]:
     """The solutions at which all conditions of the field are positive; stable ones have the signs of those for it.
 
     Raises
@@ -226,7 +228,7 @@ def _counted(field: Field, found: Sequence[Zero], count: Count) -> list[Zero]:
     return kept
 
 
-def _apart(field: Field, zero: Zero) -> Zero:
+def _apart(field: BallEquations, zero: Zero) -> Zero:
     """A solution alone where every spring on one line is on its side: so it is alone among those of all sides, too."""
     for k in range(_HALVINGS if field.sides else 0):
         alone = tuple(max(r, a / 2**k) for r, a in zip(zero.radii, zero.alone, strict=True))
@@ -237,7 +239,7 @@ def _apart(field: Field, zero: Zero) -> Zero:
     return zero
 
 
-def _with_signs(field: Field, form: Form, found: Sequence[Zero]) -> list[Zero]:
+def _with_signs(field: BallEquations, form: Form, found: Sequence[Zero]) -> list[Zero]:
     """The solutions with the signs of the conditions for stability; empty where one is not certain."""
     kept = []
     for zero in found:
@@ -273,17 +275,17 @@ def _values_at(claims: Claims, form: Form, x: Fraction, y: Fraction) -> dict[str
 
 def _field_at(
     form: Form, values: Mapping[str, Fraction], count: Count | None = None, side: Sides | None = None
-) -> Field:
+) -> BallEquations:
     return _field(form, {name: ball_of(value) for name, value in values.items()}, count, side or {})
 
 
-def _start(field: Field) -> Box:
+def _start(field: BallEquations) -> Box:
     """All configurations that may be solutions."""
     widths = half_widths(field.form, field.values)
     return (0.0,) * len(widths), widths
 
 
-def _has_margins(field: Field, zero: Zero) -> bool:
+def _has_margins(field: BallEquations, zero: Zero) -> bool:
     """Whether all conditions of a field hold at a solution."""
     found = field(zero.within).conditions
     if any(value < 0 for value in found):
@@ -293,7 +295,7 @@ def _has_margins(field: Field, zero: Zero) -> bool:
     raise Unproved("a spring may be as long as its free length")
 
 
-def counts_of(form: Form, found: Sequence[Zero], count: Count) -> Counts:
+def counts_of(form: Form, found: Sequence[Zero], count: Count) -> CellCounts:
     """The counts that follow from the solutions and their signs; Euler's sum is checked where it holds.
 
     Raises
@@ -303,14 +305,14 @@ def counts_of(form: Form, found: Sequence[Zero], count: Count) -> Counts:
     """
     if not form.is_gradient:
         number = len(found)
-        return Counts(None, number, None, None) if count.is_of_stable else Counts(number, None, None, None)
+        return CellCounts(None, number, None, None) if count.is_of_stable else CellCounts(number, None, None, None)
     negative = Counter(zero.signs.count("-") for zero in found)
     index = tuple(negative[k] for k in range(form.size + 1))
     if count.is_of_stable:
-        return Counts(None, index[0], None, None)
+        return CellCounts(None, index[0], None, None)
     if form.is_smooth_on_a_torus and sum((-1) ** k * number for k, number in enumerate(index)):
         raise Violation(f"critical points of a function on the torus by index {index} contradict Euler's sum")
-    return Counts(len(found), index[0], index, None)
+    return CellCounts(len(found), index[0], index, None)
 
 
 def _narrow(form: Form, values: Mapping[str, Fraction], side: Sides, solution: Solution, k: int) -> Zero | None:
@@ -346,7 +348,7 @@ def _check_box(form: Form, solution: Solution, k: int) -> None:
         raise Violation(f"box {k} of the solutions is beyond all bounds of unknowns")
 
 
-def _only(fields: Sequence[Field], solution: Solution, k: int, budget: int) -> Zero:
+def _only(fields: Sequence[BallEquations], solution: Solution, k: int, budget: int) -> Zero:
     """The one solution in a stored box, on whichever side it is."""
     center = tuple(float(x) for x in solution.center)
     # floats have the centers and radii of stored boxes exactly, or nearly: then the box is made a little larger

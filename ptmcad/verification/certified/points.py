@@ -14,7 +14,7 @@ from fractions import Fraction
 from ptmcad.answer.regionmap import Cell
 from ptmcad.question.slice import Count
 from ptmcad.verification.certified.boxes import Unproved, Zero
-from ptmcad.verification.certified.counted import Counted, Places, differs, stored
+from ptmcad.verification.certified.counted import CountedPoint, Places, differs, stored
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.waves import form_of, margins_of
@@ -117,14 +117,14 @@ def _near(claims: CertifiedClaims, cell: Cell) -> list[tuple[Fraction, Fraction]
 
 def _counted_at(
     claims: CertifiedClaims, counting: ModelCounting, at: Sequence[Fraction], places: Places | None
-) -> Counted:
+) -> CountedPoint:
     (x, y), (u, v) = at, claims.on_lattice(*at)
     return counting.at(claims, x, y, places and places((u, u), (v, v)))
 
 
 def _decided(
     claims: CertifiedClaims, counting: ModelCounting, cell: Cell, places: Places | None
-) -> tuple[tuple[Fraction, Fraction], Counted] | None:
+) -> tuple[tuple[Fraction, Fraction], CountedPoint] | None:
     """The first point beside an undecided sample at which the counts are decided, and what is counted there.
 
     Raises
@@ -145,7 +145,7 @@ def _decided(
     return None
 
 
-def _check_boxes(claims: CertifiedClaims, counting: ModelCounting, cell: Cell, there: Counted) -> None:
+def _check_boxes(claims: CertifiedClaims, counting: ModelCounting, cell: Cell, there: CountedPoint) -> None:
     """Each stored box holds one solution, each another one, and these are those that are kept.
 
     Raises

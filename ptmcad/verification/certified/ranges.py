@@ -47,7 +47,7 @@ _ZERO, _ANY = arb(0), arb(0, 1)
 
 
 @dataclass(frozen=True, slots=True)
-class _Chart:
+class _RangeChart:
     """Each unknown as a factor times a power of a number that is not negative and not bounded, or a factor alone.
 
     Attributes
@@ -78,7 +78,7 @@ class _Chart:
             total[*powers] = total.get((*powers,), _ZERO) + term
         return total
 
-    def halves(self, whole: _Chart) -> tuple[_Chart, _Chart] | None:
+    def halves(self, whole: _RangeChart) -> tuple[_RangeChart, _RangeChart] | None:
         """Two charts, halved in the factor that is largest as a share of the whole one's; None where there is none."""
         shares = {
             j: float((x.rad() / y.rad()).mid())
@@ -92,8 +92,8 @@ class _Chart:
         one, two = x.lower().union(x.mid()), arb(x.mid()).union(x.upper())
         return self._with(widest, one), self._with(widest, two)
 
-    def _with(self, k: int, x: arb) -> _Chart:
-        return _Chart((*self.factors[:k], x, *self.factors[k + 1 :]), self.variables, self.weights, self.lead)
+    def _with(self, k: int, x: arb) -> _RangeChart:
+        return _RangeChart((*self.factors[:k], x, *self.factors[k + 1 :]), self.variables, self.weights, self.lead)
 
 
 class _Equation:
@@ -102,7 +102,7 @@ class _Equation:
     def __init__(self, smooth: Row, cones: Sequence[tuple[arb, Row, Row]] = ()):
         self.smooth, self.cones = smooth, cones
 
-    def monomials(self, chart: _Chart) -> Monomials:
+    def monomials(self, chart: _RangeChart) -> Monomials:
         """All of it; the springs' parts have either sign."""
         total = chart.monomials(self.smooth)
         for pull, right, above in self.cones:
@@ -151,12 +151,12 @@ class _Bounds:
         """A bound of one unknown, whatever those without one are."""
         return self._bound(list(self._orthants(k)), POWERS)
 
-    def _orthants(self, k: int) -> Iterator[_Chart]:
+    def _orthants(self, k: int) -> Iterator[_RangeChart]:
         free = [j for j, half in enumerate(self.found) if half is None]
         for signs in product(*map(self._signs, free)):
             of = dict(zip(free, signs, strict=True))
             everything = range(len(self.found))
-            yield _Chart(
+            yield _RangeChart(
                 tuple(arb(of[j]) if j in of else self._factor(j) for j in everything),
                 tuple(j if j in of else None for j in everything),
                 tuple(1 for _ in everything),
@@ -178,7 +178,7 @@ class _Bounds:
         """Bounds of some unknowns in which their equations are linear, but for the directions of springs."""
         factors = tuple(arb(1) if half is None else self._factor(k) for k, half in enumerate(self.found))
         variables = tuple(k if half is None else None for k, half in enumerate(self.found))
-        whole = _Chart(factors, variables, (1,) * len(factors), 0)
+        whole = _RangeChart(factors, variables, (1,) * len(factors), 0)
         waiting, most = [whole], [arb(0)] * len(chosen)
         treated = 0
         while waiting:
@@ -197,7 +197,7 @@ class _Bounds:
             waiting += halves
         return {k: nextafter(float(bound), inf) for k, bound in zip(chosen, most, strict=True)}
 
-    def _linear(self, chart: _Chart, chosen: Sequence[int]) -> _Linear | None:
+    def _linear(self, chart: _RangeChart, chosen: Sequence[int]) -> _Linear | None:
         """The equations of some unknowns; None where other unknowns without a bound, or squares of these, are in."""
         none = (0,) * (len(chart.factors) + 1)
         units = [tuple(int(j == k) for j in range(len(none))) for k in chosen]
@@ -216,21 +216,21 @@ class _Bounds:
         ]
         return matrix, rest, springs
 
-    def _faces(self, weights: Mapping[int, int]) -> Iterator[_Chart]:
+    def _faces(self, weights: Mapping[int, int]) -> Iterator[_RangeChart]:
         lead, everything = len(self.found), range(len(self.found))
         free = [j for j, half in enumerate(self.found) if half is None and j not in weights]
         for largest in weights:
             for side, *signs in product(self._signs(largest), *map(self._signs, free)):
                 of = dict(zip(free, signs, strict=True))
                 shares = {j: arb(0.5, 0.5) if j in self.positive else _ANY for j in weights} | {largest: arb(side)}
-                yield _Chart(
+                yield _RangeChart(
                     tuple(shares[j] if j in shares else arb(of[j]) if j in of else self._factor(j) for j in everything),
                     tuple(lead if j in shares else j if j in of else None for j in everything),
                     tuple(weights.get(j, 1) for j in everything),
                     lead,
                 )
 
-    def _bound(self, charts: Sequence[_Chart], powers: Sequence[int]) -> float | None:
+    def _bound(self, charts: Sequence[_RangeChart], powers: Sequence[int]) -> float | None:
         """The least power of two that is a bound in all charts."""
 
         def holds(exponent: int, parts: int) -> bool:
@@ -242,7 +242,7 @@ class _Bounds:
                 return float(2.0 ** next(e for e in exponents if e == exponents[-1] or holds(e, parts)))
         return None
 
-    def _is_empty(self, chart: _Chart, bound: arb, parts: int) -> bool:
+    def _is_empty(self, chart: _RangeChart, bound: arb, parts: int) -> bool:
         """Whether no solution has the leading number at the bound or beyond."""
         waiting, treated = [chart], 0
         while waiting:

@@ -26,9 +26,9 @@ from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.counted import Counted, Places, differs, stored
+from ptmcad.verification.certified.counted import CountedPoint, Places, differs, stored
 from ptmcad.verification.certified.points import HOPELESS, counting_of
-from ptmcad.verification.certified.slanted import Frame
+from ptmcad.verification.certified.slanted import SlantedFrame
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.report import Unchecked, Violation
 
@@ -140,8 +140,7 @@ def _by_area(claims: CertifiedClaims, rng: random.Random, number: int) -> tuple[
 
 def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[SampleBox]:
     """Points beside rectangles, as many as boxes: from one square of the grid after the other, in random order."""
-    cover = claims.result.cover
-    assert cover is not None
+    cover = claims.cover
     edges = _edges(cover.rectangles, claims.sweep.steps, _side(number))
     for square, places in _along_tubes(cover, _side(number), rng).items():
         edges.setdefault(square, []).extend(places)
@@ -186,7 +185,7 @@ def _along_tubes(cover: Cover, side: int, rng: random.Random) -> dict[tuple[int,
     """Places on tubes, in the form of short edges that points are across of, some in each frame."""
     found: dict[tuple[int, int], list[Edge]] = {}
     for k, patch in enumerate(cover.patches):
-        frame = Frame(patch, k)
+        frame = SlantedFrame(patch, k)
         for center in frame.centers:
             for _ in range(PLACES_ON_TUBES):
                 s = _uniform(rng)
@@ -238,7 +237,7 @@ def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> SampleBox | None
 
 def check_point(
     claims: CertifiedClaims, number: int, u: Fraction, v: Fraction, places: Places | None = None, reason: str = ""
-) -> Counted | None:
+) -> CountedPoint | None:
     """The counts at a point are those of the cell; its equilibria, None if they were not proved.
 
     Parameters
@@ -264,7 +263,9 @@ def check_point(
     return there
 
 
-def _constant_over(claims: CertifiedClaims, places: Places | None, box: SampleBox, there: Counted) -> Fraction | None:
+def _constant_over(
+    claims: CertifiedClaims, places: Places | None, box: SampleBox, there: CountedPoint
+) -> Fraction | None:
     """Half the width of the box over which the counts were proved; None when none was small enough."""
     half = box.half
     for _ in range(ATTEMPTS):
@@ -279,7 +280,7 @@ def _constant_over(claims: CertifiedClaims, places: Places | None, box: SampleBo
     return None
 
 
-def _prove(claims: CertifiedClaims, places: Places | None, box: SampleBox, half: Fraction, there: Counted) -> None:
+def _prove(claims: CertifiedClaims, places: Places | None, box: SampleBox, half: Fraction, there: CountedPoint) -> None:
     """Prove the cell's counts for every point of the box.
 
     Raises

@@ -27,7 +27,7 @@ Part = tuple[Fraction | int, Fraction | int, bool, int]
 """Of a side: its ends, whether it is open, and the number of what has it."""
 
 
-class Frame:
+class SlantedFrame:
     """A patch with its polynomials in s, which goes from 0 to 1 along the frame.
 
     Raises

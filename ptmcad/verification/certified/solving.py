@@ -28,7 +28,7 @@ from ptmcad.verification.certified.boxes import (
     inside,
     within,
 )
-from ptmcad.verification.certified.field import Field, Jet
+from ptmcad.verification.certified.field import BallEquations, BallJet
 from ptmcad.verification.certified.krawczyk import image_of, newton, proved
 from ptmcad.verification.certified.spectrum import is_no_minimum
 
@@ -47,7 +47,7 @@ class Spent(Unproved):
 
 
 def zeros(
-    field: Field,
+    field: BallEquations,
     minima: bool,
     start: Iterable[Box],
     budget: int,
@@ -117,7 +117,7 @@ def _balls(box: Box) -> list[arb]:
     return list(map(arb, *box))
 
 
-def _excluded(jet: Jet, box: Box, minima: bool) -> bool:
+def _excluded(jet: BallJet, box: Box, minima: bool) -> bool:
     """Whether no solution that is asked for lies in the box."""
     if any(v > 0 or v < 0 for v in jet.values) or any(c < 0 for c in jet.conditions):
         return True
@@ -153,7 +153,7 @@ def _met(box: Box, image: Sequence[arb]) -> Box | None:
     return (tuple(middle), tuple(radii)) if share < _WORTH else None
 
 
-def _settled(field: Field, box: Box, found: Sequence[Zero], whole: Floats) -> Zero | None:
+def _settled(field: BallEquations, box: Box, found: Sequence[Zero], whole: Floats) -> Zero | None:
     """A solution that Newton's method reaches from the box's middle, proved to be one; None when none is."""
     center = newton(field, box)
     if center is None or any(within(center, z.center, z.alone, field.circles) for z in found):
@@ -161,7 +161,7 @@ def _settled(field: Field, box: Box, found: Sequence[Zero], whole: Floats) -> Ze
     return proved(field, center, _shapes(box[1], whole))
 
 
-def _persisting(field: Field, zero: Zero, whole: Floats) -> Zero:
+def _persisting(field: BallEquations, zero: Zero, whole: Floats) -> Zero:
     """The solution for all parameters that one for some parameters belongs to."""
     persisting = proved(field, zero.center, _shapes(zero.alone, whole))
     if persisting is None:
@@ -182,7 +182,7 @@ def _units(found: Sequence[Zero], whole: Floats) -> list[float]:
     return [w * min((some[k] / max(some) for some in shares), default=1.0) for k, w in enumerate(whole)]
 
 
-def _widest(jet: Jet, box: Box, units: Sequence[float]) -> list[int]:
+def _widest(jet: BallJet, box: Box, units: Sequence[float]) -> list[int]:
     """The unknowns in the order in which halving is worth most: those first that the equations vary with most."""
 
     def weight(k: int) -> float:

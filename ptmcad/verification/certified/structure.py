@@ -11,10 +11,11 @@ from functools import cached_property
 from itertools import pairwise
 
 from ptmcad.answer.regionmap import Status
+from ptmcad.cover.rectangles import Cover
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.verification.certified.counted import check_region, contradiction_in, names_in, needed_for
-from ptmcad.verification.certified.sweep import Sweep, sweep
+from ptmcad.verification.certified.sweep import CoverSweep, sweep
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import kinds_of_count, shorthands_of
 from ptmcad.verification.report import Violation
@@ -28,44 +29,47 @@ SLACK = 4
 class CertifiedClaims(Claims):
     """The result, and what follows from its cover."""
 
+    @property
+    def cover(self) -> Cover:
+        """The cover, which a certified map has (`check_form`)."""
+        assert self.result.cover is not None
+        return self.result.cover
+
     @cached_property
-    def sweep(self) -> Sweep:
-        cover = self.result.cover
-        assert cover is not None
-        return sweep(cover)
+    def sweep(self) -> CoverSweep:
+        return sweep(self.cover)
 
     @cached_property
     def slack(self) -> int:
         """By how much areas may be told differently because of rounding, in squares of the lattice."""
-        cover = self.result.cover
-        assert cover is not None
         sides = (
             (right - left + top - bottom) * (len(patch.tubes) + 1)
-            for patch in cover.patches
+            for patch in self.cover.patches
             for left, right, bottom, top in [patch.frame]
         )
         return SLACK * sum(sides)
 
+    @property
+    def _square(self) -> tuple[Fraction, Fraction]:
+        """The sides of a square of the lattice."""
+        one, two = ((axis.high - axis.low) / self.cover.steps for axis in self.result.slice.axes)
+        return one, two
+
     @cached_property
     def square(self) -> Fraction:
         """The area of a square of the lattice."""
-        assert self.result.cover is not None
-        one, two = self.result.slice.axes
-        return (one.high - one.low) * (two.high - two.low) / self.result.cover.steps**2
+        width, height = self._square
+        return width * height
 
     def on_lattice(self, x: Fraction, y: Fraction) -> tuple[Fraction, Fraction]:
         """A point of the plane in lattice steps."""
-        assert self.result.cover is not None
-        one, two = self.result.slice.axes
-        steps = self.result.cover.steps
-        return (x - one.low) * steps / (one.high - one.low), (y - two.low) * steps / (two.high - two.low)
+        (one, two), (width, height) = self.result.slice.axes, self._square
+        return (x - one.low) / width, (y - two.low) / height
 
     def off_lattice(self, u: Fraction, v: Fraction) -> tuple[Fraction, Fraction]:
         """The inverse."""
-        assert self.result.cover is not None
-        one, two = self.result.slice.axes
-        steps = self.result.cover.steps
-        return one.low + u * (one.high - one.low) / steps, two.low + v * (two.high - two.low) / steps
+        (one, two), (width, height) = self.result.slice.axes, self._square
+        return one.low + u * width, two.low + v * height
 
     @cached_property
     def neighbours(self) -> tuple[dict[int, list[int]], dict[int, list[int]]]:

@@ -20,7 +20,7 @@ from itertools import pairwise
 from typing import Any
 
 from ptmcad.cover.rectangles import Cover
-from ptmcad.verification.certified.slanted import Frame, Part
+from ptmcad.verification.certified.slanted import Part, SlantedFrame
 from ptmcad.verification.report import Violation
 
 Entry = tuple[int, int, int]
@@ -39,7 +39,7 @@ class Item:
 
 
 @dataclass(frozen=True, slots=True)
-class Sweep:
+class CoverSweep:
     """The strips from below with what is in them, from the left.
 
     Attributes
@@ -55,7 +55,7 @@ class Sweep:
     steps: int
     lines: tuple[int, ...]
     rows: tuple[tuple[Item, ...], ...]
-    frames: tuple[Frame, ...]
+    frames: tuple[SlantedFrame, ...]
     component_of: tuple[int, ...]
     first_part: tuple[int, ...]
     areas: dict[int, Fraction]
@@ -123,7 +123,7 @@ class _Sets:
         self.parent[max(one, two)] = min(one, two)
 
 
-def sweep(cover: Cover) -> Sweep:
+def sweep(cover: Cover) -> CoverSweep:
     """Sweep the window from below.
 
     Parameters
@@ -135,7 +135,7 @@ def sweep(cover: Cover) -> Sweep:
     Violation
         When a patch is none, or a frame meets something else.
     """
-    frames = tuple(Frame(patch, k) for k, patch in enumerate(cover.patches))
+    frames = tuple(SlantedFrame(patch, k) for k, patch in enumerate(cover.patches))
     begin: dict[int, list[Entry]] = defaultdict(list)
     end: dict[int, list[Entry]] = defaultdict(list)
     pieces = [(r, -1) for r in cover.rectangles] + [(patch.frame, k) for k, patch in enumerate(cover.patches)]
@@ -221,7 +221,7 @@ def sweep(cover: Cover) -> Sweep:
     found: tuple[dict[int, Fraction], dict[int, Fraction]] = defaultdict(Fraction), defaultdict(Fraction)
     for n, is_free in enumerate(sets.free):
         found[not is_free][component_of[n]] += sets.areas[n]
-    return Sweep(
+    return CoverSweep(
         cover.steps,
         tuple(lines),
         tuple(rows),
@@ -248,7 +248,7 @@ def _left(item: Item) -> Any:
     return item.left
 
 
-def _ends(item: Item, frames: Sequence[Frame], line: int, side: int) -> bool:
+def _ends(item: Item, frames: Sequence[SlantedFrame], line: int, side: int) -> bool:
     """Whether an item has its bottom (side 2) or its top (3) on the line between two strips."""
     return item.frame < 0 or frames[item.frame].patch.frame[side] == line
 

@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from ptmcad.model import Model
+from ptmcad.model import Mechanism, Model, mechanism_in
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import Expression
-from ptmcad.verification.certified.lines import Line, line_of
+from ptmcad.verification.certified.lines import SpringLine, line_of
 from ptmcad.verification.certified.parallel import Parameters
 from ptmcad.verification.coordinates import CoordinateRing, circle_names
 from ptmcad.verification.derivation import Derivation, derivation_of
@@ -33,7 +33,7 @@ _Side = tuple[str, Waves, Vector, Vector | None]
 are together."""
 
 
-class Cone(NamedTuple):
+class SpringCone(NamedTuple):
     """A spring with a free length, or several side by side, which take K times a vector's length off the potential.
 
     Attributes
@@ -54,7 +54,7 @@ class Cone(NamedTuple):
     slopes: tuple[Vector, ...]
     weights: tuple[Vector, ...]
     bends: tuple[Vector, ...]
-    line: Line | None
+    line: SpringLine | None
 
 
 class Margin(NamedTuple):
@@ -95,7 +95,7 @@ class Form(NamedTuple):
     is_gradient: bool
     equations: tuple[Waves, ...]
     jacobian: tuple[Waves, ...]
-    cones: tuple[Cone, ...]
+    cones: tuple[SpringCone, ...]
     inequalities: tuple[Waves, ...] = ()
     stability: tuple[Waves, ...] = ()
     multiples: tuple[Waves, ...] = ()
@@ -203,11 +203,14 @@ def _by(f: Waves, k: int) -> Waves:
 
 def form_of(slice: Slice) -> Form:
     """The form of a slice's model, with springs as one that are parallel all over the slice."""
-    return _form(slice.model, tuple(slice.parameters.items()), slice.axes)
+    return _form(slice.model, mechanism_in(slice.model), tuple(slice.parameters.items()), slice.axes)
 
 
 @lru_cache(maxsize=8)
-def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[Axis, Axis]) -> Form:
+def _form(
+    model: Model, _mechanism: Mechanism | None, values: tuple[tuple[str, Expression], ...], axes: tuple[Axis, Axis]
+) -> Form:
+    """Of models that are equal as systems the mechanisms may be different ones."""
     true = derivation_of(model)
     ring = _Exponentials(model, true.ring)
     unknowns = ring.unknowns
@@ -240,11 +243,13 @@ def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[
     )
 
 
-@lru_cache(maxsize=8)
 def margins_of(model: Model, count: Count) -> tuple[Margin, ...]:
     """What a kind of count asks of stable solutions: of all springs, of which none has a negative free length."""
-    if count is not Count.ADMISSIBLE:
-        return ()
+    return _margins(model, mechanism_in(model)) if count is Count.ADMISSIBLE else ()
+
+
+@lru_cache(maxsize=8)
+def _margins(model: Model, _mechanism: Mechanism | None) -> tuple[Margin, ...]:
     true = derivation_of(model)
     ring, found = _Exponentials(model, true.ring), []
     for spring in true.springs:
@@ -268,7 +273,7 @@ def _divided(f: Waves, inequalities: Iterable[Waves]) -> Waves:
     return found
 
 
-def _cones(ring: _Exponentials, true: Derivation, parameters: Parameters) -> Iterable[Cone]:
+def _cones(ring: _Exponentials, true: Derivation, parameters: Parameters) -> Iterable[SpringCone]:
     """The springs with a free length; those that are parallel all over a slice as one."""
     everything = range(len(ring.unknowns))
     sides: list[_Side] = []
@@ -292,7 +297,7 @@ def _cones(ring: _Exponentials, true: Derivation, parameters: Parameters) -> Ite
         weights = slopes if along is None else (*[nothing] * (len(ring.unknowns) - 1), along)
         bends = tuple(_slope(weight, k) for weight in weights for k in everything)
         ((_, strength),) = pull.items()
-        yield Cone(name, strength, vector, slopes, weights, bends, line_of(vector, parameters.vanishes))
+        yield SpringCone(name, strength, vector, slopes, weights, bends, line_of(vector, parameters.vanishes))
 
 
 def _slope(vector: Vector, k: int) -> Vector:

@@ -108,7 +108,7 @@ def _check_is_numba(missing: ModuleNotFoundError) -> None:
 def places_of(claims: CertifiedClaims) -> Places | None:
     """What tells where a map's solutions may be; None without compiled code, or where their equations are not known."""
     try:
-        from ptmcad.verification.exclusion.places import Places as Isolated
+        from ptmcad.verification.exclusion.places import SolutionPlaces as Isolated
     except ModuleNotFoundError as missing:
         _check_is_numba(missing)
         return None

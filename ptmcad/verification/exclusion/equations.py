@@ -17,10 +17,10 @@ from ptmcad.errors import ExpressionError
 from ptmcad.text.expressions import Expression
 from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.verification.certified.kinks import Sides
-from ptmcad.verification.certified.lines import Line
+from ptmcad.verification.certified.lines import SpringLine
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.terms import evaluated, monomials
-from ptmcad.verification.certified.waves import Cone, Form, Key, Waves, form_of
+from ptmcad.verification.certified.waves import Form, Key, SpringCone, Waves, form_of
 from ptmcad.verification.exclusion.formulas import Formulas
 
 Pair = tuple[int, int]
@@ -42,7 +42,7 @@ class ConeFormulas(NamedTuple):
     slopes: tuple[Pair, ...]
     weights: tuple[Pair, ...]
     bends: tuple[Pair, ...]
-    cone: Cone
+    cone: SpringCone
 
     @property
     def name(self) -> str:
@@ -50,7 +50,7 @@ class ConeFormulas(NamedTuple):
         return self.cone.name
 
     @property
-    def line(self) -> Line:
+    def line(self) -> SpringLine:
         """That along which the vector stays."""
         assert self.cone.line is not None
         return self.cone.line
@@ -62,8 +62,7 @@ class Equations:
     def __init__(self, claims: CertifiedClaims):
         self.form = form_of(claims.result.slice)
         self.claims, self.list = claims, Formulas()
-        cover = claims.result.cover
-        assert cover is not None
+        cover = claims.cover
         f = self.list
         axes = [
             f.add(f.number(a.low), f.multiply(f.variable(k), f.number((a.high - a.low) / cover.steps)))
@@ -150,7 +149,7 @@ class Equations:
             total = f.add(total, part)
         return total
 
-    def _spring(self, cone: Cone) -> ConeFormulas:
+    def _spring(self, cone: SpringCone) -> ConeFormulas:
         slopes, weights = (
             [self._turned([vector[k] for vector in some]) for k in (0, 1)] for some in (cone.slopes, cone.weights)
         )

@@ -18,7 +18,7 @@ MAX_VARIABLES = 6
 """Both axes, three unknowns, and the direction of a spring; even, as sums over them take two at once."""
 
 
-class Tape(NamedTuple):
+class IntervalTape(NamedTuple):
     """Operations in their order, in arrays.
 
     Attributes
@@ -32,19 +32,6 @@ class Tape(NamedTuple):
     second: Any
     low: Any
     high: Any
-
-
-def shortened(tape: Tape, first: int, wanted: Sequence[int]) -> tuple[Tape, list[int]]:
-    """The first operations, and those that some values need; and the places of these."""
-    needed = np.arange(len(tape.code)) < first
-    needed[list(wanted)] = True
-    for n in reversed(range(first, len(needed))):
-        if needed[n] and tape.code[n] > VARIABLE:
-            needed[tape.first[n]] = needed[tape.second[n]] = True
-    place, kept = np.cumsum(needed) - 1, [column[needed] for column in tape]
-    is_leaf = kept[0] <= VARIABLE
-    kept[1:3] = (np.where(is_leaf, operands, place[operands]) for operands in kept[1:3])
-    return Tape(*kept), place[list(wanted)].tolist()
 
 
 class Formulas:
@@ -170,7 +157,7 @@ class Formulas:
             total = self.subtract(total, part) if k % 2 else self.add(total, part)
         return total
 
-    def tape(self, first: Sequence[int], wanted: Sequence[int]) -> tuple[Tape, int, list[int]]:
+    def tape(self, first: Sequence[int], wanted: Sequence[int]) -> tuple[IntervalTape, int, list[int]]:
         """The operations that some values need, those of the first of them first.
 
         Returns
@@ -190,7 +177,7 @@ class Formulas:
             low.append(below)
             high.append(above)
         code, first_of, second = (np.array([row[k] for row in rows], dtype=np.int64) for k in range(3))
-        tape = Tape(code, first_of, second, np.array(low), np.array(high))
+        tape = IntervalTape(code, first_of, second, np.array(low), np.array(high))
         return tape, len(early), [place[n] for n in (*first, *wanted)]
 
     def _needed(self, wanted: Sequence[int]) -> set[int]:

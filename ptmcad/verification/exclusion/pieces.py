@@ -13,7 +13,7 @@ import numpy as np
 
 from ptmcad.cover.rectangles import Patch, Rectangle
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.sweep import Sweep
+from ptmcad.verification.certified.sweep import CoverSweep
 
 Bound = tuple[int, tuple[int, ...]] | None
 """A polynomial by its controls, and what is added to them."""
@@ -24,7 +24,7 @@ MAX_CONTROLS = 64
 """Of a polynomial: pieces with more hold nothing."""
 
 
-class Row(NamedTuple):
+class PieceRow(NamedTuple):
     """A piece: its frame, its polynomials and their axis, and by how much the frame is wider than their interval."""
 
     frame: Rectangle
@@ -66,14 +66,13 @@ def pieces_of(claims: CertifiedClaims, wider: int = 0) -> Pieces:
     ----------
     wider : lattice steps by which tubes and their frames are made wider on all sides; what this adds is not proved.
     """
-    cover = claims.result.cover
-    assert cover is not None
-    rows: list[Row] = [Row(r) for r in cover.rectangles]
+    cover = claims.cover
+    rows: list[PieceRow] = [PieceRow(r) for r in cover.rectangles]
     for patch in cover.patches:
         left, right, bottom, top = patch.frame
         frame = left - wider, right + wider, bottom - wider, top + wider
         rows += [
-            Row(frame, patch.along, (-t.half - wider, t.controls), (t.half + wider, t.controls), wider)
+            PieceRow(frame, patch.along, (-t.half - wider, t.controls), (t.half + wider, t.controls), wider)
             for t in patch.tubes
             if len(t.controls) <= MAX_CONTROLS
         ]
@@ -89,8 +88,7 @@ def no_pieces(steps: int) -> Pieces:
 
 def widened(claims: CertifiedClaims, wider: int) -> float:
     """At most this share of the window is added to tubes by making them wider."""
-    cover = claims.result.cover
-    assert cover is not None
+    cover = claims.cover
     total = 0
     for patch in cover.patches:
         length = patch.frame[2 * patch.along + 1] - patch.frame[2 * patch.along]
@@ -99,22 +97,22 @@ def widened(claims: CertifiedClaims, wider: int) -> float:
     return total / cover.steps**2 * (1 + 1e-9)
 
 
-def _open_in_strips(found: Sweep, cells: dict[int, int]) -> list[Row]:
+def _open_in_strips(found: CoverSweep, cells: dict[int, int]) -> list[PieceRow]:
     return [
-        Row((item.left, item.right, low, high))
+        PieceRow((item.left, item.right, low, high))
         for (low, high), row in zip(pairwise(found.lines), found.rows, strict=True)
         for item in row
         if item.frame < 0 and item.free and found.component_of[item.node] not in cells
     ]
 
 
-def _open_in_frames(found: Sweep, cells: dict[int, int]) -> list[Row]:
+def _open_in_frames(found: CoverSweep, cells: dict[int, int]) -> list[PieceRow]:
     rows = []
     for frame, first in zip(found.frames, found.first_part, strict=True):
         patch = frame.patch
         for k in range(len(patch.tubes) + 1):
             if found.component_of[first + k] not in cells and len(patch.tubes[0].controls) <= MAX_CONTROLS:
-                rows.append(Row(patch.frame, patch.along, *_between(patch, k)))
+                rows.append(PieceRow(patch.frame, patch.along, *_between(patch, k)))
     return rows
 
 
@@ -127,7 +125,7 @@ def _between(patch: Patch, k: int) -> tuple[Bound, Bound]:
     )
 
 
-def _in_arrays(rows: list[Row], steps: int) -> Pieces:
+def _in_arrays(rows: list[PieceRow], steps: int) -> Pieces:
     frames = np.array([row.frame for row in rows], dtype=np.float64).reshape(-1, 4)
     spans = np.array([_span(row) for row in rows], dtype=np.float64).reshape(-1, 2)
     along = np.array([row.along for row in rows], dtype=np.int64)
@@ -162,6 +160,6 @@ def _in_arrays(rows: list[Row], steps: int) -> Pieces:
     )
 
 
-def _span(row: Row) -> tuple[int, int]:
+def _span(row: PieceRow) -> tuple[int, int]:
     """The interval of a piece's polynomials."""
     return row.frame[2 * row.along] + row.wider, row.frame[2 * row.along + 1] - row.wider

@@ -22,7 +22,7 @@ from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.exclusion.formulas import enclosing
 from ptmcad.verification.exclusion.pieces import Pieces, no_pieces
 from ptmcad.verification.exclusion.search import isolate
-from ptmcad.verification.exclusion.systems import System, halves_over, solutions_of, window_of
+from ptmcad.verification.exclusion.systems import CriticalSystem, halves_over, solutions_of, window_of
 
 BUDGET = 16_000
 """Boxes that are looked at for one place and one choice of sides ..."""
@@ -39,7 +39,7 @@ _ROUNDED_UP = 1 + 2.0**-50
 Range = tuple[Fraction, Fraction]
 
 
-class Places:
+class SolutionPlaces:
     """The boxes of a map's solutions.
 
     Real unknowns may have bounds that are proved over the window; where they have not, each place has its own.
@@ -51,13 +51,12 @@ class Places:
     """
 
     def __init__(self, claims: CertifiedClaims):
-        assert claims.result.cover is not None
         self._claims = claims
         self._halves: Floats | None = None
         with suppress(Unproved):
             self._halves = halves_over(claims, *window_of(claims))
         self._systems = solutions_of(claims, self._halves)
-        self._steps = claims.result.cover.steps
+        self._steps = claims.cover.steps
         self._pieces = no_pieces(self._steps)
 
     def __call__(self, u: Range, v: Range) -> Where | None:
@@ -85,7 +84,7 @@ class Places:
 class _Isolated:
     """The boxes of one system's solutions over a rectangle, which are looked for when they are asked for."""
 
-    system: System
+    system: CriticalSystem
     rectangle: Sequence[tuple[float, float]]
     smallest: float
     pieces: Pieces

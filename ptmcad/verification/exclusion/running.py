@@ -13,7 +13,7 @@ import numpy as np
 
 from ptmcad.verification.exclusion.pieces import Pieces
 from ptmcad.verification.exclusion.search import GONE, HALVED, STUCK, look, spread
-from ptmcad.verification.exclusion.systems import System
+from ptmcad.verification.exclusion.systems import CriticalSystem
 
 MAX_WAITING = 1_000_000
 """Boxes: with more of them the youngest are looked at first."""
@@ -43,7 +43,7 @@ class Rest:
 
 
 def search(
-    system: System,
+    system: CriticalSystem,
     pieces: Pieces,
     start: Any,
     budget: int,
@@ -89,7 +89,7 @@ class _Choice:
     those that would not be halved any more.
     """
 
-    def __init__(self, system: System, pieces: Pieces, smallest: float):
+    def __init__(self, system: CriticalSystem, pieces: Pieces, smallest: float):
         self._all, self._pieces, self._smallest = system, pieces, smallest
         self._some, self._chosen = system, np.ones(len(system.zero) + len(system.not_negative), dtype=bool)
         self._told, self._looked = np.zeros(len(self._chosen)), 0
@@ -113,7 +113,7 @@ class _Choice:
             self._chosen, self._some = chosen, self._all.with_some(chosen)
         return boxes, outcome, other
 
-    def _look(self, system: System, boxes: Any, outcome: Any, other: Any, told: Any = None) -> None:
+    def _look(self, system: CriticalSystem, boxes: Any, outcome: Any, other: Any, told: Any = None) -> None:
         if told is None:
             told = np.zeros(len(system.zero) + len(system.not_negative))
         look(system.over_window(self._smallest), system.tape, self._pieces, boxes, outcome, other, told)

@@ -24,7 +24,7 @@ from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.waves import Waves, form_of, margins_of
 from ptmcad.verification.exclusion.equations import Equations, Pair, bases
-from ptmcad.verification.exclusion.formulas import Tape, shortened
+from ptmcad.verification.exclusion.formulas import Formulas, IntervalTape
 
 SHORT_SHARE = 16
 """A spring is short, for total counts, if its length is less than this part of the sum of its vector's factors."""
@@ -53,23 +53,36 @@ class Compiled(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class System:
+class CriticalSystem:
     """A system in lattice steps of both axes and in its unknowns.
 
     Attributes
     ----------
+    formulas : which those of ``zeros`` and ``signs`` are of, and which the tape has at ``zero`` and ``not_negative``.
     early, first : as above; start : (variables, 2), a box that has all solutions over the window.
     """
 
     name: str
-    tape: Tape
+    formulas: Formulas
+    zeros: tuple[int, ...]
+    signs: tuple[int, ...]
+    tape: IntervalTape
     zero: tuple[int, ...]
     not_negative: tuple[int, ...]
     early: int
     first: int
     start: Any
 
-    def within(self, halves: Floats) -> System:
+    @classmethod
+    def of(
+        cls, name: str, formulas: Formulas, zeros: Sequence[int], signs: Sequence[int], early: int, start: Any
+    ) -> CriticalSystem:
+        """That of some formulas, of which the first ones are evaluated before all others."""
+        tape, first, places = formulas.tape(zeros[:early], [*zeros[early:], *signs])
+        zero, not_negative = places[: len(zeros)], places[len(zeros) :]
+        return cls(name, formulas, (*zeros,), (*signs,), tape, (*zero,), (*not_negative,), early, first, start)
+
+    def within(self, halves: Floats) -> CriticalSystem:
         """The same with its first unknowns in other ranges, of which half the widths are given."""
         start = self.start.copy()
         start[2 : 2 + len(halves)] = [(-half, half) for half in halves]
@@ -80,7 +93,7 @@ class System:
         """How many of the formulas that are zero tell what is halved; over a place one less."""
         return len(self.start) - 1
 
-    def with_some(self, chosen: Any) -> System:
+    def with_some(self, chosen: Any) -> CriticalSystem:
         """The same without some of its formulas, of which none is claimed then.
 
         Parameters
@@ -89,12 +102,11 @@ class System:
             ones are.
         """
         chosen = chosen | (np.arange(len(chosen)) < max(self.early, self.measured))
-        zero, not_negative = (
+        zeros, signs = (
             [n for n, kept in zip(some, which, strict=True) if kept]
-            for some, which in ((self.zero, chosen[: len(self.zero)]), (self.not_negative, chosen[len(self.zero) :]))
+            for some, which in ((self.zeros, chosen[: len(self.zeros)]), (self.signs, chosen[len(self.zeros) :]))
         )
-        tape, places = shortened(self.tape, self.first, [*zero, *not_negative])
-        return replace(self, tape=tape, zero=tuple(places[: len(zero)]), not_negative=tuple(places[len(zero) :]))
+        return CriticalSystem.of(self.name, self.formulas, zeros, signs, self.early, self.start)
 
     def over_window(self, smallest: float) -> Compiled:
         """In arrays, to be looked at over boxes of the window that are wider than a share of it."""
@@ -117,7 +129,7 @@ class System:
 _ANGLE = (-pi - 1e-6, pi + 1e-6)
 
 
-def systems_of(claims: CertifiedClaims) -> list[System]:
+def systems_of(claims: CertifiedClaims) -> list[CriticalSystem]:
     """All systems of a map.
 
     Raises
@@ -128,7 +140,7 @@ def systems_of(claims: CertifiedClaims) -> list[System]:
     return list(_Systems(claims, halves_over(claims, *window_of(claims))).all())
 
 
-def solutions_of(claims: CertifiedClaims, halves: Floats | None) -> list[System]:
+def solutions_of(claims: CertifiedClaims, halves: Floats | None) -> list[CriticalSystem]:
     """What is zero at the solutions that a map counts: a system for each choice of sides, in the order of these.
 
     Guarantee: over each point of the window all that are counted are solutions of it, in the box of its start; it may
@@ -183,12 +195,12 @@ class _Systems:
         self.positive, self.turning, self.where = self.asked, list[int](), ""
         self.margins = self._margins()
 
-    def all(self) -> Iterator[System]:
+    def all(self) -> Iterator[CriticalSystem]:
         """All of them, for springs on one line each on all sides of length zero."""
         for _ in self._sides():
             yield from self._on_side()
 
-    def solutions(self) -> Iterator[System]:
+    def solutions(self) -> Iterator[CriticalSystem]:
         """The solutions that are counted, or minima where no others are; by few formulas, as windows are points."""
         m = self.model
         for _ in self._sides():
@@ -208,7 +220,7 @@ class _Systems:
             self.where = "".join(f", {name} {'ahead' if sign > 0 else 'behind'}" for name, sign in side.items())
             yield
 
-    def _on_side(self) -> Iterator[System]:
+    def _on_side(self) -> Iterator[CriticalSystem]:
         m, f, springs = self.model, self.model.list, self.turning
         charted = not self.minima and self.form.size > 1
         plain = [[int(i == j) for j in range(self.form.size)] for i in range(self.form.size)]
@@ -250,7 +262,7 @@ class _Systems:
     def _short(self, k: int) -> int:
         return self.model.list.number(Fraction(float(self.model.reach(k) / SHORT_SHARE)))
 
-    def _short_folds(self, k: int) -> System:
+    def _short_folds(self, k: int) -> CriticalSystem:
         """Folds at which one spring is short, with its direction as one more unknown: |d| det H is a polynomial.
 
         |d| det (M - K/|d| w v^T) = |d| det M + K det of M with w as one more column and v as one more row; w is v but
@@ -275,7 +287,7 @@ class _Systems:
             unknowns=n + 1,
         )
 
-    def _cone(self, k: int) -> System:
+    def _cone(self, k: int) -> CriticalSystem:
         """Configurations in which one spring has no length, and some direction of it balances the other forces."""
         m, f, n = self.model, self.model.list, self.form.size
         s, name = m.cones[k], f"cones of {m.cones[k].name}"
@@ -307,19 +319,16 @@ class _Systems:
         zero: Sequence[int],
         not_negative: Sequence[int],
         unknowns: int | None = None,
-    ) -> System:
+    ) -> CriticalSystem:
         """A system, of whose formulas that are zero the first ones are evaluated before all others."""
-        cover = self.claims.result.cover
-        assert cover is not None
-        tape, early, places = self.model.list.tape(first, [*zero, *not_negative])
-        count = len(first) + len(zero)
+        cover = self.claims.cover
         ranges = [(0.0, float(cover.steps))] * 2
         number = self.form.size if unknowns is None else unknowns
         if number:
             ranges += [(-half, half) for half in self._halves] + [_ANGLE] * (number - self.form.size)
-        return System(
-            name + self.where, tape, tuple(places[:count]), tuple(places[count:]), len(first), early, np.array(ranges)
+        return CriticalSystem.of(
+            name + self.where, self.model.list, [*first, *zero], not_negative, len(first), np.array(ranges)
         )
 
 
-__all__ = ["Compiled", "System", "halves_over", "solutions_of", "systems_of", "window_of"]
+__all__ = ["Compiled", "CriticalSystem", "halves_over", "solutions_of", "systems_of", "window_of"]

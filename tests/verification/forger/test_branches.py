@@ -39,11 +39,11 @@ from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas
-from ptmcad.verification.branches import Effort, _along
+from ptmcad.verification.branches import PanelEffort, _along
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
-from ptmcad.verification.disks import PrecisionTooLow, _series
-from ptmcad.verification.fibre import Fibre
+from ptmcad.verification.disks import BallsTooWide, _series
+from ptmcad.verification.fibre import FibreAlgebra
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.model import check_system
 from ptmcad.verification.parameters import check_boundary, check_text
@@ -446,12 +446,12 @@ def test_a_point_at_a_pole() -> None:
 
 
 def test_counts_without_a_zero_euler_sum_are_a_fault_of_the_check(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Fibre, "counts", lambda self: Counts(3, 2, (2, 1, 0)))
+    monkeypatch.setattr(FibreAlgebra, "counts", lambda self: Counts(3, 2, (2, 1, 0)))
     rejected(check_counts, the("fig3"), "the Euler sum of")
 
 
 def test_a_degenerate_sample(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Fibre, "counts", lambda self: None)
+    monkeypatch.setattr(FibreAlgebra, "counts", lambda self: None)
     rejected(check_counts, the("fig3"), "an equilibrium is degenerate at")
 
 
@@ -460,10 +460,10 @@ def test_branches_that_are_not_told_apart_ask_for_more_precision() -> None:
     distance = arb(2) ** -20
     rows = [arb_poly([1 - distance * distance, 0, -1]), arb_poly([-2]), arb_poly([1])]
     blurred = [rows[0] + arb(0, 2.0**-40), *rows[1:]]
-    effort = Effort(arb(2) ** -20, fmpq(1, 8), fmpq(1, 2**20), (fmpq(0), fmpq(2)), (2,), (fmpq(0), fmpq(1)))
+    effort = PanelEffort(arb(2) ** -20, fmpq(1, 8), fmpq(1, 2**20), (fmpq(0), fmpq(2)), (2,), (fmpq(0), fmpq(1)))
     with ctx.workprec(64):
-        with pytest.raises(PrecisionTooLow):
+        with pytest.raises(BallsTooWide):
             _series(rows, arb_series([arb(1)], prec=3), 3)
-        with pytest.raises(PrecisionTooLow):
+        with pytest.raises(BallsTooWide):
             _along(blurred, fmpq(1, 8), 1 + distance, 2, effort)
         assert _along(rows, fmpq(1, 8), 1 + distance, 2, effort) is None  # but not where it is known well

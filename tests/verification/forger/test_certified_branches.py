@@ -44,8 +44,8 @@ from ptmcad.text.expressions import axis
 from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.certified.boxes import Box, Unproved
-from ptmcad.verification.certified.counted import Counted, Counts
-from ptmcad.verification.certified.field import Field
+from ptmcad.verification.certified.counted import CellCounts, CountedPoint
+from ptmcad.verification.certified.field import BallEquations
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.certified.points import check_points, counting_of
 from ptmcad.verification.certified.sampling import check_boxes
@@ -378,7 +378,7 @@ def test_no_box_is_proved_outside_of_the_domain(name: str, text: str, words: str
     r = with_parameter(name, text)(springs())
     x, y = (ball_of(a.low).union(ball_of(a.high)) for a in r.slice.axes)
     with pytest.raises(Unproved, match=words):
-        counting_of(CertifiedClaims(r)).over(r.slice, x, y, Counted(Counts(None, None, None, None), (), {}))
+        counting_of(CertifiedClaims(r)).over(r.slice, x, y, CountedPoint(CellCounts(None, None, None, None), (), {}))
 
 
 DEGENERATE: Box = ((0.0, 0.0), (2.0**-20, 2.0**-20))
@@ -394,7 +394,9 @@ DEGENERATE: Box = ((0.0, 0.0), (2.0**-20, 2.0**-20))
 )
 def test_a_search_that_gives_up(options: dict[str, Any], words: str) -> None:
     given = {n: Fraction(int(n in ("L1", "L2", "rho", "k1", "k2", "k3"))) for n in NAMES}
-    field = Field(form_of(claims_of(given, Count.TOTAL).result.slice), {n: ball_of(v) for n, v in given.items()})
+    field = BallEquations(
+        form_of(claims_of(given, Count.TOTAL).result.slice), {n: ball_of(v) for n, v in given.items()}
+    )
     whole: dict[str, Any] = {"start": [((0.0, 0.0), (3.2, 3.2))], "budget": 1000}
     with ctx.workprec(53), pytest.raises(Unproved, match=words):
         zeros(field, False, **{**whole, **options})
@@ -405,7 +407,7 @@ def test_equilibria_that_are_gone_on_with_are_different_and_persist() -> None:
     claims = CertifiedClaims(r)
     counting = counting_of(claims)
     there = counting.at(claims, *r.cells[0].sample)
-    field = Field(counting.form, {n: ball_of(v) for n, v in there.values.items()})
+    field = BallEquations(counting.form, {n: ball_of(v) for n, v in there.values.items()})
     whole, found = [((0.0, 0.0), (3.2, 3.2))], there.found
     again, _ = zeros(field, False, whole, 20_000, near=found)
     assert len(again) == len(found)
