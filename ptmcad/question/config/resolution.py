@@ -162,6 +162,7 @@ def _judged(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[str
     unread = record.unread | set(tuple(record.axes)[2:])  # of three axes the last one
     record = record._replace(unread=unread)
     values, faulty = resolved(record, {name: axis(k) for k, name in enumerate(tuple(record.axes)[:2])}, faults)
+    assert faults.found or not faulty, "a name that stands for 1 has no value"
     known = [a for a in axes[:2] if a is not None]
     window = (known[0], known[1]) if len(known) == 2 else None
     wrong: set[str] = set()
@@ -272,8 +273,9 @@ def point_of(record: Record) -> dict[str, Fraction]:
     """Resolve a record to a point; its axes that are no parameters have numbers in place of their names."""
     mechanism = record.model
     faults = Faults()
-    expressions, _ = resolved(record, {}, faults)
+    expressions, faulty = resolved(record, {}, faults)
     faults.check()
+    assert not faulty, "a name that stands for 1 has no value"
     values = {name: expression.constant() for name, expression in expressions.items()}
     for name, value in values.items():
         check_number(name, mechanism.kind(name), value, record.place_of(name))

@@ -36,7 +36,7 @@ SHIFT = Fraction(1, 100)
 MAX_COEFFICIENT = 9
 
 
-class Family(NamedTuple):
+class GrowingFamily(NamedTuple):
     """One family: what grows, its sizes, the record for a size and a seed, and its number of regions."""
 
     title: str
@@ -68,9 +68,9 @@ def fold(n: int, seed: int = 0) -> Row:
 
 
 FAMILIES = {
-    "degree": Family("Degree of the curves: no loads", (2, 4, 6, 8, 12, 16), unloaded, lambda n: 4),
+    "degree": GrowingFamily("Degree of the curves: no loads", (2, 4, 6, 8, 12, 16), unloaded, lambda n: 4),
     # below 2 rho = |T_n|/2 one region on either side of each of the n zeros; that of two; that above
-    "fold": Family("Folds along one axis", (2, 4, 8, 16, 32), fold, lambda n: n + 3),
+    "fold": GrowingFamily("Folds along one axis", (2, 4, 8, 16, 32), fold, lambda n: n + 3),
 }  # fmt: skip
 
 
