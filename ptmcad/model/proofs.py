@@ -127,20 +127,16 @@ def _product(one: Monomial, two: Monomial) -> Iterator[tuple[Monomial, int]]:
     exponents = dict(one)
     for variable, e in two:
         exponents[variable] = exponents.get(variable, 0) + e
-    return _reduced(exponents)
-
-
-def _reduced(exponents: dict[str, int]) -> Iterator[tuple[Monomial, int]]:
-    """A monomial by cos^2 = 1 - sin^2."""
-    cosine = next((v for v, e in exponents.items() if e > 1 and v.startswith("cos ")), "")
-    if not cosine:
-        yield tuple(sorted(exponents.items())), 1
-        return
-    del exponents[cosine]
-    sine = f"sin {cosine[4:]}"
-    yield from _reduced(dict(exponents))
-    for monomial, sign in _reduced({**exponents, sine: exponents.get(sine, 0) + 2}):
-        yield monomial, -sign
+    found: list[tuple[dict[str, int], int]] = [(exponents, 1)]
+    for cosine in [v for v, e in exponents.items() if e > 1 and v.startswith("cos ")]:
+        sine = f"sin {cosine[4:]}"
+        split = []
+        for powers, sign in found:  # cos^2 = 1 - sin^2
+            rest = {v: e for v, e in powers.items() if v != cosine}
+            split += [(rest, sign), ({**rest, sine: rest.get(sine, 0) + 2}, -sign)]
+        found = split
+    for powers, sign in found:
+        yield tuple(sorted(powers.items())), sign
 
 
 def check_bars(mechanism: Mechanism, faults: Faults) -> None:
