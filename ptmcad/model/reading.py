@@ -42,6 +42,11 @@ def two(items: Mapping[str, str]) -> dict[str, Any]:
     return {"type": "array", "minItems": 2, "maxItems": 2, "items": items}
 
 
+def faulty_parts(faults: Faults) -> frozenset[str]:
+    """The parts of a description of which something is noted."""
+    return frozenset((fault.key or "").partition(".")[0] for fault in faults.found)
+
+
 def faulty_entries(faults: Faults, part: str) -> frozenset[str]:
     """The entries of a part of a description of which something is noted."""
     keys = ((fault.key or "").split(".") for fault in faults.found)

@@ -16,7 +16,7 @@ from ptmcad.model.description import Mechanism
 from ptmcad.model.elements import Closing, Load, Moment, Spring, Support, TorsionSpring
 from ptmcad.model.evaluate import value_at
 from ptmcad.model.proofs import check_bars, check_elements, check_numbers, check_symmetries, check_unknowns
-from ptmcad.model.reading import NAME_SCHEMA, NUMBER, POINTS, VALUE, Context, constant, new_name, two
+from ptmcad.model.reading import NAME_SCHEMA, NUMBER, POINTS, VALUE, Context, constant, faulty_parts, new_name, two
 from ptmcad.model.sizes import check_sizes
 from ptmcad.model.trees import ONE, ZERO, angle_name
 from ptmcad.model.work import split_moments
@@ -68,7 +68,7 @@ def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = Fal
     read["bars"] += tuple(bar for joint in read["xjoints"] for bar in joint.rigid)
     found = Mechanism(**read, source=record)
     if not proved:
-        if not {(fault.key or "").partition(".")[0] for fault in faults.found} - _FORCELESS:
+        if not faulty_parts(faults) - _FORCELESS:
             check_sizes(found, faults)
         _prove(found, faults)
     return found
@@ -217,7 +217,7 @@ _FORCELESS = frozenset({"name", "title", "bars", "supports", "symmetries"})
 
 def _prove(found: Mechanism, faults: Faults) -> None:
     """Note what the parts show together only, where the parts that are concerned are right."""
-    faulty = {(fault.key or "").partition(".")[0] for fault in faults.found}
+    faulty = faulty_parts(faults)
     if not faulty & _SHAPE:
         check_bars(found, faults)
         if found.closing and "closing" not in faulty:

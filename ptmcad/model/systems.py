@@ -11,7 +11,7 @@ from typing import Any
 from ptmcad.errors import ConfigError, Faults
 from ptmcad.model.description import System
 from ptmcad.model.evaluate import value_at
-from ptmcad.model.reading import VALUE, Context, new_name, parsed
+from ptmcad.model.reading import VALUE, Context, faulty_parts, new_name, parsed
 from ptmcad.model.sizes import check_sizes
 from ptmcad.model.trees import PI
 from ptmcad.text.codec import Codec, listed, part, reading, record
@@ -69,7 +69,7 @@ def read_system(record: Mapping[str, Any], faults: Faults) -> System:
         with faults:
             if wrong:
                 raise ConfigError(problem, key=key)
-    faulty = {(fault.key or "").partition(".")[0] for fault in faults.found}
+    faulty = faulty_parts(faults)
     if not faulty & (_HOLDING | {"positive", "stable"}):
         check_sizes(system, faults)
     if not misspelt and not faulty & _HOLDING:
