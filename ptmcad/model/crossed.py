@@ -51,17 +51,13 @@ def without_xjoints(mechanism: Mechanism) -> ClosedMechanism:
     if sum(len(e.terms) for e in equations) > MAX_TERMS or most > MAX_MINOR:
         raise ConfigError(f"with x-joints {TOO_LARGE}; numbers for lengths make it smaller", key="x-joint")
     trees = [[tree_of(entry, mechanism.angles) for entry in row] for row in rows]
-    return ClosedMechanism(
-        mechanism.name,
-        mechanism.parameters,
-        mechanism.unknowns,
-        tuple(tree_of(e, mechanism.angles) for e in equations),
+    return ClosedMechanism.of(
+        mechanism,
+        {},
+        equations=tuple(tree_of(e, mechanism.angles) for e in equations),
         inequalities=tuple(tree_of(d, mechanism.angles) for d in positive) if len(positive) > 1 else (),
         stability=tuple(determinant([row[:k] for row in trees[:k]]) for k in range(1, len(rows) + 1)),
-        mechanism=mechanism,
         tangent=(),
-        source=mechanism.source,
-        title=mechanism.title,
     )
 
 

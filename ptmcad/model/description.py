@@ -16,6 +16,7 @@ from typing import Any, ClassVar, NamedTuple
 
 from ptmcad.errors import ExpressionError
 from ptmcad.model.elements import (
+    NAMES,
     Closing,
     Element,
     Kind,
@@ -238,13 +239,6 @@ class Model:
             yield from trees
 
 
-class _Names(dict[str, Place]):
-    """The names of points' coordinates, in place of what these are."""
-
-    def __missing__(self, point: str) -> Place:
-        return Name(f"{point}.x"), Name(f"{point}.y")
-
-
 @dataclass(frozen=True)
 class Mechanism(Model):
     """A mechanism and what follows from its description alone.
@@ -303,7 +297,7 @@ class Mechanism(Model):
     @cached_property
     def elements(self) -> Mapping[str, Element]:
         """The same with the points' coordinates as names, ``P.x`` and ``P.y``."""
-        return self.elements_with(_Names())
+        return self.elements_with(NAMES)
 
     def written(self, kind: Kind) -> tuple[Tree, ...]:
         """What is written for a kind of quantity, element by element."""
@@ -474,6 +468,14 @@ class ClosedMechanism(System):
 
     __hash__ = Model.__hash__
     __repr__ = Model.__repr__
+
+    @classmethod
+    def of(cls, mechanism: Mechanism, further: Mapping[str, UnknownKind], **parts: Any) -> ClosedMechanism:
+        """That of a mechanism, with further unknowns."""
+        return cls(
+            mechanism.name, mechanism.parameters, {**mechanism.unknowns, **further}, **parts, mechanism=mechanism,
+            multipliers=tuple(further), source=mechanism.source, title=mechanism.title,
+        )  # fmt: skip
 
     @property
     def record_key(self) -> str:

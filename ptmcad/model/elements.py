@@ -157,6 +157,15 @@ class Element(NamedTuple):
     idle: str = ""
 
 
+class _Names(dict[str, Place]):
+    def __missing__(self, point: str) -> Place:
+        return Name(f"{point}.x"), Name(f"{point}.y")
+
+
+NAMES: Mapping[str, Place] = _Names()
+"""The names of points' coordinates, ``P.x`` and ``P.y``, in place of what these are."""
+
+
 def squared_distance(points: Mapping[str, Place], start: str, end: str) -> Tree:
     """The square of a distance, given the coordinates as trees."""
     pairs = zip(points[start], points[end], strict=True)

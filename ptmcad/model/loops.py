@@ -40,7 +40,7 @@ from itertools import combinations
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.model.crossed import without_xjoints
 from ptmcad.model.description import ClosedMechanism, Mechanism, Model
-from ptmcad.model.elements import Closing, UnknownKind, squared_distance
+from ptmcad.model.elements import NAMES, Closing, UnknownKind, squared_distance
 from ptmcad.model.proofs import Points
 from ptmcad.model.sizes import check_sizes
 from ptmcad.model.trees import ZERO, cofactors, derivative, determinant, negative, product, total
@@ -97,7 +97,7 @@ def check_closing(mechanism: Mechanism, faults: Faults) -> None:
             first = known.setdefault(frozenset((closing.start, closing.end)), n)
             if first < n:
                 raise ConfigError(f"number {first} is a bar between the same points", key=f"closing.{n}.between")
-            if not points.varies(points.distance(closing.start, closing.end)):
+            if not points.varies(squared_distance(NAMES, closing.start, closing.end)):
                 raise ConfigError(
                     f"the distance of {closing.start} and {closing.end} is constant, so that a bar between them closes "
                     "no loop",
@@ -129,10 +129,7 @@ def equations_of_loops(model: Mechanism) -> Model:
         slope = total(*(product(t, f) for t, f in zip(tangent, forces, strict=True)))
         equations = (*conditions, slope)
         stability = (determinant([*rows, [derivative(slope, name) for name in names]]),)
-    found = ClosedMechanism(
-        model.name, model.parameters, {**model.unknowns, **further}, equations, stability=stability, mechanism=model,
-        tangent=tangent, multipliers=tuple(further), source=model.source, title=model.title,
-    )  # fmt: skip
+    found = ClosedMechanism.of(model, further, equations=equations, stability=stability, tangent=tangent)
     sizes = Faults()
     try:
         check_sizes(replace(found, stability=()) if further else found, sizes)

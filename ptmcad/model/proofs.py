@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.model.description import Mechanism, Model
-from ptmcad.model.elements import UnknownKind, squared_distance
+from ptmcad.model.elements import NAMES, UnknownKind, squared_distance
 from ptmcad.model.evaluate import Named, evaluate, multiples, value_at
 from ptmcad.text.tree import Name, Tree, mapped, names_of
 
@@ -127,20 +127,16 @@ def _product(one: Monomial, two: Monomial) -> Iterator[tuple[Monomial, int]]:
     exponents = dict(one)
     for variable, e in two:
         exponents[variable] = exponents.get(variable, 0) + e
-    return _reduced(exponents)
-
-
-def _reduced(exponents: dict[str, int]) -> Iterator[tuple[Monomial, int]]:
-    """A monomial by cos^2 = 1 - sin^2."""
-    cosine = next((v for v, e in exponents.items() if e > 1 and v.startswith("cos ")), "")
-    if not cosine:
-        yield tuple(sorted(exponents.items())), 1
-        return
-    del exponents[cosine]
-    sine = f"sin {cosine[4:]}"
-    yield from _reduced(dict(exponents))
-    for monomial, sign in _reduced({**exponents, sine: exponents.get(sine, 0) + 2}):
-        yield monomial, -sign
+    found: list[tuple[dict[str, int], int]] = [(exponents, 1)]
+    for cosine in [v for v, e in exponents.items() if e > 1 and v.startswith("cos ")]:
+        sine = f"sin {cosine[4:]}"
+        split = []
+        for powers, sign in found:  # cos^2 = 1 - sin^2
+            rest = {v: e for v, e in powers.items() if v != cosine}
+            split += [(rest, sign), ({**rest, sine: rest.get(sine, 0) + 2}, -sign)]
+        found = split
+    for powers, sign in found:
+        yield tuple(sorted(powers.items())), sign
 
 
 def check_bars(mechanism: Mechanism, faults: Faults) -> None:
@@ -166,9 +162,9 @@ def check_bars(mechanism: Mechanism, faults: Faults) -> None:
 
 
 def check_elements(mechanism: Mechanism, faults: Faults) -> None:
-    """Note each spring whose length no unknown changes, and each torsion spring whose angle none does."""
+    """Note each spring whose length or angle no unknown changes."""
     points = Points(mechanism)
-    closing = [frozenset(names_of(points.distance(bar.start, bar.end))) for bar in mechanism.closing]
+    closing = [frozenset(names_of(squared_distance(NAMES, bar.start, bar.end))) for bar in mechanism.closing]
     for key, element in mechanism.elements.items():
         varying = element.varying
         if varying is not None and frozenset(names_of(varying)) not in closing and points.varies(varying):
@@ -289,13 +285,9 @@ class Points:
     def at(self, name: str) -> tuple[Polynomial, Polynomial]:
         return self.placed.parameter(f"{name}.x"), self.placed.parameter(f"{name}.y")
 
-    def distance(self, start: str, end: str) -> Tree:
-        """The square of a distance, in names of coordinates."""
-        return squared_distance({p: (Name(f"{p}.x"), Name(f"{p}.y")) for p in (start, end)}, start, end)
-
     def squared(self, start: str, end: str) -> Polynomial:
         """The square of a distance."""
-        return self.value(self.distance(start, end))
+        return self.value(squared_distance(NAMES, start, end))
 
     def varies(self, tree: Tree) -> bool:
         """Whether an expression changes with an unknown; also where that is too much to be multiplied out."""

@@ -25,6 +25,7 @@ from support.shipped_records import CONFIGS
 import ptmcad
 from ptmcad.ask.fields.equations import state_at
 from ptmcad.exact.models import system_from
+from ptmcad.exact.models.potential import deflections_of, geometry_of, squared_lengths
 from ptmcad.model import Mechanism, Model, described, described_system, mechanism_in, without_loops
 from ptmcad.text.tree import Number
 
@@ -76,13 +77,21 @@ def in_polynomials(model: Model, parameters: Rationals, unknowns: Rationals) -> 
                 total += term
             return total
 
-        is_system = mechanism_in(model) is not model
+        is_system = not isinstance(model, Mechanism)
+        shown: dict[str, Any] = {}
+        if isinstance(model, Mechanism):
+            shown = {
+                "points": {name: (number(x), number(y)) for name, (x, y) in geometry_of(model).nodes.items()},
+                "lengths": [mp.sqrt(number(squared)) for squared in squared_lengths(model)],
+                "deflections": [(number(cosine), number(sine)) for cosine, sine in deflections_of(model)],
+            }
         return Values(
             residuals=[number(e) for e in system.equations],
             jacobian=[[number(e) for e in row] for row in system.jacobian],
             energy=None if system.potential is None else number(system.potential),
             conditions=[number(e) for e in system.inequalities] if is_system else None,
             stability=[number(e) for e in system.stability] if is_system else None,
+            **shown,
         )
 
 
