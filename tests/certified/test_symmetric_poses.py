@@ -128,6 +128,14 @@ def test_springs_that_are_relaxed_together_by_the_same_equation(a: str) -> None:
         assert float(pose.reals[0]) ** 2 == pytest.approx(1 - float(Fraction(a)) ** 2)
 
 
+def test_an_unknown_may_have_the_name_of_a_number() -> None:
+    """The truss with its height called energy: at a = 3/5 without load the springs are relaxed at 4/5."""
+    named = {**TRUSS, "unknowns": {"energy": "length"}, "points": {**TRUSS["points"], "P": [0, "energy"]}}
+    stable, *_ = ptmcad.solve(model=ptmcad.Mechanism(named), a="3/5", b="3/5", f=0).equilibria
+    assert abs(float(stable.reals[0])) == pytest.approx(4 / 5)
+    assert nearly(stable.energy, 0)
+
+
 def test_springs_that_are_relaxed_together_by_symmetry() -> None:
     """A plate between four springs, level where all are relaxed: three equations in two unknowns, one where phi = 0."""
     plate = {

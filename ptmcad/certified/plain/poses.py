@@ -179,7 +179,7 @@ def numbers_at(model: Model, parameters: Mapping[str, Fraction]) -> Numbers:
     system = compiled_with(model, {name: graph.constant(value) for name, value in parameters.items()} | unknowns)
     found = {f"{angle}.cos": unknowns[angle].cos() for angle in mechanism.angles}
     found |= {f"{angle}.sin": unknowns[angle].sin() for angle in mechanism.angles}
-    found |= {name: unknowns[name] for name in mechanism.reals} | system.quantities
+    found |= {f"{name}.real": unknowns[name] for name in mechanism.reals} | system.quantities
     hessian, slopes = list[Formula](), list[Formula]()
     if (energy := system.energy()) is not None:
         found["energy"] = energy
@@ -355,7 +355,7 @@ def assembled(at: Numbers, numbers: Mapping[str, Enclosure], index: int | None, 
         stable=stable,
         flat=all(y.exact == 0 for _, y in nodes.values()),
         admissible=is_tense(stable, springs) if system.has_energy or at.is_closed else None,
-        reals=tuple(numbers[name] for name in mechanism.reals),
+        reals=tuple(numbers[f"{name}.real"] for name in mechanism.reals),
         torsion=torsion,
     )
 
