@@ -90,9 +90,7 @@ def family_variety(system: ParametricSystem, parameters: Mapping[str, Ratio]) ->
     InfiniteSolutionsError, DegenerateSliceError, NothingToCountError
         When every point of a generic member is exceptional.
     """
-    if system.turns is not None:
-        system = system.turns.system
-    given = on_slice(system, parameters)
+    given = on_slice(system.simplest, parameters)
     found = nondegenerate(given)
     if found.equations.unknowns > given.unknowns:
         return None

@@ -158,10 +158,9 @@ def simple_solutions(
 
 def degree_bound(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[int, int]:
     """The greatest degree of an equation, and Bezout's bound for the number of complex solutions, were it finite."""
-    simplest = system if system.turns is None else system.turns.system
-    equations, _ = at_point(simplest, values)
+    equations, _ = at_point(system.simplest, values)
     degrees = [max(map(sum, e), default=0) for e in equations]
-    return max(degrees), prod(degrees) * 2 ** len(simplest.ring.angles)
+    return max(degrees), prod(degrees) * 2 ** len(system.ring.angles)
 
 
 def solutions_at(

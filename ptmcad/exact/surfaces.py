@@ -34,7 +34,7 @@ def surfaces_of(
     box : the ranges of x, y and z.
     """
     limits = domain_limits(system, parameters)
-    equations = on_slice(system if system.turns is None else system.turns.system, parameters)
+    equations = on_slice(system.simplest, parameters)
     algebra = quotient_algebra(known.basis)
     assert algebra is not None  # it was, when the variety was computed
     given = [known.jacobian_norm[0], *equations.boundary, *limits, *sign_changes(equations, algebra)]

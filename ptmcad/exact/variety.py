@@ -98,10 +98,8 @@ def discriminant_variety(
     InfiniteSolutionsError, DegenerateSliceError
         When every point of the slice is exceptional.
     """
-    described = system
-    if system.turns is not None:
-        system = system.turns.system  # with the same solutions, and the same determinant but for its sign
-    given = on_slice(system, parameters)
+    simplest = system.simplest
+    given = on_slice(simplest, parameters)
     found = None if known is None else known(given)
     equations, algebra, rows, jacobian_norm = nondegenerate(given) if found is None else found
     seen = _Components(window, without)
@@ -124,13 +122,13 @@ def discriminant_variety(
         seen.adopt([f for f in factors if f in unbounded], Kind.INFINITY, why)
     if "sign-curve" in without:
         for order in range(1, system.dimension if system.has_index else 1):
-            minor = element_on_slice(system, leading_minor(system, order), parameters)
+            minor = element_on_slice(simplest, leading_minor(simplest, order), parameters)
             seen.adopt(irreducible_factors(norm(algebra, lifted(minor, equations.unknowns))[0]), Kind.AUXILIARY)
     if "hermite-matrix" in without:
         for part in determinant(trace_form(algebra)):
             seen.adopt(irreducible_factors(part), Kind.AUXILIARY)
     components = tuple(
-        replace(c, continuum=continuum(from_plane(c.polynomial), described, parameters, given, jacobian_norm[0]))
+        replace(c, continuum=continuum(from_plane(c.polynomial), system, parameters, given, jacobian_norm[0]))
         if not c.left_out
         else c
         for c in seen.in_order()
@@ -140,8 +138,7 @@ def discriminant_variety(
 
 def check_hypotheses(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> None:
     """Refuse what `discriminant_variety` would refuse, without the curves."""
-    simplest = system if system.turns is None else system.turns.system
-    equations, algebra, *_ = nondegenerate(on_slice(simplest, parameters))
+    equations, algebra, *_ = nondegenerate(on_slice(system.simplest, parameters))
     for _ in sign_changes(equations._replace(inequalities=()), algebra):
         pass  # which refuses conditions
 

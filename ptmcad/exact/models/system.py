@@ -3,6 +3,8 @@
 Guarantee: the equations of a potential, and every Jacobian, are derived by exact differentiation; nothing is typed in.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any, NamedTuple
@@ -68,6 +70,12 @@ class ParametricSystem(NamedTuple):
     def dimension(self) -> int:
         """The number of unknowns."""
         return len(self.ring.unknowns)
+
+    @property
+    def simplest(self) -> ParametricSystem:
+        """In the angles in which it is simplest; the determinant of the Jacobian is the same but for its sign."""
+        simplest: ParametricSystem = self if self.turns is None else self.turns.system
+        return simplest
 
     @property
     def has_index(self) -> bool:
