@@ -30,11 +30,11 @@ from ptmcad.ask.fields.descent import descent
 from ptmcad.ask.fields.equations import Floats, apart
 from ptmcad.ask.fields.field import unknowns_of
 from ptmcad.ask.fields.track import Track, followed
+from ptmcad.ask.quantities import told_mechanism
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.landing import landing, line_of, merger
 from ptmcad.errors import ConfigError
-from ptmcad.model import Mechanism, mechanism_in
-from ptmcad.model.compile import compiled
+from ptmcad.model import Mechanism
 from ptmcad.options import Progress
 from ptmcad.question.doubles import within_doubles
 from ptmcad.question.line import varying_axis
@@ -64,8 +64,8 @@ def joined_paths(
     Parameters and errors are those of `ptmcad.exact.ranges.path.pose_paths`, and closed loops are refused; ``progress``
     is called as progress("paths: pose", done, total).
     """
-    mechanism = mechanism_in(slice.model)
-    if mechanism is None or not compiled(slice.model).are_slopes:
+    mechanism = told_mechanism(slice.model)
+    if mechanism is None:
         raise ConfigError(
             "poses of closed loops are not followed where springs have free lengths: leave --path out, and solve tells "
             "the poses at single points",
