@@ -8,7 +8,7 @@ Morse index; where that is ambiguous more values are tried in between. The joins
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import cos, pi
@@ -135,10 +135,7 @@ class SolutionsOnLine:
 
     def samples(self, low: Fraction, high: Fraction) -> list[Sample]:
         """Solutions at values in an interval, close enough to be joined."""
-        width = high - low
-        parts = {*NEAR, *(1 - part for part in NEAR)}
-        parts |= {Fraction(round((1 - cos(pi * k / SAMPLES)) * 2**19), 2**20) for k in range(1, SAMPLES)}
-        known = [s for part in sorted(parts) if (s := self.at(short(low + part * width, width))) is not None]
+        known = [s for value in values_between(low, high, SAMPLES, NEAR) if (s := self.at(value)) is not None]
         result = known[:1]
         for sample in known[1:]:
             result += [*self._between(result[-1], sample, HALVINGS), sample]
@@ -152,6 +149,19 @@ class SolutionsOnLine:
         if middle is None:
             return []
         return [*self._between(first, middle, depth - 1), middle, *self._between(middle, second, depth - 1)]
+
+
+def values_between(first: Fraction, last: Fraction, number: int, near: Iterable[Fraction]) -> list[Fraction]:
+    """Values on the way from the first to the last, closer to both, where branches turn.
+
+    Parameters
+    ----------
+    number : of parts.
+    near : parts of the way from each end where there is one, too.
+    """
+    parts = {1 - share if from_last else share for share in near for from_last in (False, True)}
+    parts |= {Fraction(round((1 - cos(pi * k / number)) * 2**19), 2**20) for k in range(1, number)}
+    return [short(first + part * (last - first), abs(last - first)) for part in sorted(parts)]
 
 
 def short(value: Fraction, width: Fraction) -> Fraction:

@@ -15,7 +15,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import cos, pi
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -24,17 +24,17 @@ from ptmcad.answer.intervals import CertifiedChange, CertifiedIntervals
 from ptmcad.answer.motion import Place
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
 from ptmcad.answer.poses import Pose
-from ptmcad.ask.branches import Sample, SolutionsOnLine, short
+from ptmcad.ask.branches import Sample, SolutionsOnLine, values_between
 from ptmcad.ask.fields.course import Course
 from ptmcad.ask.fields.descent import descent
 from ptmcad.ask.fields.equations import Floats, apart
 from ptmcad.ask.fields.field import unknowns_of
 from ptmcad.ask.fields.track import Track, followed
+from ptmcad.ask.quantities import told_mechanism
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.landing import landing, line_of, merger
 from ptmcad.errors import ConfigError
-from ptmcad.model import Mechanism, mechanism_in
-from ptmcad.model.compile import compiled
+from ptmcad.model import Mechanism
 from ptmcad.options import Progress
 from ptmcad.question.doubles import within_doubles
 from ptmcad.question.line import varying_axis
@@ -64,8 +64,8 @@ def joined_paths(
     Parameters and errors are those of `ptmcad.exact.ranges.path.pose_paths`, and closed loops are refused; ``progress``
     is called as progress("paths: pose", done, total).
     """
-    mechanism = mechanism_in(slice.model)
-    if mechanism is None or not compiled(slice.model).are_slopes:
+    mechanism = told_mechanism(slice.model)
+    if mechanism is None:
         raise ConfigError(
             "poses of closed loops are not followed where springs have free lengths: leave --path out, and solve tells "
             "the poses at single points",
@@ -127,7 +127,7 @@ class _Walker:
 
     def path(self, number: int, here: Sample, pose: Pose) -> PosePath:
         """One pose in both directions."""
-        origin = _Reached(here.value, np.array(unknowns_of(pose)), pose)
+        origin = _Reached(here.value, unknowns_of(pose), pose)
         down, low = self._one_way(origin, -1)
         up, high = self._one_way(origin, 1)
         points = tuple(self._point(r) for r in (*reversed(down), origin, *up))
@@ -174,14 +174,7 @@ class _Walker:
         for first, last in stretches:
             if (last - start) * side <= 0:
                 continue
-            width = last - first
-            parts = {
-                NEAR,
-                1 - NEAR,
-                *(Fraction(round((1 - cos(pi * k / POINTS)) * 2**19), 2**20) for k in range(1, POINTS)),
-            }
-            for part in sorted(parts):
-                value = short(first + part * width, abs(width))
+            for value in values_between(first, last, POINTS, (NEAR,)):
                 if (value - start) * side > 0:
                     yield value, crossed
                     crossed = None
@@ -194,7 +187,7 @@ class _Walker:
         return near[0] if len(near) == 1 else None
 
     def _apart(self, at: Floats, pose: Pose) -> float:
-        gap = apart(np.array(unknowns_of(pose)), at, len(self.slice.model.angles))
+        gap = apart(unknowns_of(pose), at, len(self.slice.model.angles))
         return float(np.abs(gap).max())
 
     def _is_joined(self, track: Track, current: _Reached, done: float, beyond: Pose, share: float) -> bool:
@@ -202,7 +195,7 @@ class _Walker:
         before = self.line.at(current.value)
         for pose in () if before is None else before.poses:
             if pose.stable and self._apart(current.at, pose) > SAME:
-                at, further = followed(track, np.array(unknowns_of(pose)), done, share, 0)
+                at, further = followed(track, unknowns_of(pose), done, share, 0)
                 if further == share and self._apart(at, beyond) < SAME:
                     return True
         return False

@@ -13,7 +13,6 @@ from enum import Enum
 from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism, Model, mechanism_in
-from ptmcad.model.compile import compiled
 from ptmcad.model.elements import UnknownKind
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import Enclosure
@@ -164,7 +163,8 @@ def _of_energy(model: Model, kind: QuantityKind, key: str) -> Quantity:
 
 def told_mechanism(model: Model) -> Mechanism | None:
     """The mechanism of whose parts something is told: none yet whose unknowns loops or X-joints hold."""
-    return mechanism_in(model) if compiled(model).are_slopes else None
+    mechanism = mechanism_in(model)
+    return None if mechanism is None or mechanism.closing or mechanism.xjoints else mechanism
 
 
 def _of_part(model: Model, kind: QuantityKind, name: str, key: str) -> Quantity:

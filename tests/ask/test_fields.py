@@ -391,9 +391,8 @@ def test_a_barrier_among_more_poses_than_an_integer_has_bits() -> None:
         return ModelState(waves * np.sin(angle)[None], waves**2 * np.cos(angle)[None, None], -np.cos(angle))
 
     at = (np.pi * np.arange(2 * waves) / waves)[None, None]
-    stable = np.arange(2 * waves)[None] % 2 == 0
     for chosen in (0, 66, 78):
-        assert barriers(evaluate, at, stable, np.array([chosen]), 1) == pytest.approx(2)
+        assert barriers(evaluate, at, np.array([chosen]), 1) == pytest.approx(2)
 
 
 def test_windows_beyond_doubles_are_refused() -> None:

@@ -165,7 +165,7 @@ def chosen(design: Design, poses: Poses) -> int | None:
 
 def _barrier_of(design: Design) -> Evaluate:
     from ptmcad.ask.fields.equations import state_at
-    from ptmcad.ask.fields.field import choice_of
+    from ptmcad.ask.fields.field import choice_of, unknowns_of
 
     named(design.model, "barrier", KEY)
     if choice_of(design.pose, design.model).kind != "stable":
@@ -181,13 +181,10 @@ def _barrier_of(design: Design) -> Evaluate:
         if poses is None or number is None:
             return None
         given = {name: float(value) for name, value in poses.parameters.items()}
-        points = [[float(e) for e in (*pose.angles, *pose.reals)] for pose in poses.equilibria]
-        at = np.array(points).T[:, None, :]
-        stable = state_at(design.model, given, at).negatives == 0
+        at = np.array([unknowns_of(pose) for pose in poses.equilibria]).T[:, None]
         found = barriers(
             lambda _pixels, where: state_at(design.model, given, where),
             at,
-            stable,
             np.array([number]),
             len(design.model.angles),
         )

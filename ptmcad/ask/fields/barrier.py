@@ -30,23 +30,22 @@ Evaluate = Callable[[Integers, Floats], ModelState]
 """The model at pixels, given by their numbers, and points of shape (n, pixels), or (n, pixels, k)."""
 
 
-def barriers(evaluate: Evaluate, at: Floats, stable: Flags, chosen: Integers, angles: int) -> Floats:
+def barriers(evaluate: Evaluate, at: Floats, chosen: Integers, angles: int) -> Floats:
     """For each pixel the energy above the chosen pose; nan where there is no other stable pose, or no way was found.
 
     Parameters
     ----------
     at : all solutions, shape (n, pixels, most); nan where there are fewer.
-    stable : shape (pixels, most).
     chosen : the pose from which one leaves.
     angles : so many unknowns, the first ones, are angles.
     """
-    pixels, most = stable.shape
-    own = np.arange(pixels)
-    there = np.nan_to_num(at)
+    known = ~np.isnan(at[0])
+    pixels, most = known.shape
+    own, there = np.arange(pixels), np.nan_to_num(at)
     state = evaluate(own, there)
-    energy = np.where(np.isnan(at[0]), np.inf, state.known_energy)
-    saddle = (state.negatives == 1) & ~np.isnan(at[0])
-    saddle &= (stable.sum(axis=1) > 1)[:, None]
+    energy = np.where(known, state.known_energy, np.inf)
+    stable = (state.negatives == 0) & known
+    saddle = (state.negatives == 1) & known & (stable.sum(axis=1) > 1)[:, None]
     ends = _ends(evaluate, there, state, saddle, stable, angles)
     # of each solution the lowest number of those that it is joined to
     joined = np.broadcast_to(np.arange(most), (pixels, most))

@@ -239,8 +239,7 @@ def _at_pixels(
         def evaluate(pixels: NDArray[np.int64], points: Floats) -> ModelState:
             return follower.state(rows[pixels], columns[pixels], points)
 
-        stable = _is_stable(model, state) & there
-        values = barriers(evaluate, at, stable, k, len(model.angles))
+        values = barriers(evaluate, at, k, len(model.angles))
     else:
         given = {name: v[rows, columns] if np.ndim(v) else v for name, v in follower.values.items()}
         coordinates = (follower.places.x[rows, columns], follower.places.y[rows, columns])
@@ -326,8 +325,8 @@ def exact_at(result: RegionMap, x: Fraction, y: Fraction) -> Poses:
     return poses_at(model, values, DIGITS)
 
 
-def unknowns_of(pose: Pose) -> list[float]:
-    return [float(e.center) for e in (*pose.angles, *pose.reals)]
+def unknowns_of(pose: Pose) -> Floats:
+    return np.array([float(e.center) for e in (*pose.angles, *pose.reals)])
 
 
 def _checked(

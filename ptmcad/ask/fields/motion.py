@@ -163,7 +163,7 @@ def _start(result: RegionMap, at: Place, choice: Choice) -> Floats:
     if len(found) < choice.rank:
         where = ", ".join(f"{n} = {v}" for n, v in zip(result.slice.axis_names, at, strict=True))
         raise ConfigError(f"there is no {choice} at the path's start, {where}: only {len(found)} of them", key="--pose")
-    return np.array(unknowns_of(poses.equilibria[found[choice.rank - 1]]))
+    return unknowns_of(poses.equilibria[found[choice.rank - 1]])
 
 
 def _walked(
