@@ -42,6 +42,19 @@ def index_words(entries: int) -> str:
     return "-".join(["minima", *saddles, "maxima"])
 
 
+def count_words(template: str, model: Model, number: int = 2) -> str:
+    """The words of a kind of count (`ptmcad.question.counts`) for a model; ``number`` is how many there are of it."""
+    entries = index_words(len(model.unknowns) + 1).split("-")
+    many = noun(model, number)
+    return template.format(
+        noun=many,
+        Noun=many.capitalize(),
+        index=", ".join(entries),
+        indices=" and ".join(filter(None, (", ".join(entries[:-1]), entries[-1]))),
+        in_all="in all" if isinstance(model, Mechanism) else many,
+    )
+
+
 def untold(mechanism: Mechanism) -> str:
     """Why it is not said which equilibria are stable."""
     return f"nothing says which are stable, as {foreign(mechanism)} depends on another unknown"

@@ -20,7 +20,7 @@ from ptmcad.answer.poses import Poses
 from ptmcad.errors import LimitReached
 from ptmcad.model import Mechanism, Model, System
 from ptmcad.process.memory import loading
-from ptmcad.question.slice import Count
+from ptmcad.question.counts import Count
 
 if TYPE_CHECKING:
     from ptmcad.algebra.fibre import Work

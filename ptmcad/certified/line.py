@@ -23,7 +23,8 @@ from ptmcad.certified.points import PointCount
 from ptmcad.certified.search import Boxes, isolate
 from ptmcad.certified.system import System
 from ptmcad.certified.tape import enclosing_floats
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Slice
 
 MIN_BOX_WIDTH = 1e-8
 BUDGET, MAX_OPEN_BOXES = 20_000, 400

@@ -10,7 +10,7 @@ from collections import defaultdict, deque
 from itertools import pairwise
 
 from ptmcad.answer.regionmap import Cell, Merge, Status
-from ptmcad.question.slice import Count
+from ptmcad.question.counts import Count
 from ptmcad.text.numerals import approximate_text
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import has_index, parameters_of, shorthands_of, tells_stability

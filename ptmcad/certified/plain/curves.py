@@ -28,7 +28,8 @@ from ptmcad.certified.scales import TURNING_WEIGHT, short_lengths, variable_weig
 from ptmcad.certified.solved import Quotient, quotients
 from ptmcad.certified.system import system
 from ptmcad.model.involutions import Involution
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Slice
 
 SHORT_RATIO = 4
 """Near an involution's fixed points a spring is short where its length is at most so many times what is short
@@ -101,7 +102,7 @@ def _of_branch(slice: Slice, count: Count, without: frozenset[str], problem: Pro
     found = [] if "mirror-images" in without else mirrors(slice, problem)
     yield from _quotient(search, found, at) if found else _smooth(search, at)
     yield from _boundaries(search, at)
-    yield from _at_free_lengths(search, at)
+    yield from _of_predicate(search, at)
 
 
 def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
@@ -257,43 +258,46 @@ def _boundaries(search: _Search, at: Chart) -> Iterator[Curve]:
     semidefinite += [at.determinant()] if search.rising else []
     for k, condition in enumerate(search.conditions):
         others = _values([*search.conditions[:k], *search.conditions[k + 1 :]], at)
-        yield Curve(
-            f"point where {condition.text} is 0{search.where}",
-            f"solutions count where {condition.text} > 0, and at one of them it is zero",
-            system(
-                [*at.equations, *_values([condition], at)],
-                (0, 1, *search.problem.variables),
-                nonnegative=[*others, *semidefinite],
-            ),
-            search.ranges,
-            np.array(search.weights),
-        )
+        yield _boundary(search, at, condition, [*others, *semidefinite])
 
 
-def _at_free_lengths(search: _Search, at: Chart) -> Iterator[Curve]:
-    """Stable equilibria at which one spring has its free length, and no other one is shorter than its own."""
-    problem = search.problem
-    graph = at.equations[0].graph
-    minima = [*_semidefinite(at), at.determinant(at_equilibrium=True)] if problem.is_gradient else []
+def _of_predicate(search: _Search, at: Chart) -> Iterator[Curve]:
+    """Stable equilibria at which one of a predicate's margins is zero, and no other one is negative."""
+    minima = [*_semidefinite(at), at.determinant(at_equilibrium=True)] if search.problem.is_gradient else []
     minima += [at.determinant()] if search.rising else []
     moments = [turned.moment for turned in at.turned]
-    unknowns = [graph.variable(k) for k in problem.variables]
-    values = [excess.value.formula(graph, unknowns) for excess in problem.excesses]
-    for k, excess in enumerate(problem.excesses):
-        zero, *others = (f.formula(graph, unknowns) for f in excess.boundary)
-        yield Curve(
-            f"point where spring {excess.spring} has its free length{search.where}",
-            f"spring {excess.spring} of a stable equilibrium has its free length",
-            system(
-                [*at.equations, zero],
-                (0, 1, *problem.variables),
-                ([*others, *moments, *at.dependent], at.balances),
-                [*values[:k], *values[k + 1 :], *minima, *_values(search.conditions, at)],
-                solved=_solved(search, [*at.equations, *moments, *at.dependent]),
-            ),
-            search.ranges,
-            np.array(search.weights),
-        )
+    values = _values(search.problem.further, at)
+    for k, condition in enumerate(search.problem.further):
+        nonnegative = [*values[:k], *values[k + 1 :], *minima, *_values(search.conditions, at)]
+        solved = _solved(search, [*at.equations, *moments, *at.dependent])
+        yield _boundary(search, at, condition, nonnegative, ([*moments, *at.dependent], at.balances), solved)
+
+
+def _boundary(
+    search: _Search,
+    at: Chart,
+    condition: Condition,
+    nonnegative: Sequence[Formula],
+    vanishing: tuple[Sequence[Formula], Sequence[Formula]] = ((), ()),
+    solved: Sequence[Quotient] = (),
+) -> Curve:
+    """The solutions at which a condition is zero."""
+    vanish = condition.squares or (condition.value,)
+    zero, *others = (f.formula(at.equations[0].graph, at.unknowns) for f in vanish)
+    cheap, rest = vanishing
+    return Curve(
+        (condition.curve or f"point where {condition.text} is 0") + search.where,
+        condition.reason or f"solutions count where {condition.text} > 0, and at one of them it is zero",
+        system(
+            [*at.equations, zero],
+            (0, 1, *search.problem.variables),
+            ([*others, *cheap], rest),
+            nonnegative,
+            solved=solved,
+        ),
+        search.ranges,
+        np.array(search.weights),
+    )
 
 
 def _short_folds(search: _Search, at: Chart, near: Frame | None = None) -> Iterator[Curve]:

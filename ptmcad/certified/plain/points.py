@@ -36,7 +36,8 @@ from ptmcad.certified.system import Arguments, System, system
 from ptmcad.certified.tape import Tape, enclosing_floats, record
 from ptmcad.errors import DegenerateSliceError
 from ptmcad.model import ptm
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import text_of
 
 MANY_BOXES = 6_000_000
@@ -73,7 +74,7 @@ class PlainCounter:
     equations : the equations alone.
     hessian : a tape of one stage with the Hessian's entries row by row.
     conditions : a tape with the inequalities, then the conditions for stability, with closed loops the Jacobian's
-        determinant; and in a second stage the springs' excesses, where admissible solutions are asked for.
+        determinant; and in a second stage what has to be positive where the count's predicate holds.
     pause : called between the parts of a long search; what it raises ends that.
     """
 
@@ -112,7 +113,7 @@ class PlainCounter:
         )
         number = len(solutions)
         if stable_only:
-            return self._with_admissible(x, y, number, solutions, [wide for wide, _ in counted], count)
+            return self._of_stable(x, y, number, solutions, [wide for wide, _ in counted], count)
         return PointCount(total=number, solutions=solutions, decided=True)
 
     def _proved(
@@ -145,7 +146,7 @@ class PlainCounter:
                 signs = "+" * (size - negative) + "-" * negative
                 solutions = (*solutions, boxed(wide, box, signs, self.problem.variables))
         if only_minima:
-            return self._with_admissible(x, y, index[0], solutions, minima, count)
+            return self._of_stable(x, y, index[0], solutions, minima, count)
         smooth = not (self.problem.has_springs or self.problem.reals or self.problem.inequalities)
         if smooth and sum((-1) ** k * number for k, number in enumerate(index)):
             raise ArithmeticError(f"critical points of a function on the torus by index {index} at ({x}, {y})")
@@ -155,9 +156,9 @@ class PlainCounter:
             cones = found.count
             if found.regular and index[0] - index[1] + index[2] + cones:
                 raise ArithmeticError(f"minima, saddles and maxima {index} with {cones} cones at ({x}, {y})")
-        return PointCount(len(solutions), index[0], None, tuple(index), cones, solutions, True)
+        return PointCount(len(solutions), index[0], tuple(index), cones, solutions, True)
 
-    def _with_admissible(
+    def _of_stable(
         self,
         x: Fraction,
         y: Fraction,
@@ -166,14 +167,14 @@ class PlainCounter:
         boxes: Sequence[Boxes],
         count: Count,
     ) -> PointCount:
-        """The number of stable solutions, and of admissible ones among them where these are asked for."""
-        admissible: int | None = None
-        if count is Count.ADMISSIBLE:
-            longer = [self._holds(x, y, box, self.conditions.outputs[1]) for box in boxes]
-            if None in longer:
+        """The number of stable solutions, and of those among them at which a predicate holds, where it is asked for."""
+        further = {}
+        if count.kind.predicate is not None:
+            holds = [self._holds(x, y, box, self.conditions.outputs[1]) for box in boxes]
+            if None in holds:
                 return PointCount()
-            admissible = longer.count(True)
-        return PointCount(stable=stable, admissible=admissible, solutions=solutions, decided=True)
+            further[count.value] = holds.count(True)
+        return PointCount(stable=stable, solutions=solutions, decided=True, further=further)
 
     def _counted(self, x: Fraction, y: Fraction, zeros: Zeros, count: Count) -> tuple[list[tuple[Boxes, Boxes]], int]:
         """The proved zeros at which all conditions are positive, and of how many that is not decided."""
@@ -283,12 +284,12 @@ class PlainCounter:
     def zero_condition(self, x: Fraction, y: Fraction, count: Count) -> str:
         """What is not decided of the signs of conditions at a proved zero, to as many digits as there are, in words."""
         conditions = [c.text for c in self.problem.conditions(count)]
-        excesses = [excess.text for excess in self.problem.excesses]
-        found = self._zeros(x, y, bool(excesses), False) if conditions or excesses else None
+        further = [c.text for c in self.problem.further]
+        found = self._zeros(x, y, bool(further), False) if conditions or further else None
         for unique in () if found is None or found.open else found.unique:
-            if excesses and self.problem.is_gradient and self._index(x, y, unique) != 0:
+            if further and self.problem.is_gradient and self._index(x, y, unique) != 0:
                 continue
-            for texts, places in zip((conditions, excesses), self.conditions.outputs, strict=True):
+            for texts, places in zip((conditions, further), self.conditions.outputs, strict=True):
                 signs = [self._holds(x, y, unique, places[k : k + 1]) for k in range(len(texts))]
                 if None in signs and False not in signs:
                     return texts[signs.index(None)]
@@ -375,7 +376,7 @@ def _sum(parts: Sequence[PointCount]) -> PointCount:
     return PointCount(
         total=added([p.total for p in parts]),
         stable=added([p.stable for p in parts]),
-        admissible=added([p.admissible for p in parts]),
+        further={name: sum(p.further[name] for p in parts) for name in parts[0].further},
         index=tuple(map(sum, zip(*indices, strict=True))) if len(indices) == len(parts) else None,
         solutions=tuple(solution for p in parts for solution in p.solutions),
         decided=True,
@@ -405,9 +406,9 @@ def _counter(slice: Slice, problem: Problem, pause: Callable[[], None] | None) -
     at = chart(geometry(problem))
     vanishing = (at.dependent, at.balances)
     unknowns = [at.equations[0].graph.variable(k) for k in problem.variables]
-    inequalities, stability, excesses = (
+    inequalities, stability, further = (
         [c.value.formula(at.equations[0].graph, unknowns) for c in some]
-        for some in (problem.inequalities, problem.stability, problem.excesses)
+        for some in (problem.inequalities, problem.stability, problem.further)
     )
     if problem.closing:
         stability = [at.determinant()]
@@ -420,7 +421,7 @@ def _counter(slice: Slice, problem: Problem, pause: Callable[[], None] | None) -
         system(at.equations, problem.variables, vanishing, [*minima, *inequalities], at.hessian),
         system(at.equations, problem.variables, jacobian=at.hessian),
         record([[entry for row in at.hessian for entry in row]]),
-        record([[*inequalities, *stability], excesses]),
+        record([[*inequalities, *stability], further]),
         pause,
     )
     if not problem.where:  # where sides of kinks are not conditions that anybody asked for
@@ -441,7 +442,7 @@ def _check_conditions(counter: PlainCounter) -> None:
     idle = {counter.zero_condition(x, y, slice.count) for x, y in points}
     if len(idle) == 1 and (text := idle.pop()):
         (x, y), names = points[0], slice.axis_names
-        advice = "ask for another count" if counter.problem.excesses else "choose exact, or ask for another condition"
+        advice = "ask for another count" if counter.problem.further else "choose exact, or ask for another condition"
         raise DegenerateSliceError(
             f"{text} is zero, to 90 digits and more, at a solution at {names[0]} = {text_of(x)}, {names[1]} = "
             f"{text_of(y)}, and so it is at the other points that were tried: the certified engine decides nothing of "

@@ -32,8 +32,9 @@ from ptmcad.certified.tape import Tape, record
 from ptmcad.model import ClosedMechanism, Mechanism, Model, ptm
 from ptmcad.model.evaluate import value_at
 from ptmcad.model.fourbars import flat_everywhere
+from ptmcad.question.counts import PREDICATES, Count
 from ptmcad.question.domain import prove_slice
-from ptmcad.question.slice import Axis, Count, Slice
+from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.balls import bounded, enclosed
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.expressions import axis
@@ -197,8 +198,8 @@ def pose_at(
     pose = assembled(mechanism, parameters, numbers, index, flat)
     if mechanism.closing:
         stable = solution.signs == "+" if solution.signs else None
-        pose = replace(pose, stable=stable, admissible=is_tense(stable, pose.springs))
-    return pose, bits
+        pose = replace(pose, stable=stable)
+    return with_further(pose), bits
 
 
 def measured(
@@ -307,12 +308,19 @@ def _proved_digits(number: arb, digits: int, attempt: int) -> Enclosure | None:
     return enclosed(number, digits + 1) if found is None and attempt > 1 else found
 
 
-def is_tense(stable: bool | None, springs: Sequence[Spring]) -> bool | None:
-    """Whether a pose is stable with every spring longer than its free length; None where that is not decided."""
-    forces = [spring.force for spring in springs]
-    if stable is False or any(force.high < 0 or force.exact == 0 for force in forces):
+def with_further(pose: Pose) -> Pose:
+    """The pose with the predicates that hold or not; of springs with free lengths, also those that are undecided."""
+    is_told = pose.energy is not None  # without a potential nothing says what is stable
+    found = {n: _holds(pose.stable, each.in_pose(pose)) if is_told else None for n, each in PREDICATES.items()}
+    relaxed = not any(spring.free_length for spring in pose.springs)
+    return replace(pose, further={name: holds for name, holds in found.items() if not (relaxed and holds is None)})
+
+
+def _holds(stable: bool | None, margins: Sequence[Enclosure]) -> bool | None:
+    """Whether a pose is stable and all numbers are positive; None where that is not decided."""
+    if stable is False or any(margin.high < 0 or margin.exact == 0 for margin in margins):
         return False
-    return True if stable and all(force.low > 0 for force in forces) else None
+    return True if stable and all(margin.low > 0 for margin in margins) else None
 
 
 def assembled(
@@ -364,7 +372,6 @@ def assembled(
         index=index,
         stable=stable,
         flat=flat,
-        admissible=is_tense(stable, springs) if mechanism.has_potential else None,
         reals=tuple(at[f"real {name}"] for name in mechanism.reals),
         torsion=torsion,
     )

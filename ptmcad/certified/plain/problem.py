@@ -17,7 +17,6 @@ from itertools import combinations
 from ptmcad.certified.formula import Formula, Graph, length
 from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.ends import Vector, springs_of
-from ptmcad.certified.plain.excesses import Excess, excesses
 from ptmcad.certified.plain.parallel import shares
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError
@@ -26,8 +25,9 @@ from ptmcad.model.energy import points_in, with_springs
 from ptmcad.model.evaluate import evaluate
 from ptmcad.model.fourbars import closed_by, flat_everywhere
 from ptmcad.model.work import split_moments
+from ptmcad.question.counts import Count, Margin
 from ptmcad.question.domain import fault, unproved
-from ptmcad.question.slice import Axis, Count, Slice
+from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.numerals import text_of
 from ptmcad.text.tree import Tree, to_text
@@ -88,10 +88,19 @@ class Push:
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What is positive at solutions that count, or at stable ones; as the record says it, too."""
+    """What is positive at solutions that count, or at stable ones: a `Margin` over a slice.
+
+    Attributes
+    ----------
+    text, curve, reason : as of the margin.
+    squares : where the value is the sum of their squares, what vanishes in its place; else none.
+    """
 
     text: str
     value: TrigonometricPolynomial
+    curve: str = ""
+    reason: str = ""
+    squares: tuple[TrigonometricPolynomial, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +123,7 @@ class Problem:
         loops.
     pushes : of springs along one line each, of which a branch of a problem has one side; the equations lack them.
     where : which branch it is, in words (`ptmcad.certified.plain.straight`).
-    excesses : of springs, all positive at stable equilibria that are admissible; empty where that is not asked.
+    further : all are positive where the predicate holds that a count is by; empty where it is by none.
     covering : of each of the description's unknowns its whole multiples of these, where these are others
         (`ptmcad.certified.plain.covering`).
     """
@@ -130,7 +139,7 @@ class Problem:
     closing: int = 0
     pushes: tuple[Push, ...] = ()
     where: str = ""
-    excesses: tuple[Excess, ...] = ()
+    further: tuple[Condition, ...] = ()
     covering: tuple[tuple[int, ...], ...] = ()
 
     @property
@@ -141,7 +150,7 @@ class Problem:
     def conditions(self, count: Count) -> tuple[Condition, ...]:
         """What is positive at all solutions that are counted, and at no others, but for a determinant.
 
-        With admissible equilibria all stable ones are counted.
+        Where it is by a predicate, all stable ones are counted.
         """
         return self.inequalities + (self.stability if count.is_of_stable else ())
 
@@ -191,10 +200,11 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
 
 
 def _asked(slice: Slice, mechanism: Mechanism, ring: Harmonics, problem: Problem) -> Problem:
-    """The problem with what tells admissible equilibria, where these are asked for."""
-    if slice.count is not Count.ADMISSIBLE:
+    """The problem with the margins of the predicate by which solutions are counted."""
+    predicate = slice.count.kind.predicate
+    if predicate is None:
         return problem
-    return replace(problem, excesses=tuple(excesses(mechanism, ring)))
+    return replace(problem, further=_conditions((("count", margin) for margin in predicate.margins(mechanism)), ring))
 
 
 def _checked(mechanism: Mechanism, cones: Iterable[Cone], axes: tuple[Axis, Axis]) -> tuple[Cone, ...]:
@@ -262,8 +272,8 @@ def _of_loops(model: ClosedMechanism, ring: Harmonics, axes: tuple[Axis, Axis]) 
 
 
 def _of_system(system: System, ring: Harmonics) -> Problem:
-    inequalities = _conditions("positive", system.inequalities, ring)
-    stability = _conditions("stable", system.stability, ring)
+    inequalities = _conditions(_listed("positive", system.inequalities), ring)
+    stability = _conditions(_listed("stable", system.stability), ring)
     if system.potential is not None:
         gradient = _gradient(evaluate(system.potential, ring), ring)
         return Problem(ring.unknowns, ring.reals, gradient, (), True, inequalities)
@@ -276,8 +286,14 @@ def _of_system(system: System, ring: Harmonics) -> Problem:
     return Problem(ring.unknowns, ring.reals, divided, (), False, inequalities, stability, multiples)
 
 
-def _conditions(key: str, trees: Sequence[Tree], ring: Harmonics) -> tuple[Condition, ...]:
-    """The conditions that say something; the key is that of their list.
+def _listed(key: str, trees: Sequence[Tree]) -> Iterator[tuple[str, Margin]]:
+    """A system's conditions, with the key of each in the record."""
+    for n, tree in enumerate(trees, 1):
+        yield f"{key}.{n}", Margin(to_text(tree), tree)
+
+
+def _conditions(margins: Iterable[tuple[str, Margin]], ring: Harmonics) -> tuple[Condition, ...]:
+    """The conditions that say something, of margins with the keys of a record that they come from.
 
     Raises
     ------
@@ -285,12 +301,14 @@ def _conditions(key: str, trees: Sequence[Tree], ring: Harmonics) -> tuple[Condi
         When one holds nowhere.
     """
     found = []
-    for n, tree in enumerate(trees, 1):
-        value, text = evaluate(tree, ring), to_text(tree)
+    for key, margin in margins:
+        value = evaluate(margin.value, ring)
         if set(value.terms) - set(ring.constant(Fraction(1)).terms) or not constant_of(value).is_constant:
-            found.append(Condition(text, value))
+            squares = tuple(f for f in (evaluate(tree, ring) for tree in margin.squares) if f.terms)
+            is_sum = value == sum((f * f for f in squares), start=ring.constant(Fraction(0)))
+            found.append(Condition(margin.text, value, margin.curve, margin.reason, squares if is_sum else ()))
         elif (number := constant_of(value).constant()) <= 0:
-            raise ConfigError(f"no solution counts: {text} is {text_of(number)} all over the window", key=f"{key}.{n}")
+            raise ConfigError(f"no solution counts: {margin.text} is {text_of(number)} all over the window", key=key)
     return tuple(found)
 
 

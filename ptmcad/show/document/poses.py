@@ -10,11 +10,13 @@ from __future__ import annotations
 
 import json
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 from ptmcad.answer.poses import MAX_DIGITS, Pose, Poses, Spring, TorsionSpring
 from ptmcad.answer.regionmap import Status
 from ptmcad.model import mechanism_in
+from ptmcad.question.counts import PREDICATES
 from ptmcad.question.slice import check_names
 from ptmcad.show.document.numbers import merged
 from ptmcad.show.document.slice import MODEL, UNITS
@@ -26,6 +28,7 @@ from ptmcad.text.codec import (
     TEXT,
     TRUTH,
     Codec,
+    Key,
     Known,
     choice,
     derived,
@@ -99,7 +102,7 @@ def poses_codec(digits: int) -> Codec[Poses]:
     )
     known: Known = {Fraction: exact, Enclosure: number}
     bare, free = (_pose(known, free) for free in (False, True))
-    pose: Codec[Pose] = either("admissible", lambda pose: pose.may_be_admissible, free, bare)
+    pose: Codec[Pose] = either(next(iter(PREDICATES)), lambda pose: bool(pose.further), free, bare)
     return record_of(
         Poses,
         {**known, Pose: pose._replace(schema=merged(bare.schema, free.schema))},
@@ -115,7 +118,7 @@ def poses_codec(digits: int) -> Codec[Poses]:
 
 
 def _pose(known: Known, free: bool) -> Codec[Pose]:
-    """The codec of a pose; with free lengths it is admissible or not, and each spring tells its own."""
+    """The codec of a pose; with free lengths predicates hold or not, and each spring has its own."""
     name = line(MAX_NAME)
     free_length = known[Fraction] if free else None
     springs: Known = {
@@ -123,15 +126,27 @@ def _pose(known: Known, free: bool) -> Codec[Pose]:
         TorsionSpring: record_of(TorsionSpring, known, name=line(MAX_ANGLE)),
     }
     known = {**known, **springs}
+    further = PREDICATES if free else {}
+
+    def made(**entries: Any) -> Pose:
+        told = {key: entries.pop(key) for key in further}
+        return Pose(**entries, further=told)
+
     return record_of(
         Pose,
         known,
+        made,
         index=COUNT,
         multiplicity=POSITIVE,
-        admissible=optional(TRUTH) if free else None,
+        further=None,
         nodes=named(listed(known[Enclosure], 2), _name),
         **unless_default(Pose, "reals", "torsion", known=known),
+        **{key: Key(optional(TRUTH), partial(_holds, key)) for key in further},
     )
+
+
+def _holds(predicate: str, pose: Pose) -> bool | None:
+    return pose.further.get(predicate)
 
 
 def _name(node: Node, key: str) -> str:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from operator import attrgetter
 from typing import Any
 
@@ -27,7 +28,8 @@ from ptmcad.answer.regionmap import (
     System,
     Wall,
 )
-from ptmcad.question.slice import Count, Point, Slice
+from ptmcad.question.counts import PREDICATES
+from ptmcad.question.slice import Point, Slice
 from ptmcad.show.document.cover import COVER, cover_line
 from ptmcad.show.document.numbers import INDEX, merged
 from ptmcad.show.document.slice import SLICE, polynomial_over
@@ -42,6 +44,7 @@ from ptmcad.text.codec import (
     TEXT,
     Codec,
     Key,
+    Known,
     choice,
     converted,
     document_text,
@@ -82,7 +85,7 @@ def read(text: str) -> RegionMap:
     slice = SLICE.read(document.entry("slice"))
     certified = "cover" in document.value
     status = _STATUS.read(document.entry("status"))
-    if not certified and (status is Status.CERTIFIED or slice.count is Count.ADMISSIBLE):
+    if not certified and (status is Status.CERTIFIED or slice.count.kind.predicate is not None):
         raise document.fault("lacks the key 'cover', which a certified map has")
     if certified and status not in (Status.CERTIFIED, Status.PARTIAL):
         raise document.entry("status").fault("is not that of a map with a cover")
@@ -126,16 +129,34 @@ def _codec(names: tuple[str, str], certified: bool, slice: Slice | None = None) 
     area: Codec[Any] = (
         listed(SHARE, 2) if certified else Codec(_outwards, listed(SHARE, 2).read, listed(SHARE, 2).schema)
     )
-    admissible = COUNT if certified else None
     known[Status] = _STATUS
     known[Component] = record_of(Component, known, **unless_default(Component, "continuum"))
-    known[Region] = record_of(Region, known, area=area, index=INDEX, admissible=admissible)
-    known[Cell] = record_of(Cell, known, index=INDEX, stack=_NO_STACK if certified else NATURAL, admissible=admissible)
+    known[Region] = _counted(Region, known, certified, area=area)
+    known[Cell] = _counted(Cell, known, certified, stack=_NO_STACK if certified else NATURAL)
     return record_of(
         RegionMap, known, base=base, undetermined=Codec(RATIONAL.write, _share, SHARE.schema),
         components=listed(known[Component], most=MAX_COMPONENTS),
         timings=Key(named(SECONDS), default={}), cover=Key(COVER, default=None),
     )  # fmt: skip
+
+
+def _counted(kind: type[Any], known: Known, certified: bool, **keys: Codec[Any] | Key) -> Codec[Any]:
+    """The codec of a cell or region, in which numbers of solutions at which predicates hold have keys of their own."""
+    further = PREDICATES if certified else {}
+
+    def made(**entries: Any) -> Region | Cell:
+        numbers = {name: entries.pop(name) for name in further}
+        found: Region | Cell = kind(**entries, further={n: each for n, each in numbers.items() if each is not None})
+        return found
+
+    for name, predicate in further.items():
+        default = ... if predicate.is_always_stored else None
+        keys[name] = Key(COUNT, partial(_number, name), default)
+    return record_of(kind, known, made, **keys, index=INDEX, further=None)
+
+
+def _number(name: str, part: Region | Cell) -> int | None:
+    return part.further.get(name)
 
 
 def _point(node: Node, names: tuple[str, str]) -> Point:

@@ -12,7 +12,8 @@ from itertools import pairwise
 
 from ptmcad.answer.regionmap import Status
 from ptmcad.model import ClosedMechanism, Mechanism, System
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.verification.certified.sweep import Sweep, sweep
 from ptmcad.verification.claims import Claims

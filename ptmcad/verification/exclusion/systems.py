@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from flint import arb
 
-from ptmcad.question.slice import Count
+from ptmcad.question.counts import Count
 from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import Floats
 from ptmcad.verification.certified.kinks import sides
