@@ -79,32 +79,43 @@ class _Posed(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
+class PoseColumn:
+    """How tables of poses say whether a predicate holds.
+
+    Attributes
+    ----------
+    margins : numbers of a pose that are positive exactly where the predicate's margins are.
+    head, note, tally : above the column, its meaning, and what follows the number of poses at which it holds.
+    """
+
+    margins: Callable[[_Posed], list[Enclosure]]
+    head: str
+    note: str
+    tally: str
+
+
+@dataclass(frozen=True, slots=True)
 class Predicate:
     """What a stable solution has to satisfy beyond a model's own conditions.
 
     Attributes
     ----------
     margins : of a mechanism, all positive where it holds.
-    in_pose : numbers of a pose that are positive exactly where the margins are.
     is_symmetric : whether each symmetry of a mechanism's energy takes solutions at which it holds to such.
     needs_free_lengths : whether it says nothing without any.
     of_systems, without_free_lengths : what is wrong with this count of a model that has no springs, or none with a free
         length.
-    column, note, tally : of a table of poses: the head of what holds or not, its meaning, and what follows the number
-        of poses at which it holds.
+    column : of a table of poses; None where these leave it out.
     is_always_stored : whether each certified map has its number, or null where that was not asked for: so it has been
         since that form of documents was made. Of others a map has the number that its count is of.
     """
 
     margins: Callable[[Mechanism], Iterator[Margin]]
-    in_pose: Callable[[_Posed], list[Enclosure]]
     is_symmetric: bool
     needs_free_lengths: bool
     of_systems: str
     without_free_lengths: str
-    column: str
-    note: str
-    tally: str
+    column: PoseColumn | None = None
     is_always_stored: bool = False
 
 
@@ -205,15 +216,17 @@ KINDS = {
         is_of_stable=True,
         predicate=Predicate(
             margins=_longer_than_free,
-            in_pose=_forces,
             is_symmetric=True,
             needs_free_lengths=True,
             of_systems="a system has no springs whose lengths would be admissible: count stable or total",
             without_free_lengths="admissible asks that every spring is longer than its free length, and none has a "
             "free length here: choose stable",
-            column="tense",
-            note="stable, and every spring longer than its free length; a negative force pushes",
-            tally="stable with every spring longer than its free length",
+            column=PoseColumn(
+                margins=_forces,
+                head="tense",
+                note="stable, and every spring longer than its free length; a negative force pushes",
+                tally="stable with every spring longer than its free length",
+            ),
             is_always_stored=True,
         ),
     ),
@@ -223,6 +236,8 @@ USUAL = Count.STABLE
 """The count of a slice that names none."""
 PREDICATES = {count.value: kind.predicate for count, kind in KINDS.items() if kind.predicate is not None}
 """Those of the table by the names of their counts."""
+POSE_COLUMNS = {name: predicate.column for name, predicate in PREDICATES.items() if predicate.column is not None}
+"""Of those that tables of poses have."""
 
 
 def further_names(count: Count) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.answer.words import counted, noun, of_what, untold
 from ptmcad.model import Mechanism, Model, built_in, mechanism_in
-from ptmcad.question.counts import PREDICATES, Predicate
+from ptmcad.question.counts import POSE_COLUMNS, PoseColumn
 from ptmcad.question.slice import merged
 from ptmcad.show.units import energy_unit
 from ptmcad.text.enclosure import Enclosure, exact_text
@@ -58,7 +58,7 @@ def table(poses: Poses, digits: int | None = None) -> str:
             *(_wrapped("units", units) if (units := _units(poses)) else []),
             *(_wrapped("energy", [note]) if (note := _energy_note(poses)) else []),
             *(_wrapped("torsion", [_TORSION]) if poses.equilibria[0].torsion else []),
-            *(line for each in _predicates(poses).values() for line in _wrapped(each.column, [each.note])),
+            *(line for each in _columns(poses).values() for line in _wrapped(each.head, [each.note])),
             *_bounds(poses),
         ]
     return "\n".join(lines)
@@ -141,16 +141,16 @@ def _summary(poses: Poses) -> list[str]:
     if poses.status is Status.UNDECIDED:
         boxes = f"{poses.undecided} box{'' if poses.undecided == 1 else 'es'}"
         parts = [f"at least {parts[0]}, each certified", f"{boxes} of configurations undecided"]
-    for name, predicate in _predicates(poses).items():
+    for name, column in _columns(poses).items():
         number = sum(pose.further.get(name) is True for pose in poses.equilibria)
-        parts.insert(1, f"{number} {predicate.tally}")
+        parts.insert(1, f"{number} {column.tally}")
     return parts + ([poses.remark] if poses.remark else [])
 
 
-def _predicates(poses: Poses) -> dict[str, Predicate]:
-    """Those of which it is said whether they hold."""
+def _columns(poses: Poses) -> dict[str, PoseColumn]:
+    """Those of predicates of which it is said whether they hold."""
     told = {name for pose in poses.equilibria for name in pose.further}
-    return {name: predicate for name, predicate in PREDICATES.items() if name in told}
+    return {name: column for name, column in POSE_COLUMNS.items() if name in told}
 
 
 def _wrapped(label: str, parts: Sequence[str], separator: str = ", ") -> list[str]:
@@ -192,8 +192,8 @@ def _groups(poses: Poses) -> list[list[Quantity]]:
     if mechanism is not None:
         states.append(("flat", "", ["yes" if p.flat else "no" for p in found]))
     said = {True: "yes", False: "no", None: "undecided"}
-    for name, predicate in _predicates(poses).items():
-        states.append((predicate.column, "", [said[p.further.get(name)] for p in found]))
+    for name, column in _columns(poses).items():
+        states.append((column.head, "", [said[p.further.get(name)] for p in found]))
     if first.eigenvalues:
         states.append(("index", "", ["-" if p.index is None else str(p.index) for p in found]))
     states.append(("mult.", "", [str(p.multiplicity) for p in found]))

@@ -32,7 +32,7 @@ from ptmcad.certified.tape import Tape, record
 from ptmcad.model import ClosedMechanism, Mechanism, Model, ptm
 from ptmcad.model.evaluate import value_at
 from ptmcad.model.fourbars import flat_everywhere
-from ptmcad.question.counts import PREDICATES, Count
+from ptmcad.question.counts import POSE_COLUMNS, Count
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.balls import bounded, enclosed
@@ -311,7 +311,7 @@ def _proved_digits(number: arb, digits: int, attempt: int) -> Enclosure | None:
 def with_further(pose: Pose) -> Pose:
     """The pose with the predicates that hold or not; of springs with free lengths, also those that are undecided."""
     is_told = pose.energy is not None  # without a potential nothing says what is stable
-    found = {n: _holds(pose.stable, each.in_pose(pose)) if is_told else None for n, each in PREDICATES.items()}
+    found = {n: _holds(pose.stable, each.margins(pose)) if is_told else None for n, each in POSE_COLUMNS.items()}
     relaxed = not any(spring.free_length for spring in pose.springs)
     return replace(pose, further={name: holds for name, holds in found.items() if not (relaxed and holds is None)})
 

@@ -16,7 +16,7 @@ from typing import Any
 from ptmcad.answer.poses import MAX_DIGITS, Pose, Poses, Spring, TorsionSpring
 from ptmcad.answer.regionmap import Status
 from ptmcad.model import mechanism_in
-from ptmcad.question.counts import PREDICATES
+from ptmcad.question.counts import POSE_COLUMNS
 from ptmcad.question.slice import check_names
 from ptmcad.show.document.numbers import merged
 from ptmcad.show.document.slice import MODEL, UNITS
@@ -102,7 +102,7 @@ def poses_codec(digits: int) -> Codec[Poses]:
     )
     known: Known = {Fraction: exact, Enclosure: number}
     bare, free = (_pose(known, free) for free in (False, True))
-    pose: Codec[Pose] = either(next(iter(PREDICATES)), lambda pose: bool(pose.further), free, bare)
+    pose: Codec[Pose] = either(next(iter(POSE_COLUMNS)), lambda pose: bool(pose.further), free, bare)
     return record_of(
         Poses,
         {**known, Pose: pose._replace(schema=merged(bare.schema, free.schema))},
@@ -126,7 +126,7 @@ def _pose(known: Known, free: bool) -> Codec[Pose]:
         TorsionSpring: record_of(TorsionSpring, known, name=line(MAX_ANGLE)),
     }
     known = {**known, **springs}
-    further = PREDICATES if free else {}
+    further = POSE_COLUMNS if free else {}
 
     def made(**entries: Any) -> Pose:
         told = {key: entries.pop(key) for key in further}
