@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -71,6 +71,20 @@ class Counts(Counted):
     def working(self) -> int:
         """The number by which an operation range is found: of stable solutions, or of all where none is told stable."""
         return self.total if self.stable is None else self.stable
+
+
+def counts_of_signs(signs: Sequence[str], tells_stability: bool, size: int | None) -> Counts:
+    """The counts of solutions by the signs of their Hessians' eigenvalues, or of conditions for stability.
+
+    Parameters
+    ----------
+    size : of a Hessian; None where signs are those of conditions.
+    """
+    index = None
+    if size is not None:
+        negative = [s.count("-") for s in signs]
+        index = tuple(negative.count(k) for k in range(size + 1))
+    return Counts(len(signs), sum(not s.strip("+") for s in signs) if tells_stability else None, index)
 
 
 def counted_by(counted: Counted, count: Count) -> tuple[int, ...]:

@@ -7,19 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from ptmcad.answer.intervals import CertifiedChange, CertifiedInterval, CertifiedIntervals
+from ptmcad.answer.intervals import CertifiedIntervals
 from ptmcad.process.memory import loading
 from ptmcad.question.domain import prove
 from ptmcad.question.line import restricted, varying_axis
 from ptmcad.question.slice import Axis, Slice
-from ptmcad.text.enclosure import Enclosure
-
-if TYPE_CHECKING:
-    from ptmcad.certified.line import Stretch
-    from ptmcad.certified.points import PointCount
 
 
 def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits: int) -> CertifiedIntervals:
@@ -40,36 +34,10 @@ def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits:
         not lie in the slice's window, so nothing that is known of the window is used.
     """
     with loading("the certified engine"):
-        from ptmcad.certified.line import line_counts
+        from ptmcad.certified.line import intervals_and_changes
     varying, other, value = varying_axis(slice, along, at)
     on_line = {name: restricted(e, varying, value) for name, e in slice.parameters.items()}
     prove(slice.model, on_line, (slice.axes[varying], Axis(other, value, value)))
     line = replace(slice, axes=(slice.axes[varying], Axis(other, value, value)), parameters=on_line)
-    found = line_counts(line, 0, value, 64 + 4 * digits)
-    ends = {gap.low: Enclosure(gap.low, gap.high) for gap in found.gaps}
-    ends |= {gap.high: Enclosure(gap.low, gap.high) for gap in found.gaps}
-
-    def end(place: Fraction) -> Enclosure:
-        return ends.get(place, Enclosure(place, place))
-
-    def interval(s: Stretch) -> CertifiedInterval:
-        total, stable = _numbers(slice, s.counts)
-        return CertifiedInterval(end(s.low), end(s.high), s.counts.index, s.counts.cones, s.sample, total, stable)
-
-    return CertifiedIntervals(
-        slice.axes[varying],
-        {other: value},
-        tuple(map(interval, found.stretches)),
-        tuple(CertifiedChange(Enclosure(g.low, g.high), g.names, g.proved) for g in found.gaps),
-    )
-
-
-def _numbers(slice: Slice, counts: PointCount) -> tuple[int | None, int | None]:
-    """All equilibria and the stable ones; nothing where it is known what is stable, but not of each of them."""
-    if counts.index is not None:
-        return sum(counts.index), counts.index[0]
-    if counts.total is None or not slice.model.tells_stability:
-        return counts.total, None
-    if not all(solution.signs for solution in counts.solutions):
-        return None, None
-    return counts.total, sum(not solution.signs.strip("+") for solution in counts.solutions)
+    intervals, changes = intervals_and_changes(line, 64 + 4 * digits)
+    return CertifiedIntervals(slice.axes[varying], {other: value}, intervals, changes)

@@ -181,23 +181,41 @@ def _charted(search: _Search, at: Chart) -> list[int]:
 
 def _fold(search: _Search, at: Chart) -> Curve:
     """Solutions with a singular Jacobian, every spring long that has a chart where it is short."""
-    return Curve(
+    return _curve(
+        search,
         _name(search),
         _reason(search),
-        system(
-            [*at.equations, at.determinant()],
-            (0, 1, *search.problem.variables),
-            _dependent(search, at),
-            [
-                *(_excess(search, at, s) for s in _charted(search, at)),
-                *_far(search, at),
-                *(_semidefinite(at) if search.stable else []),
-                *_values(search.conditions, at),
-            ],
-            solved=_solved(search, [*at.equations, *_dependent(search, at)[0]]),
-        ),
-        search.ranges,
-        np.array(search.weights),
+        [*at.equations, at.determinant()],
+        _dependent(search, at),
+        [
+            *(_excess(search, at, s) for s in _charted(search, at)),
+            *_far(search, at),
+            *(_semidefinite(at) if search.stable else []),
+            *_values(search.conditions, at),
+        ],
+        _solved(search, [*at.equations, *_dependent(search, at)[0]]),
+    )
+
+
+def _curve(
+    search: _Search,
+    name: str,
+    reason: str,
+    equations: Sequence[Formula],
+    vanishing: tuple[Sequence[Formula], Sequence[Formula]] = ((), ()),
+    nonnegative: Sequence[Formula] = (),
+    solved: Sequence[Quotient] = (),
+    *,
+    turning: bool = False,
+) -> Curve:
+    """A curve in the axes and the problem's unknowns; ``turning`` where a short spring's direction is one more."""
+    unknowns = len(search.problem.unknowns) + turning
+    return Curve(
+        name,
+        reason,
+        system(equations, range(FIRST + unknowns), vanishing, nonnegative, solved=solved),
+        (*search.ranges, TURN)[:unknowns],
+        np.array([*search.weights, TURNING_WEIGHT][: FIRST + unknowns]),
     )
 
 
@@ -285,18 +303,14 @@ def _boundary(
     vanish = condition.squares or (condition.value,)
     zero, *others = (f.formula(at.equations[0].graph, at.unknowns) for f in vanish)
     cheap, rest = vanishing
-    return Curve(
+    return _curve(
+        search,
         (condition.curve or f"point where {condition.text} is 0") + search.where,
         condition.reason or f"solutions count where {condition.text} > 0, and at one of them it is zero",
-        system(
-            [*at.equations, zero],
-            (0, 1, *search.problem.variables),
-            ([*others, *cheap], rest),
-            nonnegative,
-            solved=solved,
-        ),
-        search.ranges,
-        np.array(search.weights),
+        [*at.equations, zero],
+        ([*others, *cheap], rest),
+        nonnegative,
+        solved,
     )
 
 
@@ -312,25 +326,22 @@ def _short_folds(search: _Search, at: Chart, near: Frame | None = None) -> Itera
         semidefinite: list[Formula] = []
         if search.stable:
             semidefinite = [*at.diagonal_times_length(s), *(turned.stiffness for turned in at.turned)]
-        yield Curve(
+        yield _curve(
+            search,
             f"{_name(search)} with spring {cone.name} short",
             f"{_reason(search)}; spring {cone.name} is at most {search.short[s]} long",
-            system(
-                [at.aligned, *at.equations, at.determinant()],
-                (0, 1, *search.problem.variables, FIRST + len(search.problem.unknowns)),
-                _dependent(search, at),
-                [
-                    at.springs[s].extent,
-                    -_excess(search, at, s, near),
-                    *([] if near is None else [NEAR - _distance(search, at, near)]),
-                    *_far(search, at),
-                    *semidefinite,
-                    *_values(search.conditions, at),
-                ],
-                solved=_solved(search, [*at.equations, *_dependent(search, at)[0]]),
-            ),
-            (*search.ranges, TURN),
-            np.array([*search.weights, TURNING_WEIGHT]),
+            [at.aligned, *at.equations, at.determinant()],
+            _dependent(search, at),
+            [
+                at.springs[s].extent,
+                -_excess(search, at, s, near),
+                *([] if near is None else [NEAR - _distance(search, at, near)]),
+                *_far(search, at),
+                *semidefinite,
+                *_values(search.conditions, at),
+            ],
+            _solved(search, [*at.equations, *_dependent(search, at)[0]]),
+            turning=True,
         )
 
 
@@ -340,17 +351,13 @@ def _points_without_length(search: _Search, at: Chart) -> Iterator[Curve]:
     unknowns = [graph.variable(k) for k in search.problem.variables]
     for cone in search.problem.cones:
         vanishing = [d.formula(graph, unknowns) for d in cone.difference]
-        yield Curve(
+        yield _curve(
+            search,
             f"point where spring {cone.name} has no length{search.where}",
             f"an equilibrium is swallowed where spring {cone.name} has no length",
-            system(
-                [*at.equations[:closing], *(f for f in vanishing if f.value != 0)],
-                (0, 1, *search.problem.variables),
-                ((), at.equations[closing:]),
-                _values(search.conditions, at),
-            ),
-            search.ranges,
-            np.array(search.weights),
+            [*at.equations[:closing], *(f for f in vanishing if f.value != 0)],
+            ((), at.equations[closing:]),
+            _values(search.conditions, at),
         )
 
 
@@ -369,17 +376,14 @@ def _cones(search: _Search, whole: Chart) -> Iterator[Curve]:
         unknowns = [graph.variable(k) for k in search.problem.variables]
         # a coordinate that is zero everywhere says nothing
         vanishing = [f for f in (d.formula(graph, unknowns) for d in cone.difference) if f.value != 0]
-        yield Curve(
+        yield _curve(
+            search,
             f"point where spring {cone.name} has no length{search.where}",
             f"an equilibrium is swallowed where spring {cone.name} has no length",
-            system(
-                [*vanishing, *at.equations],
-                (0, 1, *search.problem.variables, FIRST + len(search.problem.unknowns)),
-                ((), at.balances),
-                [*(at.diagonal_times_length(s) if search.stable else ()), *_values(search.conditions, at)],
-            ),
-            (*search.ranges, TURN),
-            np.array([*search.weights, TURNING_WEIGHT]),
+            [*vanishing, *at.equations],
+            ((), at.balances),
+            [*(at.diagonal_times_length(s) if search.stable else ()), *_values(search.conditions, at)],
+            turning=True,
         )
 
 
