@@ -68,8 +68,8 @@ class Pose:
     stable : whether the Hessian is positive definite, or a system's conditions hold; None when it is singular, nothing
         says what stable is, or it is not decided.
     flat : whether all points of a mechanism lie on the x axis, exactly.
-    further : by the names of their counts, whether it is stable and predicates of `ptmcad.question.counts` hold; None
-        where that is not decided. Only where some spring has a free length.
+    further : by the names of their counts, whether it is stable and predicates of `ptmcad.question.counts` hold, as far
+        as that is decided.
     torsion : the torsion springs, in the description's order.
     """
 
@@ -84,7 +84,7 @@ class Pose:
     index: int | None
     stable: bool | None
     flat: bool
-    further: Mapping[str, bool | None] = field(default_factory=dict)
+    further: Mapping[str, bool] = field(default_factory=dict)
     reals: tuple[Enclosure, ...] = ()
     torsion: tuple[TorsionSpring, ...] = ()
 
@@ -95,9 +95,14 @@ class Pose:
         return self.further.get(Count.ADMISSIBLE.value)
 
     @property
+    def has_predicates(self) -> bool:
+        """Whether it is asked if predicates hold: where some spring has a free length, or it is said that they do."""
+        return bool(self.further) or any(spring.free_length for spring in self.springs)
+
+    @property
     def may_be_slack(self) -> bool:
-        """Whether that is not proved although some spring has a free length."""
-        return self.further.get(Count.ADMISSIBLE.value, True) is not True
+        """Whether it is not proved to be admissible although some spring has a free length."""
+        return self.has_predicates and self.admissible is not True
 
     def __repr__(self) -> str:
         kind = {True: "stable", False: "unstable", None: "degenerate, or not told"}[self.stable]

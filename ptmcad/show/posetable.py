@@ -148,9 +148,8 @@ def _summary(poses: Poses) -> list[str]:
 
 
 def _columns(poses: Poses) -> dict[str, PoseColumn]:
-    """Those of predicates of which it is said whether they hold."""
-    told = {name for pose in poses.equilibria for name in pose.further}
-    return {name: column for name, column in POSE_COLUMNS.items() if name in told}
+    """Those of predicates, where it is asked whether these hold."""
+    return POSE_COLUMNS if any(pose.has_predicates for pose in poses.equilibria) else {}
 
 
 def _wrapped(label: str, parts: Sequence[str], separator: str = ", ") -> list[str]:

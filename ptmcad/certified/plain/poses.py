@@ -309,11 +309,10 @@ def _proved_digits(number: arb, digits: int, attempt: int) -> Enclosure | None:
 
 
 def with_further(pose: Pose) -> Pose:
-    """The pose with the predicates that hold or not; of springs with free lengths, also those that are undecided."""
-    is_told = pose.energy is not None  # without a potential nothing says what is stable
-    found = {n: _holds(pose.stable, each.margins(pose)) if is_told else None for n, each in POSE_COLUMNS.items()}
-    relaxed = not any(spring.free_length for spring in pose.springs)
-    return replace(pose, further={name: holds for name, holds in found.items() if not (relaxed and holds is None)})
+    """The pose with the predicates that hold or not; without a potential nothing says what is stable."""
+    told = POSE_COLUMNS if pose.energy is not None else {}
+    found = {name: _holds(pose.stable, column.margins(pose)) for name, column in told.items()}
+    return replace(pose, further={name: holds for name, holds in found.items() if holds is not None})
 
 
 def _holds(stable: bool | None, margins: Sequence[Enclosure]) -> bool | None:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import json
 from fractions import Fraction
-from functools import partial
 from typing import Any
 
 from ptmcad.answer.poses import MAX_DIGITS, Pose, Poses, Spring, TorsionSpring
@@ -102,7 +101,7 @@ def poses_codec(digits: int) -> Codec[Poses]:
     )
     known: Known = {Fraction: exact, Enclosure: number}
     bare, free = (_pose(known, free) for free in (False, True))
-    pose: Codec[Pose] = either(next(iter(POSE_COLUMNS)), lambda pose: bool(pose.further), free, bare)
+    pose: Codec[Pose] = either(next(iter(POSE_COLUMNS)), lambda pose: pose.has_predicates, free, bare)
     return record_of(
         Poses,
         {**known, Pose: pose._replace(schema=merged(bare.schema, free.schema))},
@@ -126,27 +125,16 @@ def _pose(known: Known, free: bool) -> Codec[Pose]:
         TorsionSpring: record_of(TorsionSpring, known, name=line(MAX_ANGLE)),
     }
     known = {**known, **springs}
-    further = POSE_COLUMNS if free else {}
-
-    def made(**entries: Any) -> Pose:
-        told = {key: entries.pop(key) for key in further}
-        return Pose(**entries, further=told)
-
     return record_of(
         Pose,
         known,
-        made,
         index=COUNT,
         multiplicity=POSITIVE,
         further=None,
         nodes=named(listed(known[Enclosure], 2), _name),
         **unless_default(Pose, "reals", "torsion", known=known),
-        **{key: Key(optional(TRUTH), partial(_holds, key)) for key in further},
+        **{name: Key(optional(TRUTH), entry_of="further") for name in (POSE_COLUMNS if free else ())},
     )
-
-
-def _holds(predicate: str, pose: Pose) -> bool | None:
-    return pose.further.get(predicate)
 
 
 def _name(node: Node, key: str) -> str:

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
 from operator import attrgetter
 from typing import Any
 
@@ -44,7 +43,6 @@ from ptmcad.text.codec import (
     TEXT,
     Codec,
     Key,
-    Known,
     choice,
     converted,
     document_text,
@@ -95,6 +93,9 @@ def read(text: str) -> RegionMap:
     return _codec(slice.axis_names, certified, slice).read(document)
 
 
+_ALWAYS = Key(COUNT, entry_of="further")
+_WHERE_COUNTED = Key(NATURAL, default=None, entry_of="further")
+"""Numbers of solutions at which predicates hold."""
 _STATUS = choice(Status).narrowed(enum=["exact", "certified", "partial", "undecided"])
 
 
@@ -131,32 +132,16 @@ def _codec(names: tuple[str, str], certified: bool, slice: Slice | None = None) 
     )
     known[Status] = _STATUS
     known[Component] = record_of(Component, known, **unless_default(Component, "continuum"))
-    known[Region] = _counted(Region, known, certified, area=area)
-    known[Cell] = _counted(Cell, known, certified, stack=_NO_STACK if certified else NATURAL)
+    predicates = PREDICATES if certified else {}
+    further = {name: _ALWAYS if each.is_always_stored else _WHERE_COUNTED for name, each in predicates.items()}
+    known[Region] = record_of(Region, known, area=area, index=INDEX, further=None, **further)
+    stack = _NO_STACK if certified else NATURAL
+    known[Cell] = record_of(Cell, known, index=INDEX, stack=stack, further=None, **further)
     return record_of(
         RegionMap, known, base=base, undetermined=Codec(RATIONAL.write, _share, SHARE.schema),
         components=listed(known[Component], most=MAX_COMPONENTS),
         timings=Key(named(SECONDS), default={}), cover=Key(COVER, default=None),
     )  # fmt: skip
-
-
-def _counted(kind: type[Any], known: Known, certified: bool, **keys: Codec[Any] | Key) -> Codec[Any]:
-    """The codec of a cell or region, in which numbers of solutions at which predicates hold have keys of their own."""
-    further = PREDICATES if certified else {}
-
-    def made(**entries: Any) -> Region | Cell:
-        numbers = {name: entries.pop(name) for name in further}
-        found: Region | Cell = kind(**entries, further={n: each for n, each in numbers.items() if each is not None})
-        return found
-
-    for name, predicate in further.items():
-        default = ... if predicate.is_always_stored else None
-        keys[name] = Key(COUNT, partial(_number, name), default)
-    return record_of(kind, known, made, **keys, index=INDEX, further=None)
-
-
-def _number(name: str, part: Region | Cell) -> int | None:
-    return part.further.get(name)
 
 
 def _point(node: Node, names: tuple[str, str]) -> Point:
