@@ -20,7 +20,7 @@ from ptmcad.certified.plain.ends import Vector, springs_of
 from ptmcad.certified.plain.parallel import shares
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError
-from ptmcad.model import ClosedMechanism, Kind, Mechanism, System
+from ptmcad.model import ClosedMechanism, Kind, Mechanism, System, mechanism_in
 from ptmcad.model.energy import points_in, with_springs
 from ptmcad.model.evaluate import evaluate
 from ptmcad.model.fourbars import closed_by, flat_everywhere
@@ -184,10 +184,21 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
         if key not in _IRRELEVANT | _SAID_IN_EQUATIONS | _USED and getattr(model, key):
             raise ConfigError(f"the certified engine does not take {key}, and {model.name} has some", key=key)
     ring = Harmonics(tuple(model.unknowns), model.reals, slice.parameters)
+    problem, predicate = _equations(slice, ring), slice.count.kind.predicate
+    if predicate is None:
+        return problem
+    if (mechanism := mechanism_in(model)) is None:
+        raise ConfigError(predicate.of_systems, key="count")
+    return replace(problem, further=_conditions((("count", margin) for margin in predicate.margins(mechanism)), ring))
+
+
+def _equations(slice: Slice, ring: Harmonics) -> Problem:
+    """The problem but for what is asked of stable solutions beyond the model's conditions."""
+    model = slice.model
     if isinstance(model, ClosedMechanism) and model.tangent:
         check_loops(model, slice)
     if isinstance(model, ClosedMechanism) and slice.has_free_lengths:
-        return _asked(slice, model.mechanism, ring, _of_loops(model, ring, slice.axes))
+        return _of_loops(model, ring, slice.axes)
     if isinstance(model, System):
         return _of_system(model, ring)
     assert isinstance(model, Mechanism)
@@ -196,15 +207,7 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
     for unknown, tree in split_moments(model).steady:
         k = ring.unknowns.index(unknown)
         equations[k] = equations[k] - evaluate(tree, ring)
-    return _asked(slice, model, ring, Problem(ring.unknowns, ring.reals, tuple(equations), cones, model.has_potential))
-
-
-def _asked(slice: Slice, mechanism: Mechanism, ring: Harmonics, problem: Problem) -> Problem:
-    """The problem with the margins of the predicate by which solutions are counted."""
-    predicate = slice.count.kind.predicate
-    if predicate is None:
-        return problem
-    return replace(problem, further=_conditions((("count", margin) for margin in predicate.margins(mechanism)), ring))
+    return Problem(ring.unknowns, ring.reals, tuple(equations), cones, model.has_potential)
 
 
 def _checked(mechanism: Mechanism, cones: Iterable[Cone], axes: tuple[Axis, Axis]) -> tuple[Cone, ...]:
