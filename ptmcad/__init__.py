@@ -33,7 +33,8 @@ if TYPE_CHECKING:
     from ptmcad.question.config import load, slice_from_mapping, slice_from_options
     from ptmcad.question.config import make_mechanism as Mechanism
     from ptmcad.question.config import make_system as System
-    from ptmcad.question.slice import Count, Point, Slice
+    from ptmcad.question.counts import Count
+    from ptmcad.question.slice import Point, Slice
     from ptmcad.sweeping.run import sweep
     from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
     from ptmcad.verification import VerifyReport, verify
@@ -67,7 +68,7 @@ _HOMES = {
     "operation_widths": "ask.ranges",
     "pose_paths": "ask.ranges",
     "RegionMap": "answer.regionmap",
-    "Count": "question.slice",
+    "Count": "question.counts",
     "Point": "question.slice",
     "Slice": "question.slice",
     "SliceVariety": "answer.slicevariety",

@@ -11,7 +11,7 @@ from itertools import chain
 
 from ptmcad.answer.regionmap import Cell, Region, RegionMap
 from ptmcad.errors import ConfigError
-from ptmcad.question.slice import Count, check_names
+from ptmcad.question.slice import check_names
 
 MAX_EQUILIBRIA = 1000
 """Equilibria that a fill can tell; no mechanism of two angles and three springs has so many."""
@@ -67,8 +67,8 @@ def _of_cells(result: RegionMap) -> Iterator[str]:
         region = result.regions[cell.region]
         if n not in region.cells:
             yield f"cell {n} is in region {cell.region}, which does not have it"
-        for name in _counts_known_from(result.slice.count):
-            if getattr(cell, name) != getattr(region, name):
+        for count in result.slice.count.kind.implied:
+            if cell.number(count) != region.number(count):
                 yield f"cell {n} and its region {cell.region} differ in their counts"
         if not all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, cell.sample, strict=True)):
             yield f"the sample of cell {n} is not in the window"
@@ -76,7 +76,8 @@ def _of_cells(result: RegionMap) -> Iterator[str]:
 
 def _of_regions(result: RegionMap) -> Iterator[str]:
     for n, region in enumerate(result.regions):
-        most = max((n for n in (region.stable, region.total, region.admissible, *(region.index or ())) if n), default=0)
+        numbers = (region.stable, region.total, *region.further.values(), *(region.index or ()))
+        most = max((n for n in numbers if n), default=0)
         if region.area[0] > region.area[1]:
             yield f"region {n} has an area below its own lower bound"
         if most > MAX_EQUILIBRIA:
@@ -96,16 +97,6 @@ def _of_counts(part: Cell | Region, place: str) -> Iterator[str]:
     """The Morse index has to add up to the other counts, as far as these are known."""
     if part.index is not None and (part.total, part.stable) != (sum(part.index), next(iter(part.index), None)):
         yield f"{place} has index {part.index}, {part.total} equilibria and {part.stable} stable ones"
-
-
-def _counts_known_from(count: Count) -> tuple[str, ...]:
-    """The counts that are the same in all cells of a region."""
-    return {
-        Count.STABLE: ("stable",),
-        Count.TOTAL: ("total",),
-        Count.INDEX: ("stable", "total", "index"),
-        Count.ADMISSIBLE: ("admissible",),
-    }[count]
 
 
 def _outside(numbers: Iterable[int], length: int, place: str, what: str) -> Iterator[str]:

@@ -2,19 +2,58 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from ptmcad.model import Model
-from ptmcad.question.slice import Count
+from ptmcad.question.counts import Count
 
 MorseIndex = tuple[int, ...]
 """Numbers of critical points by their number of negative eigenvalues: of two unknowns minima, saddles and maxima."""
 
 
+class Counted:
+    """What has counts of all kinds, such as a region or a cell of a map; None where one varies or is not known.
+
+    Its classes have fields ``stable``, ``total`` and ``index``, and ``further`` where numbers of solutions at which a
+    predicate of `ptmcad.question.counts` holds are known: those by the names of their counts.
+    """
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:  # dataclasses would take what is here for defaults of their fields
+
+        @property
+        def total(self) -> int | None: ...
+
+        @property
+        def stable(self) -> int | None: ...
+
+        @property
+        def index(self) -> MorseIndex | None: ...
+
+    @property
+    def further(self) -> Mapping[str, int]:
+        return _NOTHING
+
+    @property
+    def admissible(self) -> int | None:
+        """The number of stable equilibria with every spring longer than its free length."""
+        return self.further.get(Count.ADMISSIBLE.value)
+
+    def number(self, count: Count) -> int | MorseIndex | None:
+        """The count of a kind."""
+        numbers = {"stable": self.stable, "total": self.total, "index": self.index, **self.further}
+        return numbers.get(count.value)
+
+
+_NOTHING: Mapping[str, int] = MappingProxyType({})
+
+
 @dataclass(frozen=True, slots=True)
-class Counts:
+class Counts(Counted):
     """Numbers of the solutions that count.
 
     Attributes
@@ -34,30 +73,23 @@ class Counts:
         return self.total if self.stable is None else self.stable
 
 
-class Counted(Protocol):
-    """What has all kinds of counts: a region or a cell of a map; None where one varies or is not known."""
+def counts_of_signs(signs: Sequence[str], tells_stability: bool, size: int | None) -> Counts:
+    """The counts of solutions by the signs of their Hessians' eigenvalues, or of conditions for stability.
 
-    @property
-    def stable(self) -> int | None: ...
-
-    @property
-    def total(self) -> int | None: ...
-
-    @property
-    def index(self) -> MorseIndex | None: ...
-
-    @property
-    def admissible(self) -> int | None: ...
+    Parameters
+    ----------
+    size : of a Hessian; None where signs are those of conditions.
+    """
+    index = None
+    if size is not None:
+        negative = [s.count("-") for s in signs]
+        index = tuple(negative.count(k) for k in range(size + 1))
+    return Counts(len(signs), sum(not s.strip("+") for s in signs) if tells_stability else None, index)
 
 
 def counted_by(counted: Counted, count: Count) -> tuple[int, ...]:
     """The count that distinguishes regions, as something to compare and sort by; (-1,) where it is not known."""
-    value = {
-        Count.STABLE: counted.stable,
-        Count.TOTAL: counted.total,
-        Count.INDEX: counted.index,
-        Count.ADMISSIBLE: counted.admissible,
-    }[count]
+    value = counted.number(count)
     return (-1,) if value is None else value if isinstance(value, tuple) else (value,)
 
 

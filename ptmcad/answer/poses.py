@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ptmcad.answer import with_methods
 from ptmcad.answer.regionmap import Status
 from ptmcad.model import Model, mechanism_in
+from ptmcad.question.counts import Count
 from ptmcad.text.enclosure import Enclosure
 
 Vector = tuple[Enclosure, Enclosure]
@@ -79,8 +80,8 @@ class Pose:
     stable : whether the Hessian is positive definite, or a system's conditions hold; None when it is singular, nothing
         says what stable is, or it is not decided.
     flat : whether all points of a mechanism lie on the x axis, exactly.
-    admissible : whether it is stable with every spring longer than its free length, as cables demand; None when the
-        springs have no free lengths, or it is not decided.
+    further : by the names of their counts, whether it is stable and predicates of `ptmcad.question.counts` hold, as far
+        as that is decided.
     torsion : the torsion springs, in the description's order.
     """
 
@@ -95,14 +96,25 @@ class Pose:
     index: int | None
     stable: bool | None
     flat: bool
-    admissible: bool | None = None
+    further: Mapping[str, bool] = field(default_factory=dict)
     reals: tuple[Enclosure, ...] = ()
     torsion: tuple[TorsionSpring, ...] = ()
 
     @property
-    def may_be_admissible(self) -> bool:
-        """Whether some spring has a free length, so that the pose is admissible or not."""
-        return self.admissible is not None or any(spring.free_length for spring in self.springs)
+    def admissible(self) -> bool | None:
+        """Whether it is stable with every spring longer than its free length, as cables demand; None when the springs
+        have no free lengths, or it is not decided."""
+        return self.further.get(Count.ADMISSIBLE.value)
+
+    @property
+    def has_predicates(self) -> bool:
+        """Whether it is asked if predicates hold: where some spring has a free length, or it is said that they do."""
+        return bool(self.further) or any(spring.free_length for spring in self.springs)
+
+    @property
+    def may_be_slack(self) -> bool:
+        """Whether it is not proved to be admissible although some spring has a free length."""
+        return self.has_predicates and self.admissible is not True
 
     def quantities(self, model: Model) -> tuple[tuple[NamedNumber, ...], ...]:
         """Unknowns, coordinates of points that move, springs' lengths and forces, torsion springs' deflections and

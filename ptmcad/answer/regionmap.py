@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer import with_methods
-from ptmcad.answer.counts import MorseIndex
+from ptmcad.answer.counts import Counted, MorseIndex
 from ptmcad.question.slice import Point, Slice
 from ptmcad.text.plane import PlanePolynomial
 
@@ -171,12 +171,11 @@ class Solution:
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
+class Cell(Counted):
     """An open cell with its rational sample point and the counts there, which hold in the whole cell.
 
     In a certified map ``stack`` is None and the cell is the connected component of the cover's complement that holds
-    its sample; ``level`` is its number. ``admissible`` counts the stable equilibria with every spring longer than its
-    free length; None in an exact map.
+    its sample; ``level`` is its number. ``further`` is empty in an exact map.
 
     ``solutions`` proves the counts: disjoint boxes, one around each of the real solutions at the sample. Empty when the
     counts were proved in another way.
@@ -190,7 +189,7 @@ class Cell:
     stable: int | None
     index: MorseIndex | None
     solutions: tuple[Solution, ...] = ()
-    admissible: int | None = None
+    further: Mapping[str, int] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         at = ", ".join(f"{float(value):.6g}" for value in self.sample)
@@ -271,7 +270,7 @@ class NonAdjacency:
 
 
 @dataclass(frozen=True, slots=True)
-class Region:
+class Region(Counted):
     """A maximal set of cells that are joined and have equal counts.
 
     Attributes
@@ -288,7 +287,7 @@ class Region:
     area: tuple[Fraction, Fraction]
     cells: tuple[int, ...]
     sample: Point
-    admissible: int | None = None
+    further: Mapping[str, int] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         area = f"{float(self.area[0]):.6g} to {float(self.area[1]):.6g}"

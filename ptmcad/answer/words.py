@@ -77,6 +77,19 @@ def index_words(entries: int) -> str:
     return "-".join(["minima", *saddles, "maxima"])
 
 
+def count_words(template: str, model: Model, number: int = 2) -> str:
+    """The words of a kind of count (`ptmcad.question.counts`) for a model; ``number`` is how many there are of it."""
+    entries = index_words(len(model.unknowns) + 1).split("-")
+    many = noun(model, number)
+    return template.format(
+        noun=many,
+        Noun=many.capitalize(),
+        index=", ".join(entries),
+        indices=" and ".join(filter(None, (", ".join(entries[:-1]), entries[-1]))),
+        in_all=model.nouns.total or many,
+    )
+
+
 def untold(model: Model) -> str:
     """Why it is not said which equilibria are stable; empty where it is, and of equations that say nothing of it."""
     mechanism = model.drawable

@@ -10,6 +10,7 @@ operation ranges. What could not be decided in a row is said there. Nothing is c
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import groupby
 
 from ptmcad.answer.counts import operation_number
 from ptmcad.answer.intervals import CertifiedInterval
@@ -56,13 +57,6 @@ def certified_widths(
 
 def _ranges(row: tuple[CertifiedInterval, ...], working: int) -> tuple[CertifiedRange, ...]:
     """The operation ranges of a row; one goes on through a value at which only other solutions meet."""
-    ranges: list[CertifiedRange] = []
-    before = False
-    for interval in row:
-        inside = interval.working is not None and interval.working >= working
-        if inside and before:
-            ranges[-1] = CertifiedRange(ranges[-1].low, interval.high)
-        elif inside:
-            ranges.append(CertifiedRange(interval.low, interval.high))
-        before = inside
-    return tuple(ranges)
+    groups = groupby(row, lambda interval: interval.working is not None and interval.working >= working)
+    runs = [list(group) for inside, group in groups if inside]
+    return tuple(CertifiedRange(run[0].low, run[-1].high) for run in runs)

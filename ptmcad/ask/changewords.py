@@ -12,7 +12,6 @@ from ptmcad.answer.arrangement import SIDES
 from ptmcad.answer.words import index_words, noun
 from ptmcad.exact.arrangement import Picture
 from ptmcad.exact.regions import Link, members, merge
-from ptmcad.question.slice import Count
 from ptmcad.text.numerals import text_of
 
 _Same = tuple[list[int], list[int]]
@@ -109,5 +108,5 @@ def _of(picture: Picture, key: tuple[int, ...]) -> str:
     slice = picture.problem.slice
     if len(key) > 1:
         return f"({', '.join(map(str, key))}) {index_words(len(key))}"
-    stable = slice.count is Count.STABLE and picture.problem.system.tells_stability
+    stable = slice.count.is_of_stable and picture.problem.system.tells_stability
     return f"{key[0]} {'stable ' if stable else ''}{noun(slice.model, key[0])}"

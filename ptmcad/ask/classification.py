@@ -25,8 +25,9 @@ from ptmcad.model import ClosedMechanism, ptm
 from ptmcad.options import Options, Progress
 from ptmcad.process.memory import loading
 from ptmcad.question.config import slice_from
+from ptmcad.question.counts import Count
 from ptmcad.question.savings import load_all, switched_off
-from ptmcad.question.slice import NOTHING_ADMISSIBLE, Count, Slice, without_free_lengths
+from ptmcad.question.slice import Slice, count_fault, without_free_lengths
 from ptmcad.text.parsing import share_for
 
 if TYPE_CHECKING:
@@ -147,6 +148,8 @@ def region_map(slice: Slice, options: Options, known: Known | None = None) -> Re
         without_free_lengths(slice.model, slice.parameters, "an exact map is")
     except ConfigError as error:
         raise ConfigError(f"{error.message}: choose certified or auto", key="engine") from error
+    if slice.count.kind.predicate is not None:
+        raise ConfigError(f"only the certified engine counts by {slice.count.value}", key="engine")
     if options.resume is not None:
         raise ConfigError("only the certified engine can go on from an earlier map", key="resume")
     if "imports" in options.without:
@@ -304,6 +307,11 @@ def check_resumable(slice: Slice, earlier: RegionMap) -> None:
 
 
 def check_count(slice: Slice) -> None:
-    """Without free lengths every spring that is not of length zero is longer than its own: stable says it all."""
-    if slice.count is Count.ADMISSIBLE and not slice.has_free_lengths:
-        raise ConfigError(f"{NOTHING_ADMISSIBLE}: choose stable", key="count")
+    """Refuse a count that makes no sense for the model.
+
+    Raises
+    ------
+    ConfigError
+    """
+    if problem := count_fault(slice.count, slice.model, slice.parameters):
+        raise ConfigError(problem, key="count")

@@ -27,7 +27,8 @@ from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.curves import curves_of, lines_of
 from ptmcad.exact.cad.projection import Projection, predicted_cost, project
 from ptmcad.exact.cad.stacks import Avoided, StackData, lift
-from ptmcad.question.slice import Count, Point
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Point
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 TOLERANCE = Fraction(1, 10**6)

@@ -7,4 +7,5 @@ from ptmcad.question.slice import Slice
 
 def is_certified(slice: Slice, engine: str) -> bool:
     """Whether the choice ``"exact"``, ``"certified"`` or ``"auto"`` means the certified engine for a slice."""
-    return engine == "certified" or (engine == "auto" and slice.has_free_lengths)
+    only = slice.has_free_lengths or slice.count.kind.predicate is not None
+    return engine == "certified" or (engine == "auto" and only)

@@ -155,7 +155,7 @@ def _locate_outside_cover(result: RegionMap, cover: Cover, point: tuple[Fraction
     if number is None:
         return Location(Status.UNDECIDED)
     cell = result.cells[number]
-    return Location(Status.CERTIFIED, cell.region, number, cell.total, cell.stable, cell.index, cell.admissible)
+    return Location(Status.CERTIFIED, cell.region, number, cell.total, cell.stable, cell.index, cell.further)
 
 
 def in_steps(result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:

@@ -21,7 +21,7 @@ from ptmcad.errors import LimitReached
 from ptmcad.model import Model
 from ptmcad.model.compile import compiled
 from ptmcad.process.memory import loading
-from ptmcad.question.slice import Count
+from ptmcad.question.counts import Count
 
 if TYPE_CHECKING:
     from ptmcad.algebra.fibre import WorkLimit

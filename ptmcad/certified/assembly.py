@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice
 
+from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Cell, PlanStep, Region, RegionMap, Status
 from ptmcad.certified.plain.points import BranchCounter
 from ptmcad.certified.points import PointCount
@@ -19,7 +20,8 @@ from ptmcad.certified.statement import system_text
 from ptmcad.cover.borders import area_bounds
 from ptmcad.cover.complement import Components
 from ptmcad.cover.samples import samples
-from ptmcad.question.slice import Count, Point, Slice
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Point, Slice
 
 MAX_COUNTED = 500
 """Components whose counts are computed; smaller ones are undetermined."""
@@ -61,13 +63,12 @@ class Assembler:
         cells, regions = [], []
         for region, n in enumerate(kept):
             sample, count = counted[n]
-            admissible = count.admissible
             cells.append(
-                Cell(None, n, sample, region, count.total, count.stable, count.index, count.solutions, admissible)
+                Cell(None, n, sample, region, count.total, count.stable, count.index, count.solutions, count.further)
             )
             low, high = area_bounds(complement, n, known)
             area = (low * square, high * square)
-            regions.append(Region(count.stable, count.total, count.index, area, (region,), sample, admissible))
+            regions.append(Region(count.stable, count.total, count.index, area, (region,), sample, count.further))
         open_area = cover.steps**2 - sum(complement.areas[n] for n in kept)
         return RegionMap(
             slice=self.slice,
@@ -102,15 +103,6 @@ class Assembler:
         return counted
 
 
-def _key(count: PointCount, which: Count) -> object:
-    """What distinguishes two cells."""
-    if which is Count.STABLE:
-        return count.stable
-    if which is Count.TOTAL:
-        return count.total
-    return count.index if which is Count.INDEX else count.admissible
-
-
 def _is_pocket(
     n: int,
     least: Fraction,
@@ -122,7 +114,8 @@ def _is_pocket(
     if complement.areas[n] >= least:
         return False
     near = set(complement.clusters_at[n])
-    mine = _key(counted[n][1], which)
+    mine = counted_by(counted[n][1], which)
     return any(
-        m < n and _key(counted[m][1], which) == mine and near.intersection(complement.clusters_at[m]) for m in counted
+        m < n and counted_by(counted[m][1], which) == mine and near.intersection(complement.clusters_at[m])
+        for m in counted
     )

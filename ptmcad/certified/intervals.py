@@ -34,9 +34,9 @@ def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits:
         not lie in the slice's window, so nothing that is known of the window is used.
     """
     with loading("the certified engine"):
-        from ptmcad.certified.line import line_counts
+        from ptmcad.certified.line import intervals_and_changes
     varying, other, value = varying_axis(slice, along, at)
     axes = slice.axes[varying], Axis(other, value, value)
     line = proved(replace(slice, axes=axes, parameters=on_line(slice, varying, value)))
-    intervals, changes = line_counts(line, 0, value, 64 + 4 * digits)
+    intervals, changes = intervals_and_changes(line, 64 + 4 * digits)
     return CertifiedIntervals(slice.axes[varying], {other: value}, intervals, changes)

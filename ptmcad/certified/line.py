@@ -1,7 +1,8 @@
 """The values along a line of a slice at which counts change, enclosed, and the counts between them, proved.
 
 Guarantee: on each interval of the result the numbers of minima, saddles, maxima and cones are constant. What was not
-decided lies in one of the gaps between them; a gap that is `proved` holds nothing but isolated critical values.
+decided lies in one of the changes between them; one that is `proved` holds nothing but isolated critical values, each
+proved to be the only one near it. Another one may hold none.
 """
 
 from __future__ import annotations
@@ -9,22 +10,24 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import chain, pairwise
+from itertools import chain
 
 import numpy as np
 from flint import ctx
 
+from ptmcad.answer.counts import counts_of_signs
 from ptmcad.answer.intervals import CertifiedChange, CertifiedInterval
-from ptmcad.certified.arb_isolation import Box, refined
+from ptmcad.certified.arb_isolation import refined
 from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.points import PointCount
-from ptmcad.certified.search import Boxes, isolate
+from ptmcad.certified.search import isolate
 from ptmcad.certified.system import EquationSystem
 from ptmcad.formulas.balls import ball, lower, upper
 from ptmcad.formulas.tape import enclosing_floats
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import Enclosure
 
 MIN_BOX_WIDTH = 1e-8
@@ -37,10 +40,8 @@ MIN_PART = Fraction(1, 2**16)
 """Parts of the line of this share are not halved."""
 
 
-def line_counts(
-    slice: Slice, varying: int, value: Fraction, bits: int
-) -> tuple[tuple[CertifiedInterval, ...], tuple[CertifiedChange, ...]]:
-    """The counts on the line on which axis ``varying`` runs over its window and the other one has a value.
+def intervals_and_changes(slice: Slice, bits: int) -> tuple[tuple[CertifiedInterval, ...], tuple[CertifiedChange, ...]]:
+    """The counts on the line of a slice's first axis, and what lies between them; the other axis has one value.
 
     Intervals and the changes between them, both in increasing order.
 
@@ -48,88 +49,81 @@ def line_counts(
     ----------
     bits : precision to which critical values are enclosed.
     """
-    axis = slice.axes[varying]
+    axis, value = slice.axes[0], slice.axes[1].low
     wanted = curves(slice, Count.INDEX)
     found: list[list[CertifiedChange]] = [[] for _ in wanted]
     # what is quick to search comes first: what it leaves undecided need not be looked at closely again
     for k in sorted(range(len(wanted)), key=lambda k: len(wanted[k].system.tape)):
-        undecided = _joined([gap for gaps in found for gap in gaps if not gap.proved])
-        found[k] = list(_gaps(slice, wanted[k], varying, value, bits, [gap.at for gap in undecided]))
-    gaps = _joined([g for some in found for g in some if g.at.high > axis.low and g.at.low < axis.high])
+        undecided = _joined([change for some in found for change in some if not change.proved])
+        found[k] = list(_changes(slice, wanted[k], bits, undecided))
+    changes = _joined([c for some in found for c in some if c.at.high > axis.low and c.at.low < axis.high])
     counter = plain_counter(slice)
+    edges = (Enclosure(end, end) for end in (axis.low, axis.high))
+    low = next(edges)
     intervals = []
-    for before, after in pairwise([_point(axis.low), *(gap.at for gap in gaps), _point(axis.high)]):
-        if before.high < after.low:
-            sample = _simple(before.high, after.low)
-            x, y = (sample, value) if varying == 0 else (value, sample)
-            counts = counter.at(x, y, Count.INDEX)
-            numbers = _numbers(slice, counts)
-            intervals.append(CertifiedInterval(before, after, counts.index, counts.cones, sample, *numbers))
-    return tuple(intervals), tuple(gaps)
-
-
-def _point(value: Fraction) -> Enclosure:
-    return Enclosure(value, value)
+    for high in (*(change.at for change in changes), *edges):
+        if low.high < high.low:
+            sample = _simple(low.high, high.low)
+            counts = counter.at(sample, value, Count.INDEX)
+            total, stable = _numbers(slice, counts)
+            intervals.append(CertifiedInterval(low, high, counts.index, counts.cones, sample, total, stable))
+        low = high
+    return tuple(intervals), changes
 
 
 def _numbers(slice: Slice, counts: PointCount) -> tuple[int | None, int | None]:
     """All equilibria and the stable ones; nothing where it is known what is stable, but not of each of them."""
-    if counts.index is not None:
-        return sum(counts.index), counts.index[0]
-    if counts.total is None or not slice.model.tells_stability:
-        return counts.total, None
-    if not all(solution.signs for solution in counts.solutions):
-        return None, None
-    return counts.total, sum(not solution.signs.strip("+") for solution in counts.solutions)
+    if counts.stable is not None or counts.total is None or not slice.model.tells_stability:
+        return counts.total, counts.stable
+    signs = [solution.signs for solution in counts.solutions]
+    return (counts.total, counts_of_signs(signs, True, None).stable) if all(signs) else (None, None)
 
 
-def _gaps(
-    slice: Slice, curve: CriticalCurve, varying: int, value: Fraction, bits: int, undecided: Sequence[Enclosure]
+def _changes(
+    slice: Slice, curve: CriticalCurve, bits: int, undecided: Sequence[CertifiedChange]
 ) -> Iterator[CertifiedChange]:
     """Where the line meets a curve; parts of it that are too hard as a whole are halved while the budget lasts, but for
     what is ``undecided`` in them."""
-    system = on_line(curve.system, varying)
+    system = on_line(curve.system, 0)
     equations = replace(system, vanishing=(_NONE, _NONE, _NONE), nonnegative=_NONE)
-    axis = slice.axes[varying]
+    axis, value = slice.axes[0], slice.axes[1].low
     step = (axis.high - axis.low) / START_PARTS
     waiting = [(axis.low + k * step, axis.low + (k + 1) * step) for k in range(START_PARTS)]
     smallest = (axis.high - axis.low) * MIN_PART
+    fixed = enclosing_floats(value)
     total = 0
     while waiting:
         low, high = waiting.pop()
-        along, fixed = (enclosing_floats(low)[0], enclosing_floats(high)[1]), enclosing_floats(value)
-        ranges = (along, fixed) if varying == 0 else (fixed, along)
-        start = curve.start(np.array([[ranges[0][0], ranges[1][0], ranges[0][1], ranges[1][1]]]))
+        ends = enclosing_floats(low)[0], enclosing_floats(high)[1]
+        start = curve.start(np.array([[ends[0], fixed[0], ends[1], fixed[1]]]))
         limits = MIN_BOX_WIDTH, BUDGET, MAX_OPEN_BOXES
         found = isolate(system.arguments(), equations.arguments(), start, limits, curve.importance())
         total += found.used
         left, variables = found.left(), start.shape[1] // 2
         if (found.used >= BUDGET or len(left) > MAX_OPEN_BOXES) and high - low > smallest and total < MAX_BOXES:
-            inside = [(max(low, g.low), min(high, g.high)) for g in undecided if g.high > low and g.low < high]
+            inside = [
+                (max(low, change.at.low), min(high, change.at.high))
+                for change in undecided
+                if change.at.high > low and change.at.low < high
+            ]
             yield from (CertifiedChange(Enclosure(*ends), (curve.name,), False) for ends in inside)
             middle = (low + high) / 2
             edges = [low, *chain.from_iterable(inside or [(middle, middle)]), high]
             waiting += [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]
             continue
         for box in left:
-            ends = Fraction(float(box[varying])), Fraction(float(box[variables + varying]))
-            yield CertifiedChange(Enclosure(*ends), (curve.name,), False)
+            open_part = Enclosure(Fraction(float(box[0])), Fraction(float(box[variables])))
+            yield CertifiedChange(open_part, (curve.name,), False)
         # ``narrow`` was contracted with the equations alone; its number can be enclosed to any precision
         for row in found.narrow:
             with ctx.workprec(bits):
-                box = _balls(row, varying, value)
-            exact = refined(equations, box, bits)[varying]
+                floats = [ball(Fraction(float(row[k])), Fraction(float(row[variables + k]))) for k in range(variables)]
+                box = (floats[0], ball(value, value), *floats[2:])
+            exact = refined(equations, box, bits)[0]
             yield CertifiedChange(Enclosure(lower(exact), upper(exact)), (curve.name,), True)
 
 
 _NONE = np.empty(0, np.int64)
-
-
-def _balls(row: Boxes, varying: int, value: Fraction) -> Box:
-    variables = len(row) // 2
-    box = [ball(Fraction(float(row[k])), Fraction(float(row[variables + k]))) for k in range(variables)]
-    box[1 - varying] = ball(value, value)
-    return tuple(box)
 
 
 def on_line(system: EquationSystem, varying: int) -> EquationSystem:
@@ -141,18 +135,18 @@ def on_line(system: EquationSystem, varying: int) -> EquationSystem:
     return replace(system, unknowns=system.unknowns[kept], jacobian=jacobian, solved=solved)
 
 
-def _joined(gaps: Sequence[CertifiedChange]) -> list[CertifiedChange]:
-    """Gaps that touch become one."""
+def _joined(changes: Sequence[CertifiedChange]) -> tuple[CertifiedChange, ...]:
+    """Changes whose enclosures touch become one."""
     joined: list[CertifiedChange] = []
-    for gap in sorted(gaps, key=lambda g: (g.at.low, g.at.high)):
-        if not joined or gap.at.low > joined[-1].at.high:
-            joined.append(gap)
+    for change in sorted(changes, key=lambda c: (c.at.low, c.at.high)):
+        if not joined or change.at.low > joined[-1].at.high:
+            joined.append(change)
             continue
         last = joined.pop()
-        names = tuple(dict.fromkeys((*last.names, *gap.names)))
-        at = Enclosure(last.at.low, max(last.at.high, gap.at.high))
-        joined.append(CertifiedChange(at, names, last.proved and gap.proved))
-    return joined
+        names = tuple(dict.fromkeys((*last.names, *change.names)))
+        at = Enclosure(last.at.low, max(last.at.high, change.at.high))
+        joined.append(CertifiedChange(at, names, last.proved and change.proved))
+    return tuple(joined)
 
 
 def _simple(low: Fraction, high: Fraction) -> Fraction:

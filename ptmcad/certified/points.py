@@ -1,17 +1,17 @@
 """The count of solutions at a rational point, and how long it is searched for.
 
-Guarantee: when a `PointCount` is decided, each solution (for `Count.STABLE` and `Count.ADMISSIBLE` each minimum) has
+Guarantee: when a `PointCount` is decided, each solution (where stable ones alone are counted, each of these) has
 its own box, proved to hold exactly one, and it is proved that there are no others. What is not proved is undecided.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from math import frexp, inf
 
-from ptmcad.answer.counts import MorseIndex
+from ptmcad.answer.counts import Counted, MorseIndex
 from ptmcad.answer.regionmap import Solution
 from ptmcad.certified.search import Boxes
 
@@ -24,7 +24,7 @@ PRECISIONS = (128, 320)
 
 
 @dataclass(frozen=True, slots=True)
-class PointCount:
+class PointCount(Counted):
     """The counts at a point; None where the count asked for does not need them, and where nothing is decided.
 
     Attributes
@@ -34,16 +34,17 @@ class PointCount:
     solutions : disjoint boxes, angles in radians: all solutions, or the minima when only these were counted. Where
         nothing is decided those that are proved, without signs where these are open.
     open : boxes in which there may be more of them.
+    further : by the names of predicates, how many of the stable solutions they hold at.
     """
 
     total: int | None = None
     stable: int | None = None
-    admissible: int | None = None
     index: MorseIndex | None = None
     cones: int | None = None
     solutions: tuple[Solution, ...] = ()
     decided: bool = False
     open: int = 0
+    further: Mapping[str, int] = field(default_factory=dict)
 
 
 def boxed(unique: Boxes, narrow: Boxes, signs: str, unknowns: Sequence[int]) -> Solution:

@@ -28,8 +28,9 @@ from ptmcad.options import Options
 from ptmcad.process.handover import Topic, send, watched
 from ptmcad.process.output import check_writable, how_to_go_on, save_stopped
 from ptmcad.question.config import Family
+from ptmcad.question.counts import Count
 from ptmcad.question.savings import check_names, switched_off
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.slice import Slice
 from ptmcad.text.bounds import percent
 
 FORMATS = ("json", *PICTURES, *DATA, *MESHES)

@@ -19,6 +19,7 @@ from ptmcad.cli.stored import read_result
 from ptmcad.cli.values import point as propose_point
 from ptmcad.errors import ConfigError, shown
 from ptmcad.process.streams import reader_left
+from ptmcad.question.counts import further_names
 from ptmcad.question.examples import POINT
 from ptmcad.show.table import stability_in_words
 from ptmcad.text.textfile import lines_of
@@ -29,8 +30,8 @@ FIELDS = ("status", "region", "cell", "total", "stable", "index")
 
 
 def fields_of(result: RegionMap) -> tuple[str, ...]:
-    """What is reported of a point: in a certified map also how many stable equilibria are admissible."""
-    return FIELDS if result.cover is None else (*FIELDS, "admissible")
+    """What is reported of a point: in a certified map also at how many stable equilibria predicates hold."""
+    return FIELDS if result.cover is None else (*FIELDS, *further_names(result.slice.count))
 
 
 def answer(location: Location, fields: Sequence[str] = FIELDS) -> list[str]:
@@ -42,9 +43,9 @@ def answer(location: Location, fields: Sequence[str] = FIELDS) -> list[str]:
         "cell": location.cell,
         "total": location.total,
         "stable": location.stable,
-        "admissible": location.admissible,
+        **location.further,
     }
-    return ["" if texts[name] is None else str(texts[name]) for name in fields]
+    return ["" if texts.get(name) is None else str(texts[name]) for name in fields]
 
 
 def point_of(text: str) -> dict[str, str]:

@@ -14,7 +14,7 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.cli.locate import point_of, rows_of
 from ptmcad.errors import ConfigError, ExpressionError, blamed, shown
 from ptmcad.question.config import point_from_mapping
-from ptmcad.question.slice import Count
+from ptmcad.question.counts import Shades
 from ptmcad.show.table import count_text
 from ptmcad.text.numerals import shortest_text
 from ptmcad.text.parsing import rational
@@ -116,7 +116,7 @@ def _count(result: RegionMap, text: str) -> str:
     """A count as the map writes its own, such as ``2``, or ``(1, 2, 1)`` of a map by index; empty for none."""
     if not text:
         return ""
-    if result.slice.count is Count.INDEX:
+    if result.slice.count.kind.shades is Shades.INDEX:
         numbers = text.removeprefix("(").removesuffix(")").split(",")
         if all(re.fullmatch(r"\s*\d{1,6}\s*", number, re.ASCII) for number in numbers):
             return f"({', '.join(str(int(number)) for number in numbers)})"

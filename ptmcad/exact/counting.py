@@ -23,7 +23,7 @@ from ptmcad.algebra.isolation import root_bound
 from ptmcad.algebra.newton import Newton
 from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate
 from ptmcad.algebra.vanishing import Divisor, vanishing_divisor
-from ptmcad.answer.counts import Counts
+from ptmcad.answer.counts import Counts, counts_of_signs
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial
 from ptmcad.exact.point_system import PointSystem, simple_solutions, text_of_point
 
@@ -101,14 +101,8 @@ def equilibria(system: ParametricSystem, values: Mapping[str, fmpq], most: WorkL
 
 
 def _counts(system: ParametricSystem, found: Sequence[Equilibrium]) -> Counts:
-    stable = sum(not e.signs.strip("+") for e in found) if system.tells_stability else None
-    index = None
-    if system.has_index:
-        numbers = [0] * (system.dimension + 1)
-        for solution in found:
-            numbers[solution.signs.count("-")] += 1
-        index = tuple(numbers)
-    return Counts(len(found), stable, index)
+    size = system.dimension if system.has_index else None
+    return counts_of_signs([e.signs for e in found], system.tells_stability, size)
 
 
 def _enclosed(

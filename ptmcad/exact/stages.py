@@ -28,7 +28,8 @@ from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.exact.regions import Link, merge
 from ptmcad.exact.variety import Known, check_hypotheses, discriminant_variety
 from ptmcad.model.involutions import Involution, involutions
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Slice
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import short_text
 
@@ -273,11 +274,8 @@ def with_keys(problem: SliceProblem, found: Sequence[Equilibria]) -> SampleCount
 
 def count_key(counts: Counts, count: Count) -> tuple[int, ...]:
     """The count by which regions are told apart."""
-    if count is Count.STABLE and counts.stable is not None:
-        return (counts.stable,)
-    if count is Count.INDEX and counts.index is not None:
-        return counts.index
-    return (counts.total,)
+    known = counts.number(count)
+    return (counts.total,) if known is None else known if isinstance(known, tuple) else (known,)
 
 
 def crossings_of(

@@ -8,35 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, field
-from enum import Enum
 from fractions import Fraction
 from typing import Any, TypeVar
 
 from ptmcad.errors import ConfigError
-from ptmcad.model import Kind, Model
+from ptmcad.model import Kind, Model, mechanism_in
 from ptmcad.model.evaluate import value_among
-from ptmcad.model.work import split_moments
+from ptmcad.model.work import foreign, split_moments
+from ptmcad.question.counts import USUAL, Count
 from ptmcad.question.signs import Finding
 from ptmcad.text.expressions import Expression, constant
-
-NOTHING_ADMISSIBLE = "admissible asks that every spring is longer than its free length, and none has a free length here"
-"""What is wrong with that count then."""
-
-
-class Count(Enum):
-    """Which count distinguishes two regions."""
-
-    STABLE = "stable"
-    TOTAL = "total"
-    INDEX = "index"
-    ADMISSIBLE = "admissible"
-    """stable equilibria at which every spring is longer than its free length"""
-
-    @property
-    def is_of_stable(self) -> bool:
-        """Whether no other solutions than stable ones matter."""
-        return self in (Count.STABLE, Count.ADMISSIBLE)
-
 
 QUANTITIES = ("length", "force")
 """Whose units a record may declare."""
@@ -78,7 +59,7 @@ class Slice:
     model: Model
     axes: tuple[Axis, Axis]
     parameters: Mapping[str, Expression]
-    count: Count = Count.STABLE
+    count: Count = USUAL
     title: str = ""
     reference: Mapping[str, Any] = field(default_factory=dict)
     text: Mapping[str, str] = field(default_factory=dict)
@@ -167,6 +148,25 @@ def relaxed_springs(model: Model, parameters: Mapping[str, Expression]) -> tuple
     known = dict.fromkeys(model.parameters, constant(0)) | dict(parameters)
     free = () if model.whole is None else model.whole.written(Kind.FREE_LENGTH)
     return tuple(k for k, tree in enumerate(free) if value_among(tree, known, constant).numerator)
+
+
+def count_fault(count: Count, model: Model, parameters: Mapping[str, Expression]) -> str:
+    """Why a count makes no sense for a model; empty where it does."""
+    kind, mechanism, predicate = count.kind, mechanism_in(model), count.kind.predicate
+    if predicate is not None and mechanism is None:
+        return predicate.of_systems
+    if predicate is not None and predicate.needs_free_lengths and not have_free_lengths(model, parameters):
+        return predicate.without_free_lengths
+    if kind.is_of_stable and not model.tells_stability:
+        if mechanism is None:
+            return "nothing says what a stable solution is: add conditions as 'stable:' to the system, or count total"
+        return (
+            f"{foreign(mechanism)} that depends on another unknown has no potential, which says what is stable: count "
+            "total"
+        )
+    if kind.needs_index and not model.has_potential:
+        return "solutions of equations have no index, which is that of a potential's Hessian: count total"
+    return ""
 
 
 def moved(model: Model, parameters: Mapping[str, Expression]) -> tuple[str, ...]:

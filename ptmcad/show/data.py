@@ -15,11 +15,12 @@ from math import inf, isnan, nan, nextafter
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.boundaries import Boundary, Grid
-from ptmcad.answer.counts import MorseIndex
+from ptmcad.answer.counts import Counted, MorseIndex
 from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.extras import Extra, require
+from ptmcad.question.counts import PREDICATES, further_names
 from ptmcad.question.doubles import within_doubles
 from ptmcad.show.polynomial_text import Style, polynomial_text
 
@@ -30,7 +31,7 @@ Row = dict[str, Any]
 TABLES = ("regions", "cells", "components", "boundaries", "grid")
 """What a map is as a data frame."""
 _OF_ITS_OWN = {
-    "region", "stable", "total", "index", "admissible", "area_low", "area_high", "cells", "cell", "stack", "level",
+    "region", "stable", "total", "index", *PREDICATES, "area_low", "area_high", "cells", "cell", "stack", "level",
     "piece", "component", "kind", "separates", "left", "right", "distance", "polynomial",
 }  # fmt: skip
 
@@ -46,7 +47,7 @@ def region_rows(result: RegionMap) -> list[Row]:
     with within_doubles(result.slice):
         return [
             {
-                "region": k, "stable": r.stable, "total": r.total, "index": _index(r.index), "admissible": r.admissible,
+                "region": k, "stable": r.stable, "total": r.total, "index": _index(r.index), **_further(result, r),
                 "area_low": _rounded(r.area[0], -inf), "area_high": _rounded(r.area[1], inf), "cells": len(r.cells),
                 **_at(result, r.sample),
             }
@@ -60,10 +61,15 @@ def cell_rows(result: RegionMap) -> list[Row]:
         return [
             {
                 "cell": k, "region": c.region, "stable": c.stable, "total": c.total, "index": _index(c.index),
-                "admissible": c.admissible, "stack": c.stack, "level": c.level, **_at(result, c.sample),
+                **_further(result, c), "stack": c.stack, "level": c.level, **_at(result, c.sample),
             }
             for k, c in enumerate(result.cells)
         ]  # fmt: skip
+
+
+def _further(result: RegionMap, part: Counted) -> Row:
+    """Of how many solutions predicates hold, by their names."""
+    return {name: part.further.get(name) for name in further_names(result.slice.count)}
 
 
 def component_rows(result: RegionMap) -> list[Row]:
@@ -152,7 +158,7 @@ def _pandas() -> Any:
     return pd
 
 
-_MAY_BE_MISSING = ("stable", "total", "admissible", "component", "left", "right", "stack")
+_MAY_BE_MISSING = ("stable", "total", *PREDICATES, "component", "left", "right", "stack")
 
 
 def _rows(result: RegionMap, what: str, options: Mapping[str, Any]) -> Iterable[Row]:

@@ -13,6 +13,7 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.answer.words import counted, noun, of_what, untold
 from ptmcad.model import Mechanism, Model, built_in, mechanism_in
+from ptmcad.question.counts import POSE_COLUMNS, PoseColumn
 from ptmcad.question.slice import merged
 from ptmcad.show.units import declared_units
 from ptmcad.text.enclosure import Enclosure, exact_text
@@ -57,7 +58,7 @@ def table(poses: Poses, digits: int | None = None) -> str:
             *(_wrapped("units", units) if (units := _units(poses)) else []),
             *(_wrapped("energy", [note]) if (note := _energy_note(poses)) else []),
             *(_wrapped("torsion", [_TORSION]) if poses.equilibria[0].torsion else []),
-            *(_wrapped("tense", [_TENSE]) if poses.equilibria[0].may_be_admissible else []),
+            *(line for each in _columns(poses).values() for line in _wrapped(each.head, [each.note])),
             *_bounds(poses),
         ]
     return "\n".join(lines)
@@ -104,7 +105,6 @@ def _energy_note(poses: Poses) -> str:
 
 
 _TORSION = "deflection: angle - rest; moment: k sin(deflection), positive where it turns back an angle beyond rest"
-_TENSE = "stable, and every spring longer than its free length; a negative force pushes"
 
 
 def _point(poses: Poses) -> list[str]:
@@ -141,10 +141,15 @@ def _summary(poses: Poses) -> list[str]:
     if poses.status is Status.UNDECIDED:
         boxes = f"{poses.undecided} box{'' if poses.undecided == 1 else 'es'}"
         parts = [f"at least {parts[0]}, each certified", f"{boxes} of configurations undecided"]
-    if any(pose.may_be_admissible for pose in poses.equilibria):
-        tense = sum(pose.admissible is True for pose in poses.equilibria)
-        parts.insert(1, f"{tense} stable with every spring longer than its free length")
+    for name, column in _columns(poses).items():
+        number = sum(pose.further.get(name) is True for pose in poses.equilibria)
+        parts.insert(1, f"{number} {column.tally}")
     return parts + ([poses.remark] if poses.remark else [])
+
+
+def _columns(poses: Poses) -> dict[str, PoseColumn]:
+    """Those of predicates, where it is asked whether these hold."""
+    return POSE_COLUMNS if any(pose.has_predicates for pose in poses.equilibria) else {}
 
 
 def _wrapped(label: str, parts: Sequence[str], separator: str = ", ") -> list[str]:
@@ -181,9 +186,9 @@ def _groups(poses: Poses) -> list[list[Numbers]]:
     states: list[Numbers] = [("state", "", [called.get(kind, kind) for kind in kinds])]
     if mechanism_in(model) is not None:
         states.append(("flat", "", ["yes" if p.flat else "no" for p in found]))
-    if first.may_be_admissible:
-        said = {True: "yes", False: "no", None: "undecided"}
-        states.append(("tense", "", [said[p.admissible] for p in found]))
+    said = {True: "yes", False: "no", None: "undecided"}
+    for name, column in _columns(poses).items():
+        states.append((column.head, "", [said[p.further.get(name)] for p in found]))
     if first.eigenvalues:
         states.append(("index", "", ["-" if p.index is None else str(p.index) for p in found]))
     states.append(("mult.", "", [str(p.multiplicity) for p in found]))

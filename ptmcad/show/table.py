@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.timings import COMPILATION
-from ptmcad.answer.words import index_words, noun, several
+from ptmcad.answer.words import count_words, noun, several
 from ptmcad.model import Model
-from ptmcad.question.slice import Count
+from ptmcad.question.counts import Count
 from ptmcad.show.units import area_unit
 from ptmcad.text.bounds import certified_digits, interval_text, percent
 from ptmcad.text.numerals import magnitude
@@ -19,36 +19,18 @@ from ptmcad.text.numerals import magnitude
 if TYPE_CHECKING:  # a map of the exact engine has no cover
     from ptmcad.cover.rectangles import Cover
 
-_NAMES = {
-    Count.STABLE: "stable",
-    Count.ADMISSIBLE: "stable and admissible",
-}
-
-
-def _count_name(result: RegionMap, region: Region) -> str:
-    """What is counted, as it follows the number."""
-    count, model = result.slice.count, result.slice.model
-    if count is Count.INDEX:
-        return index_heading(model)
-    if count is Count.TOTAL:
-        return model.nouns.total or noun(model, region.total or 0)
-    return _NAMES[count]
-
 
 def index_heading(model: Model) -> str:
     """What the entries of an index stand for, in brackets as they are."""
-    return f"({', '.join(index_words(len(model.unknowns) + 1).split('-'))})"
+    return count_words("({index})", model)
 
 
 def count_text(region: Region, count: Count) -> str:
     """The count by which regions are distinguished, as text."""
-    if count is Count.STABLE:
-        return str(region.stable)
-    if count is Count.TOTAL:
-        return str(region.total)
-    if count is Count.ADMISSIBLE:
-        return str(region.admissible)
-    return f"({', '.join(map(str, region.index))})" if region.index else "?"
+    number = region.number(count)
+    if isinstance(number, tuple):
+        return f"({', '.join(map(str, number))})"
+    return "?" if number is None else str(number)
 
 
 def in_order(text: str) -> list[int]:
@@ -141,8 +123,10 @@ def _time(result: RegionMap) -> str:
 
 def table(result: RegionMap) -> str:
     """Regions, counts, areas, boundary curves with degrees (or the cover), time and error."""
-    count = result.slice.count
-    tally = Counter(f"{count_text(r, count)} {_count_name(result, r)}" for r in result.regions)
+    count, model = result.slice.count, result.slice.model
+    tally = Counter(
+        f"{count_text(r, count)} {count_words(count.kind.tail, model, r.total or 0)}" for r in result.regions
+    )
     counts = "; ".join(
         f"{text}: {several(n, 'region')}" for text, n in sorted(tally.items(), key=lambda item: in_order(item[0]))
     )
@@ -181,7 +165,7 @@ def stability_in_words(result: RegionMap) -> str:
     Where all solutions are counted, no curve is enclosed across which one of them loses its stability.
     """
     model = result.slice.model
-    if result.slice.count is not Count.TOTAL or not model.tells_stability or model.has_potential or not result.cells:
+    if result.slice.count.is_of_stable or not model.tells_stability or model.has_potential or not result.cells:
         return ""
     if result.cover is None:
         return ""

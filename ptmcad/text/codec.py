@@ -154,6 +154,7 @@ class Key(NamedTuple):
         of the keys that are checked, as an earlier version wrote it.
     beside : where it is not empty, the codec writes an object with some of these keys, which stand beside the others.
     instead : of a record, what is taken where the key is wrong or missing; without it nothing is read of the object.
+    entry_of : the field, a mapping, in which the key has its entry; in there is none where it is null.
     """
 
     codec: Codec[Any] | None = None
@@ -165,6 +166,7 @@ class Key(NamedTuple):
     checked: bool = False
     beside: tuple[str, ...] = ()
     instead: object = ...
+    entry_of: str = ""
 
 
 _DEFAULT = object()
@@ -200,7 +202,8 @@ def record(make: Callable[..., T], like: str = "", /, **keys: Codec[Any] | Key) 
     entries = {name: key if isinstance(key, Key) else Key(key) for name, key in keys.items()}
     known = [name for key, entry in entries.items() for name in entry.beside or (key,)]
     needed = [name for name, key in entries.items() if key.default is ... and not key.beside]
-    parts = [(n, key, _codec(key), key.get or attrgetter(key.field or n), key.default) for n, key in entries.items()]
+    parts = [(n, key, _codec(key), key.get or _getter(n, key), key.default) for n, key in entries.items()]
+    within = {name: key.entry_of for name, key in entries.items() if key.entry_of}
     checked = {name: (get, codec) for name, key, codec, get, _ in parts if key.checked}
 
     def write(value: T) -> dict[str, Any]:
@@ -226,6 +229,9 @@ def record(make: Callable[..., T], like: str = "", /, **keys: Codec[Any] | Key) 
                 values[key.field or name] = key.instead if default is ... else default
         if ... in values.values():
             raise node.noted()
+        for name, field in within.items():
+            if (entry := values.pop(name)) is not None:
+                values.setdefault(field, {})[name] = entry
         found = node.made(make, **values)
         if all(name in given for name in checked):
             for name, (get, codec) in checked.items():
@@ -234,6 +240,13 @@ def record(make: Callable[..., T], like: str = "", /, **keys: Codec[Any] | Key) 
         return found
 
     return Codec(write, read, _schema_of(entries))
+
+
+def _getter(name: str, key: Key) -> Callable[[Any], Any]:
+    """What is written of a record's object, where the key does not say it."""
+    if key.entry_of:
+        return lambda value: getattr(value, key.entry_of).get(name)
+    return attrgetter(key.field or name)
 
 
 def _codec(key: Key) -> Codec[Any]:

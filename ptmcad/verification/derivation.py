@@ -16,7 +16,7 @@ from typing import NamedTuple
 from flint import fmpq, fmpq_mpoly
 
 from ptmcad.model import Kind, Mechanism, Model, System, mechanism_in
-from ptmcad.question.slice import Count
+from ptmcad.question.counts import Count
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.tree import names_of
 from ptmcad.verification import xjoints

@@ -10,7 +10,7 @@ from collections import defaultdict, deque
 from itertools import pairwise
 
 from ptmcad.answer.regionmap import Cell, Merge, Status
-from ptmcad.question.slice import Count
+from ptmcad.question.counts import Count
 from ptmcad.text.numerals import approximate_text
 from ptmcad.verification.certified.counted import check_region, names_in
 from ptmcad.verification.claims import Claims

@@ -15,7 +15,8 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution, Status, System
 from ptmcad.cover.rectangles import Cover
 from ptmcad.options import Progress
-from ptmcad.question.slice import Axis, Count, Point, Slice
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Axis, Point, Slice
 from ptmcad.text.expressions import constant
 from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.points import check_cell, check_listed, counting_of

@@ -17,7 +17,8 @@ from flint import fmpz_poly
 from ptmcad.answer.intervals import End
 from ptmcad.answer.widths import Maximum
 from ptmcad.options import Progress
-from ptmcad.question.slice import Count, Point, Slice
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Point, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.expressions import axis, constant
 from ptmcad.text.flint_numbers import from_fraction

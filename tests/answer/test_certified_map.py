@@ -145,7 +145,7 @@ def test_points_are_told_exactly_or_left_undecided(rho: str, height: str, cell: 
         assert found == Location(Status.UNDECIDED)
         return
     c = result.cells[cell]
-    assert found == Location(Status.CERTIFIED, c.region, cell, c.total, c.stable, c.index, c.admissible)
+    assert found == Location(Status.CERTIFIED, c.region, cell, c.total, c.stable, c.index, c.further)
 
 
 def test_points_of_two_maps_are_not_confused() -> None:

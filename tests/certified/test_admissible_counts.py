@@ -231,10 +231,11 @@ def test_a_count_that_is_wrong_by_one_is_refused(name: str) -> None:
     for by in (1, -1):
         cell, region = m.cells[0], m.regions[m.cells[0].region]
         assert cell.admissible is not None
+        further = {"admissible": cell.admissible + by}
         changed = replace(
             m,
-            cells=(replace(cell, admissible=cell.admissible + by), *m.cells[1:]),
-            regions=tuple(replace(r, admissible=cell.admissible + by) if r is region else r for r in m.regions),
+            cells=(replace(cell, further=further), *m.cells[1:]),
+            regions=tuple(replace(r, further=further) if r is region else r for r in m.regions),
         )
         assert not verify(changed, seed=1).ok
 

@@ -293,10 +293,10 @@ def test_what_is_undecided_along_a_line_is_not_looked_at_closely_again(monkeypat
 
     monkeypatch.setattr(line, "isolate", counted)
     found = certified_intervals(slice, "W", {"c": "40"}, 10)
-    few, gaps = len(calls), line._gaps
+    few, changes = len(calls), line._changes
     assert not found.changes[0].proved and found.changes[0].at.high < Fraction(1, 1000)
     assert [interval.index for interval in found.intervals] == [(1, 1, 0), (1, 0, 0)]
-    monkeypatch.setattr(line, "_gaps", lambda *arguments: gaps(*arguments[:-1], ()))
+    monkeypatch.setattr(line, "_changes", lambda *arguments: changes(*arguments[:-1], ()))
     calls.clear()
     alone = certified_intervals(slice, "W", {"c": "40"}, 10)
     assert few < len(calls)

@@ -473,7 +473,7 @@ def test_indices_of_three_unknowns_with_as_many_maxima_have_different_fills(maxi
 
 def region(stable: int = 0, total: int = 0, index: tuple[int, int, int] = (0, 0, 0), admissible: int = 0) -> Region:
     at = Point(("a", "b"), HALF, HALF)
-    return Region(stable, total, index, (Fraction(1), Fraction(1)), (0,), at, admissible)
+    return Region(stable, total, index, (Fraction(1), Fraction(1)), (0,), at, {"admissible": admissible})
 
 
 @pytest.mark.parametrize("count", list(Count))

@@ -35,8 +35,9 @@ def certified_map(count: Count = Count.STABLE, status: Status = Status.CERTIFIED
     for n, ((x, y), area, (total, stable, index, admissible)) in enumerate(zip(samples, squares, counts, strict=True)):
         sample = Point(names, Fraction(x), Fraction(y))
         bounds = (Fraction(area, 64), Fraction(area + 31, 64))
-        cells.append(Cell(None, n, sample, n, total, stable, index, (solution,) if n == 0 else (), admissible))
-        regions.append(Region(stable, total, index, bounds, (n,), sample, admissible))
+        further = {} if admissible is None else {"admissible": admissible}
+        cells.append(Cell(None, n, sample, n, total, stable, index, (solution,) if n == 0 else (), further))
+        regions.append(Region(stable, total, index, bounds, (n,), sample, further))
     # components by area: 80 upper left, 70 lower left, 40 upper right (undecided), 35 lower right
     cells[2] = replace(cells[2], level=3)
     return RegionMap(

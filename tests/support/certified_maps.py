@@ -58,8 +58,8 @@ def certified(
         minima = stable(float(x) / 2, float(y) / 2)
         point = Point(slice.axis_names, x, y)
         total, index = 2 * minima + 2, (minima, minima + 1, 1)
-        cells.append(Cell(None, n, point, n, total, minima, index, (), minima))
-        regions.append(Region(minima, total, index, (low * square, high * square), (n,), point, minima))
+        cells.append(Cell(None, n, point, n, total, minima, index, (), {"admissible": minima}))
+        regions.append(Region(minima, total, index, (low * square, high * square), (n,), point, {"admissible": minima}))
     open_area = cover.steps**2 - sum(complement.areas)
     system = System(("th1", "th2"), (), "", (), ())
     return RegionMap(

@@ -297,7 +297,7 @@ def test_more_admissible_equilibria_than_stable_ones_are_refused() -> None:
     true = made("crank, admissible")
     cell = true.cells[0]
     assert cell.stable is not None
-    wrong = replace(true, cells=(replace(cell, admissible=cell.stable + 1), *true.cells[1:]))
+    wrong = replace(true, cells=(replace(cell, further={"admissible": cell.stable + 1}), *true.cells[1:]))
     with pytest.raises(Violation, match="admissible equilibria among"):
         check_form(CertifiedClaims(wrong))
 

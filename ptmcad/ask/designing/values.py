@@ -150,7 +150,7 @@ def _poses(design: Design, values: Mapping[str, Fraction]) -> Poses | None:
         return None
     fits = [pose for pose in poses.equilibria if not design.model.tells_stability or pose.stable is True]
     # where it is not decided whether a pose is tense, it is not taken for one
-    number = sum(not design.tension or not pose.may_be_admissible or pose.admissible is True for pose in fits)
+    number = sum(not (design.tension and pose.may_be_slack) for pose in fits)
     return poses if number == design.working else None
 
 

@@ -54,7 +54,10 @@ def in_half_angle(problem: Problem, turn: Multi) -> Problem:
         return tuple(zip(across, up, strict=True))
 
     def conditions(old: Sequence[Condition]) -> tuple[Condition, ...]:
-        return tuple(Condition(c.text, c.value.substituted(rows)) for c in old)
+        return tuple(
+            replace(c, value=c.value.substituted(rows), squares=tuple(f.substituted(rows) for f in c.squares))
+            for c in old
+        )
 
     return replace(
         problem,
@@ -70,10 +73,7 @@ def in_half_angle(problem: Problem, turn: Multi) -> Problem:
         inequalities=conditions(problem.inequalities),
         stability=conditions(problem.stability),
         multiples=tuple(f.substituted(rows) for f in problem.multiples),
-        excesses=tuple(
-            replace(e, value=e.value.substituted(rows), boundary=tuple(f.substituted(rows) for f in e.boundary))
-            for e in problem.excesses
-        ),
+        further=conditions(problem.further),
         covering=_product(problem.covering, rows) if problem.covering else rows,
     )
 

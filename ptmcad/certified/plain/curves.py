@@ -28,7 +28,8 @@ from ptmcad.certified.solved import Quotient, quotients
 from ptmcad.certified.system import system
 from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.model.involutions import Involution
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Slice
 
 SHORT_RATIO = 4
 """Near an involution's fixed points a spring is short where its length is at most so many times what is short
@@ -101,7 +102,7 @@ def _of_branch(slice: Slice, count: Count, without: frozenset[str], problem: Pro
     found = [] if "mirror-images" in without else mirrors(slice, problem)
     yield from _quotient(search, found, at) if found else _smooth(search, at)
     yield from _boundaries(search, at)
-    yield from _at_free_lengths(search, at)
+    yield from _of_predicate(search, at)
 
 
 def _smooth(search: _CurveSearch, at: SpringChart) -> tuple[CriticalCurve, ...]:
@@ -180,23 +181,41 @@ def _charted(search: _CurveSearch, at: SpringChart) -> list[int]:
 
 def _fold(search: _CurveSearch, at: SpringChart) -> CriticalCurve:
     """Solutions with a singular Jacobian, every spring long that has a chart where it is short."""
-    return CriticalCurve(
+    return _curve(
+        search,
         _name(search),
         _reason(search),
-        system(
-            [*at.equations, at.determinant()],
-            (0, 1, *search.problem.variables),
-            _dependent(search, at),
-            [
-                *(_excess(search, at, s) for s in _charted(search, at)),
-                *_far(search, at),
-                *(_semidefinite(at) if search.stable else []),
-                *_values(search.conditions, at),
-            ],
-            solved=_solved(search, [*at.equations, *_dependent(search, at)[0]]),
-        ),
-        search.ranges,
-        np.array(search.weights),
+        [*at.equations, at.determinant()],
+        _dependent(search, at),
+        [
+            *(_excess(search, at, s) for s in _charted(search, at)),
+            *_far(search, at),
+            *(_semidefinite(at) if search.stable else []),
+            *_values(search.conditions, at),
+        ],
+        _solved(search, [*at.equations, *_dependent(search, at)[0]]),
+    )
+
+
+def _curve(
+    search: _CurveSearch,
+    name: str,
+    reason: str,
+    equations: Sequence[Formula],
+    vanishing: tuple[Sequence[Formula], Sequence[Formula]] = ((), ()),
+    nonnegative: Sequence[Formula] = (),
+    solved: Sequence[Quotient] = (),
+    *,
+    turning: bool = False,
+) -> CriticalCurve:
+    """A curve in the axes and the problem's unknowns; ``turning`` where a short spring's direction is one more."""
+    unknowns = len(search.problem.unknowns) + turning
+    return CriticalCurve(
+        name,
+        reason,
+        system(equations, range(FIRST + unknowns), vanishing, nonnegative, solved=solved),
+        (*search.ranges, TURN)[:unknowns],
+        np.array([*search.weights, TURNING_WEIGHT][: FIRST + unknowns]),
     )
 
 
@@ -257,43 +276,42 @@ def _boundaries(search: _CurveSearch, at: SpringChart) -> Iterator[CriticalCurve
     semidefinite += [at.determinant()] if search.rising else []
     for k, condition in enumerate(search.conditions):
         others = _values([*search.conditions[:k], *search.conditions[k + 1 :]], at)
-        yield CriticalCurve(
-            f"point where {condition.text} is 0{search.where}",
-            f"solutions count where {condition.text} > 0, and at one of them it is zero",
-            system(
-                [*at.equations, *_values([condition], at)],
-                (0, 1, *search.problem.variables),
-                nonnegative=[*others, *semidefinite],
-            ),
-            search.ranges,
-            np.array(search.weights),
-        )
+        yield _boundary(search, at, condition, [*others, *semidefinite])
 
 
-def _at_free_lengths(search: _CurveSearch, at: SpringChart) -> Iterator[CriticalCurve]:
-    """Stable equilibria at which one spring has its free length, and no other one is shorter than its own."""
-    problem = search.problem
-    graph = at.equations[0].graph
-    minima = [*_semidefinite(at), at.determinant(at_equilibrium=True)] if problem.is_gradient else []
+def _of_predicate(search: _CurveSearch, at: SpringChart) -> Iterator[CriticalCurve]:
+    """Stable equilibria at which one of a predicate's margins is zero, and no other one is negative."""
+    minima = [*_semidefinite(at), at.determinant(at_equilibrium=True)] if search.problem.is_gradient else []
     minima += [at.determinant()] if search.rising else []
     moments = [turned.moment for turned in at.turned]
-    unknowns = [graph.variable(k) for k in problem.variables]
-    values = [excess.value.formula(graph, unknowns) for excess in problem.excesses]
-    for k, excess in enumerate(problem.excesses):
-        zero, *others = (f.formula(graph, unknowns) for f in excess.boundary)
-        yield CriticalCurve(
-            f"point where spring {excess.spring} has its free length{search.where}",
-            f"spring {excess.spring} of a stable equilibrium has its free length",
-            system(
-                [*at.equations, zero],
-                (0, 1, *problem.variables),
-                ([*others, *moments, *at.dependent], at.balances),
-                [*values[:k], *values[k + 1 :], *minima, *_values(search.conditions, at)],
-                solved=_solved(search, [*at.equations, *moments, *at.dependent]),
-            ),
-            search.ranges,
-            np.array(search.weights),
-        )
+    values = _values(search.problem.further, at)
+    for k, condition in enumerate(search.problem.further):
+        nonnegative = [*values[:k], *values[k + 1 :], *minima, *_values(search.conditions, at)]
+        solved = _solved(search, [*at.equations, *moments, *at.dependent])
+        yield _boundary(search, at, condition, nonnegative, ([*moments, *at.dependent], at.balances), solved)
+
+
+def _boundary(
+    search: _CurveSearch,
+    at: SpringChart,
+    condition: Condition,
+    nonnegative: Sequence[Formula],
+    vanishing: tuple[Sequence[Formula], Sequence[Formula]] = ((), ()),
+    solved: Sequence[Quotient] = (),
+) -> CriticalCurve:
+    """The solutions at which a condition is zero."""
+    vanish = condition.squares or (condition.value,)
+    zero, *others = (f.formula(at.equations[0].graph, at.unknowns) for f in vanish)
+    cheap, rest = vanishing
+    return _curve(
+        search,
+        (condition.curve or f"point where {condition.text} is 0") + search.where,
+        condition.reason or f"solutions count where {condition.text} > 0, and at one of them it is zero",
+        [*at.equations, zero],
+        ([*others, *cheap], rest),
+        nonnegative,
+        solved,
+    )
 
 
 def _short_folds(search: _CurveSearch, at: SpringChart, near: MirrorFrame | None = None) -> Iterator[CriticalCurve]:
@@ -308,25 +326,22 @@ def _short_folds(search: _CurveSearch, at: SpringChart, near: MirrorFrame | None
         semidefinite: list[Formula] = []
         if search.stable:
             semidefinite = [*at.diagonal_times_length(s), *(turned.stiffness for turned in at.turned)]
-        yield CriticalCurve(
+        yield _curve(
+            search,
             f"{_name(search)} with spring {cone.name} short",
             f"{_reason(search)}; spring {cone.name} is at most {search.short[s]} long",
-            system(
-                [at.aligned, *at.equations, at.determinant()],
-                (0, 1, *search.problem.variables, FIRST + len(search.problem.unknowns)),
-                _dependent(search, at),
-                [
-                    at.cones[s].extent,
-                    -_excess(search, at, s, near),
-                    *([] if near is None else [NEAR - _distance(search, at, near)]),
-                    *_far(search, at),
-                    *semidefinite,
-                    *_values(search.conditions, at),
-                ],
-                solved=_solved(search, [*at.equations, *_dependent(search, at)[0]]),
-            ),
-            (*search.ranges, TURN),
-            np.array([*search.weights, TURNING_WEIGHT]),
+            [at.aligned, *at.equations, at.determinant()],
+            _dependent(search, at),
+            [
+                at.cones[s].extent,
+                -_excess(search, at, s, near),
+                *([] if near is None else [NEAR - _distance(search, at, near)]),
+                *_far(search, at),
+                *semidefinite,
+                *_values(search.conditions, at),
+            ],
+            _solved(search, [*at.equations, *_dependent(search, at)[0]]),
+            turning=True,
         )
 
 
@@ -336,17 +351,13 @@ def _points_without_length(search: _CurveSearch, at: SpringChart) -> Iterator[Cr
     unknowns = [graph.variable(k) for k in search.problem.variables]
     for cone in search.problem.cones:
         vanishing = [d.formula(graph, unknowns) for d in cone.difference]
-        yield CriticalCurve(
+        yield _curve(
+            search,
             f"point where spring {cone.name} has no length{search.where}",
             f"an equilibrium is swallowed where spring {cone.name} has no length",
-            system(
-                [*at.equations[:closing], *(f for f in vanishing if f.value != 0)],
-                (0, 1, *search.problem.variables),
-                ((), at.equations[closing:]),
-                _values(search.conditions, at),
-            ),
-            search.ranges,
-            np.array(search.weights),
+            [*at.equations[:closing], *(f for f in vanishing if f.value != 0)],
+            ((), at.equations[closing:]),
+            _values(search.conditions, at),
         )
 
 
@@ -365,17 +376,14 @@ def _cones(search: _CurveSearch, whole: SpringChart) -> Iterator[CriticalCurve]:
         unknowns = [graph.variable(k) for k in search.problem.variables]
         # a coordinate that is zero everywhere says nothing
         vanishing = [f for f in (d.formula(graph, unknowns) for d in cone.difference) if f.value != 0]
-        yield CriticalCurve(
+        yield _curve(
+            search,
             f"point where spring {cone.name} has no length{search.where}",
             f"an equilibrium is swallowed where spring {cone.name} has no length",
-            system(
-                [*vanishing, *at.equations],
-                (0, 1, *search.problem.variables, FIRST + len(search.problem.unknowns)),
-                ((), at.balances),
-                [*(at.diagonal_times_length(s) if search.stable else ()), *_values(search.conditions, at)],
-            ),
-            (*search.ranges, TURN),
-            np.array([*search.weights, TURNING_WEIGHT]),
+            [*vanishing, *at.equations],
+            ((), at.balances),
+            [*(at.diagonal_times_length(s) if search.stable else ()), *_values(search.conditions, at)],
+            turning=True,
         )
 
 

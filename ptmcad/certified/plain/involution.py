@@ -32,9 +32,13 @@ def mirrors(slice: Slice, problem: Problem) -> list[Involution]:
 def halving(slice: Slice) -> Involution | None:
     """One that takes the window to itself, and does not keep its points; a reflection if there is any.
 
-    Of admissible equilibria it is not asked where a spring has no free length: such ones are kept as a sum only.
+    None where a predicate is counted by that symmetries do not keep; or one of whose margins is a sum of squares, as
+    what vanishes in its place is kept as that sum only.
     """
-    if any(excess.boundary != (excess.value,) for excess in problem_of(slice).excesses):
+    predicate = slice.count.kind.predicate
+    if predicate is not None and not predicate.is_symmetric:
+        return None
+    if any(condition.squares for condition in problem_of(slice).further):
         return None
     x, y = slice.axes
     found = involutions(slice.model, slice.parameters, ((x.low, x.high), (y.low, y.high)))

@@ -7,15 +7,15 @@ not proved is undecided. Springs without length are no solutions: total counts d
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
-from flint import arb_mat, ctx
+from flint import arb, arb_mat, ctx
 
-from ptmcad.answer.regionmap import Solution
+from ptmcad.answer.counts import counts_of_signs
 from ptmcad.certified.arb_isolation import Box, Isolated, isolate_arb, refined
 from ptmcad.certified.distinct import FULL_TURN, distinct
 from ptmcad.certified.parameters import values_at
@@ -36,7 +36,8 @@ from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.intervals import Indices, program, run
 from ptmcad.formulas.tape import Tape, enclosing_floats, record
 from ptmcad.model import ptm
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import text_of
 
 MANY_BOXES = 6_000_000
@@ -73,7 +74,7 @@ class PlainCounter:
     equations : the equations alone.
     hessian : a tape of one stage with the Hessian's entries row by row.
     conditions : a tape with the inequalities, then the conditions for stability, with closed loops the Jacobian's
-        determinant; and in a second stage the springs' excesses, where admissible solutions are asked for.
+        determinant; and in a second stage what has to be positive where the count's predicate holds.
     pause : called between the parts of a long search; what it raises ends that.
     """
 
@@ -97,83 +98,71 @@ class PlainCounter:
         ArithmeticError
             When the counts contradict Euler's sum on the torus, which would be a fault of this program.
         """
-        stable_only = count.is_of_stable
-        found = self._zeros(x, y, stable_only, thorough)
-        counted, unclear = self._counted(x, y, found, count)
-        if found.open or unclear:
-            return self._proved(x, y, counted, count, found.open + unclear)
+        zeros = self._zeros(x, y, count.is_of_stable, thorough)
+        counted, unclear = self._counted(x, y, zeros, count)
+        unclear += zeros.open
+        if unclear and count.is_of_stable:
+            return PointCount(open=unclear)
+        signs = [self._signs(x, y, wide, narrow, count) for wide, narrow in counted]
+        is_decided = not (unclear or (self.problem.is_gradient and "" in signs))
+        kept = [k for k, sign in enumerate(signs) if not (count.is_of_stable and "-" in sign)]
+        if count.is_of_stable and not is_decided:
+            kept = []
+        solutions = tuple(boxed(*counted[k], signs[k], self.problem.variables) for k in kept)
+        found = PointCount(solutions=solutions, open=unclear)
+        if not is_decided:
+            return found
+        if count.is_of_stable:
+            return self._of_stable(x, y, found, [counted[k][0] for k in kept], count)
+        found = replace(found, total=len(solutions), decided=True)
+        return self._of_potential(x, y, found) if self.problem.is_gradient else found
+
+    def _signs(self, x: Fraction, y: Fraction, wide: Boxes, narrow: Boxes, count: Count) -> str:
+        """Those of the Hessian's eigenvalues, or of conditions for stability, at a proved zero; empty where one is
+        open, or there are none."""
         if self.problem.is_gradient:
-            return self._of_potential(x, y, counted, count)
-        # where all are counted, which of them are stable is known here only: it may change within the cell
-        held = "+" * (self._asked(count) - len(self.problem.inequalities))
-        solutions = tuple(
-            boxed(wide, box, held if stable_only else self._stability(x, y, wide), self.problem.variables)
-            for wide, box in counted
-        )
-        number = len(solutions)
-        if stable_only:
-            return self._with_admissible(x, y, number, solutions, [wide for wide, _ in counted], count)
-        return PointCount(total=number, solutions=solutions, decided=True)
-
-    def _proved(
-        self, x: Fraction, y: Fraction, counted: Sequence[tuple[Boxes, Boxes]], count: Count, unclear: int
-    ) -> PointCount:
-        """What is proved where the counts are not decided; nothing where the stable ones only were looked for."""
-        found = []
-        for wide, box in () if count.is_of_stable else counted:
-            signs = self._stability(x, y, wide)
-            if self.problem.is_gradient:
-                negative = self._index(x, y, wide)
-                signs = "" if negative is None else "+" * (len(self.problem.unknowns) - negative) + "-" * negative
-            found.append(boxed(wide, box, signs, self.problem.variables))
-        return PointCount(solutions=tuple(found), open=unclear)
-
-    def _of_potential(
-        self, x: Fraction, y: Fraction, counted: Sequence[tuple[Boxes, Boxes]], count: Count
-    ) -> PointCount:
-        """The counts of critical points by their indices; undecided where one of these is."""
-        only_minima, size = count.is_of_stable, len(self.problem.unknowns)
-        solutions, index, minima = tuple[Solution, ...](), [0] * (size + 1), list[Boxes]()
-        for wide, box in counted:
-            negative = self._index_in_floats(box)
+            negative = self._index_in_floats(narrow)
             negative = self._index(x, y, wide) if negative is None else negative
-            if negative is None:
-                return self._proved(x, y, counted, count, 0)
-            index[negative] += 1
-            minima += [wide] if negative == 0 else []
-            if negative == 0 or not only_minima:
-                signs = "+" * (size - negative) + "-" * negative
-                solutions = (*solutions, boxed(wide, box, signs, self.problem.variables))
-        if only_minima:
-            return self._with_admissible(x, y, index[0], solutions, minima, count)
+            return "" if negative is None else "+" * (len(self.problem.unknowns) - negative) + "-" * negative
+        asked = self.conditions.outputs[0][len(self.problem.inequalities) :]
+        if count.is_of_stable:  # only where all of them are positive is a zero counted
+            return "+" * len(asked)
+        # where all are counted, which of them are stable is known here only: it may change within the cell
+        holds = [self._holds(x, y, wide, asked[k : k + 1]) for k in range(len(asked))]
+        return "" if None in holds else "".join("+" if h else "-" for h in holds)
+
+    def _of_potential(self, x: Fraction, y: Fraction, found: PointCount) -> PointCount:
+        """The counts of all critical points with those by their indices.
+
+        Raises
+        ------
+        ArithmeticError
+            As `at` does.
+        """
+        counts = counts_of_signs([s.signs for s in found.solutions], True, len(self.problem.unknowns))
+        index = counts.index or ()
         smooth = not (self.problem.has_springs or self.problem.reals or self.problem.inequalities)
         if smooth and sum((-1) ** k * number for k, number in enumerate(index)):
-            raise ArithmeticError(f"critical points of a function on the torus by index {index} at ({x}, {y})")
+            raise ArithmeticError(f"critical points of a function on the torus by index {[*index]} at ({x}, {y})")
         cones = 0 if smooth else None
         if self.slice.model == ptm() and self.problem.has_springs:
-            found = peaks(values_at(self.slice, x, y))
-            cones = found.count
-            if found.regular and index[0] - index[1] + index[2] + cones:
-                raise ArithmeticError(f"minima, saddles and maxima {index} with {cones} cones at ({x}, {y})")
-        return PointCount(len(solutions), index[0], None, tuple(index), cones, solutions, True)
+            there = peaks(values_at(self.slice, x, y))
+            cones = there.count
+            if there.regular and index[0] - index[1] + index[2] + cones:
+                raise ArithmeticError(f"minima, saddles and maxima {[*index]} with {cones} cones at ({x}, {y})")
+        return replace(found, stable=counts.stable, index=index, cones=cones)
 
-    def _with_admissible(
-        self,
-        x: Fraction,
-        y: Fraction,
-        stable: int,
-        solutions: tuple[Solution, ...],
-        boxes: Sequence[Boxes],
-        count: Count,
+    def _of_stable(
+        self, x: Fraction, y: Fraction, found: PointCount, boxes: Sequence[Boxes], count: Count
     ) -> PointCount:
-        """The number of stable solutions, and of admissible ones among them where these are asked for."""
-        admissible: int | None = None
-        if count is Count.ADMISSIBLE:
-            longer = [self._holds(x, y, box, self.conditions.outputs[1]) for box in boxes]
-            if None in longer:
+        """The number of stable solutions, and of those among them at which a predicate holds, where it is asked for."""
+        further = {}
+        if count.kind.predicate is not None:
+            holds = [self._holds(x, y, box, self.conditions.outputs[1]) for box in boxes]
+            if None in holds:
                 return PointCount()
-            admissible = longer.count(True)
-        return PointCount(stable=stable, admissible=admissible, solutions=solutions, decided=True)
+            further[count.value] = holds.count(True)
+        return replace(found, stable=len(boxes), decided=True, further=further)
 
     def _counted(self, x: Fraction, y: Fraction, zeros: Zeros, count: Count) -> tuple[list[tuple[Boxes, Boxes]], int]:
         """The proved zeros at which all conditions are positive, and of how many that is not decided."""
@@ -206,26 +195,26 @@ class PlainCounter:
         """How many of the conditions hold at what is counted, from the first one on."""
         return len(self.conditions.outputs[0] if count.is_of_stable else self.problem.inequalities)
 
-    def _stability(self, x: Fraction, y: Fraction, unique: Boxes) -> str:
-        """The signs of the conditions for stability at a proved zero; empty where there are none, or one is open."""
-        asked = self.conditions.outputs[0][len(self.problem.inequalities) :]
-        holds = [self._holds(x, y, unique, asked[k : k + 1]) for k in range(len(asked))]
-        return "" if None in holds else "".join("+" if h else "-" for h in holds)
-
     def _holds(self, x: Fraction, y: Fraction, unique: Boxes, conditions: Indices) -> bool | None:
         """Whether all of some conditions are positive at a proved zero."""
         if not len(conditions):
             return True
-        for precision in PRECISIONS:
-            with ctx.workprec(precision):
-                narrow = refined(self.equations, self._box(x, y, unique), precision)
-                tape = run_arb(self.conditions, narrow, precision)
-                values = [tape[int(place)] for place in conditions]
+        for values, _ in self._at_zero(x, y, unique, self.conditions, conditions):
             if any(value < 0 for value in values):
                 return False
             if all(value > 0 for value in values):
                 return True
         return None
+
+    def _at_zero(
+        self, x: Fraction, y: Fraction, unique: Boxes, tape: Tape, places: Indices
+    ) -> Iterator[tuple[list[arb], int]]:
+        """Values at a proved zero, with more and more bits."""
+        for precision in PRECISIONS:
+            with ctx.workprec(precision):
+                narrow = refined(self.equations, self._box(x, y, unique), precision)
+                values = run_arb(tape, narrow, precision)
+            yield [values[int(place)] for place in places], precision
 
     def _zeros(self, x: Fraction, y: Fraction, stable: bool, thorough: bool) -> Zeros:
         """The zeros at a point that a search proves."""
@@ -283,12 +272,12 @@ class PlainCounter:
     def zero_condition(self, x: Fraction, y: Fraction, count: Count) -> str:
         """What is not decided of the signs of conditions at a proved zero, to as many digits as there are, in words."""
         conditions = [c.text for c in self.problem.conditions(count)]
-        excesses = [excess.text for excess in self.problem.excesses]
-        found = self._zeros(x, y, bool(excesses), False) if conditions or excesses else None
+        further = [c.text for c in self.problem.further]
+        found = self._zeros(x, y, bool(further), False) if conditions or further else None
         for unique in () if found is None or found.open else found.unique:
-            if excesses and self.problem.is_gradient and self._index(x, y, unique) != 0:
+            if further and self.problem.is_gradient and self._index(x, y, unique) != 0:
                 continue
-            for texts, places in zip((conditions, excesses), self.conditions.outputs, strict=True):
+            for texts, places in zip((conditions, further), self.conditions.outputs, strict=True):
                 signs = [self._holds(x, y, unique, places[k : k + 1]) for k in range(len(texts))]
                 if None in signs and False not in signs:
                     return texts[signs.index(None)]
@@ -316,11 +305,8 @@ class PlainCounter:
     def _index(self, x: Fraction, y: Fraction, unique: Boxes) -> int | None:
         """The number of negative eigenvalues at a proved zero."""
         size = len(self.problem.unknowns)
-        for precision in PRECISIONS:
+        for entries, precision in self._at_zero(x, y, unique, self.hessian, self.hessian.outputs[0]):
             with ctx.workprec(precision):
-                box = self._box(x, y, unique)
-                values = run_arb(self.hessian, refined(self.equations, box, precision), precision)
-                entries = [values[int(place)] for place in self.hessian.outputs[0]]
                 found = inertia(arb_mat(size, size, entries))
             if found is not None:
                 return found
@@ -375,7 +361,7 @@ def _sum(parts: Sequence[PointCount]) -> PointCount:
     return PointCount(
         total=added([p.total for p in parts]),
         stable=added([p.stable for p in parts]),
-        admissible=added([p.admissible for p in parts]),
+        further={name: sum(p.further[name] for p in parts) for name in parts[0].further},
         index=tuple(map(sum, zip(*indices, strict=True))) if len(indices) == len(parts) else None,
         solutions=tuple(solution for p in parts for solution in p.solutions),
         decided=True,
@@ -405,9 +391,9 @@ def _counter(slice: Slice, problem: Problem, pause: Callable[[], None] | None) -
     at = chart(geometry(problem))
     vanishing = (at.dependent, at.balances)
     unknowns = [at.equations[0].graph.variable(k) for k in problem.variables]
-    inequalities, stability, excesses = (
+    inequalities, stability, further = (
         [c.value.formula(at.equations[0].graph, unknowns) for c in some]
-        for some in (problem.inequalities, problem.stability, problem.excesses)
+        for some in (problem.inequalities, problem.stability, problem.further)
     )
     if problem.closing:
         stability = [at.determinant()]
@@ -420,7 +406,7 @@ def _counter(slice: Slice, problem: Problem, pause: Callable[[], None] | None) -
         system(at.equations, problem.variables, vanishing, [*minima, *inequalities], at.hessian),
         system(at.equations, problem.variables, jacobian=at.hessian),
         record([[entry for row in at.hessian for entry in row]]),
-        record([[*inequalities, *stability], excesses]),
+        record([[*inequalities, *stability], further]),
         pause,
     )
     if not problem.where:  # where sides of kinks are not conditions that anybody asked for
@@ -441,7 +427,7 @@ def _check_conditions(counter: PlainCounter) -> None:
     idle = {counter.zero_condition(x, y, slice.count) for x, y in points}
     if len(idle) == 1 and (text := idle.pop()):
         (x, y), names = points[0], slice.axis_names
-        advice = "ask for another count" if counter.problem.excesses else "choose exact, or ask for another condition"
+        advice = "ask for another count" if counter.problem.further else "choose exact, or ask for another condition"
         raise DegenerateSliceError(
             f"{text} is zero, to 90 digits and more, at a solution at {names[0]} = {text_of(x)}, {names[1]} = "
             f"{text_of(y)}, and so it is at the other points that were tried: the certified engine decides nothing of "

@@ -10,7 +10,7 @@ boxes there may be more. Every number settles the digits asked for or, where it 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import isqrt
 
@@ -32,8 +32,9 @@ from ptmcad.model import Mechanism, Model, ptm
 from ptmcad.model.compile import CompiledSystem, compiled_with
 from ptmcad.model.description import mechanism_in
 from ptmcad.model.fourbars import flat_everywhere
+from ptmcad.question.counts import POSE_COLUMNS, Count
 from ptmcad.question.domain import proved
-from ptmcad.question.slice import Axis, Count, Slice
+from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.balls import bounded, enclosed
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.expressions import axis
@@ -199,7 +200,7 @@ def pose_at(at: Numbers, counter: PlainCounter, solution: Solution, digits: int)
     elif solution.signs and at.system.has_index:
         index = solution.signs.count("-")
         stable = index == 0
-    return assembled(at, numbers, index, stable), bits
+    return with_further(assembled(at, numbers, index, stable)), bits
 
 
 def measured(
@@ -299,12 +300,18 @@ def _proved_digits(number: arb, digits: int, attempt: int) -> Enclosure | None:
     return enclosed(number, digits + 1) if found is None and attempt > 1 else found
 
 
-def is_tense(stable: bool | None, springs: Sequence[Spring]) -> bool | None:
-    """Whether a pose is stable with every spring longer than its free length; None where that is not decided."""
-    forces = [spring.force for spring in springs]
-    if stable is False or any(force.high < 0 or force.exact == 0 for force in forces):
+def with_further(pose: Pose) -> Pose:
+    """The pose with the predicates that hold or not; without a potential nothing says what is stable."""
+    told = POSE_COLUMNS if pose.energy is not None else {}
+    found = {name: _holds(pose.stable, column.margins(pose)) for name, column in told.items()}
+    return replace(pose, further={name: holds for name, holds in found.items() if holds is not None})
+
+
+def _holds(stable: bool | None, margins: Sequence[Enclosure]) -> bool | None:
+    """Whether a pose is stable and all numbers are positive; None where that is not decided."""
+    if stable is False or any(margin.high < 0 or margin.exact == 0 for margin in margins):
         return False
-    return True if stable and all(force.low > 0 for force in forces) else None
+    return True if stable and all(margin.low > 0 for margin in margins) else None
 
 
 def assembled(at: Numbers, numbers: Mapping[str, Enclosure], index: int | None, stable: bool | None) -> Pose:
@@ -354,7 +361,6 @@ def assembled(at: Numbers, numbers: Mapping[str, Enclosure], index: int | None, 
         index=index,
         stable=stable,
         flat=all(y.exact == 0 for _, y in nodes.values()),
-        admissible=is_tense(stable, springs) if system.has_energy or at.is_closed else None,
         reals=tuple(numbers[f"{name}.real"] for name in mechanism.reals),
         torsion=torsion,
     )

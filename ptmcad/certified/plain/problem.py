@@ -9,21 +9,23 @@ apart has the energy k |d|^2/2 - k l0 |d| + k l0^2/2, so that K = k l0.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
 
 from ptmcad.certified.parameters import expression_formula
-from ptmcad.certified.plain.excesses import Excess, excesses, name_of
 from ptmcad.certified.plain.parallel import shares
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial, Vector
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.formulas.graph import Formula, Graph, length
-from ptmcad.model.compile import CompiledSystem, compiled
+from ptmcad.model import Model, ptm
+from ptmcad.model.compile import CompiledSystem, LinearSpring, compiled
 from ptmcad.model.description import equations_in, mechanism_in
+from ptmcad.model.evaluate import evaluate
 from ptmcad.model.fourbars import closed_by, flat_everywhere
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.counts import Count, Margin
+from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.numerals import text_of
 from ptmcad.text.tree import Tree, to_text
@@ -74,10 +76,19 @@ class Push:
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What is positive at solutions that count, or at stable ones; as the record says it, too."""
+    """What is positive at solutions that count, or at stable ones: a `Margin` over a slice.
+
+    Attributes
+    ----------
+    text, curve, reason : as of the margin.
+    squares : where the value is the sum of their squares, what vanishes in its place; else none.
+    """
 
     text: str
     value: TrigonometricPolynomial
+    curve: str = ""
+    reason: str = ""
+    squares: tuple[TrigonometricPolynomial, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +111,7 @@ class Problem:
         loops.
     pushes : of springs along one line each, of which a branch of a problem has one side; the equations lack them.
     where : which branch it is, in words (`ptmcad.certified.plain.straight`).
-    excesses : of springs, all positive at stable equilibria that are admissible; empty where that is not asked.
+    further : all are positive where the predicate holds that a count is by; empty where it is by none.
     covering : of each of the description's unknowns its whole multiples of these, where these are others
         (`ptmcad.certified.plain.covering`).
     """
@@ -116,7 +127,7 @@ class Problem:
     closing: int = 0
     pushes: tuple[Push, ...] = ()
     where: str = ""
-    excesses: tuple[Excess, ...] = ()
+    further: tuple[Condition, ...] = ()
     covering: tuple[tuple[int, ...], ...] = ()
 
     @property
@@ -127,7 +138,7 @@ class Problem:
     def conditions(self, count: Count) -> tuple[Condition, ...]:
         """What is positive at all solutions that are counted, and at no others, but for a determinant.
 
-        With admissible equilibria all stable ones are counted.
+        Where it is by a predicate, all stable ones are counted.
         """
         return self.inequalities + (self.stability if count.is_of_stable else ())
 
@@ -159,15 +170,25 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
             key="unknowns",
         )
     check_loops(slice)
-    system, own = compiled(model), equations_in(model)
     ring = Harmonics(tuple(model.unknowns), model.reals, slice.parameters)
-    inequalities = _conditions("positive", () if own is None else own.inequalities, system.inequalities, system, ring)
+    problem, predicate = _equations(slice, ring), slice.count.kind.predicate
+    if predicate is None:
+        return problem
+    if (mechanism := mechanism_in(model)) is None:
+        raise ConfigError(predicate.of_systems, key="count")
+    return replace(problem, further=_conditions((("count", margin) for margin in predicate.margins(mechanism)), ring))
+
+
+def _equations(slice: Slice, ring: Harmonics) -> Problem:
+    """The problem but for what is asked of stable solutions beyond the model's conditions."""
+    system, own = compiled(slice.model), equations_in(slice.model)
+    inequalities = _conditions(_listed("positive", () if own is None else own.inequalities), ring)
     problem = Problem(ring.unknowns, ring.reals, (), (), system.has_index, inequalities)
     if slice.has_free_lengths and system.tangent:
         return _with_springs(_of_loops(problem, system, ring), slice, system, ring)
     if system.are_slopes:
         return _with_springs(_of_slopes(problem, system, ring), slice, system, ring)
-    stability = _conditions("stable", () if own is None else own.stability, system.stability, system, ring)
+    stability = _conditions(_listed("stable", () if own is None else own.stability), ring)
     # an unknown that is not zero where solutions count is no factor of an equation: without this, the solutions at
     # which it is zero, say those where a species is extinct, would be undecided all over the window
     nonzero = [k for k in range(len(ring.unknowns)) if any(_is_multiple(c.value, k) for c in inequalities)]
@@ -217,7 +238,7 @@ def _order(system: CompiledSystem, ring: Harmonics) -> Fraction:
 
 
 def _with_springs(problem: Problem, slice: Slice, system: CompiledSystem, ring: Harmonics) -> Problem:
-    """The problem with a cone for each spring with a free length, and with what tells admissible equilibria."""
+    """The problem with a cone for each spring with a free length."""
     nothing = ring.constant(Fraction(0))
     tangent = [f.scaled(_order(system, ring)) for f in system.values(system.tangent, ring)]
 
@@ -232,8 +253,7 @@ def _with_springs(problem: Problem, slice: Slice, system: CompiledSystem, ring: 
         return tuple((x.derivative(k), y.derivative(k)) for k in range(len(ring.unknowns)))
 
     cones = tuple(SpringCone(name, pull, d, weights(*d)) for name, pull, d in _pulls(slice, system, ring))
-    found = excesses(slice.model, system, ring) if slice.count is Count.ADMISSIBLE else ()
-    return replace(problem, cones=cones, excesses=tuple(found))
+    return replace(problem, cones=cones)
 
 
 def _pulls(slice: Slice, system: CompiledSystem, ring: Harmonics) -> list[tuple[str, Expression, Vector]]:
@@ -260,10 +280,19 @@ def _pulls(slice: Slice, system: CompiledSystem, ring: Harmonics) -> list[tuple[
     return found
 
 
-def _conditions(
-    key: str, trees: Sequence[Tree], formulas: Sequence[Formula], system: CompiledSystem, ring: Harmonics
-) -> tuple[Condition, ...]:
-    """The conditions that say something; the key is that of their list.
+def name_of(spring: LinearSpring, model: Model) -> str:
+    """The paper's springs are named by their ends, as in all answers."""
+    return f"{spring.start}{spring.end}" if model == ptm() else spring.name
+
+
+def _listed(key: str, trees: Sequence[Tree]) -> Iterator[tuple[str, Margin]]:
+    """A system's conditions, with the key of each in the record."""
+    for n, tree in enumerate(trees, 1):
+        yield f"{key}.{n}", Margin(to_text(tree), tree)
+
+
+def _conditions(margins: Iterable[tuple[str, Margin]], ring: Harmonics) -> tuple[Condition, ...]:
+    """The conditions that say something, of margins with the keys of a record that they come from.
 
     Raises
     ------
@@ -271,12 +300,14 @@ def _conditions(
         When one holds nowhere.
     """
     found = []
-    for n, (tree, value) in enumerate(zip(trees, system.values(formulas, ring), strict=True), 1):
-        text = to_text(tree)
+    for key, margin in margins:
+        value = evaluate(margin.value, ring)
         if set(value.terms) - set(ring.constant(Fraction(1)).terms) or not constant_of(value).is_constant:
-            found.append(Condition(text, value))
+            squares = tuple(f for f in (evaluate(tree, ring) for tree in margin.squares) if f.terms)
+            is_sum = value == sum((f * f for f in squares), start=ring.constant(Fraction(0)))
+            found.append(Condition(margin.text, value, margin.curve, margin.reason, squares if is_sum else ()))
         elif (number := constant_of(value).constant()) <= 0:
-            raise ConfigError(f"no solution counts: {text} is {text_of(number)} all over the window", key=f"{key}.{n}")
+            raise ConfigError(f"no solution counts: {margin.text} is {text_of(number)} all over the window", key=key)
     return tuple(found)
 
 

@@ -32,10 +32,11 @@ from ptmcad.question.config.record import (
 )
 from ptmcad.question.config.resolution import checked_slice, slice_of
 from ptmcad.question.config.scalars import file_name, portable_file
+from ptmcad.question.counts import Count
 from ptmcad.question.domain import MAX_DEGREE
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.shipped import record_tree
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Scalar, Sequence, Written
 from ptmcad.text.node import Node
 from ptmcad.text.syntax import did_you_mean

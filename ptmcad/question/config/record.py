@@ -21,8 +21,9 @@ from ptmcad.question.config.scalars import (
     names_in_scalar,
     number_text,
 )
+from ptmcad.question.counts import USUAL, Count, phrases
 from ptmcad.question.examples import A_DESIGN, A_SWEEP, AXES, FORCE, SECOND, THIRD
-from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count
+from ptmcad.question.slice import MAX_UNIT, QUANTITIES
 from ptmcad.text.codec import Codec, Key, choice, named, part, reading, record
 from ptmcad.text.entry import Scalar, Sequence, Tree, Written, plain_data
 from ptmcad.text.node import Node, unstorable
@@ -235,11 +236,9 @@ def _question() -> dict[str, Key]:
         ),
         "count": part(
             COUNT,
-            "What distinguishes two regions: stable equilibria, all of them, minima/saddles/maxima, or stable "
-            "equilibria with every spring longer than its free length. Where nothing says what is stable, total is the "
-            "default.",
+            f"What distinguishes two regions: {phrases()}. Where nothing says what is stable, total is the default.",
             None,
-            shown=Count.STABLE.value,
+            shown=USUAL.value,
         )._replace(field="counting"),
     }
 

@@ -12,17 +12,17 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from ptmcad.errors import ExpressionError, Faults, Place
-from ptmcad.model import ClosedMechanism, Kind, Mechanism, Model, System
+from ptmcad.model import Kind, Model, System
 from ptmcad.model.evaluate import value_at
-from ptmcad.model.work import foreign
 from ptmcad.question.config.names import resolved
 from ptmcad.question.config.record import Record, Window, read_record, swept_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of
+from ptmcad.question.counts import usual_count
 from ptmcad.question.domain import MAX_DEGREE, sign_of, sign_of_part
 from ptmcad.question.examples import AXES
 from ptmcad.question.positivity import READING_WORK, window_of
 from ptmcad.question.signs import PROVED, Finding, Subject
-from ptmcad.question.slice import NOTHING_ADMISSIBLE, Axis, Count, Slice, have_free_lengths
+from ptmcad.question.slice import Axis, Slice, count_fault, have_free_lengths
 from ptmcad.text.entry import Scalar, Tree
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.syntax import did_you_mean, names_in, parse
@@ -233,7 +233,7 @@ def _slice(
         model=record.model,
         axes=axes,
         parameters=effective,
-        count=record.counting or _usual_count(record.model),
+        count=record.counting or usual_count(record.model),
         title=record.title,
         reference=record.reference,
         text=_texts(effective, record, signs),
@@ -242,30 +242,10 @@ def _slice(
     )
 
 
-def _usual_count(model: Model) -> Count:
-    """Where none is asked for, that of stable solutions, where it is known what these are."""
-    return Count.STABLE if model.tells_stability else Count.TOTAL
-
-
 def _check_count(record: Record, resolved: Mapping[str, Expression]) -> None:
     """Refuse a count that makes no sense for the model."""
-    model, count = record.model, record.counting
-    problem = ""
-    if count is not None and count.is_of_stable and not model.tells_stability:
-        problem = "nothing says what a stable solution is: add conditions as 'stable:' to the system, or count total"
-        if not isinstance(model, System):
-            assert isinstance(model, Mechanism)
-            problem = (
-                f"{foreign(model)} that depends on another unknown has no potential, which says what is stable: count "
-                "total"
-            )
-    if count is Count.INDEX and not model.has_potential:
-        problem = "solutions of equations have no index, which is that of a potential's Hessian: count total"
-    if count is Count.ADMISSIBLE and isinstance(model, System) and not isinstance(model, ClosedMechanism):
-        problem = "a system has no springs whose lengths would be admissible: count stable or total"
-    elif count is Count.ADMISSIBLE and not have_free_lengths(model, resolved):
-        problem = f"{NOTHING_ADMISSIBLE}: choose stable"
-    if problem:
+    count = record.counting
+    if count is not None and (problem := count_fault(count, record.model, resolved)):
         raise record.count_place.error(problem)
 
 

@@ -15,6 +15,7 @@ from typing import Any
 from ptmcad.answer.poses import MAX_DIGITS, Pose, Poses, Spring, TorsionSpring
 from ptmcad.answer.regionmap import Status
 from ptmcad.model import mechanism_in
+from ptmcad.question.counts import POSE_COLUMNS
 from ptmcad.question.slice import check_names
 from ptmcad.show.document.numbers import merged
 from ptmcad.show.document.slice import MODEL, UNITS
@@ -26,6 +27,7 @@ from ptmcad.text.codec import (
     TEXT,
     TRUTH,
     Codec,
+    Key,
     Known,
     choice,
     derived,
@@ -99,7 +101,7 @@ def poses_codec(digits: int) -> Codec[Poses]:
     )
     known: Known = {Fraction: exact, Enclosure: number}
     bare, free = (_pose(known, free) for free in (False, True))
-    pose: Codec[Pose] = either("admissible", lambda pose: pose.may_be_admissible, free, bare)
+    pose: Codec[Pose] = either(next(iter(POSE_COLUMNS)), lambda pose: pose.has_predicates, free, bare)
     return record_of(
         Poses,
         {**known, Pose: pose._replace(schema=merged(bare.schema, free.schema))},
@@ -115,7 +117,7 @@ def poses_codec(digits: int) -> Codec[Poses]:
 
 
 def _pose(known: Known, free: bool) -> Codec[Pose]:
-    """The codec of a pose; with free lengths it is admissible or not, and each spring tells its own."""
+    """The codec of a pose; with free lengths predicates hold or not, and each spring has its own."""
     name = line(MAX_NAME)
     free_length = known[Fraction] if free else None
     springs: Known = {
@@ -128,9 +130,10 @@ def _pose(known: Known, free: bool) -> Codec[Pose]:
         known,
         index=COUNT,
         multiplicity=POSITIVE,
-        admissible=optional(TRUTH) if free else None,
+        further=None,
         nodes=named(listed(known[Enclosure], 2), _name),
         **unless_default(Pose, "reals", "torsion", known=known),
+        **{name: Key(optional(TRUTH), entry_of="further") for name in (POSE_COLUMNS if free else ())},
     )
 
 

@@ -27,7 +27,8 @@ from ptmcad.answer.regionmap import (
     System,
     Wall,
 )
-from ptmcad.question.slice import Count, Point, Slice
+from ptmcad.question.counts import PREDICATES
+from ptmcad.question.slice import Point, Slice
 from ptmcad.show.document.cover import COVER, cover_line
 from ptmcad.show.document.numbers import INDEX, merged
 from ptmcad.show.document.slice import SLICE, polynomial_over
@@ -82,7 +83,7 @@ def read(text: str) -> RegionMap:
     slice = SLICE.read(document.entry("slice"))
     certified = "cover" in document.value
     status = _STATUS.read(document.entry("status"))
-    if not certified and (status is Status.CERTIFIED or slice.count is Count.ADMISSIBLE):
+    if not certified and (status is Status.CERTIFIED or slice.count.kind.predicate is not None):
         raise document.fault("lacks the key 'cover', which a certified map has")
     if certified and status not in (Status.CERTIFIED, Status.PARTIAL):
         raise document.entry("status").fault("is not that of a map with a cover")
@@ -92,6 +93,9 @@ def read(text: str) -> RegionMap:
     return _codec(slice.axis_names, certified, slice).read(document)
 
 
+_ALWAYS = Key(COUNT, entry_of="further")
+_WHERE_COUNTED = Key(NATURAL, default=None, entry_of="further")
+"""Numbers of solutions at which predicates hold."""
 _STATUS = choice(Status).narrowed(enum=["exact", "certified", "partial", "undecided"])
 
 
@@ -126,11 +130,13 @@ def _codec(names: tuple[str, str], certified: bool, slice: Slice | None = None) 
     area: Codec[Any] = (
         listed(SHARE, 2) if certified else Codec(_outwards, listed(SHARE, 2).read, listed(SHARE, 2).schema)
     )
-    admissible = COUNT if certified else None
     known[Status] = _STATUS
     known[Component] = record_of(Component, known, **unless_default(Component, "continuum"))
-    known[Region] = record_of(Region, known, area=area, index=INDEX, admissible=admissible)
-    known[Cell] = record_of(Cell, known, index=INDEX, stack=_NO_STACK if certified else NATURAL, admissible=admissible)
+    predicates = PREDICATES if certified else {}
+    further = {name: _ALWAYS if each.is_always_stored else _WHERE_COUNTED for name, each in predicates.items()}
+    known[Region] = record_of(Region, known, area=area, index=INDEX, further=None, **further)
+    stack = _NO_STACK if certified else NATURAL
+    known[Cell] = record_of(Cell, known, index=INDEX, stack=stack, further=None, **further)
     return record_of(
         RegionMap, known, base=base, undetermined=Codec(RATIONAL.write, _share, SHARE.schema),
         components=listed(known[Component], most=MAX_COMPONENTS),

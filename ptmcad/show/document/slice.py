@@ -11,7 +11,8 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.model import Model, built_in, described, described_system, known_of, recognised, without_loops
-from ptmcad.question.slice import MAX_UNIT, Axis, Count, Slice
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import MAX_UNIT, Axis, Slice
 from ptmcad.text.codec import DATA, RATIONAL, TEXT, Codec, Key, choice, converted, line, listed, named, record
 from ptmcad.text.expressions import Expression
 from ptmcad.text.expressions import axis as axis_function

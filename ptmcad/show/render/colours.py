@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 from ptmcad.answer.counts import Counts, MorseIndex, counted_by
 from ptmcad.answer.regionmap import Region
-from ptmcad.question.slice import Count
+from ptmcad.question.counts import Count, Shades
 
 ONE_MAXIMUM = ("#f7f6f2", "#c7e4f6", "#eda43f", "#ca8d7a", "#45917d", "#8a5e8b", "#385880")
 """Faces for 0, 1, 2, ... stable equilibria; L* = 97, 89, 73, 64, 55, 46, 37."""
@@ -52,13 +52,12 @@ def fill_of(region: Region, count: Count) -> Fill:
 
     Totals are even on a torus (the Euler sum): 4 and 6 in all are coloured as 1 and 2 stable, which mostly go together.
     """
-    if count is Count.STABLE:
-        return UNKNOWN if region.stable is None else _of(ONE_MAXIMUM, region.stable, 0)
-    if count is Count.ADMISSIBLE:
-        return UNKNOWN if region.admissible is None else _of(ONE_MAXIMUM, region.admissible, 0)
-    if count is Count.TOTAL:
-        return UNKNOWN if region.total is None else _of_total(region.total)
-    return UNKNOWN if region.index is None else fill_of_index(region.index)
+    number = region.number(count)
+    if number is None:
+        return UNKNOWN
+    if isinstance(number, tuple):
+        return fill_of_index(number)
+    return _of_total(number) if count.kind.shades is Shades.TOTAL else _of(ONE_MAXIMUM, number, 0)
 
 
 def filler(regions: Sequence[Region], count: Count, palette: str | tuple[str, ...]) -> Callable[[Region], Fill]:

@@ -12,13 +12,14 @@ from typing import Any
 
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Region, RegionMap
-from ptmcad.answer.words import counted, noun
-from ptmcad.question.slice import Count, Slice
+from ptmcad.answer.words import count_words, counted, noun
+from ptmcad.question.counts import Shades
+from ptmcad.question.slice import Slice
 from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
 from ptmcad.show.render.inches import stroke, write
 from ptmcad.show.style import MIN_FONT, PictureStyle
-from ptmcad.show.table import area_by_count, area_text, areas_are_known, count_text, index_heading
+from ptmcad.show.table import area_by_count, area_text, areas_are_known, count_text
 from ptmcad.text.bounds import percent
 
 STRONG, THIN, INK = 1.3, 0.5, "#111111"
@@ -107,13 +108,7 @@ class Wording:
 
 def head_of(slice: Slice) -> tuple[str, ...]:
     """What is counted."""
-    many = noun(slice.model)
-    return {
-        Count.STABLE: (f"Stable {many}",),
-        Count.TOTAL: (many.capitalize(),),
-        Count.INDEX: tuple(textwrap.wrap(index_heading(slice.model), COLUMNS)),
-        Count.ADMISSIBLE: ("Stable, all springs taut",),
-    }[slice.count]
+    return tuple(textwrap.wrap(count_words(slice.count.kind.legend, slice.model), COLUMNS))
 
 
 def entries(
@@ -194,10 +189,11 @@ def _with_total(text: str, regions: list[Region], result: RegionMap) -> str:
     slice = result.slice
     totals = {result.cells[n].total for region in regions for n in region.cells}
     known = sorted(total for total in totals if total is not None)
-    if slice.count is Count.TOTAL or not known or len(known) < len(totals) or len(known) > _MAX_TOTALS:
+    shades = slice.count.kind.shades
+    if shades is Shades.TOTAL or not known or len(known) < len(totals) or len(known) > _MAX_TOTALS:
         return text
     numbers = " or ".join(filter(None, (", ".join(map(str, known[:-1])), counted(slice.model, known[-1]))))
-    return f"{text}   {'' if slice.count is Count.INDEX else 'of '}{numbers}"
+    return f"{text}   {'' if shades is Shades.INDEX else 'of '}{numbers}"
 
 
 def _areas(result: RegionMap, text: str, regions: list[Region]) -> list[str]:

@@ -17,7 +17,7 @@ import numpy as np
 from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import Region
-from ptmcad.question.slice import Count
+from ptmcad.question.counts import Count, Shades
 from ptmcad.show.render.colours import Fill
 from ptmcad.show.render.legend import INK, THIN, Entry
 from ptmcad.show.render.painting import Paint
@@ -96,9 +96,11 @@ def sheet_colours(family: FamilyMap, surface: BoundarySurface, paint: Paint) -> 
 
 def _with_count(region: Region, count: Count, key: tuple[int, ...]) -> Region:
     """A region with another count."""
-    if count is Count.INDEX:
+    if count.kind.shades is Shades.INDEX:
         return replace(region, index=key)
     (number,) = key
+    if count.kind.predicate is not None:
+        return replace(region, further={count.value: number})
     return replace(region, **{count.value: number})  # type: ignore[arg-type]  # the fields have the counts' names
 
 

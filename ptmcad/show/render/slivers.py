@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import Merge, Region, RegionMap
 from ptmcad.cover.graph import connected
-from ptmcad.question.slice import Count
 from ptmcad.show.render.clearance import Box
 from ptmcad.show.render.view import Interval, Point, Same, Shapes, View
 from ptmcad.show.style import Size
@@ -72,7 +71,7 @@ def unstable_zooms(whole: Shapes, pixels: int, most: int) -> tuple[Zoom, ...]:
     """
     result = whole.result
     all_known = all(None not in (region.total, region.index) for region in result.regions)
-    if result.cover is not None or result.slice.count is not Count.STABLE or all_known:
+    if result.cover is not None or not result.slice.count.is_of_stable or all_known:
         return ()
     finer = told_apart(result)
     outline: Any = whole

@@ -21,7 +21,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from ptmcad.answer.regionmap import Cell, Region
 from ptmcad.answer.words import stable_of
 from ptmcad.model import Model
-from ptmcad.question.slice import Count
+from ptmcad.question.counts import Count
 from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.slivers import innermost, thin_regions, zooms
@@ -249,10 +249,10 @@ def _rimmed_areas(seen: Shapes, name: str) -> Iterator[str]:
 def counts_text(part: Cell | Region, model: Model) -> str:
     """The counts in words, as far as they are known."""
     stable, total = part.stable, part.total
-    if part.admissible is not None:
-        known = replace(part, admissible=None)
-        more = f", {counts_text(known, model)}" if (stable, total) != (None, None) else ""
-        return f"{part.admissible} admissible{more}"
+    if part.further:
+        further = ", ".join(f"{number} {name}" for name, number in part.further.items())
+        more = f", {counts_text(replace(part, further={}), model)}" if (stable, total) != (None, None) else ""
+        return further + more
     if stable is None and total is None:
         return "counts not known"
     if total is None:

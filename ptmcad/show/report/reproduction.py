@@ -14,7 +14,8 @@ from dataclasses import replace
 from ptmcad.errors import ConfigError
 from ptmcad.model import Kind, built_in, mechanism_of
 from ptmcad.question.config import slice_from_mapping, slice_from_options
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.counts import USUAL
+from ptmcad.question.slice import Slice
 from ptmcad.text.entry import plain_data
 from ptmcad.text.numerals import text_of
 from ptmcad.text.yamltree import read_text
@@ -107,7 +108,7 @@ def _command(slice: Slice, values: Mapping[str, str]) -> str | None:
         words += ["--range", text]
     for text in sets:
         words += ["--set", text]
-    if slice.count is not Count.STABLE:
+    if slice.count is not USUAL:
         words += ["--count", slice.count.value]
     return shlex.join(words)
 

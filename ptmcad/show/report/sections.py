@@ -10,8 +10,7 @@ from html import escape
 
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.answer.words import index_words, noun, several
-from ptmcad.question.slice import Count
+from ptmcad.answer.words import count_words, index_words, several
 from ptmcad.show.render.axes import named, symbol
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.legend import Entry, entries
@@ -24,12 +23,6 @@ from ptmcad.show.units import area_unit, unit, with_unit
 from ptmcad.text.bounds import certified_digits, percent
 from ptmcad.text.numerals import decimal, text_of
 
-_COUNTED = {
-    Count.STABLE: "the number of stable {noun}",
-    Count.TOTAL: "the number of {noun}",
-    Count.INDEX: "the numbers of {index}",
-    Count.ADMISSIBLE: "the number of stable equilibria with every spring longer than its free length",
-}
 _STATUS = {
     Status.EXACT: "Exact: every point of the window off the boundary curves is in a region, and the counts are proved.",
     Status.CERTIFIED: "Certified: counts are proved wherever one is given.",
@@ -102,8 +95,7 @@ def question(result: RegionMap) -> str:
     ]  # fmt: skip
     shown = ", ".join(f"{n} = {v}" for n, v in values if v != "0")
     zero = ", ".join(n for n, v in values if v == "0")
-    index = ", ".join(index_words(len(slice.model.unknowns) + 1).split("-"))
-    counted_by = _COUNTED[slice.count].format(noun=noun(slice.model), index=" and ".join(index.rsplit(", ", 1)))
+    counted_by = count_words(slice.count.kind.page, slice.model)
     items = [
         (slice.model.record_key.capitalize(), slice.model.title or slice.mechanism),
         ("Axes", axes),

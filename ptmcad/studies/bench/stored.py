@@ -18,7 +18,7 @@ from typing import Any
 import pandas as pd
 
 from ptmcad.errors import ConfigError
-from ptmcad.question.slice import Count
+from ptmcad.question.counts import Count
 from ptmcad.show.ranges.table import aligned
 from ptmcad.studies.bench.error import FIGURES
 from ptmcad.studies.bench.harness import FORMAT, Row, measurement
@@ -36,7 +36,6 @@ BAD = ("slower", "worse", "lost")
 """Verdicts that are no good news; the others are faster, better, gained and same."""
 _COMPARED = ("wrong", "undetermined", "wrong_centres", "missed", "distance")
 """Figures, numbers or bounds, larger being worse."""
-_FINEST = ("index", "total", "stable", "admissible")
 _CSV = {"seconds_minimum": "seconds_min", "seconds_maximum": "seconds_max", "seconds_runs": "runs", "peak": "peak_mib"}
 """Keys that have other names in the CSV file."""
 _PAIRS = ("wrong", "faintest", "distance")
@@ -67,7 +66,7 @@ def frame(study: Row) -> pd.DataFrame:
 def finest(study: Row) -> pd.DataFrame:
     """A row for each measurement, with the figures for the finest count that the method gives."""
     table = frame(study)
-    ranks = table["count"].map({count: rank for rank, count in enumerate(_FINEST)})
+    ranks = table["count"].map({count.value: count.kind.rank for count in Count})
     return table.loc[ranks.sort_values(kind="stable").index].drop_duplicates(["method", "setting"]).sort_index()
 
 

@@ -25,7 +25,8 @@ from ptmcad.answer.widths import OperationWidths
 from ptmcad.ask.classification import classify
 from ptmcad.ask.ranges import intervals, operation_widths
 from ptmcad.question.config import load
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Slice
 from ptmcad.studies.paper import statements
 from ptmcad.text.enclosure import Enclosure
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from ptmcad.answer.counts import MorseIndex
 from ptmcad.answer.regionmap import Cell, RegionMap
-from ptmcad.question.slice import Count
+from ptmcad.question.counts import Count
 from ptmcad.verification.certified.boxes import Box, Floats
 from ptmcad.verification.report import Violation
 

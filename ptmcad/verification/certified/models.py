@@ -16,7 +16,8 @@ from flint import arb, ctx
 
 from ptmcad.answer.regionmap import Solution
 from ptmcad.model import Model
-from ptmcad.question.slice import Count, Point, Slice
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Point, Slice
 from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import MIN_HALF_WIDTH, Box, Floats, Unproved, Zero, is_same
 from ptmcad.verification.certified.counted import CellCounts, CountedPoint, Where, with_further

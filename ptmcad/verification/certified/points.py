@@ -12,7 +12,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from ptmcad.answer.regionmap import Cell
-from ptmcad.question.slice import Count
+from ptmcad.question.counts import Count
 from ptmcad.verification.certified.boxes import Unproved, Zero
 from ptmcad.verification.certified.counted import CountedPoint, Places, differs, stored
 from ptmcad.verification.certified.models import ModelCounting

@@ -13,7 +13,8 @@ from typing import NamedTuple
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.model import Mechanism, Model, mechanism_in
-from ptmcad.question.slice import Axis, Count, Slice
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.expressions import Expression
 from ptmcad.verification.certified.lines import SpringLine, line_of
 from ptmcad.verification.certified.parallel import Parameters

@@ -69,7 +69,7 @@ def counts(r: RegionMap) -> Iterator[Alteration]:
                 index = (c.index[0] + by, c.index[1] + by, c.index[2])
                 yield partial(with_counts, r, n, index=index, total=sum(index), stable=index[0])
             if c.admissible is not None:
-                yield partial(with_counts, r, n, admissible=c.admissible + by)
+                yield partial(with_counts, r, n, further={"admissible": c.admissible + by})
         yield partial(with_counts, r, n, stable=None)
         if c.total is None:
             yield partial(with_counts, r, n, total=4)
@@ -78,7 +78,7 @@ def counts(r: RegionMap) -> Iterator[Alteration]:
 
 def counts_exchanged(r: RegionMap) -> Iterator[Alteration]:
     for (j, a), (k, b) in combinations(enumerate(r.cells), 2):
-        names = ("total", "stable", "index", "admissible")
+        names = ("total", "stable", "index", "further")
         one, two = ({n: getattr(c, n) for n in names} for c in (a, b))
         if one != two:
             yield partial(_exchanged, r, j, k, one, two)

@@ -153,9 +153,9 @@ def another_count(r: RegionMap) -> Iterator[Alteration]:
 
 def admissible_counts(r: RegionMap) -> Iterator[Alteration]:
     for n in range(len(r.cells)):
-        yield partial(replace, r, cells=put(r.cells, n, admissible=0))
+        yield partial(replace, r, cells=put(r.cells, n, further={"admissible": 0}))
     for k in range(len(r.regions)):
-        yield partial(replace, r, regions=put(r.regions, k, admissible=0))
+        yield partial(replace, r, regions=put(r.regions, k, further={"admissible": 0}))
 
 
 def _terms(text: str) -> Iterator[str]:

@@ -232,8 +232,8 @@ SHAPE: list[tuple[str, Change, str]] = [
         }.items() if n != name})(r), name), "its parameters are others") for name in ("F3", "")),
     ("fig3", lambda r: replace(r, base=2), "the window is empty"),
     ("fig3", lambda r: with_slice(axes=put(r.slice.axes, 0, low=r.slice.axes[0].high))(r), "the window is empty"),
-    ("fig3", of("cells", 0, admissible=0), "counts of admissible equilibria"),
-    ("fig3", of("regions", 0, admissible=0), "counts of admissible equilibria"),
+    ("fig3", of("cells", 0, further={"admissible": 0}), "counts of admissible equilibria"),
+    ("fig3", of("regions", 0, further={"admissible": 0}), "counts of admissible equilibria"),
     ("fig3", lambda r: replace(bare(r), status=Status.EXACT), "there are no stacks"),
     *(("fig3", partial(lambda name, r: replace(bare(r), **{name: getattr(r, name)}), name), "there are no stacks")
       for name in ("critical_values", "cells", "adjacencies", "non_adjacencies", "regions")),

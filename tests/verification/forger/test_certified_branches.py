@@ -100,10 +100,11 @@ def made(name: str, count: str = "stable", rectangles: tuple[Rectangle, ...] = U
         sample = Point(("rho", "L2"), *claims.off_lattice(Fraction(u), Fraction(3)))
         there = counting_of(claims).at(claims, *sample)
         c, found = there.counts, there.found
+        further = {} if c.admissible is None else {"admissible": c.admissible}
         boxes = tuple(Solution((Fraction(e.center[0]), Fraction(e.center[1])), Fraction(1, 2**20), e.signs)
                       for e in found if slice.count in (Count.TOTAL, Count.INDEX) or e.signs == "++")  # fmt: skip
-        cells.append(Cell(None, n, sample, n, c.total, c.stable, c.index, boxes, c.admissible))
-        regions.append(Region(c.stable, c.total, c.index, (window * width / STEPS, window), (n,), sample, c.admissible))
+        cells.append(Cell(None, n, sample, n, c.total, c.stable, c.index, boxes, further))
+        regions.append(Region(c.stable, c.total, c.index, (window * width / STEPS, window), (n,), sample, further))
     return replace(r, cells=tuple(cells), regions=tuple(regions))
 
 
@@ -241,11 +242,11 @@ ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
     (check_form, springs, with_cover(*UNEQUAL, (0, 1, 0, 1)), r"the rectangles \(2, .*\) and \(0, .*\) are not sorted"),
     (check_form, springs, of("cells", 1, total=4), r"cell 1 has the counts \['stable', 'total'\], not \['stable'\]"),
     (check_form, springs, of("regions", 0, stable=None), r"region 0 has the counts \[\], not \['stable'\]"),
-    (check_form, admissible, of("cells", 0, admissible=None), r"cell 0 has the counts \['stable'\], not \['admiss"),
+    (check_form, admissible, of("cells", 0, further={}), r"cell 0 has the counts \['stable'\], not \['admiss"),
     (check_form, total, of("cells", 0, index=None), r"cell 0 has the counts \['stable', 'total'\], not \['index'"),
     (check_form, springs, of("cells", 1, stack=0), "cell 1 of a certified map has a stack"),
     (check_form, springs, of("cells", 1, stable=-1), "cell 1 has a negative count"),
-    (check_form, admissible, of("cells", 0, admissible=-1), "cell 0 has a negative count"),
+    (check_form, admissible, of("cells", 0, further={"admissible": -1}), "cell 0 has a negative count"),
     *((check_components, springs, sample_at(1, u, v), "the sample of cell 1 is not in the window")
       for u, v in ((0, 3), (8, 3), (-1, 3), (1, 0), (1, 8), (1, 9))),
     (check_components, springs, sample_at(1, 3, 3), "the sample of cell 1 is in a rectangle of the cover"),
@@ -296,7 +297,8 @@ ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
     (check_potential, springs, plus("F3/1" + "0" * 300), "the stored potential differs from the mechanism's by"),
     (check_potential, springs, plus("(F3 - 1)*(F3 - 2)*(F3 - 3)"), "the stored potential differs from the mechanism's"),
     (check_points, springs, both(0, stable=0), "cell 0, at .*: said to have stable 0; there are stable [1-9]"),
-    (check_points, admissible, both(0, admissible=0), "said to have stable .*; there are stable ., admissible [1-9]"),
+    (check_points, admissible, both(0, further={"admissible": 0}),
+     "said to have stable .*; there are stable ., admissible [1-9]"),
     (check_points, total, both(0, index=(0, 0, 0)), r"said to have .* index \(0, 0, 0\); there are total"),
     (check_points, springs, of("cells", 0, solutions=()), "0 boxes of solutions for [1-9] equilibria"),
     (check_points, springs, lambda r: of("cells", 0, solutions=r.cells[0].solutions * 2)(r), "boxes of solutions for"),

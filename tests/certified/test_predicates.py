@@ -1,0 +1,50 @@
+"""The certified engine counts by whatever predicate a kind of count has: here heights in the place of lengths."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+import ptmcad
+from ptmcad.ask.solving import poses_at
+from ptmcad.errors import ConfigError
+from ptmcad.model import Mechanism, mechanism_in
+from ptmcad.question.config import load
+from ptmcad.question.counts import KINDS, Count, Margin
+
+
+def heights(mechanism: Mechanism) -> Iterator[Margin]:
+    for name in mechanism.moving:
+        yield Margin(f"the height of {name}", mechanism.points[name][1])
+
+
+@pytest.mark.parametrize("record", ["fig4", "three-cables", "four-bar", "four-bar-free"])
+def test_stable_equilibria_above_the_ground(record: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The map's counts are those of poses at random points; without free lengths, too, no other engine answers."""
+    kind = KINDS[Count.ADMISSIBLE]
+    assert kind.predicate is not None
+    raised = replace(kind.predicate, margins=heights, is_symmetric=False, needs_free_lengths=False)
+    monkeypatch.setitem(KINDS, Count.ADMISSIBLE, replace(kind, predicate=raised))
+    slice = load(record)
+    found = ptmcad.classify(slice, count="admissible", tolerance="1/10", jobs=1)
+    assert found.cover is not None and len({region.admissible for region in found.regions}) > 1
+    mechanism = mechanism_in(slice.model)
+    assert mechanism is not None
+    choose = random.Random(41)
+    for _ in range(30):
+        at = {
+            axis.name: axis.low + (axis.high - axis.low) * Fraction(choose.randint(1, 999), 1000) for axis in slice.axes
+        }
+        place = found.locate(at)
+        if place.admissible is None:
+            continue
+        values = {name: value.evaluate(*at.values()) for name, value in slice.parameters.items()}
+        poses = [pose for pose in poses_at(slice.model, values, 12).equilibria if pose.stable is True]
+        high = [all(pose.nodes[name][1].low > 0 for name in mechanism.moving) for pose in poses]
+        assert place.admissible == high.count(True), at
+    with pytest.raises(ConfigError, match="only the certified engine"):
+        ptmcad.classify(load("fig4"), count="admissible", engine="exact")
