@@ -5,11 +5,10 @@ Guarantee: exact. A stable equilibrium is admissible if and only if the values o
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
-from ptmcad.model import Model, ptm
 from ptmcad.model.compile import CompiledSystem, LinearSpring
 
 
@@ -35,14 +34,9 @@ class Excess:
         return f"the length of spring {self.spring} less its free length"
 
 
-def name_of(spring: LinearSpring, model: Model) -> str:
-    """The paper's springs are named by their ends there, as in all answers."""
-    return f"{spring.start}{spring.end}" if model == ptm() else spring.name
-
-
-def excesses(model: Model, system: CompiledSystem, ring: Harmonics) -> Iterator[Excess]:
+def excesses(named: Iterable[tuple[str, LinearSpring]], system: CompiledSystem, ring: Harmonics) -> Iterator[Excess]:
     """One for each spring; lengths that are constant are in no description."""
-    for spring in system.springs:
+    for name, spring in named:
         dx, dy, free = system.values((*spring.difference, spring.free), ring)
         value = dx * dx + dy * dy - free * free
-        yield Excess(name_of(spring, model), value, (value,) if free.terms else tuple(d for d in (dx, dy) if d.terms))
+        yield Excess(name, value, (value,) if free.terms else tuple(d for d in (dx, dy) if d.terms))

@@ -15,17 +15,17 @@ from fractions import Fraction
 from itertools import combinations
 
 from ptmcad.certified.parameters import expression_formula
-from ptmcad.certified.plain.excesses import Excess, excesses, name_of
+from ptmcad.certified.plain.excesses import Excess, excesses
 from ptmcad.certified.plain.parallel import shares
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial, Vector
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError
 from ptmcad.formulas.graph import Formula, Graph, length
-from ptmcad.model import Kind
+from ptmcad.model import Kind, ptm
 from ptmcad.model.closed import equations_in, mechanism_in
-from ptmcad.model.compile import CompiledSystem, compiled
+from ptmcad.model.compile import CompiledSystem, LinearSpring, compiled
 from ptmcad.model.fourbars import closed_by, flat_everywhere
 from ptmcad.question.domain import fault, unproved
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.numerals import text_of
 from ptmcad.text.tree import Tree, to_text
@@ -232,30 +232,33 @@ def _with_springs(problem: Problem, slice: Slice, system: CompiledSystem, ring: 
             return (*[(nothing, nothing)] * problem.closing, (along(x), along(y)))
         return tuple((x.derivative(k), y.derivative(k)) for k in range(len(ring.unknowns)))
 
-    cones = tuple(SpringCone(name, pull, d, weights(*d)) for name, pull, d in _pulls(slice, system, ring))
-    found = excesses(slice.model, system, ring) if slice.count is Count.ADMISSIBLE else ()
+    by_ends = slice.model == ptm()  # the paper's springs are named by their ends there, as in all answers
+    named = [(f"{spring.start}{spring.end}" if by_ends else spring.name, spring) for spring in system.springs]
+    cones = tuple(SpringCone(name, pull, d, weights(*d)) for name, pull, d in _pulls(named, system, ring, slice.axes))
+    found = excesses(named, system, ring) if slice.count is Count.ADMISSIBLE else ()
     return replace(problem, cones=cones, excesses=tuple(found))
 
 
-def _pulls(slice: Slice, system: CompiledSystem, ring: Harmonics) -> list[tuple[str, Expression, Vector]]:
+def _pulls(
+    named: Sequence[tuple[str, LinearSpring]], system: CompiledSystem, ring: Harmonics, axes: tuple[Axis, Axis]
+) -> list[tuple[str, Expression, Vector]]:
     """Name, K and d of each spring with a free length, no K of which is negative anywhere in the window; of those side
     by side as of one."""
     found: list[tuple[str, Expression, Vector]] = []
-    for spring in system.springs:
+    for name, spring in named:
         pull = constant_of(system.values([spring.pull], ring)[0])
         if not pull.numerator:
             continue
         across, up = system.values(spring.difference, ring)
         if not (across.terms or up.terms):
             continue
-        name = name_of(spring, slice.model)
-        asked = f"stiffness times free length of spring {name}", Kind.FREE_LENGTH, pull, slice.axes
+        asked = f"stiffness times free length of spring {name}", Kind.FREE_LENGTH, pull, axes
         if problem := fault(*asked) or unproved(*asked):
             raise GeometryError(problem, part=spring.key)
         for k, (other, its_pull, its_vector) in enumerate(found):
             # each of K |d| and K' |d'| alone has a cone, and where both are short at once neither direction would be
             # balanced by the rest; but K f |e| and K' g |e| are one
-            if parts := shares(its_vector, (across, up), slice.axes):
+            if parts := shares(its_vector, (across, up), axes):
                 f, g = parts
                 x, y = (c.scaled(1 / f) for c in its_vector)
                 found[k] = f"{other} + {name}", f * its_pull + g * pull, (x, y)
