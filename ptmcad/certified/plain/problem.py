@@ -162,13 +162,14 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
     check_loops(slice)
     system, own = compiled(model), equations_in(model)
     ring = Harmonics(tuple(model.unknowns), model.reals, slice.parameters)
-    inequalities = _conditions("positive", () if own is None else own.inequalities, system.inequalities, system, ring)
+    written = ((), ()) if own is None else (own.inequalities, own.stability)
+    inequalities = _conditions("positive", written[0], system.values(system.inequalities, ring))
     problem = Problem(ring.unknowns, ring.reals, (), (), system.has_index, inequalities)
     if slice.has_free_lengths and system.tangent:
         return _with_springs(_of_loops(problem, system, ring), slice, system, ring)
     if system.are_slopes:
         return _with_springs(_of_slopes(problem, system, ring), slice, system, ring)
-    stability = _conditions("stable", () if own is None else own.stability, system.stability, system, ring)
+    stability = _conditions("stable", written[1], system.values(system.stability, ring))
     # an unknown that is not zero where solutions count is no factor of an equation: without this, the solutions at
     # which it is zero, say those where a species is extinct, would be undecided all over the window
     nonzero = [k for k in range(len(ring.unknowns)) if any(_is_multiple(c.value, k) for c in inequalities)]
@@ -268,9 +269,7 @@ def _pulls(
     return found
 
 
-def _conditions(
-    key: str, trees: Sequence[Tree], formulas: Sequence[Formula], system: CompiledSystem, ring: Harmonics
-) -> tuple[Condition, ...]:
+def _conditions(key: str, trees: Sequence[Tree], values: Sequence[TrigonometricPolynomial]) -> tuple[Condition, ...]:
     """The conditions that say something; the key is that of their list.
 
     Raises
@@ -279,9 +278,9 @@ def _conditions(
         When one holds nowhere.
     """
     found = []
-    for n, (tree, value) in enumerate(zip(trees, system.values(formulas, ring), strict=True), 1):
+    for n, (tree, value) in enumerate(zip(trees, values, strict=True), 1):
         text = to_text(tree)
-        if set(value.terms) - set(ring.constant(Fraction(1)).terms) or not constant_of(value).is_constant:
+        if value != value.still or not constant_of(value).is_constant:
             found.append(Condition(text, value))
         elif (number := constant_of(value).constant()) <= 0:
             raise ConfigError(f"no solution counts: {text} is {text_of(number)} all over the window", key=f"{key}.{n}")
