@@ -130,7 +130,8 @@ def test_springs_that_are_relaxed_together_by_the_same_equation(a: str) -> None:
 
 def test_an_unknown_may_have_the_name_of_a_number() -> None:
     """The truss with its height called energy: at a = 3/5 without load the springs are relaxed at 4/5."""
-    named = {**TRUSS, "unknowns": {"energy": "length"}, "points": {**TRUSS["points"], "P": [0, "energy"]}}
+    points = {"A": ["-a", 0], "B": ["b", 0], "P": [0, "energy"]}
+    named = {**TRUSS, "unknowns": {"energy": "length"}, "points": points}
     stable, *_ = ptmcad.solve(model=ptmcad.Mechanism(named), a="3/5", b="3/5", f=0).equilibria
     assert abs(float(stable.reals[0])) == pytest.approx(4 / 5)
     assert nearly(stable.energy, 0)

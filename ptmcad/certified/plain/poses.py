@@ -9,7 +9,7 @@ boxes there may be more. Every number settles the digits asked for or, where it 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import isqrt
@@ -74,30 +74,12 @@ def plain_poses(model: Model, parameters: Mapping[str, Fraction], digits: int) -
     count, reason = (Count.TOTAL, NOT_TOLD_OF_LOOPS) if at.is_closed else (Count.INDEX, NOT_TOLD)
     zeros, unclear = solutions_at(plain_counter(slice, MAX_UNKNOWNS_AT_POINTS), count)
     poses = [pose_at(at, counter, solution, digits) for counter, solution in zeros]
+    bits = max((bits for _, bits in poses), default=0)
+    found = tuple(_ordered([pose for pose, _ in poses]))
+    if unclear:
+        return Poses(model, parameters, found, Status.UNDECIDED, digits, bits, reason, undecided=unclear)
     remark = _PEAKS.get(peaks(parameters).count, "") if model == ptm() else ""
-    return answered(model, parameters, digits, _ordered(poses), unclear, reason, remark)
-
-
-def answered(
-    model: Model,
-    parameters: Mapping[str, Fraction],
-    digits: int,
-    poses: Sequence[tuple[Pose, int]],
-    unclear: int,
-    reason: str,
-    remark: str = "",
-) -> Poses:
-    """The answer: these poses, each with the bits that it took; for a reason undecided where some may lack.
-
-    Parameters
-    ----------
-    unclear : boxes in which there may be more equilibria.
-    reason : for which there are such boxes.
-    remark : where there are none.
-    """
-    most = max((bits for _, bits in poses), default=0)
-    status, remark = (Status.UNDECIDED, reason) if unclear else (Status.CERTIFIED, remark)
-    return Poses(model, parameters, tuple(pose for pose, _ in poses), status, digits, most, remark, undecided=unclear)
+    return Poses(model, parameters, found, Status.CERTIFIED, digits, bits, remark)
 
 
 def solutions_at(counter: BranchCounter, count: Count) -> tuple[list[tuple[PlainCounter, Solution]], int]:
@@ -117,22 +99,23 @@ def boxes_of(counter: PlainCounter, solution: Solution, precision: int) -> tuple
         return (*box[:FIRST], *(ball(c - cube.radius, c + cube.radius) for c in cube.center)), box
 
 
-def _ordered(poses: Sequence[tuple[Pose, int]]) -> list[tuple[Pose, int]]:
+def _ordered(poses: Sequence[Pose]) -> Iterator[Pose]:
     """In their order; of those whose energies are not separated larger angles come first."""
-    found: list[list[tuple[Pose, int]]] = []
-    for entry in sorted(poses, key=lambda p: _order(p[0])):
-        last, energy = found[-1][0][0] if found else None, entry[0].energy
+    groups: list[list[Pose]] = []
+    for pose in sorted(poses, key=_order):
+        last = groups[-1] if groups else []
         if (
-            last is not None
-            and energy is not None
-            and last.energy is not None
-            and last.stable == entry[0].stable
-            and energy.low <= max(p.known_energy.high for p, _ in found[-1])
+            pose.energy is not None
+            and last
+            and last[0].energy is not None
+            and last[0].stable == pose.stable
+            and pose.energy.low <= max(other.known_energy.high for other in last)
         ):
-            found[-1].append(entry)
+            last.append(pose)
         else:
-            found.append([entry])
-    return [p for group in found for p in sorted(group, key=lambda p: [a.center for a in p[0].angles], reverse=True)]
+            groups.append([pose])
+    for group in groups:
+        yield from sorted(group, key=lambda pose: [angle.center for angle in pose.angles], reverse=True)
 
 
 def _order(pose: Pose) -> tuple[Fraction, ...]:
@@ -203,9 +186,7 @@ def pose_at(at: Numbers, counter: PlainCounter, solution: Solution, digits: int)
     return with_further(assembled(at, numbers, index, stable)), bits
 
 
-def measured(
-    at: Numbers, boxes: Callable[[int], tuple[Box, Box]], digits: int, doublings: int = MAX_DOUBLINGS
-) -> tuple[dict[str, Enclosure], int]:
+def measured(at: Numbers, boxes: Callable[[int], tuple[Box, Box]], digits: int) -> tuple[dict[str, Enclosure], int]:
     """The numbers of a pose by name, settled or, where they may be zero, enclosed; and the bits that this took.
 
     Parameters
@@ -215,7 +196,7 @@ def measured(
     unknowns = at.mechanism.unknowns
     bits, point = 32 + 2 * digits, Point()
     found = _exact_numbers(at, point)
-    for attempt in range(doublings):
+    for attempt in range(MAX_DOUBLINGS):
         bits *= 2
         whole, box = boxes(bits)
         with ctx.workprec(bits):

@@ -302,7 +302,7 @@ def _conditions(margins: Iterable[tuple[str, Margin]], ring: Harmonics) -> tuple
     found = []
     for key, margin in margins:
         value = evaluate(margin.value, ring)
-        if set(value.terms) - set(ring.constant(Fraction(1)).terms) or not constant_of(value).is_constant:
+        if value != value.still or not constant_of(value).is_constant:
             squares = tuple(f for f in (evaluate(tree, ring) for tree in margin.squares) if f.terms)
             is_sum = value == sum((f * f for f in squares), start=ring.constant(Fraction(0)))
             found.append(Condition(margin.text, value, margin.curve, margin.reason, squares if is_sum else ()))
