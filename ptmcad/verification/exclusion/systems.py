@@ -73,15 +73,6 @@ class CriticalSystem:
     first: int
     start: Any
 
-    @classmethod
-    def of(
-        cls, name: str, formulas: Formulas, zeros: Sequence[int], signs: Sequence[int], early: int, start: Any
-    ) -> CriticalSystem:
-        """That of some formulas, of which the first ones are evaluated before all others."""
-        tape, first, places = formulas.tape(zeros[:early], [*zeros[early:], *signs])
-        zero, not_negative = places[: len(zeros)], places[len(zeros) :]
-        return cls(name, formulas, (*zeros,), (*signs,), tape, (*zero,), (*not_negative,), early, first, start)
-
     def within(self, halves: Floats) -> CriticalSystem:
         """The same with its first unknowns in other ranges, of which half the widths are given."""
         start = self.start.copy()
@@ -106,7 +97,7 @@ class CriticalSystem:
             [n for n, kept in zip(some, which, strict=True) if kept]
             for some, which in ((self.zeros, chosen[: len(self.zeros)]), (self.signs, chosen[len(self.zeros) :]))
         )
-        return CriticalSystem.of(self.name, self.formulas, zeros, signs, self.early, self.start)
+        return _of_formulas(self.name, self.formulas, zeros, signs, self.early, self.start)
 
     def over_window(self, smallest: float) -> Compiled:
         """In arrays, to be looked at over boxes of the window that are wider than a share of it."""
@@ -124,6 +115,15 @@ class CriticalSystem:
         zero, not_negative = (np.array(some, dtype=np.int64) for some in (self.zero, self.not_negative))
         units = self.start[:, 1] - self.start[:, 0]
         return Compiled(zero, not_negative, zero[:measured], self.early, self.first, units, least, halved)
+
+
+def _of_formulas(
+    name: str, formulas: Formulas, zeros: Sequence[int], signs: Sequence[int], early: int, start: Any
+) -> CriticalSystem:
+    """That of some formulas, of which the first ones are evaluated before all others."""
+    tape, first, places = formulas.tape(zeros[:early], [*zeros[early:], *signs])
+    zero, not_negative = places[: len(zeros)], places[len(zeros) :]
+    return CriticalSystem(name, formulas, (*zeros,), (*signs,), tape, (*zero,), (*not_negative,), early, first, start)
 
 
 _ANGLE = (-pi - 1e-6, pi + 1e-6)
@@ -326,7 +326,7 @@ class _Systems:
         number = self.form.size if unknowns is None else unknowns
         if number:
             ranges += [(-half, half) for half in self._halves] + [_ANGLE] * (number - self.form.size)
-        return CriticalSystem.of(
+        return _of_formulas(
             name + self.where, self.model.list, [*first, *zero], not_negative, len(first), np.array(ranges)
         )
 
