@@ -162,7 +162,7 @@ def _components_of(result: RegionMap, complement: Components) -> Mapping[int, in
     for number, cell in enumerate(result.cells):
         place = [
             (value - axis.low) / (axis.high - axis.low) * complement.cover.steps
-            for axis, value in zip(result.slice.axes, (cell.sample[0], cell.sample[1]), strict=True)
+            for axis, value in zip(result.slice.axes, cell.sample, strict=True)
         ]
         component = complement.locate(*place)
         if component is None or component in found.values():

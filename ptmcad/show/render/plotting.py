@@ -58,7 +58,7 @@ def draw_on(axes: Any, result: RegionMap, samples: bool, style: PictureStyle) ->
     unit_square = Affine2D().scale(*(high - low for low, high in sides)).translate(*(low for low, _ in sides))
     paint_map(axes, whole, "", paint, unit_square + axes.transData)
     if samples:
-        points = np.array([[float(v) for v in (c.sample[0], c.sample[1])] for c in result.cells])
+        points = np.array([c.sample for c in result.cells], dtype=float)
         axes.plot(*points.T, "o", markersize=2.5 * paint.scale, color=INK, gid="samples")
     axes.set(xlim=sides[0], ylim=sides[1], xlabel=axis_name(result.slice, 0), ylabel=axis_name(result.slice, 1))
     title = whole_title(result) if style.title is None else style.title

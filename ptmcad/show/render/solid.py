@@ -107,6 +107,7 @@ def _axes(figure: Figure, box: Box, family: FamilyMap, font: float) -> Any:
     axes.set_proj_type("ortho")
     axes.view_init(elev=22, azim=-62)
     axes.computed_zorder = False
+    axes.set(xlim=_ends(family.axes[0]), ylim=_ends(family.axes[1]), zlim=_ends(family.free))
     how = {"fontsize": 0.95 * font, "labelpad": 0.3 * font}
     axes.set_xlabel(axis_name(slice, 0), **how)
     axes.set_ylabel(axis_name(slice, 1), **how)

@@ -68,7 +68,7 @@ def chart(seen: Shapes) -> MapPictures:
     tips = [
         (letter, seen.view.approximate_position(sliver.at)) for letter, zoom in marks for sliver in zoom.slivers[:1]
     ]
-    places = tuple(seen.view.approximate_position((c.sample[0], c.sample[1])) for c in result.cells)
+    places = tuple(seen.view.approximate_position(c.sample) for c in result.cells)
     return MapPictures(
         whole=_picture(seen, "map", tips, region_labels(seen)),
         details=tuple(_picture(zoom.outline, f"detail-{letter}", (), ()) for letter, zoom in marks),
