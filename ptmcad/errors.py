@@ -22,7 +22,8 @@ as they are, whatever the input that it quotes.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from types import TracebackType
 
 MAX_MESSAGE = 1000
@@ -129,6 +130,15 @@ class ConfigError(PtmcadError):
             key = shown(self.key, _MAX_PLACE)
             place = f"{place}: {key}" if place else key
         return shown(f"{place}: {self.message}" if place else self.message)
+
+
+@contextmanager
+def blamed(key: str | None = None, file: object = None, line: int | None = None) -> Iterator[None]:
+    """Say what is wrong inside of an option, or of a place in a file."""
+    try:
+        yield
+    except ConfigError as error:
+        raise ConfigError(error.message, key=key, file=None if file is None else str(file), line=line) from error
 
 
 def expect(value: object, kinds: type | tuple[type, ...], key: str, expected: str) -> None:

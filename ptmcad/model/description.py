@@ -9,8 +9,9 @@ point, angles stand inside of cosines and sines only, and every tree has a value
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar, NamedTuple
 
+from ptmcad.errors import ExpressionError
 from ptmcad.model.elements import (
     Closing,
     Kind,
@@ -22,8 +23,39 @@ from ptmcad.model.elements import (
     TorsionSpring,
     UnknownKind,
 )
+from ptmcad.model.evaluate import multiples
 from ptmcad.model.xjoint import XJoint
 from ptmcad.text.tree import Tree, names_of
+
+Unit = tuple[str, ...]
+"""Quantities, ``length`` and ``force``, and between two of them what joins them."""
+_UNITS: Mapping[Kind, Unit] = {
+    Kind.LENGTH: ("length",),
+    Kind.BASE: ("length",),
+    Kind.STIFFNESS: ("force", "/", "length"),
+    Kind.FORCE: ("force",),
+}
+
+
+class Nouns(NamedTuple):
+    """What solutions of one kind of model are called where they are followed, drawn and counted.
+
+    Attributes
+    ----------
+    pose : one of them.
+    whole : what is in it, with its article.
+    total : what follows the number of all; empty where that is what they are called themselves.
+    range : the parameters with as many stable ones as there are anywhere.
+    range_with : the same with room for their number.
+    usual : the number of stable ones that a range has which is called without it; 0 where none is.
+    """
+
+    pose: str
+    whole: str
+    total: str
+    range: str
+    range_with: str
+    usual: int
 
 
 @dataclass(frozen=True)
@@ -43,6 +75,13 @@ class Model:
     unknowns: Mapping[str, UnknownKind]
     source: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False, kw_only=True)
     title: str = field(default="", compare=False, repr=False, kw_only=True)
+    nouns: ClassVar[Nouns]
+    energy_unit: ClassVar[Unit] = ()
+
+    @property
+    def drawable(self) -> "Mechanism | None":
+        """The mechanism whose points, bars and springs pages and films show; none of what has equations."""
+        return None
 
     @property
     def record_key(self) -> str:
@@ -142,6 +181,10 @@ class Model:
         """What a parameter measures."""
         return self.parameters[name].kind
 
+    def unit_of(self, name: str) -> Unit:
+        """What a parameter is measured in; empty of a number, and of what is no parameter."""
+        return _UNITS.get(self.kind(name), ()) if name in self.parameters else ()
+
     def _trees(self) -> Iterator[Tree]:
         """All expressions."""
         raise NotImplementedError
@@ -176,8 +219,15 @@ class Mechanism(Model):
     closing: tuple[Closing, ...] = ()
     xjoints: tuple[XJoint, ...] = ()
 
+    nouns = Nouns("pose", "the mechanism", "in all", "operation range", "operation range ({})", 2)
+    energy_unit = ("force", "·", "length")
+
     __hash__ = Model.__hash__
     __repr__ = Model.__repr__
+
+    @property
+    def drawable(self) -> "Mechanism | None":
+        return self
 
     @property
     def has_potential(self) -> bool:
@@ -216,10 +266,30 @@ class Mechanism(Model):
         }
 
     @cached_property
+    def spring_ends(self) -> tuple[tuple[str, str], ...]:
+        """The points between which each spring is, in their order."""
+        return tuple((spring.start, spring.end) for spring in self.springs)
+
+    @cached_property
+    def loaded(self) -> tuple[str, ...]:
+        """The points at which each load acts, in their order."""
+        return tuple(load.point for load in self.loads)
+
+    @cached_property
     def spring_numbers(self) -> Mapping[str, int]:
         """Every name under which a spring is asked for, to its number: its own, and its ends' names put together."""
-        ends = {f"{s.start}{s.end}": k for k, s in enumerate(self.springs)}
-        return ends | {s.name: k for k, s in enumerate(self.springs)}
+        ends = {f"{start}{end}": k for k, (start, end) in enumerate(self.spring_ends)}
+        return ends | {spring.name: k for k, spring in enumerate(self.springs)}
+
+    def unit_of(self, name: str) -> Unit:
+        """As of any model; a stiffness that is a number times those of torsion springs alone is a moment."""
+        known = super().unit_of(name)
+        if known != _UNITS[Kind.STIFFNESS]:
+            return known
+        names = {name, *self.shorthands.get(name, ())}
+        turning = [spring.stiffness for spring in self.torsion if names & set(names_of(spring.stiffness))]
+        pulling = any(names & set(names_of(spring.stiffness)) for spring in self.springs)
+        return self.energy_unit if turning and not pulling and all(map(_is_multiple, turning)) else known
 
     def held(self, support: Support) -> str:
         """The first point that is held so; an empty name when there is none."""
@@ -242,6 +312,14 @@ class Mechanism(Model):
             yield from (joint.length, joint.bars)
 
 
+def _is_multiple(tree: Tree) -> bool:
+    """Whether an expression is a number times a name."""
+    try:
+        return len(multiples(tree)) == 1
+    except ExpressionError:
+        return False
+
+
 @dataclass(frozen=True)
 class System(Model):
     """A parametric system of any field: as many equations as unknowns, or a potential whose critical points are meant.
@@ -257,6 +335,7 @@ class System(Model):
     potential: Tree | None = None
     inequalities: tuple[Tree, ...] = ()
     stability: tuple[Tree, ...] = ()
+    nouns = Nouns("solution", "the state", "", "range", "range with {}", 0)
 
     __hash__ = Model.__hash__
     __repr__ = Model.__repr__

@@ -60,6 +60,11 @@ def joints_of(mechanism: Mechanism) -> tuple[Joint | None, ...]:
     )
 
 
+def torsion_springs(mechanism: Mechanism) -> tuple[tuple[TorsionSpring, Joint | None], ...]:
+    """The torsion springs, each with its joint, where that is known."""
+    return tuple(zip(mechanism.torsion, joints_of(mechanism), strict=True))
+
+
 def _joint_at(mechanism: Mechanism, point: str) -> Joint:
     """At a point, towards the other end of the first bar there, or the next point of the first body."""
     for part in (*mechanism.bars, *mechanism.bodies.values()):

@@ -1,4 +1,4 @@
-"""Moments where the parameters have values: which unknowns they work on, and how strongly.
+"""Moments and loads where the parameters have values: on what they work, and how strongly.
 
 Of a moment that depends on its own unknown that is its constant part: the rest is the slope of an energy (`work`). A
 constant moment M on an angle does the work M times the angle, another one after each turn: the energy less that work
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
+from typing import NamedTuple
 
 from ptmcad.model.description import Mechanism, Model
 from ptmcad.model.evaluate import value_at
@@ -53,3 +54,20 @@ def moments_at(model: Model, parameters: Mapping[str, Fraction]) -> dict[str, Fr
     known = dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters)
     found = {unknown: value_at(tree, known) for unknown, tree in split_moments(model).steady}
     return {unknown: value for unknown, value in found.items() if value}
+
+
+class PointForce(NamedTuple):
+    """A load where the parameters have values: its point, and its components across and up by their names."""
+
+    point: str
+    names: tuple[str, str]
+    force: tuple[Fraction, Fraction]
+
+
+def loads_at(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> tuple[PointForce, ...]:
+    """The loads in the description's order; variables that are not among the parameters are zero."""
+    known = dict.fromkeys(mechanism.variables, Fraction(0)) | dict(parameters)
+    return tuple(
+        PointForce(load.point, load.names, (value_at(load.x, known), value_at(load.y, known)))
+        for load in mechanism.loads
+    )
