@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Protocol
 
-from ptmcad.model import Mechanism, Model
+from ptmcad.model import Model
 from ptmcad.question.slice import Count
 
 MorseIndex = tuple[int, ...]
@@ -67,5 +67,4 @@ def operation_number(model: Model, found: Iterable[Counts]) -> int:
     A mechanism needs two of them at least: one that works in one stable pose everywhere has no range to be in. Those of
     the paper's mechanism are never more, so that its ranges are where two are stable.
     """
-    least = 2 if isinstance(model, Mechanism) else 1
-    return max((least, *(counts.working for counts in found)))
+    return max((1, model.nouns.usual, *(counts.working for counts in found)))

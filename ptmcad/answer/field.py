@@ -63,6 +63,12 @@ class Field:
         return extent_of(self.x, self.y)
 
     @property
+    def known(self) -> NDArray[np.float64]:
+        """The values of the pixels that have one, row after row from the bottom."""
+        values: NDArray[np.float64] = self.values[self.values == self.values]
+        return values
+
+    @property
     def shares(self) -> str:
         """At which share of the pixels there is a value, and of which the map says nothing, in words."""
         known, open = (100 * float(part.mean()) for part in (self.values == self.values, self.region == NONE))

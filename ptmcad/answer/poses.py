@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from ptmcad.answer import with_methods
 from ptmcad.answer.regionmap import Status
-from ptmcad.model import Model
+from ptmcad.model import Model, mechanism_in
 from ptmcad.text.enclosure import Enclosure
 
 Vector = tuple[Enclosure, Enclosure]
@@ -46,6 +46,18 @@ class TorsionSpring:
     deflection: Enclosure
     degrees: Enclosure
     moment: Enclosure
+
+
+_OF_TORSION = (("deflection", "rad", "deflection"), ("deflection", "deg", "degrees"), ("moment", "", "moment"))
+"""What is said of a torsion spring: the words, the unit, and the field."""
+
+
+class NamedNumber(NamedTuple):
+    """A number of a pose by its name, with its unit where that is none of the record's."""
+
+    name: str
+    unit: str
+    value: Enclosure
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +103,38 @@ class Pose:
     def may_be_admissible(self) -> bool:
         """Whether some spring has a free length, so that the pose is admissible or not."""
         return self.admissible is not None or any(spring.free_length for spring in self.springs)
+
+    def quantities(self, model: Model) -> tuple[tuple[NamedNumber, ...], ...]:
+        """Unknowns, coordinates of points that move, springs' lengths and forces, torsion springs' deflections and
+        moments; the same ones for all poses of a model."""
+        mechanism = mechanism_in(model)
+        moving = () if mechanism is None else mechanism.moving
+        unknowns = [
+            NamedNumber(name, unit, number)
+            for unit, names, numbers in (
+                ("rad", model.angles, self.angles),
+                ("deg", model.angles, self.degrees),
+                ("", model.reals, self.reals),
+            )
+            for name, number in zip(names, numbers, strict=True)
+        ]
+        nodes = [
+            NamedNumber(f"{name} {axis}", "", x)
+            for name, place in self.nodes.items()
+            if name in moving
+            for axis, x in zip("xy", place, strict=True)
+        ]
+        springs = [
+            NamedNumber(f"{what} {spring.start}{spring.end}", "", getattr(spring, what))
+            for what in ("length", "force")
+            for spring in self.springs
+        ]
+        torsion = [
+            NamedNumber(f"{what} {spring.name}", unit, getattr(spring, field))
+            for what, unit, field in _OF_TORSION
+            for spring in self.torsion
+        ]
+        return tuple(unknowns), tuple(nodes), tuple(springs), tuple(torsion)
 
     def __repr__(self) -> str:
         kind = {True: "stable", False: "unstable", None: "degenerate, or not told"}[self.stable]
@@ -147,12 +191,27 @@ class Poses:
         """The number of stable equilibria."""
         return sum(p.stable is True for p in self.equilibria)
 
+    @property
+    def known_stable(self) -> int | None:
+        """The same; None where nothing says which are stable."""
+        return self.stable if self.model.tells_stability else None
+
+    @property
+    def in_order(self) -> tuple[Pose, ...]:
+        """Stable equilibria first, then the others, each by energy, as they are stored."""
+        return tuple(sorted(self.equilibria, key=lambda pose: pose.stable is not True))
+
+    @property
+    def working(self) -> tuple[Pose, ...]:
+        """The stable equilibria, or all of them where nothing says which are stable."""
+        return tuple(pose for pose in self.in_order if pose.stable or self.known_stable is None)
+
     def __str__(self) -> str:
         return self.table()
 
     def __repr__(self) -> str:
-        told = f", {self.stable} stable" if self.model.tells_stability else ""
-        return f"<Poses of {self.mechanism}: {len(self.equilibria)}{told}, {self.status.value}>"
+        stable = "" if self.known_stable is None else f", {self.known_stable} stable"
+        return f"<Poses of {self.mechanism}: {len(self.equilibria)}{stable}, {self.status.value}>"
 
     if TYPE_CHECKING:  # `ptmcad.methods` has them
 

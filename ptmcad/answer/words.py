@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from fractions import Fraction
 
-from ptmcad.model import Mechanism, Model, mechanism_in
+from ptmcad.model import Model, mechanism_in
 from ptmcad.model.moments import acting, foreign, moments_at
 from ptmcad.model.work import split_moments
 
@@ -22,9 +22,45 @@ def noun(model: Model, number: int = 2) -> str:
     return "solution" if number == 1 else "solutions"
 
 
+def several(number: int, noun: str) -> str:
+    """A number of what has a regular plural.
+
+    >>> several(1, "region"), several(0, "curve")
+    ('1 region', '0 curves')
+    """
+    return f"{number} {noun}{'s' * (number != 1)}"
+
+
 def counted(model: Model, number: int) -> str:
     """A number with the noun."""
     return f"{number} {noun(model, number)}"
+
+
+def sought(model: Model, number: int = 2) -> str:
+    """The noun for what an operation range has: of stable ones, where it is known which are."""
+    return f"{_stable(model)}{noun(model, number)}"
+
+
+def followed(model: Model) -> str:
+    """What is followed along a path: a stable pose, or solution, where it is known which are."""
+    return f"{_stable(model)}{model.nouns.pose}"
+
+
+def _stable(model: Model) -> str:
+    return "stable " * model.tells_stability
+
+
+def stable_of(model: Model, stable: int | None, total: int) -> str:
+    """The number of all solutions, after that of stable ones where these are known."""
+    return counted(model, total) if stable is None else f"{stable} stable of {counted(model, total)}"
+
+
+def assignments(
+    model: Model, angles: Iterable[str], reals: Iterable[str], named: Callable[[str], str] = str
+) -> list[str]:
+    """The unknowns with their values, which are given as texts."""
+    names = map(named, (*model.angles, *model.reals))
+    return [f"{name} = {value}" for name, value in zip(names, (*angles, *reals), strict=True)]
 
 
 def kind_name(negative: int, unknowns: int) -> str:
@@ -42,8 +78,11 @@ def index_words(entries: int) -> str:
     return "-".join(["minima", *saddles, "maxima"])
 
 
-def untold(mechanism: Mechanism) -> str:
-    """Why it is not said which equilibria are stable."""
+def untold(model: Model) -> str:
+    """Why it is not said which equilibria are stable; empty where it is, and of equations that say nothing of it."""
+    mechanism = model.drawable
+    if mechanism is None or mechanism.tells_stability:
+        return ""
     return f"nothing says which are stable, as {foreign(mechanism)} depends on another unknown"
 
 
@@ -66,7 +105,8 @@ def moments_work(model: Model, unknowns: Collection[str]) -> str:
     model : a mechanism; the work of what varies in a moment is in its energy.
     """
     what, several = acting(model, unknowns), len(unknowns) > 1
-    if isinstance(model, Mechanism) and split_moments(model).energies:
+    mechanism = model.drawable
+    if mechanism is not None and split_moments(mechanism).energies:
         return f"work of the constant part{'s' * several} of the {what}"
     if not set(unknowns) <= set(model.angles):
         return f"work of the {what}"

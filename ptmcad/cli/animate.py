@@ -4,39 +4,38 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import partial
-from math import degrees
+from math import degrees, remainder
 from pathlib import Path
 
 import click
 
 from ptmcad.answer.motion import Fall, Motion
-from ptmcad.cli.drawing import share_of
+from ptmcad.answer.words import assignments
 from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
-from ptmcad.cli.limits import Limits, held, limit_options
-from ptmcad.cli.maps import made_map, stored_map
-from ptmcad.cli.paths import out_option
-from ptmcad.cli.pictures import picture, report_written
+from ptmcad.cli.limits import ResourceLimits, held, limit_options
+from ptmcad.cli.maps import made_map, stored_map, tolerance_option
+from ptmcad.cli.paths import name_option, out_option
+from ptmcad.cli.pictures import figure, report_written
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_of
-from ptmcad.cli.slices import Asked, slice_options
+from ptmcad.cli.slices import SliceOptions, slice_options
 from ptmcad.cli.stored import stored_in
 from ptmcad.errors import ConfigError
 from ptmcad.extras import require_ffmpeg
-from ptmcad.model import Mechanism
 from ptmcad.options import Options
 from ptmcad.process.output import check_writable, write_files
 from ptmcad.question.config import file_name
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Slice
 from ptmcad.show.drawable import no_drawing
-from ptmcad.show.style import Style, styled
+from ptmcad.show.style import PictureStyle, styled
 
 FORMATS = ("gif", "mp4")
 MAX_FPS = 60
 
 
-def _style(size: str | None, palette: str | None, title: str | None) -> Style:
+def _style(size: str | None, palette: str | None, title: str | None) -> PictureStyle:
     try:
         return styled("default", size=size, palette=palette, title=title)
     except ConfigError as error:
@@ -57,16 +56,15 @@ def _style(size: str | None, palette: str | None, title: str | None) -> Style:
 @click.option("--dpi", type=click.IntRange(50, 400), default=100, show_default=True, help="Pixels to the inch.")
 @click.option("--palette", metavar="NAME|COLOUR,..", help="As of `ptmcad plot`.  [default: default]")
 @click.option("--title", metavar="TEXT", help="Title, '' for none.  [default: the slice's heading]")
-@click.option("--tolerance", callback=share_of, default="1/100", show_default=True, metavar="EPS",
-              help="With free lengths: the share of the window that may stay undetermined.")  # fmt: skip
+@tolerance_option
 @out_option
-@click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-motion]")
+@name_option("NAME-motion")
 @format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}; mp4 needs the program ffmpeg.", "gif")
 @limit_options
 @gathered(style=_style)
 def command(
-    *, asked: Asked, path: str, pose: str, frames: int, fps: int, style: Style, dpi: int, tolerance: Fraction,
-    out: Path, name: str | None, formats: tuple[str, ...], limits: Limits,
+    *, asked: SliceOptions, path: str, pose: str, frames: int, fps: int, style: PictureStyle, dpi: int,
+    tolerance: Fraction, out: Path, name: str | None, formats: tuple[str, ...], limits: ResourceLimits,
 ) -> None:  # fmt: skip
     """Show the mechanism moving along a path of parameters, and where it snaps.
 
@@ -86,9 +84,8 @@ def command(
         options = Options(areas=False, progress=progress, timeout=limits.timeout)
         stored = stored_map(asked)
         result = stored or made_map(_slice(asked), options, tolerance)
-        model = result.slice.model
-        if not isinstance(model, Mechanism):
-            raise ConfigError(no_drawing(model))
+        if result.slice.model.drawable is None:
+            raise ConfigError(no_drawing(result.slice.model))
         stem = f"{result.slice.name}-motion" if name is None else file_name(name, "--name")
         names = tuple(f"{stem}.{kind}" for kind in formats)
         check_writable(out, names)
@@ -96,23 +93,20 @@ def command(
 
         with stored_in(asked.config if stored else None):
             motion = motion_of(result, path, pose, frames, progress)
-            write_files(out, {each: picture(each, partial(_draw, motion, style, fps, dpi)) for each in names})
+            write_files(out, {each: figure(each, partial(_draw, motion, style, fps, dpi)) for each in names})
     click.echo(f"{question_of(result.slice)}\n{summary(motion)}")
     report_written(out, names)
 
 
-def _slice(asked: Asked) -> Slice:
+def _slice(asked: SliceOptions) -> Slice:
     """The slice of a mechanism that can be drawn."""
     slice = asked.slice()
-    if not isinstance(slice.model, Mechanism):
+    if slice.model.drawable is None:
         raise ConfigError(no_drawing(slice.model))
     return slice
 
 
-def _draw(motion: Motion, style: Style, fps: int, dpi: int, path: Path) -> None:
-    from ptmcad.show.render.backend import load_matplotlib
-
-    load_matplotlib()
+def _draw(motion: Motion, style: PictureStyle, fps: int, dpi: int, path: Path) -> None:
     from ptmcad.show.render.film import save_film
 
     save_film(motion, path, style, fps, dpi)
@@ -139,13 +133,9 @@ def _in_words(motion: Motion, fall: Fall) -> str:
     model = slice.model
     where = ", ".join(f"{n} = {v:.6g}" for n, v in zip(slice.axis_names, fall.at, strict=True))
     turns = len(model.angles)
-    unknowns = [f"{n} = {_turned(degrees(v)):.2f}°" for n, v in zip(model.angles, fall.after, strict=False)]
-    unknowns += [f"{n} = {v:.6g}" for n, v in zip(model.reals, fall.after[turns:], strict=True)]
+    angles = (f"{remainder(degrees(angle), 360):.2f}°" for angle in fall.after[:turns])
+    unknowns = assignments(model, angles, (f"{x:.6g}" for x in fall.after[turns:]))
     return (
         f"snap at {where}: the pose vanishes and falls to {', '.join(unknowns)}, where the energy is lower by "
         f"{fall.drop:.4g} (steepest descent, floating point)"
     )
-
-
-def _turned(angle: float) -> float:
-    return angle - 360 * round(angle / 360)

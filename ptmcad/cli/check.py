@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
+from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
 from ptmcad.cli.paths import record_argument
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import MAX_FAULTS, ConfigError, HypothesisError
@@ -20,7 +20,7 @@ from ptmcad.text.numerals import shortest_text
 @click.command("check")
 @record_argument("record", required=True)
 @limit_options
-def command(*, record: Path, limits: Limits) -> int:
+def command(*, record: Path, limits: ResourceLimits) -> int:
     """Say everything that is wrong with a problem record (a file, or the name of a shipped one), or what it asks.
 
     Prints each fault on a line of its own, with file, line and key, and ends with exit status 2. Of a record without

@@ -13,20 +13,20 @@ import click
 
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.timings import with_compilation
-from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Drawing, drawing_options, names_of, share_of
+from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, drawing_options, names_of, share_of
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
-from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
+from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
 from ptmcad.cli.paths import file_option, out_option
 from ptmcad.cli.pictures import report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_in, question_of
-from ptmcad.cli.slices import Asked, Third, slice_options
-from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.cli.slices import SliceOptions, Third, engine_option, slice_options
+from ptmcad.errors import ConfigError, LimitReached, blamed
 from ptmcad.model import ptm
 from ptmcad.options import Options
 from ptmcad.process.handover import Topic, send, watched
-from ptmcad.process.output import check_writable, how_to_go_on, save_stopped, text_writer, write_files
+from ptmcad.process.output import check_writable, how_to_go_on, save_stopped
 from ptmcad.question.config import Family
 from ptmcad.question.savings import check_names, switched_off
 from ptmcad.question.slice import Count, Slice
@@ -44,7 +44,7 @@ class Output(NamedTuple):
     formats: tuple[str, ...]
     explain: bool
     no_timings: bool
-    drawing: Drawing
+    drawing: DrawingOptions
 
     @property
     def beside(self) -> tuple[str, ...]:
@@ -154,13 +154,9 @@ def _open_share(result: Any) -> str:
 def _save(result: Any, name: str, output: Output) -> None:
     """Write the pictures and tables and, last, the JSON."""
     # first: drawing may take longer than there is time
-    text = _hand_over(result, name, output) if "json" in output.formats else ""
-    writers = output.drawing.writers(result, name, output.beside)
-    if "json" in output.formats:
-        writers[f"{name}.json"] = text_writer(text)
-        write_result(output.out, writers, f"{name}.json", text)
-    else:
-        write_files(output.out, writers)
+    file = f"{name}.json" if "json" in output.formats else ""
+    text = _hand_over(result, name, output) if file else ""
+    write_result(output.out, output.drawing.writers(result, name, output.beside), file, text)
 
 
 def explanation(steps: Iterable[Any]) -> str:
@@ -212,10 +208,8 @@ def warn(slice: Slice, options: Options) -> None:
 
 
 def _names_of_savings(_context: click.Context, parameter: click.Parameter, names: tuple[str, ...]) -> tuple[str, ...]:
-    try:
+    with blamed(parameter.opts[0]):
         check_names(names)
-    except ConfigError as error:
-        raise ConfigError(error.message, key=parameter.opts[0]) from error
     return names
 
 
@@ -244,10 +238,8 @@ def _resumed(slice: Slice, path: Path) -> Any:
     from ptmcad.cli.stored import read_result
 
     earlier = read_result(path, whole=False)  # of which its cover alone is taken
-    try:
+    with blamed("--resume", path):
         check_resumable(slice, earlier)
-    except ConfigError as error:
-        raise ConfigError(error.message, key="--resume", file=str(path)) from error
     # what lies outside its cover is taken as decided: a file that contradicts itself must not be
     from ptmcad.verification.certified.checks import contradiction
 
@@ -258,11 +250,11 @@ def _resumed(slice: Slice, path: Path) -> Any:
 
 
 def _classify_family(
-    family: Family, third: Third, options: Options, output: Output, limits: Limits, resume: Path | None
+    family: Family, third: Third, options: Options, output: Output, limits: ResourceLimits, resume: Path | None
 ) -> None:
     """Classify and draw the members of a family."""
     # with what stores and draws families, which a slice does without
-    from ptmcad.cli.families import Wanted, family_to_files, names_of_family
+    from ptmcad.cli.families import FamilyOutput, family_to_files, names_of_family
 
     report_idle((
         ("resume", resume is not None, "the members of a family are classified anew"),
@@ -272,7 +264,7 @@ def _classify_family(
         *idle_drawing(output.formats),
     ))  # fmt: skip
     further = (third.changes, third.between, third.surface)
-    wanted = Wanted(output.out, output.formats, output.no_timings, output.drawing, *further)
+    wanted = FamilyOutput(output.out, output.formats, output.no_timings, output.drawing, *further)
     with held(limits):
         result, surface = family_to_files(family, options, wanted)
     click.echo(f"{question_in(family.record, family.name)}\n{result.table()}")
@@ -303,7 +295,7 @@ def _classify_family(
     help="Draw NAME-3d as the surface between regions of different counts, with --changes so that it bridges none.",
 )
 @click.option("--count", type=click.Choice([c.value for c in Count]), help="What distinguishes two regions.")
-@click.option("--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True)
+@engine_option
 @out_option
 @click.option("--explain", is_flag=True, help="Print what is computed, what is left out, and why.")
 @click.option("--without", multiple=True, callback=_names_of_savings, hidden=True)  # for the ablation study
@@ -331,7 +323,7 @@ def _classify_family(
 @drawing_options(FORMATS, "json,png,svg", "Files to write")
 @gathered(options=_wanted, output=Output, third=Third)
 def command(
-    *, asked: Asked, third: Third, count: str | None, options: Options, output: Output, limits: Limits,
+    *, asked: SliceOptions, third: Third, count: str | None, options: Options, output: Output, limits: ResourceLimits,
     resume: Path | None,
 ) -> None:  # fmt: skip
     """Map the regions of a slice by their number of equilibria.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
 
 import click
@@ -13,14 +12,14 @@ from ptmcad.answer.design import BestDesign
 from ptmcad.cli.drawing import share_of
 from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
-from ptmcad.cli.idle import report_idle
-from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
-from ptmcad.cli.paths import out_option, record_argument
-from ptmcad.cli.pictures import picture, report_written, write_result
+from ptmcad.cli.idle import idle_output, report_idle
+from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
+from ptmcad.cli.paths import name_option, out_option, record_argument
+from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_in
 from ptmcad.cli.values import names, settings
-from ptmcad.process.output import Writer, check_writable, text_writer, write_files
+from ptmcad.process.output import check_writable
 from ptmcad.question.config import file_name
 from ptmcad.question.config.designed import Design
 from ptmcad.question.config.designs import design_from_options
@@ -33,7 +32,7 @@ _RESERVE = 0.9
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class DesignOptions:
     """The record and what changes its design, as it was typed."""
 
     config: Path
@@ -81,13 +80,13 @@ class Asked:
 @click.option("--boxes", type=click.IntRange(min=1), default=BOXES, show_default=True, metavar="N",
               help="Boxes of designs that the proof may take.")  # fmt: skip
 @out_option
-@click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-design]")
+@name_option("NAME-design")
 @format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.  [default: none]")
 @limit_options
-@gathered(asked=Asked)
+@gathered(asked=DesignOptions)
 def command(
     *,
-    asked: Asked,
+    asked: DesignOptions,
     tolerance: Fraction | None,
     seed: int,
     evaluations: int | None,
@@ -95,7 +94,7 @@ def command(
     out: Path,
     name: str | None,
     formats: tuple[str, ...],
-    limits: Limits,
+    limits: ResourceLimits,
 ) -> int:
     """Find the design that makes a range, an area, a barrier or an expression as large as possible.
 
@@ -114,8 +113,7 @@ def command(
     question = asked.design()
     stem = question.name if name is None else file_name(name, "--name")
     wanted = tuple(f"{stem}.{kind}" for kind in sorted(formats, key=lambda kind: kind == "json"))
-    why = "no file is written, see --format"
-    report_idle((("out", not wanted, why), ("name", not wanted, why)))
+    report_idle(idle_output(wanted))
     with held(limits):
         if wanted:
             check_writable(out, wanted)
@@ -140,21 +138,12 @@ def command(
 
 def _save(found: BestDesign, wanted: tuple[str, ...], folder: Path) -> None:
     """Write the pictures and, last, the JSON."""
-    writers: dict[str, Writer] = {
-        name: picture(name, partial(_draw, found)) for name in wanted if not name.endswith(".json")
-    }
-    if wanted[-1].endswith(".json"):
-        text = found.to_json()
-        writers[wanted[-1]] = text_writer(text)
-        write_result(folder, writers, wanted[-1], text)
-    else:
-        write_files(folder, writers)
 
+    def draw(path: Path) -> None:
+        from ptmcad.show.render.design import draw_design
 
-def _draw(found: BestDesign, path: Path) -> None:
-    from ptmcad.show.render.backend import load_matplotlib
+        draw_design(found, path)
 
-    load_matplotlib()
-    from ptmcad.show.render.design import draw_design
-
-    draw_design(found, path)
+    pictures = {name: figure(name, draw) for name in wanted if not name.endswith(".json")}
+    file = next((name for name in wanted if name not in pictures), "")
+    write_result(folder, pictures, file, found.to_json() if file else "")

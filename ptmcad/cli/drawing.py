@@ -10,24 +10,22 @@ from collections.abc import Callable
 from fractions import Fraction
 from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
 from ptmcad.cli.formats import format_option
-from ptmcad.cli.gathering import gathered
+from ptmcad.cli.gathering import F, gathered
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.values import palettes
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, blamed
 from ptmcad.process.output import Writer, text_writer
-from ptmcad.show.style import DEFAULT, LINES, PALETTES, PRESETS, Place, Style, styled
+from ptmcad.show.style import DEFAULT, LINES, PALETTES, PRESETS, LegendPlace, PictureStyle, styled
 from ptmcad.text.parsing import share_for
 
 if TYPE_CHECKING:
     from ptmcad.answer.poses import Poses
     from ptmcad.show.render.overlay import Measured
-
-F = TypeVar("F", bound=Callable[..., Any])
 
 PICTURES = ("png", "svg", "pdf", "eps")
 DATA = ("csv", "npz")
@@ -47,7 +45,7 @@ def names_of(stem: str, formats: tuple[str, ...]) -> tuple[str, ...]:
     )
 
 
-class Drawing(NamedTuple):
+class DrawingOptions(NamedTuple):
     """How a map is drawn and tabulated.
 
     Attributes
@@ -62,7 +60,7 @@ class Drawing(NamedTuple):
     """
 
     samples: bool = False
-    style: Style = DEFAULT
+    style: PictureStyle = DEFAULT
     dpi: int = 150
     boundary_tolerance: Fraction = Fraction(1, 1000)
     pixels: tuple[int, int] = (400, 400)
@@ -125,15 +123,17 @@ def pixels_of(_context: click.Context, parameter: click.Parameter, value: str) -
     return sides
 
 
-def _drawing(samples: bool, dpi: int, boundary_tolerance: Fraction, pixels: tuple[int, int], style: Style) -> Drawing:
+def _drawing(
+    samples: bool, dpi: int, boundary_tolerance: Fraction, pixels: tuple[int, int], style: PictureStyle
+) -> DrawingOptions:
     """The options together."""
-    return Drawing(samples, style, dpi, boundary_tolerance, pixels)
+    return DrawingOptions(samples, style, dpi, boundary_tolerance, pixels)
 
 
 def _style(
     style: str, size: str | None, font_size: str | None, font_family: str | None, palette: str | None,
     title: str | None, legend: str | None, line_width: str | None, thin_lines: str | None,
-) -> Style:  # fmt: skip
+) -> PictureStyle:  # fmt: skip
     """The options of a style together."""
     options = {
         "size": size, "font_size": font_size, "font_family": font_family, "palette": palette, "title": title,
@@ -154,14 +154,12 @@ def _check_fonts(families: tuple[str, ...]) -> None:
     load_matplotlib()
     from ptmcad.show.render.fonts import check_families
 
-    try:
+    with blamed("--font-family"):
         check_families(families)
-    except ConfigError as error:
-        raise ConfigError(error.message, key="--font-family") from error
 
 
 def style_options(command: F) -> F:
-    """Add the options that make a `Style`, which the command gets as ``style``, and ``--dpi``."""
+    """Add the options that make a `PictureStyle`, which the command gets as ``style``, and ``--dpi``."""
     command = gathered(style=_style)(command)
     for option in (
         click.option("--dpi", type=click.IntRange(50, 1200), default=150, show_default=True,
@@ -169,7 +167,7 @@ def style_options(command: F) -> F:
         click.option("--thin-lines", type=click.Choice(LINES),
                      help="Curves of the variety where the count does not change.  [default: solid]"),
         click.option("--line-width", metavar="PT", help="Width of curves where the count changes, in points."),
-        click.option("--legend", type=click.Choice([place.value for place in Place]),
+        click.option("--legend", type=click.Choice([place.value for place in LegendPlace]),
                      help="Where the legend stands.  [default: where it fits]"),
         click.option("--title", metavar="TEXT",
                      help="Title, '' for none.  [default: the slice's heading; none in journals' styles]"),
@@ -188,7 +186,7 @@ def style_options(command: F) -> F:
 
 
 def drawing_options(known: tuple[str, ...], default: str, what: str) -> Callable[[F], F]:
-    """Add ``--format``, which the command gets as ``formats``, and the options that it gets as a `Drawing`.
+    """Add ``--format``, which the command gets as ``formats``, and the options that it gets as a `DrawingOptions`.
 
     Parameters
     ----------

@@ -10,9 +10,9 @@ from tempfile import TemporaryDirectory
 
 import click
 
-from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.paths import out_option
-from ptmcad.cli.slices import Asked, slice_options
+from ptmcad.cli.slices import SliceOptions, slice_options
 from ptmcad.extras import Extra, require
 from ptmcad.process.handover import Topic, send
 
@@ -29,7 +29,14 @@ from ptmcad.process.handover import Topic, send
 @out_option
 @limit_options
 def command(
-    *, asked: Asked, free: str | None, sliders: tuple[str, ...], port: int, opened: bool, out: Path, limits: Limits
+    *,
+    asked: SliceOptions,
+    free: str | None,
+    sliders: tuple[str, ...],
+    port: int,
+    opened: bool,
+    out: Path,
+    limits: ResourceLimits,
 ) -> None:
     """Explore the slices of CONFIG in the browser: drag a parameter and see the exact map follow.
 

@@ -14,17 +14,16 @@ from typing import TYPE_CHECKING, NamedTuple
 from ptmcad.answer.changes import TOLERANCE, Changes
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Drawing, names_of
+from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, names_of
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.stored import MAX_BYTES, read_result
-from ptmcad.errors import ConfigError, LimitReached, PtmcadError, shown, shown_path
+from ptmcad.cli.stored import read_other, read_result
+from ptmcad.errors import ConfigError, LimitReached, PtmcadError, shown_path
 from ptmcad.options import Options
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import Family, fault_of_member
 from ptmcad.show.document.family import FORMAT, read_family, write_family
 from ptmcad.text.numerals import text_of
-from ptmcad.text.textfile import read_text
 
 if TYPE_CHECKING:
     from ptmcad.answer.boundarysurface import BoundarySurface
@@ -34,7 +33,7 @@ SOLID = "-3d"
 """Behind a family's name, in that of its picture in three dimensions."""
 
 
-class Wanted(NamedTuple):
+class FamilyOutput(NamedTuple):
     """What is to be written of a family, and where.
 
     Attributes
@@ -47,7 +46,7 @@ class Wanted(NamedTuple):
     out: Path
     formats: tuple[str, ...]
     no_timings: bool
-    drawing: Drawing
+    drawing: DrawingOptions
     changes: bool = False
     between: bool = False
     surface: bool = False
@@ -70,7 +69,7 @@ class Wanted(NamedTuple):
         return tuple(kind for kind in self.formats if kind in DATA)
 
 
-def family_to_files(family: Family, options: Options, wanted: Wanted) -> tuple[FamilyMap, BoundarySurface | None]:
+def family_to_files(family: Family, options: Options, wanted: FamilyOutput) -> tuple[FamilyMap, BoundarySurface | None]:
     """Classify the members one by one, write each, then the family's own files.
 
     Returns the maps, and the boundary surface where that is wanted.
@@ -122,7 +121,7 @@ def family_to_files(family: Family, options: Options, wanted: Wanted) -> tuple[F
     return result, surface
 
 
-def _changes(common: Common, options: Options, wanted: Wanted) -> Changes | None:
+def _changes(common: Common, options: Options, wanted: FamilyOutput) -> Changes | None:
     """Where the arrangement changes, if that is asked for."""
     if not (wanted.changes or wanted.between or wanted.needs_surface):
         return None
@@ -138,14 +137,14 @@ def _at(error: PtmcadError, place: str) -> PtmcadError:
     return type(error)(f"{error} (at {place})")
 
 
-def names_of_family(name: str, wanted: Wanted) -> tuple[str, ...]:
+def names_of_family(name: str, wanted: FamilyOutput) -> tuple[str, ...]:
     """The family's own files."""
     names = [f"{name}{end}.{kind}" for kind in wanted.pictures for end in ("", SOLID)]
     names += [f"{name}.{kind}" for kind in wanted.meshes]
     return (*names, f"{name}.json") if "json" in wanted.formats else tuple(names)
 
 
-def _write_member(found: RegionMap, wanted: Wanted) -> None:
+def _write_member(found: RegionMap, wanted: FamilyOutput) -> None:
     name = found.slice.name
     writers = wanted.drawing.writers(found, name, wanted.of_members)
     if "json" in wanted.formats:
@@ -154,7 +153,7 @@ def _write_member(found: RegionMap, wanted: Wanted) -> None:
         write_files(wanted.out, writers)
 
 
-def _writers(result: FamilyMap, surface: BoundarySurface | None, wanted: Wanted) -> dict[str, Writer]:
+def _writers(result: FamilyMap, surface: BoundarySurface | None, wanted: FamilyOutput) -> dict[str, Writer]:
     name = result.name
     shown = surface if wanted.surface else None
     writers = picture_writers(result, name, wanted.pictures, wanted.drawing, shown)
@@ -167,7 +166,11 @@ def _writers(result: FamilyMap, surface: BoundarySurface | None, wanted: Wanted)
 
 
 def picture_writers(
-    result: FamilyMap, stem: str, formats: tuple[str, ...], drawing: Drawing, surface: BoundarySurface | None = None
+    result: FamilyMap,
+    stem: str,
+    formats: tuple[str, ...],
+    drawing: DrawingOptions,
+    surface: BoundarySurface | None = None,
 ) -> dict[str, Writer]:
     """For each picture of a family a function that writes it.
 
@@ -190,13 +193,13 @@ def mesh_writers(surface: BoundarySurface, stem: str, formats: tuple[str, ...]) 
     return {f"{stem}.{kind}": text_writer(KNOWN[kind](surface)) for kind in formats}
 
 
-def _draw_multiples(result: FamilyMap, drawing: Drawing, path: Path) -> None:
+def _draw_multiples(result: FamilyMap, drawing: DrawingOptions, path: Path) -> None:
     from ptmcad.show.render.multiples import draw_multiples  # brings matplotlib
 
     draw_multiples(result, path, drawing.dpi, drawing.style)
 
 
-def _draw_solid(surface: BoundarySurface | None, result: FamilyMap, drawing: Drawing, path: Path) -> None:
+def _draw_solid(surface: BoundarySurface | None, result: FamilyMap, drawing: DrawingOptions, path: Path) -> None:
     from ptmcad.show.render.solid import draw_solid  # brings matplotlib
 
     draw_solid(result, path, drawing.dpi, drawing.style, surface)
@@ -214,12 +217,7 @@ def read_family_file(path: Path, *, whole: bool = True) -> FamilyMap:
     ConfigError
         When one of the files cannot be read, or is not what it should be.
     """
-    text = read_text(path, MAX_BYTES, f"a {FORMAT} file")
-    try:
-        stored = read_family(text)
-    except (ValueError, RecursionError) as error:
-        reason = shown(" ".join(str(error).split()), 300)
-        raise ConfigError(f"is damaged or not a {FORMAT} file: {reason}", file=str(path)) from error
+    stored = read_other(path, read_family, FORMAT)
     members = tuple(read_result(path.parent / file, whole=whole) for file in stored.files)
     for value, file, member in zip(stored.values, stored.files, members, strict=True):
         if member.slice.axes != members[0].slice.axes:

@@ -7,13 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any, TypeVar
 
 import click
 
+from ptmcad.cli.gathering import F
 from ptmcad.cli.values import formats as completed
-
-F = TypeVar("F", bound=Callable[..., Any])
 
 
 def format_option(known: tuple[str, ...], help: str, default: str | None = None) -> Callable[[F], F]:

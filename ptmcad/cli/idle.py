@@ -6,7 +6,7 @@ goes on as without it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 import click
 from click.core import ParameterSource
@@ -32,6 +32,11 @@ def report_idle(cases: Iterable[Idle]) -> None:
 
 def _has_picture(formats: Iterable[str]) -> bool:
     return bool(set(formats) - {"json", "csv", "npz", "table", "obj", "ply"})
+
+
+def idle_output(files: Collection[str]) -> tuple[Idle, ...]:
+    """The options that say where files go and what they are called, where there are none."""
+    return tuple((name, not files, "no file is written, see --format") for name in ("out", "name"))
 
 
 def idle_style(formats: Iterable[str]) -> tuple[Idle, ...]:

@@ -10,20 +10,19 @@ import math
 import os
 import re
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple
 
 import click
 
-from ptmcad.cli.gathering import gathered
+from ptmcad.cli.gathering import F, gathered
 from ptmcad.errors import ConfigError
+from ptmcad.options import Progress
 from ptmcad.process.handover import Topic, send, watched
 from ptmcad.process.memory import Bound, bounded, kernel_lines
-
-F = TypeVar("F", bound=Callable[..., Any])
 
 MIN_BOUND = 64 << 20
 """The exact engine's libraries alone need about half of this."""
@@ -80,7 +79,7 @@ def _bound(_context: click.Context, _parameter: click.Parameter, value: str | No
     return None if value is None else bound_of(value)
 
 
-class Limits(NamedTuple):
+class ResourceLimits(NamedTuple):
     """Seconds and memory that a command may take, None for no limit of its own."""
 
     timeout: float | None
@@ -89,7 +88,7 @@ class Limits(NamedTuple):
 
 def limit_options(command: F) -> F:
     """Add ``--timeout`` and ``--max-memory``, which the command gets as ``limits``."""
-    command = gathered(limits=Limits)(command)
+    command = gathered(limits=ResourceLimits)(command)
     command = click.option("--max-memory", callback=_bound, metavar="SIZE",
                            help="Stop before using more memory, such as 500M or 2G (exit status 3; 2 when it is "
                                 "too little to start with).  "
@@ -114,8 +113,17 @@ def clock_stopped(timeout: float | None, spent: float = 0.0) -> Iterator[None]:
     report_deadline(timeout, spent)
 
 
+def compile_certified(timeout: float | None, progress: Progress) -> None:
+    """Load the certified engine, and compile it where that is needed, outside of the time limit."""
+    from ptmcad.ask.classification import load_certified
+    from ptmcad.options import DEFAULTS
+
+    with clock_stopped(timeout):
+        load_certified(progress, DEFAULTS)
+
+
 @contextmanager
-def held(limits: Limits) -> Iterator[None]:
+def held(limits: ResourceLimits) -> Iterator[None]:
     """Set the limits for what is done inside."""
     report_deadline(limits.timeout)
     bound = limits.max_memory or (default_bound() if watched() else None)

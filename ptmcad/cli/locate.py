@@ -13,9 +13,9 @@ import click
 from ptmcad.answer.location import Location
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import index_words
-from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.limits import ResourceLimits, held, limit_options
+from ptmcad.cli.paths import result_argument
 from ptmcad.cli.stored import read_result
-from ptmcad.cli.values import files
 from ptmcad.cli.values import point as propose_point
 from ptmcad.errors import ConfigError, shown
 from ptmcad.process.streams import reader_left
@@ -66,14 +66,14 @@ def point_of(text: str) -> dict[str, str]:
     return point
 
 
-class Row(NamedTuple):
+class CsvRow(NamedTuple):
     """A row of a CSV file: the line on which it ends, from 1, and its texts by their columns' names."""
 
     line: int
     values: dict[str, str]
 
 
-def rows_of(path: Path, result: RegionMap, further: tuple[str, ...] = ()) -> Iterator[Row]:
+def rows_of(path: Path, result: RegionMap, further: tuple[str, ...] = ()) -> Iterator[CsvRow]:
     """The points of a CSV file whose first row names the two axes (other columns than the further ones are not looked
     at).
 
@@ -86,7 +86,7 @@ def rows_of(path: Path, result: RegionMap, further: tuple[str, ...] = ()) -> Ite
         `MAX_ROW`.
     """
     names = result.slice.axis_names
-    lines = _Lines(path)
+    lines = _CsvLines(path)
     try:
         reader = csv.DictReader(lines, skipinitialspace=True)
         columns = [c.strip() for c in reader.fieldnames or ()]
@@ -102,12 +102,12 @@ def rows_of(path: Path, result: RegionMap, further: tuple[str, ...] = ()) -> Ite
             point = {name: (row[name] or "").strip() for name in names}
             if "" in point.values():
                 raise ConfigError("a value is missing", file=str(path), line=reader.line_num)
-            yield Row(reader.line_num, point | {name: (row.get(name) or "").strip() for name in further})
+            yield CsvRow(reader.line_num, point | {name: (row.get(name) or "").strip() for name in further})
     except csv.Error as error:
         raise ConfigError(f"is not a CSV file: {error}", file=str(path), line=lines.number) from error
 
 
-class _Lines:
+class _CsvLines:
     """The lines of a CSV file; refuses to go on when those since ``row`` was set to 0 are too long for one row."""
 
     def __init__(self, path: Path):
@@ -116,7 +116,7 @@ class _Lines:
         self.number = 0
         self.row = 0
 
-    def __iter__(self) -> _Lines:
+    def __iter__(self) -> _CsvLines:
         return self
 
     def __next__(self) -> str:
@@ -129,7 +129,7 @@ class _Lines:
         return line
 
 
-def _table(result: RegionMap, points: Iterator[Row], path: Path) -> None:
+def _table(result: RegionMap, points: Iterator[CsvRow], path: Path) -> None:
     writer = csv.writer(sys.stdout, lineterminator="\n")
     fields = fields_of(result)
     writer.writerow([*result.slice.axis_names, *fields])
@@ -159,7 +159,7 @@ def _lines(location: Location, point: Mapping[str, str], fields: Sequence[str], 
 
 
 @click.command("locate")
-@click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
+@result_argument
 @click.option(
     "--at",
     "at",
@@ -170,7 +170,7 @@ def _lines(location: Location, point: Mapping[str, str], fields: Sequence[str], 
 @click.option("--csv", "table", type=click.Path(path_type=Path), metavar="FILE",
               help="A CSV file whose first row names the axes; prints a CSV row for each of its points.")  # fmt: skip
 @limit_options
-def command(*, result: Path, at: str | None, table: Path | None, limits: Limits) -> None:
+def command(*, result: Path, at: str | None, table: Path | None, limits: ResourceLimits) -> None:
     """Tell in which cell and region of RESULT a rational point lies, and the number of equilibria there.
 
     The answer is exact, however near the point is to a boundary: "on the variety" exactly on a curve, unless no count

@@ -12,22 +12,23 @@ import click
 
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.field import Field
-from ptmcad.cli.drawing import pixels_of, share_of, style_options
+from ptmcad.cli.drawing import pixels_of, style_options
 from ptmcad.cli.formats import format_option
 from ptmcad.cli.idle import idle_style, report_idle
-from ptmcad.cli.limits import Limits, held, limit_options
-from ptmcad.cli.maps import made_map, stored_map
+from ptmcad.cli.limits import ResourceLimits, held, limit_options
+from ptmcad.cli.maps import made_map, stored_map, tolerance_option
 from ptmcad.cli.paths import out_option
+from ptmcad.cli.pictures import figure as figure_of
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_of
-from ptmcad.cli.slices import Asked, slice_options
+from ptmcad.cli.slices import SliceOptions, slice_options
 from ptmcad.cli.stored import stored_in
 from ptmcad.cli.values import poses, quantity_names
 from ptmcad.errors import ConfigError, PtmcadError, shown_path
 from ptmcad.options import Options
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
-from ptmcad.show.style import Place, Style
+from ptmcad.show.style import LegendPlace, PictureStyle
 
 PICTURES, DATA = ("png", "svg", "pdf"), ("csv", "npz")
 FORMATS = (*PICTURES, *DATA)
@@ -39,7 +40,7 @@ class Figure(NamedTuple):
     """How a map is drawn."""
 
     contours: int
-    style: Style
+    style: PictureStyle
     dpi: int
 
 
@@ -61,26 +62,25 @@ class DifferenceError(PtmcadError):
               help="About so many contour lines; 0 for none.")  # fmt: skip
 @click.option("--checks", type=click.IntRange(0, 100_000), default=50, show_default=True,
               help="Random pixels that are compared with exact poses.")  # fmt: skip
-@click.option("--tolerance", callback=share_of, default="1/100", show_default=True, metavar="EPS",
-              help="With free lengths: the share of the window that may stay undetermined.")  # fmt: skip
+@tolerance_option
 @style_options
 @out_option
 @format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.", "png")
 @limit_options
 def command(
     *,
-    asked: Asked,
+    asked: SliceOptions,
     value: str,
     pose: str,
     pixels: tuple[int, int],
     contours: int,
     checks: int,
     tolerance: Fraction,
-    style: Style,
+    style: PictureStyle,
     dpi: int,
     out: Path,
     formats: tuple[str, ...],
-    limits: Limits,
+    limits: ResourceLimits,
 ) -> None:
     """Colour the window by a quantity of one equilibrium.
 
@@ -104,7 +104,7 @@ def command(
         *idle_style(formats),
         ("contours", nothing_drawn, "no picture is written"),
         ("thin_lines", not nothing_drawn, "the curves over a quantity are those where the count changes"),
-        ("legend", not nothing_drawn and style.legend is Place.RIGHT, "beside the map is the scale"),
+        ("legend", not nothing_drawn and style.legend is LegendPlace.RIGHT, "beside the map is the scale"),
     ])  # fmt: skip
     stem = f"{slice.name}-{_slug(value)}-{_slug(pose)}"
     names = tuple(f"{stem}.{kind}" for kind in formats)
@@ -152,9 +152,6 @@ def _writers(result: Any, field: Field, names: tuple[str, ...], figure: Figure) 
     boundaries = cache(result.boundaries)
 
     def draw(path: Path) -> None:
-        from ptmcad.show.render.backend import load_matplotlib
-
-        load_matplotlib()
         from ptmcad.show.render.field import field_figure
         from ptmcad.show.render.printing import save, settings
 
@@ -170,14 +167,13 @@ def _writers(result: Any, field: Field, names: tuple[str, ...], figure: Figure) 
         else:
             path.write_bytes(field_npz(field))
 
-    return {name: picture(name, tabulate if name.endswith(DATA) else draw) for name in names}
+    return {name: picture(name, tabulate) if name.endswith(DATA) else figure_of(name, draw) for name in names}
 
 
 def _expect_values(field: Field) -> None:
     """Refuse a field of which nothing is to be seen, unless it has values that are beyond doubles or were not found."""
-    import numpy as np
 
-    if np.isnan(field.values).all() and not field.beyond and not field.missed:
+    if not field.known.size and not field.beyond and not field.missed:
         raise ConfigError(
             f"no pixel has {field.pose}, or {field.quantity} has no value where it is: there is nothing to show"
             + ("; some pixels are undetermined" if (field.region == NONE).any() else ""),
@@ -186,9 +182,7 @@ def _expect_values(field: Field) -> None:
 
 
 def _summary(field: Field) -> str:
-    import numpy as np
-
-    known = field.values[~np.isnan(field.values)]
+    known = field.known
     if not known.size and field.beyond:
         return f"{field.quantity} of {field.pose} is beyond doubles wherever it has a value"
     if not known.size:

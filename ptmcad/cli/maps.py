@@ -8,17 +8,25 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
+import click
+
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.cli.drawing import share_of
 from ptmcad.cli.idle import report_idle
 from ptmcad.cli.limits import clock_stopped
-from ptmcad.cli.slices import Asked
+from ptmcad.cli.slices import SliceOptions
 from ptmcad.cli.stored import is_result, read_result
 from ptmcad.errors import ConfigError
 from ptmcad.options import Options
 from ptmcad.question.slice import Slice
 
+tolerance_option = click.option(
+    "--tolerance", callback=share_of, default="1/100", show_default=True, metavar="EPS",
+    help="With free lengths: the share of the window that may stay undetermined.",
+)  # fmt: skip
 
-def stored_map(asked: Asked) -> RegionMap | None:
+
+def stored_map(asked: SliceOptions) -> RegionMap | None:
     """The map where CONFIG is a result, whose ``--tolerance`` has no effect.
 
     Raises

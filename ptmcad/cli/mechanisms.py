@@ -8,7 +8,7 @@ import click
 
 from ptmcad.cli.values import mechanisms as known_mechanisms
 from ptmcad.errors import ConfigError, quoted
-from ptmcad.model import Mechanism, Model
+from ptmcad.model import Model
 from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config.model import model_of
 from ptmcad.question.config.starters import NAMES, starter_text
@@ -45,12 +45,12 @@ def description(model: Model) -> str:
         default = f" = {parameter.default}" if parameter.default else ""
         window = f", usually from {parameter.window[0]} to {parameter.window[1]}" if parameter.window else ""
         lines.append(f"  {'' if n else 'parameters':<12}{name}{default}, {parameter.kind.noun}{window}")
-    if isinstance(model, Mechanism):
+    if (mechanism := model.drawable) is not None:
         from ptmcad.model.joints import joints_of
         from ptmcad.show.linedrawing import approximate_text
 
-        lines += ["", *(f"      {line}" for line in approximate_text(model).splitlines())]
-        wound = ", @ those with torsion springs" if any(joints_of(model)) else ""
+        lines += ["", *(f"      {line}" for line in approximate_text(mechanism).splitlines())]
+        wound = ", @ those with torsion springs" if any(joints_of(mechanism)) else ""
         lines += ["", f"      # bars, . springs, o points{wound}; the pose is not an equilibrium"]
     return "\n".join(lines)
 
@@ -72,6 +72,7 @@ def command(*, names: tuple[str, ...], out: Path | None) -> None:
     if out is not None:
         from ptmcad.show.linedrawing import approximate_svg
 
-        drawn = {f"{m.name}.svg": text_writer(approximate_svg(m)) for m in models if isinstance(m, Mechanism)}
+        mechanisms = filter(None, (model.drawable for model in models))
+        drawn = {f"{m.name}.svg": text_writer(approximate_svg(m)) for m in mechanisms}
         check_writable(out, tuple(drawn))
         write_files(out, drawn)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.limits import Limits, held, limit_options, report_deadline
+from ptmcad.cli.limits import ResourceLimits, held, limit_options, report_deadline
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import shown_path
 from ptmcad.process.output import check_writable
@@ -16,7 +16,7 @@ from ptmcad.process.output import check_writable
 @click.option("--out", type=click.Path(path_type=Path), default=Path("paper"), show_default=True,
               help="Folder for the files.")  # fmt: skip
 @limit_options
-def command(*, out: Path, limits: Limits) -> int:
+def command(*, out: Path, limits: ResourceLimits) -> int:
     """Reproduce the paper: equations, figures 2 to 5, and every claim confirmed, corrected or refuted.
 
     Writes index.html, claims.html, claims.md, claims.json, equations.md, equations.tex, and for every figure the region

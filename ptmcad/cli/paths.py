@@ -4,19 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
 
 import click
 
+from ptmcad.cli.gathering import F
 from ptmcad.cli.values import files
-
-F = TypeVar("F", bound=Callable[..., Any])
 
 
 def record_argument(name: str = "config", *, required: bool = False) -> Callable[[F], F]:
     """A problem record: a YAML file, or the name of one that is shipped."""
     complete = files(".yaml", ".yml")
     return click.argument(name, required=required, type=click.Path(path_type=Path), shell_complete=complete)
+
+
+result_argument = click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
+"""A stored result."""
+
+
+def name_option(default: str) -> Callable[[F], F]:
+    """Add ``--name``, with which the names of all files begin."""
+    return click.option("--name", metavar="NAME", help=f"Start of the files' names.  [default: {default}]")
 
 
 def out_option(command: F) -> F:

@@ -12,8 +12,8 @@ from pathlib import Path
 import click
 
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown_path
-from ptmcad.process.output import Writer, save_stopped, write_files
-from ptmcad.show.style import Style
+from ptmcad.process.output import Writer, save_stopped, text_writer, write_files
+from ptmcad.show.style import PictureStyle
 
 
 def report_written(folder: Path, names: Iterable[str]) -> None:
@@ -40,9 +40,21 @@ def picture(name: str, draw: Writer) -> Writer:
     return write
 
 
+def figure(name: str, draw: Writer) -> Writer:
+    """The same of what takes matplotlib, which is loaded first."""
+
+    def load_and_draw(path: Path) -> None:
+        from ptmcad.show.render.backend import load_matplotlib
+
+        load_matplotlib()
+        draw(path)
+
+    return picture(name, load_and_draw)
+
+
 def _reason(error: Exception) -> str:
     """In words for somebody who does not read the program: names of exceptions are none."""
-    if isinstance(error, ConfigError) and error.key in Style._fields:
+    if isinstance(error, ConfigError) and error.key in PictureStyle._fields:
         return f"--{error.key.replace('_', '-')}: {error.message}"
     if isinstance(error, PtmcadError):
         return str(error)
@@ -50,15 +62,15 @@ def _reason(error: Exception) -> str:
     return said if isinstance(error, OSError) else f"drawing failed unexpectedly{f': {said}' if said else ''}"
 
 
-def write_result(folder: Path, writers: Mapping[str, Writer], name: str, text: str) -> tuple[Path, ...]:
-    """Write all files or, when a picture fails, the JSON alone.
+def write_result(folder: Path, pictures: Mapping[str, Writer], name: str, text: str) -> tuple[Path, ...]:
+    """Write pictures and, last, the JSON, where it has a name; all of them or, when a picture fails, the JSON alone.
 
     The JSON then goes where the result of a stopped run goes: older pictures beside it would not be its own.
 
     Parameters
     ----------
-    writers : as of `write_files`; the last one is the JSON's.
-    name, text : of the JSON.
+    pictures : as of `write_files`.
+    name, text : of the JSON; an empty name where none is wanted.
 
     Raises
     ------
@@ -67,9 +79,10 @@ def write_result(folder: Path, writers: Mapping[str, Writer], name: str, text: s
     OutputError
         When a file cannot be written.
     """
+    if not name:
+        return write_files(folder, pictures)
     try:
-        return write_files(folder, writers)
+        return write_files(folder, {**pictures, name: text_writer(text)})
     except PictureError as error:
-        beside = tuple(other for other in writers if other != name)
-        place, why = save_stopped(folder / name, text, whole=True, beside=beside)
+        place, why = save_stopped(folder / name, text, whole=True, beside=tuple(pictures))
         raise PictureError(f"{error}; the result, without pictures, is in {place}{why}") from error

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -10,24 +10,22 @@ from typing import NamedTuple
 import click
 
 from ptmcad.answer.boundarysurface import BoundarySurface
-from ptmcad.answer.comparison import Comparison
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Drawing, drawing_options, names_of
+from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, drawing_options, names_of
 from ptmcad.cli.families import mesh_writers, picture_writers, read_family_file
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
-from ptmcad.cli.limits import Limits, held, limit_options
-from ptmcad.cli.paths import file_option
+from ptmcad.cli.limits import ResourceLimits, held, limit_options
+from ptmcad.cli.paths import file_option, result_argument
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.points import disagreements, measured, places, poses_at
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import kind_of, read_result, stored_in
-from ptmcad.cli.values import files
-from ptmcad.errors import ConfigError, shown_path
+from ptmcad.errors import ConfigError, blamed, shown_path
 from ptmcad.process.output import Writer, check_writable, write_files
 from ptmcad.question.config import portable_file
-from ptmcad.show.style import Place, Style
+from ptmcad.show.style import LegendPlace, PictureStyle
 
 
 class Added(NamedTuple):
@@ -39,7 +37,7 @@ class Added(NamedTuple):
     surface: bool
 
 
-def _with_points(stored: RegionMap, drawing: Drawing, added: Added) -> Drawing:
+def _with_points(stored: RegionMap, drawing: DrawingOptions, added: Added) -> DrawingOptions:
     """The drawing with measured points, and with the poses at points; both are checked before poses are computed."""
     chosen = places(stored, added.at)
     if added.overlay is not None:
@@ -52,10 +50,10 @@ def _with_points(stored: RegionMap, drawing: Drawing, added: Added) -> Drawing:
     return drawing._replace(poses=tuple((place, poses_at(stored, place)) for place in chosen))
 
 
-def _idle(result: Path, drawing: Drawing, added: Added) -> tuple[Idle, ...]:
+def _idle(result: Path, drawing: DrawingOptions, added: Added) -> tuple[Idle, ...]:
     """Options that a picture of more than a map does not heed."""
     several = added.compare is not None or kind_of(result) == "family"
-    below = several and drawing.style.legend is Place.RIGHT
+    below = several and drawing.style.legend is LegendPlace.RIGHT
     return (
         ("samples", several or bool(added.at), "sample points are drawn on a map alone"),
         ("legend", below, "a legend of several maps is below them"),
@@ -63,7 +61,7 @@ def _idle(result: Path, drawing: Drawing, added: Added) -> tuple[Idle, ...]:
     )
 
 
-def _say_width(style: Style, added: Added) -> None:
+def _say_width(style: PictureStyle, added: Added) -> None:
     """What needs more room than a journal's column has gets both."""
     if style.wide is not None and (added.at or added.compare is not None):
         click.echo(f"over two columns, {style.wide:.3g} inches wide, which --size changes", err=True)
@@ -79,7 +77,7 @@ def _check_compared(added: Added, formats: tuple[str, ...]) -> None:
 
 
 def _compared(
-    stored: RegionMap, result: Path, other: Path, stem: str, formats: tuple[str, ...], drawing: Drawing
+    stored: RegionMap, result: Path, other: Path, stem: str, formats: tuple[str, ...], drawing: DrawingOptions
 ) -> Mapping[str, Writer]:
     """A writer for each picture of two maps, after their difference has been printed.
 
@@ -111,14 +109,10 @@ def _compared(
     for line in in_words(found):
         click.echo(line)
     names = names_of(stem, formats)
-    return {name: picture(name, partial(_draw_comparison, draw_comparison, found, drawing)) for name in names}
+    return {n: picture(n, partial(draw_comparison, found, dpi=drawing.dpi, style=drawing.style)) for n in names}
 
 
-def _draw_comparison(draw: Callable[..., None], found: Comparison, drawing: Drawing, path: Path) -> None:
-    draw(found, path, drawing.dpi, drawing.style)
-
-
-def _plot_family(result: Path, folder: Path, formats: tuple[str, ...], drawing: Drawing, added: Added) -> None:
+def _plot_family(result: Path, folder: Path, formats: tuple[str, ...], drawing: DrawingOptions, added: Added) -> None:
     if added._replace(surface=False) != Added(None, (), None, False):
         raise ConfigError("points and comparisons are for one map: give a member's file", file=str(result))
     if any(kind in DATA for kind in formats):
@@ -140,15 +134,12 @@ def _surface(family: FamilyMap, file: Path) -> BoundarySurface:
     """The boundary surface of a stored family, from members that are computed for it."""
     from ptmcad.ask.boundarysurface import boundary_surface
 
-    try:
-        with ProgressBar() as progress:
-            return boundary_surface(family, progress=progress)
-    except ConfigError as error:
-        raise ConfigError(error.message, file=str(file)) from error
+    with blamed(file=file), ProgressBar() as progress:
+        return boundary_surface(family, progress=progress)
 
 
 @click.command("plot")
-@click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
+@result_argument
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for the files.  [default: that of RESULT]")
 @drawing_options((*PICTURES, *DATA, *MESHES), "png", "What to make")
 @file_option(
@@ -172,7 +163,13 @@ def _surface(family: FamilyMap, file: Path) -> BoundarySurface:
 @limit_options
 @gathered(added=Added)
 def command(
-    *, result: Path, out: Path | None, formats: tuple[str, ...], drawing: Drawing, added: Added, limits: Limits
+    *,
+    result: Path,
+    out: Path | None,
+    formats: tuple[str, ...],
+    drawing: DrawingOptions,
+    added: Added,
+    limits: ResourceLimits,
 ) -> None:
     """Draw RESULT, a JSON file of `ptmcad classify`, or write it as numbers.
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.cli.locate import point_of, rows_of
-from ptmcad.errors import ConfigError, ExpressionError, shown
+from ptmcad.errors import ConfigError, ExpressionError, blamed, shown
 from ptmcad.question.config import point_from_mapping
 from ptmcad.question.slice import Count
 from ptmcad.show.table import count_text
@@ -85,11 +85,9 @@ def measured(result: RegionMap, path: Path) -> tuple[tuple[Measured, ...], int]:
     for line, row in rows_of(path, result, ("label", "count")):
         if len(found) + outside == MAX_ROWS:
             raise ConfigError(f"has more than {MAX_ROWS} points", file=str(path), line=line)
-        try:
+        with blamed(file=path, line=line):
             at = _numbers(result, row, None)
             count = _count(result, row["count"])
-        except ConfigError as error:
-            raise ConfigError(error.message, file=str(path), line=line) from error
         if _inside(result, at):
             label = "".join(c if c.isprintable() else " " for c in row["label"])[:MAX_LABEL]
             found.append(Measured(at, label, _agreement(result, at, count)))

@@ -12,18 +12,18 @@ from click.core import ParameterSource
 
 from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
-from ptmcad.cli.idle import report_idle
-from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
+from ptmcad.cli.idle import idle_output, report_idle
+from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
-from ptmcad.cli.paths import out_option, record_argument
-from ptmcad.cli.pictures import picture, report_written, write_result
+from ptmcad.cli.paths import name_option, out_option, record_argument
+from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.range_answers import Answer, Request, answer, is_enclosed, request_codec
+from ptmcad.cli.range_answers import RangeAnswer, RangeRequest, answer, is_enclosed, request_codec
 from ptmcad.cli.slices import range_option, set_option
 from ptmcad.cli.values import names, pair_of_names, point, quantity_names
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.model import ptm
-from ptmcad.process.output import Writer, check_writable, text_writer, write_files
+from ptmcad.process.output import check_writable
 from ptmcad.question.config import file_name, names_in_record, slice_from_options
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Slice
@@ -106,7 +106,7 @@ def _axes(asked: AskedLine) -> tuple[str, ...]:
     return () if asked.config is None else names_in_record(asked.config)[0]
 
 
-def request_of(asked: AskedLine, at: Mapping[str, str]) -> Request:
+def request_of(asked: AskedLine, at: Mapping[str, str]) -> RangeRequest:
     """What is asked for beside the line, checked.
 
     Raises
@@ -116,7 +116,7 @@ def request_of(asked: AskedLine, at: Mapping[str, str]) -> Request:
     """
     over, start = asked.over is not None, _start(asked.start, at)
     quantities = tuple(dict.fromkeys(asked.quantities))
-    request = Request(asked.along, at, over, asked.rows, start, asked.pose, asked.digits, quantities)
+    request = RangeRequest(asked.along, at, over, asked.rows, start, asked.pose, asked.digits, quantities)
     if quantities and not at:
         raise ConfigError(f"needs the value of the other axis too, as in --at {SECOND}=3/2", key="--quantity")
     if not over and click.get_current_context().get_parameter_source("rows") is not ParameterSource.DEFAULT:
@@ -147,7 +147,7 @@ def request_of(asked: AskedLine, at: Mapping[str, str]) -> Request:
 @range_option
 @click.option("--digits", type=click.IntRange(1, 1000), default=10, show_default=True, help="Digits of decimals.")
 @out_option
-@click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-range]")
+@name_option("NAME-range")
 @format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.  [default: none]")
 @click.option(
     "--over", metavar="NAME", shell_complete=names, help="The axis over which to tabulate the operation range's width."
@@ -162,7 +162,7 @@ def request_of(asked: AskedLine, at: Mapping[str, str]) -> Request:
                    "Repeatable.")  # fmt: skip
 @limit_options
 @gathered(asked=AskedLine)
-def command(*, asked: AskedLine, out: Path, name: str | None, formats: tuple[str, ...], limits: Limits) -> None:
+def command(*, asked: AskedLine, out: Path, name: str | None, formats: tuple[str, ...], limits: ResourceLimits) -> None:
     """Find the intervals of constant count along one axis, and the operation range, where the most are stable.
 
     Of the paper's mechanism these are two equilibria; where nothing says what is stable, all solutions are counted.
@@ -199,15 +199,10 @@ def command(*, asked: AskedLine, out: Path, name: str | None, formats: tuple[str
         names = [*pictures, *filter(None, [file])]
         if names:
             check_writable(out, tuple(names))
-        why = "no file is written, see --format"
-        report_idle((("out", not names, why), ("name", not names, why)))
+        report_idle(idle_output(names))
         with ProgressBar() as progress:
             if enclosed:
-                from ptmcad.ask.classification import load_certified
-                from ptmcad.options import DEFAULTS
-
-                with clock_stopped(limits.timeout):  # the time that compiling takes is not the computation's
-                    load_certified(progress, DEFAULTS)
+                compile_certified(limits.timeout, progress)
             progress("intervals ...", 0, 1)
             found = answer(slice, request)
         click.echo(found.text)
@@ -216,22 +211,21 @@ def command(*, asked: AskedLine, out: Path, name: str | None, formats: tuple[str
             report_written(out, names)
 
 
-def _save(slice: Slice, request: Request, found: Answer, out: Path, pictures: Mapping[str, str], file: str) -> None:
+def _save(
+    slice: Slice, request: RangeRequest, found: RangeAnswer, out: Path, pictures: Mapping[str, str], file: str
+) -> None:
     """Write the pictures, each of a part of the answer, and, last, the JSON, where it has a file."""
-    writers: dict[str, Writer] = {name: picture(name, found.pictures[part]) for name, part in pictures.items()}
+    text = ""
     if file:
         from ptmcad.show.document.slice import SLICE
         from ptmcad.show.ranges.document import document
 
         asked = {"slice": SLICE.write(slice), "request": request_codec().write(request)}
         text = document(slice.name, slice.mechanism, {**found.parts, **asked})
-        writers[file] = text_writer(text)
-        write_result(out, writers, file, text)
-    else:
-        write_files(out, writers)
+    write_result(out, {name: figure(name, found.pictures[part]) for name, part in pictures.items()}, file, text)
 
 
-def _parts(request: Request, *, enclosed: bool) -> list[str]:
+def _parts(request: RangeRequest, *, enclosed: bool) -> list[str]:
     """What is added to the pictures' names."""
     line = bool(request.at) and not enclosed
     parts = [""] * line + ["-over"] * request.over + ["-path"] * (request.start is not None)

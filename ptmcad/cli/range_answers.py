@@ -24,7 +24,7 @@ MAX_TEXT = 10_000
 
 
 @dataclass(frozen=True, slots=True)
-class Request:
+class RangeRequest:
     """What is asked for beside the slice.
 
     Attributes
@@ -45,29 +45,33 @@ class Request:
     quantities: tuple[str, ...]
 
 
-def request_codec() -> Codec[Request]:
+def request_codec() -> Codec[RangeRequest]:
     """A request as JSON's data, with which `answer` gives the same once more.
 
     Earlier versions could be asked for critical free lengths instead (``critical``); now the paper's study finds them.
     """
     from ptmcad.text.codec import TRUTH, Key, line, record_of
 
-    def made(critical: bool, **asked: Any) -> Request:
-        return Request(**asked)
+    def made(critical: bool, **asked: Any) -> RangeRequest:
+        return RangeRequest(**asked)
 
-    return record_of(Request, {str: line(MAX_TEXT)}, made, critical=Key(TRUTH, lambda _: False))
+    return record_of(RangeRequest, {str: line(MAX_TEXT)}, made, critical=Key(TRUTH, lambda _: False))
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class RangeAnswer:
     """What was found, for the terminal, the JSON and the pictures."""
 
     text: str
     parts: Mapping[str, Any]
     pictures: Mapping[str, Callable[[Path], None]]
 
+    def added(self, text: str, part: Mapping[str, Any], end: str, picture: Callable[[Path], None]) -> RangeAnswer:
+        """The same with one more table, part of the JSON, and picture under the end of its name."""
+        return RangeAnswer(f"{self.text}\n\n{text}", {**self.parts, **part}, {**self.pictures, end: picture})
 
-def answer(slice: Slice, request: Request) -> Answer:
+
+def answer(slice: Slice, request: RangeRequest) -> RangeAnswer:
     """Compute all that is asked for.
 
     Raises
@@ -79,28 +83,26 @@ def answer(slice: Slice, request: Request) -> Answer:
     from ptmcad.exact.ranges.strips import refuse_free_lengths
     from ptmcad.show.ranges import document, table
 
+    known = RangeAnswer(question_of(slice), {}, {})
     if is_enclosed(slice, request):
-        known = _enclosed(slice, request) if request.at else Answer(question_of(slice), {}, {})
+        known = _enclosed(slice, request) if request.at else known
         known = _with_bands(known, slice, request) if request.over else known
         return _with_poses(known, slice, request)
     if request.over:
         refuse_free_lengths(slice)  # before the line is asked for, whose refusal would not say what to leave out
-    texts, parts = [question_of(slice)], dict[str, Any]()
-    pictures: dict[str, Callable[[Path], None]] = {}
+    digits = request.digits
     if request.at:
         found = ranges.intervals(slice, request.along, request.at)
-        texts.append(table.table(found, request.digits))
-        parts |= document.part(found, request.digits)
-        pictures[""] = partial(_picture, "line", slice, found)
+        text, part = table.table(found, digits), document.part(found, digits)
+        known = known.added(text, part, "", partial(_picture, "line", slice, found))
     if request.over:
         widths = ranges.operation_widths(slice, request.along, request.rows)
-        texts.append(table.width_table(widths, request.digits))
-        parts |= document.part(widths, request.digits)
-        pictures["-over"] = partial(_picture, "over", slice, widths)
-    return _with_poses(Answer("\n\n".join(texts), parts, pictures), slice, request)
+        text, part = table.width_table(widths, digits), document.part(widths, digits)
+        known = known.added(text, part, "-over", partial(_picture, "over", slice, widths))
+    return _with_poses(known, slice, request)
 
 
-def is_enclosed(slice: Slice, request: Request) -> bool:
+def is_enclosed(slice: Slice, request: RangeRequest) -> bool:
     """Whether the certified engine answers, as springs have free lengths."""
     from ptmcad.question.line import has_free_lengths
 
@@ -109,21 +111,18 @@ def is_enclosed(slice: Slice, request: Request) -> bool:
     return has_free_lengths(slice, request.along, request.at)
 
 
-def _with_bands(found: Answer, slice: Slice, request: Request) -> Answer:
+def _with_bands(found: RangeAnswer, slice: Slice, request: RangeRequest) -> RangeAnswer:
     """The answer with the operation ranges over the other axis, where springs have free lengths."""
     from ptmcad.ask.bands import certified_widths
     from ptmcad.show.ranges import certified, document
 
     with ProgressBar() as progress:
         widths = certified_widths(slice, request.along, request.rows, request.digits, progress)
-    return Answer(
-        f"{found.text}\n\n{certified.width_table(widths, request.digits)}",
-        {**found.parts, **document.part(widths, request.digits)},
-        {**found.pictures, "-over": partial(_picture, "over", slice, widths)},
-    )
+    text, part = certified.width_table(widths, request.digits), document.part(widths, request.digits)
+    return found.added(text, part, "-over", partial(_picture, "over", slice, widths))
 
 
-def _with_poses(found: Answer, slice: Slice, request: Request) -> Answer:
+def _with_poses(found: RangeAnswer, slice: Slice, request: RangeRequest) -> RangeAnswer:
     """The answer with the paths of stable poses and the branches of quantities that were asked for."""
 
     @cache
@@ -135,7 +134,9 @@ def _with_poses(found: Answer, slice: Slice, request: Request) -> Answer:
     return _with_branches(_with_paths(found, slice, request, line), slice, request, line)
 
 
-def _with_paths(found: Answer, slice: Slice, request: Request, line: Callable[[], SolutionsOnLine]) -> Answer:
+def _with_paths(
+    found: RangeAnswer, slice: Slice, request: RangeRequest, line: Callable[[], SolutionsOnLine]
+) -> RangeAnswer:
     """The answer with the paths of stable poses, where they were asked for."""
     if request.start is None:
         return found
@@ -144,14 +145,13 @@ def _with_paths(found: Answer, slice: Slice, request: Request, line: Callable[[]
 
     with ProgressBar() as progress:
         paths = pose_paths(slice, request.along, request.at, request.start, request.pose, progress)
-    return Answer(
-        f"{found.text}\n\n{table.path_table(paths, min(request.digits, 10))}",
-        {**found.parts, **document.part(paths, request.digits)},
-        {**found.pictures, "-path": partial(_picture, "path", slice, paths, line=line)},
-    )
+    text, part = table.path_table(paths, min(request.digits, 10)), document.part(paths, request.digits)
+    return found.added(text, part, "-path", partial(_picture, "path", slice, paths, line=line))
 
 
-def _with_branches(found: Answer, slice: Slice, request: Request, line: Callable[[], SolutionsOnLine]) -> Answer:
+def _with_branches(
+    found: RangeAnswer, slice: Slice, request: RangeRequest, line: Callable[[], SolutionsOnLine]
+) -> RangeAnswer:
     """The answer with the branches of the quantities that were asked for."""
     if not request.quantities:
         return found
@@ -160,29 +160,23 @@ def _with_branches(found: Answer, slice: Slice, request: Request, line: Callable
 
     with ProgressBar() as progress:
         diagram = branch_diagram(slice, request.along, request.at, request.quantities, progress, line())
-    return Answer(
-        f"{found.text}\n\n{branches.table(diagram)}",
-        {**found.parts, **document.part(diagram, request.digits)},
-        {**found.pictures, "-branches": partial(_picture, "branches", slice, diagram)},
-    )
+    text, part = branches.table(diagram), document.part(diagram, request.digits)
+    return found.added(text, part, "-branches", partial(_picture, "branches", slice, diagram))
 
 
-def _enclosed(slice: Slice, request: Request) -> Answer:
+def _enclosed(slice: Slice, request: RangeRequest) -> RangeAnswer:
     """The answer where springs have free lengths."""
     from ptmcad.certified.intervals import certified_intervals
     from ptmcad.show.ranges import certified, document
 
     line = certified_intervals(slice, request.along, request.at, request.digits)
     text = f"{question_of(slice)}\n\n{certified.table(line, request.digits)}"
-    return Answer(text, document.part(line, request.digits), {})
+    return RangeAnswer(text, document.part(line, request.digits), {})
 
 
 def _picture(
     kind: str, slice: Slice, found: Any, path: Path, line: Callable[[], SolutionsOnLine] | None = None
 ) -> None:
-    from ptmcad.show.render.backend import load_matplotlib
-
-    load_matplotlib()
     from ptmcad.show.render import ranges as pictures
     from ptmcad.show.render.printing import save
 

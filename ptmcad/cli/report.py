@@ -6,10 +6,10 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.limits import ResourceLimits, held, limit_options
+from ptmcad.cli.paths import result_argument
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import read_result
-from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config import file_name, portable_file
@@ -20,7 +20,7 @@ def _file_name(_context: click.Context, _parameter: click.Parameter, value: str 
 
 
 @click.command("report")
-@click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
+@result_argument
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for the page.  [default: that of RESULT]")
 @click.option("--name", callback=_file_name, metavar="NAME", help="Name of the page.  [default: that of RESULT]")
 @click.option("--bench", type=click.Path(path_type=Path), metavar="FILE",
@@ -35,7 +35,7 @@ def command(
     name: str | None,
     bench: Path | None,
     no_timings: bool,
-    limits: Limits,
+    limits: ResourceLimits,
 ) -> None:
     """Write RESULT, a JSON file of `ptmcad classify`, as one HTML page.
 

@@ -3,14 +3,13 @@
 Guarantee: every such command takes the same words for the same slice.
 """
 
-from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import click
 
-from ptmcad.cli.gathering import gathered
+from ptmcad.cli.gathering import F, gathered
 from ptmcad.cli.paths import record_argument
 from ptmcad.cli.values import mechanisms, pair_of_names, settings
 from ptmcad.errors import ConfigError, HypothesisError, PtmcadError
@@ -24,9 +23,6 @@ from ptmcad.question.config import (
 from ptmcad.question.config.options import Typed
 from ptmcad.question.config.record import Record
 from ptmcad.question.slice import Slice
-
-F = TypeVar("F", bound=Callable[..., Any])
-
 
 BETWEEN = "between"
 """In place of the members' values."""
@@ -46,7 +42,7 @@ class Third(NamedTuple):
         return self.members == BETWEEN
 
 
-class Asked(NamedTuple):
+class SliceOptions(NamedTuple):
     """The record and what changes it, as they were typed."""
 
     config: Path | None
@@ -99,7 +95,7 @@ class Asked(NamedTuple):
 
 def _with_places(command: F) -> F:
     @wraps(command)
-    def placed(*, asked: Asked, **given: Any) -> Any:
+    def placed(*, asked: SliceOptions, **given: Any) -> Any:
         try:
             return command(asked=asked, **given)
         except (ConfigError, HypothesisError) as error:
@@ -117,12 +113,17 @@ set_option = click.option(
 )  # fmt: skip
 
 
+engine_option = click.option(
+    "--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True
+)
+
+
 def slice_options(command: F) -> F:
     """Add CONFIG, ``--mechanism``, ``--slice``, ``--set`` and ``--range``, which the command gets as ``asked``.
 
     What an engine finds wrong with the question is told with its place in the record.
     """
-    command = gathered(asked=Asked)(_with_places(command))
+    command = gathered(asked=SliceOptions)(_with_places(command))
     for add in (
         range_option,
         set_option,

@@ -11,17 +11,17 @@ import click
 from ptmcad.answer.poses import MAX_DIGITS, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.cli.formats import format_option
-from ptmcad.cli.idle import report_idle
-from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
+from ptmcad.cli.idle import idle_output, report_idle
+from ptmcad.cli.limits import ResourceLimits, clock_stopped, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
-from ptmcad.cli.paths import out_option, record_argument
-from ptmcad.cli.pictures import picture, report_written, write_result
+from ptmcad.cli.paths import name_option, out_option, record_argument
+from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import set_option
 from ptmcad.cli.values import point
 from ptmcad.errors import ConfigError
 from ptmcad.model import Model, mechanism_in
-from ptmcad.process.output import Writer, check_writable, text_writer, write_files
+from ptmcad.process.output import check_writable
 from ptmcad.question.config import file_name, point_from_options, units_of
 from ptmcad.question.examples import POINT
 from ptmcad.show.drawable import no_drawing, no_landscape
@@ -65,23 +65,14 @@ def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
     OutputError
         When a file cannot be written.
     """
-    writers: dict[str, Writer] = {}
-    for file in names:
-        if file.endswith(".json"):
-            writers[file] = text_writer(poses.to_json())
-        else:
-            landscape = file.startswith(f"{name}-landscape.")
-            writers[file] = picture(file, partial(_write_picture, landscape, poses))
-    if f"{name}.json" in writers:
-        write_result(folder, writers, f"{name}.json", poses.to_json())
-    else:
-        write_files(folder, writers)
+    landscape = f"{name}-landscape."
+    pictures = [file for file in names if not file.endswith(".json")]
+    writers = {file: figure(file, partial(_write_picture, file.startswith(landscape), poses)) for file in pictures}
+    file = next((file for file in names if file not in writers), "")
+    write_result(folder, writers, file, poses.to_json() if file else "")
 
 
 def _write_picture(landscape: bool, poses: Poses, path: Path) -> None:
-    from ptmcad.show.render.backend import load_matplotlib
-
-    load_matplotlib()
     from ptmcad.show.render.landscape import draw_landscape
     from ptmcad.show.render.poses import draw_poses
     from ptmcad.show.render.printing import save as save_figure
@@ -103,7 +94,7 @@ def _write_picture(landscape: bool, poses: Poses, path: Path) -> None:
               help="Significant digits, all of them right.")  # fmt: skip
 @format_option(FORMATS, f"What to make, of {', '.join(FORMATS)}; the table is printed.", "table")
 @out_option
-@click.option("--name", metavar="NAME", help="Start of the files' names.  [default: poses]")
+@name_option("poses")
 @click.option("--landscape", is_flag=True, help="Draw the energy over one or two unknowns too (NAME-landscape.png).")
 @limit_options
 def command(
@@ -116,7 +107,7 @@ def command(
     out: Path,
     name: str | None,
     landscape: bool,
-    limits: Limits,
+    limits: ResourceLimits,
 ) -> int:
     """Find every equilibrium, or solution of a system, at one point, with stability, spring forces and energy.
 
@@ -141,21 +132,12 @@ def command(
         names = drawable(model, names, start, landscape)
         if names:
             check_writable(out, names)
-        report_idle(
-            (
-                ("out", not names, "no file is written, see --format"),
-                ("name", not names, "no file is written, see --format"),
-            )
-        )
-        from ptmcad.ask.classification import load_certified
-        from ptmcad.ask.solving import needs_intervals, poses_at
-        from ptmcad.options import DEFAULTS
-
-        # the time that imports and compiling take is not the computation's
+        report_idle(idle_output(names))
+        with clock_stopped(limits.timeout):  # the time that the import takes is not the computation's
+            from ptmcad.ask.solving import needs_intervals, poses_at
         with ProgressBar() as progress:
-            with clock_stopped(limits.timeout):
-                if needs_intervals(model, parameters):
-                    load_certified(progress, DEFAULTS)
+            if needs_intervals(model, parameters):
+                compile_certified(limits.timeout, progress)
             progress("solutions ...", 0, 1)
             poses = replace(poses_at(model, parameters, digits), units={} if config is None else units_of(config))
             if names:

@@ -14,9 +14,9 @@ from typing import Any, TypeVar
 
 from ptmcad.answer.consistency import check_numbers
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown
+from ptmcad.errors import ConfigError, PictureError, PtmcadError, blamed, shown
 from ptmcad.show.document.regionmap import FORMAT
-from ptmcad.show.style import Style
+from ptmcad.show.style import PictureStyle
 from ptmcad.text.node import NEWER, is_newer
 from ptmcad.text.textfile import format_named, json_data, read_text
 
@@ -40,17 +40,10 @@ def read_result(path: Path, *, whole: bool = True) -> RegionMap:
         When there is no such file, or it is not a whole region map.
     """
     text = read_text(path, MAX_BYTES, f"a {FORMAT} file")
-    try:
-        result = RegionMap.from_json(text)
-    except (ValueError, PtmcadError, ZeroDivisionError, RecursionError) as error:
-        reason = shown(" ".join(str(error).split()), 300)
-        what = _other_kind(text) or f"is damaged or not a {FORMAT} file: {reason}"
-        raise ConfigError(what, file=str(path)) from error
+    result = _read(path, RegionMap.from_json, FORMAT, text)
     if whole:
-        try:
+        with blamed(file=path):
             check_numbers(result)
-        except ConfigError as error:
-            raise ConfigError(error.message, file=str(path)) from error
     return result
 
 
@@ -74,12 +67,17 @@ def read_other(path: Path, read: Callable[[str], Answer], kind: str) -> Answer:
     ConfigError
         When it is not a whole document of one.
     """
-    text = read_text(path, MAX_BYTES, f"a {kind} file")
+    return _read(path, read, kind, read_text(path, MAX_BYTES, f"a {kind} file"))
+
+
+def _read(path: Path, read: Callable[[str], Answer], kind: str, text: str) -> Answer:
+    """What a file's text is read as, by a function that raises ValueError where it is no such document."""
     try:
         return read(text)
     except (ValueError, PtmcadError, ZeroDivisionError, RecursionError) as error:
         reason = shown(" ".join(str(error).split()), 300)
-        raise ConfigError(f"is damaged or not a {kind} file: {reason}", file=str(path)) from error
+        what = _other_kind(text) if kind == FORMAT else ""
+        raise ConfigError(what or f"is damaged or not a {kind} file: {reason}", file=str(path)) from error
 
 
 @contextmanager
@@ -96,7 +94,7 @@ def stored_in(path: Path | None) -> Iterator[None]:
         cause = error.__cause__ if isinstance(error, PictureError) else error
         if path is None:
             raise
-        if isinstance(cause, ConfigError) and cause.key in (*Style._fields, "at"):
+        if isinstance(cause, ConfigError) and cause.key in (*PictureStyle._fields, "at"):
             # an option's fault, not the file's
             raise ConfigError(cause.message, key=f"--{(cause.key or '').replace('_', '-')}") from error
         if isinstance(cause, ConfigError):

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 import click
 
 from ptmcad.cli.formats import format_option
-from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
+from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
 from ptmcad.cli.paths import out_option
-from ptmcad.cli.pictures import picture, report_written, write_result
+from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.process.output import Writer, check_writable, text_writer, write_files
+from ptmcad.process.output import Writer, check_writable, text_writer
 
 if TYPE_CHECKING:
     from ptmcad.studies.stress.case import Case
@@ -39,24 +39,20 @@ def save(found: Row, folder: Path, formats: tuple[str, ...]) -> tuple[str, ...]:
     from ptmcad.studies.stress.campaign import markdown, to_csv, to_json
 
     name = NAME if found["complete"] else f"{NAME}.partial"
-    texts = {"json": to_json, "csv": to_csv, "md": markdown}
+    texts = {"csv": to_csv, "md": markdown}
     writers: dict[str, Writer] = {}
-    for suffix in sorted(formats, key="json".__eq__):  # which vouches for the others
+    for suffix in formats:
         if suffix in texts:
             writers[f"{name}.{suffix}"] = text_writer(texts[suffix](found))
-        elif suffix != "table":
-            writers[f"{name}.{suffix}"] = picture(f"{name}.{suffix}", partial(_draw, found))
-    if "json" in formats:
-        write_result(folder, writers, f"{name}.json", to_json(found))
-    elif writers:
-        write_files(folder, writers)
-    return tuple(writers)
+        elif suffix not in ("table", "json"):
+            writers[f"{name}.{suffix}"] = figure(f"{name}.{suffix}", partial(_draw, found))
+    file = f"{name}.json" if "json" in formats else ""
+    if writers or file:
+        write_result(folder, writers, file, to_json(found) if file else "")
+    return (*writers, file) if file else tuple(writers)
 
 
 def _draw(found: Row, path: Path) -> None:
-    from ptmcad.show.render.backend import load_matplotlib
-
-    load_matplotlib()
     from ptmcad.show.render.printing import save as save_figure
     from ptmcad.studies.stress.picture import draw_stress
 
@@ -84,7 +80,7 @@ def command(
     formats: tuple[str, ...],
     out: Path,
     only_list: bool,
-    limits: Limits,
+    limits: ResourceLimits,
 ) -> int:
     """Run stiff and extreme cases: springs, lengths and forces of very different size, points next to folds and cusps.
 
@@ -117,11 +113,8 @@ def command(
         from ptmcad.studies.stress.campaign import campaign, summary, table
 
         if any(free_lengths(case.question.parameters) for case in cases):
-            from ptmcad.ask.classification import load_certified
-            from ptmcad.options import DEFAULTS
-
-            with clock_stopped(limit), ProgressBar() as progress:  # the time that compiling takes is not the cases'
-                load_certified(progress, DEFAULTS)
+            with ProgressBar() as progress:
+                compile_certified(limit, progress)
         deadline = perf_counter() + (inf if timeout is None else timeout)
         with ProgressBar() as progress:
             found = campaign(cases, seed=seed, repeats=repeats, deadline=deadline, progress=progress)

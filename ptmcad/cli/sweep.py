@@ -15,11 +15,12 @@ from ptmcad.answer.sweep import State, Sweep
 from ptmcad.cli.drawing import share_of
 from ptmcad.cli.formats import format_option
 from ptmcad.cli.gathering import gathered
-from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.paths import record_argument
 from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_in
+from ptmcad.cli.slices import engine_option
 from ptmcad.cli.values import names
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.extras import Extra, require, require_ffmpeg
@@ -35,7 +36,7 @@ MAX_FRAMES = 240
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class MemberOptions:
     """What is wanted of each member, as it was typed."""
 
     engine: str
@@ -84,7 +85,7 @@ class Asked:
                    "extra ptmcad[distributed].")  # fmt: skip
 @click.option("--retries", type=click.IntRange(0, 100), default=RETRIES, show_default=True,
               help="How often a member is tried again whose process died, or which a limit stopped.")  # fmt: skip
-@click.option("--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True)
+@engine_option
 @click.option("--along", metavar="NAME", shell_complete=names,
               help="The axis along which the widest operation range is found.  [default: the first]")  # fmt: skip
 @click.option("--no-ranges", is_flag=True, help="Leave the widest operation ranges out, often most of the work.")
@@ -96,10 +97,10 @@ class Asked:
 @click.option("--member-timeout", type=click.FloatRange(min=0, min_open=True, max=1e9), metavar="S",
               help="Stop a member after S seconds, which is then a failure.")  # fmt: skip
 @limit_options
-@gathered(asked=Asked)
+@gathered(asked=MemberOptions)
 def command(
-    *, config: Path, out: Path | None, formats: tuple[str, ...], fps: int, asked: Asked, jobs: int | None,
-    scheduler: str | None, retries: int, limits: Limits,
+    *, config: Path, out: Path | None, formats: tuple[str, ...], fps: int, asked: MemberOptions, jobs: int | None,
+    scheduler: str | None, retries: int, limits: ResourceLimits,
 ) -> int:  # fmt: skip
     """Classify every member of a sweep.
 

@@ -36,6 +36,11 @@ def _item(name: str, type: str = "plain") -> CompletionItem:
     return CompletionItem(name, type=type)
 
 
+def _begun(names: Iterable[str], typed: str) -> list[CompletionItem]:
+    """Those that begin as what was typed."""
+    return [_item(name) for name in names if name.startswith(typed)]
+
+
 def formats(known: Iterable[str]) -> Complete:
     """The formats that a list, separated by commas, does not have yet."""
 
@@ -49,22 +54,19 @@ def palettes(_context: click.Context, _parameter: click.Parameter, typed: str) -
     """A palette, or colours by name."""
     from ptmcad.show.style import NAMED, PALETTES
 
-    whole = [_item(name) for name in PALETTES if name.startswith(typed)]
-    return [*whole, *(_next_of_list(typed, NAMED) if typed else [])]
+    return [*_begun(PALETTES, typed), *(_next_of_list(typed, NAMED) if typed else [])]
 
 
 def poses(_context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
     """KIND:, of which the number is for the user to say."""
-    kinds = ("stable:", "unstable:", "saddle:", "maximum:", "pose:")
-    return [_item(kind) for kind in kinds if kind.startswith(typed)]
+    return _begun(("stable:", "unstable:", "saddle:", "maximum:", "pose:"), typed)
 
 
 def mechanisms(_context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
     """The built-in mechanisms and systems; else a file."""
     from ptmcad.question.config.starters import NAMES
 
-    found = [_item(name) for name in NAMES if name.startswith(typed)]
-    return found or [_item(typed, type=_FILE)]
+    return _begun(NAMES, typed) or [_item(typed, type=_FILE)]
 
 
 def files(*suffixes: str) -> Complete:
@@ -90,7 +92,7 @@ def files(*suffixes: str) -> Complete:
 
 def names(context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
     """An axis or a parameter of the question's model."""
-    return [_item(name) for name in _names(context) if name.startswith(typed)]
+    return _begun(_names(context), typed)
 
 
 def pair_of_names(context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
@@ -103,7 +105,7 @@ def pair_of_names(context: click.Context, _parameter: click.Parameter, typed: st
 
 def settings(context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
     """NAME=, of which the value is for the user to say."""
-    return [_item(f"{name}=") for name in _names(context) if name.startswith(typed)] if "=" not in typed else []
+    return _begun((f"{name}=" for name in _names(context)), typed) if "=" not in typed else []
 
 
 def point(context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
@@ -128,7 +130,7 @@ def quantity_names(context: click.Context, parameter: click.Parameter, typed: st
     except (PtmcadError, OSError, ValueError):  # the command itself will say what is wrong with the file
         return []
     further = ("barrier",) if "--value" in parameter.opts and model.has_potential else ()
-    return [_item(name) for name in (*quantities(model), *further) if name.startswith(typed)]
+    return _begun((*quantities(model), *further), typed)
 
 
 def _next_of_list(typed: str, known: Iterable[str]) -> list[CompletionItem]:

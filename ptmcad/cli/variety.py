@@ -6,9 +6,9 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.slices import Asked, slice_options
+from ptmcad.cli.slices import SliceOptions, slice_options
 from ptmcad.errors import shown_path
 from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config import portable_file
@@ -23,10 +23,10 @@ from ptmcad.show.export import FORMATS
 @limit_options
 def command(
     *,
-    asked: Asked,
+    asked: SliceOptions,
     format: str,
     out: Path | None,
-    limits: Limits,
+    limits: ResourceLimits,
 ) -> None:
     """Compute the curves off which the number of equilibria, or solutions, is locally constant.
 

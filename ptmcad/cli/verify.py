@@ -24,10 +24,10 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import Bounds, Member, Summary
 from ptmcad.cli.families import read_family_file
 from ptmcad.cli.idle import report_idle
-from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.limits import ResourceLimits, held, limit_options
+from ptmcad.cli.paths import result_argument
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import MAX_BYTES, kind_of, read_other, read_result
-from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import Options, Progress
 from ptmcad.question.config import member_like
@@ -44,7 +44,7 @@ _MORE_DIGITS = 10
 
 
 @click.command("verify")
-@click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
+@result_argument
 @click.option("--seed", type=click.IntRange(min=0), metavar="N",
               help="Seed of the random points and of the random boxes.  [default: a hash of the claims]")  # fmt: skip
 @click.option("--boxes", type=click.IntRange(0, 100_000), metavar="N",
@@ -53,7 +53,7 @@ _MORE_DIGITS = 10
               help="How much of a certified map's free area is to be proved free of critical curves: 0 nothing, each "
                    "number more four times the work, 10 all of it.  [default: 2]")  # fmt: skip
 @limit_options
-def command(*, result: Path, seed: int | None, boxes: int | None, effort: int | None, limits: Limits) -> int:
+def command(*, result: Path, seed: int | None, boxes: int | None, effort: int | None, limits: ResourceLimits) -> int:
     """Check RESULT, a JSON file of `ptmcad classify`, `solve`, `range` or `design`, or the folder of a sweep.
 
     What is checked is proved by code that shares no mathematics with what made it, as far as a row says how; other

@@ -20,7 +20,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from ptmcad.explore.panel import Panel
+from ptmcad.explore.panel import SliderPanel
 
 ANSWER_SECONDS = 180.0
 """After which a worker is ended: FLINT's code, and compiling the certified engine, do not look at any clock."""
@@ -31,36 +31,36 @@ _MAX_BYTES = 1 << 26
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class Reply:
     """How a job ended (``done``, ``refused``, ``superseded``, ``lost``), and the JSON that the page is told."""
 
     ended: str
     body: bytes
 
 
-SUPERSEDED = Answer("superseded", b"{}")
+SUPERSEDED = Reply("superseded", b"{}")
 Key = tuple[str, str]
 """A tab, and what it asks for: a later request of the same key supersedes an earlier one."""
 
 
-class Worker:
+class WorkerProcess:
     """One process, started when it is first needed, and again when it has ended."""
 
-    def __init__(self, panel: Panel, folder: Path) -> None:
+    def __init__(self, panel: SliderPanel, folder: Path) -> None:
         self.first = base64.b64encode(pickle.dumps(panel)) + b"\n"
         self.folder = folder
         self.process: asyncio.subprocess.Process | None = None
         self.lifeline: int | None = None
-        self.waiting: OrderedDict[Key, tuple[dict[str, Any], asyncio.Future[Answer]]] = OrderedDict()
+        self.waiting: OrderedDict[Key, tuple[dict[str, Any], asyncio.Future[Reply]]] = OrderedDict()
         self.current: tuple[Key, int] | None = None
         self.wanted = asyncio.Event()
         self.numbers = count(1)
         self.killer: asyncio.TimerHandle | None = None
 
-    async def ask(self, tab: str, job: dict[str, Any]) -> Answer:
+    async def ask(self, tab: str, job: dict[str, Any]) -> Reply:
         """The answer to a job, which supersedes an earlier one of its kind and tab."""
         key = (tab, job["kind"])
-        future: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
+        future: asyncio.Future[Reply] = asyncio.get_running_loop().create_future()
         before = self.waiting.pop(key, None)
         if before is not None and not before[1].done():
             before[1].set_result(SUPERSEDED)
@@ -110,7 +110,7 @@ class Worker:
         self.process.stdin.write(self.first)
         return self.process
 
-    async def _answered(self, key: Key, job: dict[str, Any]) -> Answer:
+    async def _answered(self, key: Key, job: dict[str, Any]) -> Reply:
         process = self.process
         if process is None or process.returncode is not None:
             process = await self._start()
@@ -125,7 +125,7 @@ class Worker:
                 body = await process.stdout.readline()
             if not body.endswith(b"\n"):
                 return await self._lost(process, "ended unexpectedly")
-            return Answer(json.loads(head)["ended"], body)
+            return Reply(json.loads(head)["ended"], body)
         except TimeoutError:
             return await self._lost(process, f"took more than {ANSWER_SECONDS:g} s and was stopped")
         except ConnectionError:
@@ -136,7 +136,7 @@ class Worker:
                 self.killer.cancel()
                 self.killer = None
 
-    async def _lost(self, process: asyncio.subprocess.Process, how: str) -> Answer:
+    async def _lost(self, process: asyncio.subprocess.Process, how: str) -> Reply:
         """Start another process, and say so; a superseded job that had to be ended is just that."""
         superseded = self.killer is not None
         _kill(process)
@@ -145,7 +145,7 @@ class Worker:
         if superseded:
             return SUPERSEDED
         reason = {"error": f"the process that computes {how}; another one is there now"}
-        return Answer("lost", json.dumps(reason).encode())
+        return Reply("lost", json.dumps(reason).encode())
 
     def _cancel(self, number: int) -> None:
         """Ask the process to leave its job, and end it if it does not."""

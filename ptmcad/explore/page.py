@@ -11,8 +11,7 @@ from importlib.resources import files
 from string import Template
 from typing import Any
 
-from ptmcad.explore.panel import Panel
-from ptmcad.model import Mechanism
+from ptmcad.explore.panel import SliderPanel
 from ptmcad.question.config.scalars import number_of
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.report.chart import CORE_WIDTH, RIM_WIDTH
@@ -41,7 +40,7 @@ def asset(name: str) -> str:
     return (files(ASSETS[name][0]) / name).read_text(encoding="utf-8")
 
 
-def page(panel: Panel, secret: str) -> str:
+def page(panel: SliderPanel, secret: str) -> str:
     """The page as HTML text.
 
     Parameters
@@ -60,7 +59,7 @@ def page(panel: Panel, secret: str) -> str:
     )
 
 
-def _data(panel: Panel, secret: str) -> dict[str, Any]:
+def _data(panel: SliderPanel, secret: str) -> dict[str, Any]:
     record, model = panel.record, panel.model
     ends = {name: (number_of(w.low), number_of(w.high)) for name, w in record.axes.items()}
     return {
@@ -72,7 +71,7 @@ def _data(panel: Panel, secret: str) -> dict[str, Any]:
         "cells": packed([]),
         "name": record.name,
         "title": record.title or record.name,
-        "drawable": isinstance(model, Mechanism),
+        "drawable": model.drawable is not None,
         "told": model.tells_stability,
         "mechanism": drawing_of(model),
         "axes": [

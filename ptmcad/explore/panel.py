@@ -57,7 +57,7 @@ class Slider:
 
 
 @dataclass(frozen=True, slots=True)
-class Panel:
+class SliderPanel:
     """A record with its sliders; the free parameter, if there is one, comes first."""
 
     record: Record
@@ -124,7 +124,7 @@ class Panel:
 class Families:
     """What the members of a panel's families have in common, computed when first asked for, and remembered."""
 
-    def __init__(self, panel: Panel) -> None:
+    def __init__(self, panel: SliderPanel) -> None:
         self.panel = panel
         self.known: OrderedDict[tuple[Fraction, ...], Common] = OrderedDict()
 
@@ -143,7 +143,7 @@ class Families:
         return self.known[others]
 
 
-def panel_of(record: Record, ranges: Iterable[str] = ()) -> Panel:
+def panel_of(record: Record, ranges: Iterable[str] = ()) -> SliderPanel:
     """The sliders of a record: its free parameter, then every parameter that is a number; there may be none.
 
     Parameters
@@ -178,7 +178,7 @@ def panel_of(record: Record, ranges: Iterable[str] = ()) -> Panel:
     if ends:
         names = ", ".join(slider.name for slider in sliders) or "none, as no parameter is a number"
         raise ConfigError(f"{shown(next(iter(ends)), 40)} has no slider; sliders are {names}", key="--slider")
-    return Panel(record, tuple(sliders))
+    return SliderPanel(record, tuple(sliders))
 
 
 def _numbers(record: Record, member: Slice) -> dict[str, Fraction]:

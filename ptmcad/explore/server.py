@@ -21,10 +21,10 @@ from aiohttp import web
 from aiohttp.http_exceptions import HttpProcessingError
 
 from ptmcad.errors import ConfigError
-from ptmcad.explore.crew import Worker
+from ptmcad.explore.crew import WorkerProcess
 from ptmcad.explore.guard import Guard
 from ptmcad.explore.page import ASSETS, asset, page, refusal
-from ptmcad.explore.panel import Panel
+from ptmcad.explore.panel import SliderPanel
 from ptmcad.text.codec import TRUTH, Codec, line, listed, named, record
 from ptmcad.text.node import Node
 
@@ -58,9 +58,9 @@ Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 class Server:
     """The page's side and the workers': one for maps and files, another one for points, so that these do not wait."""
 
-    def __init__(self, panel: Panel, folder: Path, guard: Guard) -> None:
+    def __init__(self, panel: SliderPanel, folder: Path, guard: Guard) -> None:
         self.panel, self.guard = panel, guard
-        maps, points = Worker(panel, folder), Worker(panel, folder)
+        maps, points = WorkerProcess(panel, folder), WorkerProcess(panel, folder)
         self.workers = {"map": maps, "save": maps, "point": points, "record": points}
         self.asking: set[web.RequestHandler] = set()
 
@@ -209,7 +209,7 @@ def listening(port: int) -> socket.socket:
     return found
 
 
-async def serve(panel: Panel, folder: Path, port: int, announce: Callable[[str], None]) -> NoReturn:
+async def serve(panel: SliderPanel, folder: Path, port: int, announce: Callable[[str], None]) -> NoReturn:
     """Serve until this process is ended.
 
     Parameters

@@ -21,7 +21,7 @@ from ptmcad.ask.engines import is_certified
 from ptmcad.ask.members import member_map
 from ptmcad.ask.solving import poses_at
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.explore.panel import Families, Panel, Values, number_within
+from ptmcad.explore.panel import Families, SliderPanel, Values, number_within
 from ptmcad.explore.views import map_view, point_view
 from ptmcad.options import Options, Progress
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
@@ -54,7 +54,7 @@ class Tasks:
     folder : where files go.
     """
 
-    def __init__(self, panel: Panel, check: Callable[[], None], folder: Path) -> None:
+    def __init__(self, panel: SliderPanel, check: Callable[[], None], folder: Path) -> None:
         self.panel, self.check, self.folder = panel, check, folder
         self.families = Families(panel)
         self.last: RegionMap | None = None

@@ -12,9 +12,9 @@ from typing import Any
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.answer.words import counted
-from ptmcad.model import Mechanism, Model
-from ptmcad.model.evaluate import value_at
+from ptmcad.answer.words import stable_of
+from ptmcad.model import Model
+from ptmcad.model.moments import loads_at
 from ptmcad.show.posetable import kind_of
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import fill_of
@@ -22,7 +22,7 @@ from ptmcad.show.render.outline import TOLERANCE, outline
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.report.chart import counts_text, hatch_id, pattern_defs, region_labels, region_outlines, wall_lines
-from ptmcad.show.report.frame import RIM, SIDE, frame, room
+from ptmcad.show.report.frame import SIDE, frame, room
 from ptmcad.show.table import area_digits, count_text
 from ptmcad.text.numerals import approximate_text
 
@@ -75,11 +75,7 @@ def map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
 def _frame(seen: Shapes) -> dict[str, Any]:
     """The axes, and how much room they need around the window."""
     around = room(seen, detail=False)
-    return {
-        "svg": "".join(frame(seen, around)),
-        "view": f"0 0 {around.left + SIDE + around.right} {RIM + SIDE + around.bottom}",
-        "place": f"translate({around.left} {RIM})",
-    }
+    return {"svg": "".join(frame(seen, around)), "view": around.view, "place": around.place}
 
 
 def _digest(result: RegionMap) -> list[list[Any]]:
@@ -95,22 +91,17 @@ def point_view(poses: Poses, at: Mapping[str, Fraction]) -> dict[str, Any]:
     at : the axes' values there.
     """
     model = poses.model
-    known = dict.fromkeys(model.free_lengths, Fraction(0)) | dict(poses.parameters)
-    loads = model.loads if isinstance(model, Mechanism) else ()
+    loads = () if model.drawable is None else loads_at(model.drawable, poses.parameters)
     total = len(poses.equilibria)
-    words = counted(model, total)
-    if model.tells_stability:
-        words = f"{poses.stable} stable of {words}"
-    if poses.status is Status.UNDECIDED:
-        words = "not decided"
+    decided = poses.status is not Status.UNDECIDED
     return {
         "at": [[symbol(name), approximate_text(value)] for name, value in at.items()],
-        "words": words,
+        "words": stable_of(model, poses.known_stable, total) if decided else "not decided",
         "stable": poses.stable,
         "total": total,
         "status": poses.status.value,
         "remark": poses.remark,
-        "loads": [[float(value_at(load.x, known)), float(value_at(load.y, known))] for load in loads],
+        "loads": [list(map(float, load.force)) for load in loads],
         "equilibria": [_pose_view(pose, model) for pose in poses.equilibria],
     }
 

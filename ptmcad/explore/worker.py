@@ -29,7 +29,7 @@ class Superseded(Exception):
     """The job at hand is no longer wanted."""
 
 
-class Lines:
+class InputLines:
     """Standard input as lines, of which one can ask whether there are more without waiting."""
 
     def __init__(self, descriptor: int) -> None:
@@ -50,10 +50,10 @@ class Lines:
         return b"\n" in self.buffer or bool(select.select([self.descriptor], [], [], 0)[0])
 
 
-class Worker:
+class JobLoop:
     """A loop over jobs."""
 
-    def __init__(self, lines: Lines, answers: IO[bytes]) -> None:
+    def __init__(self, lines: InputLines, answers: IO[bytes]) -> None:
         self.lines, self.answers = lines, answers
         self.number = -1
 
@@ -95,11 +95,11 @@ def main() -> None:
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what libraries print
     os.environ["MPLBACKEND"], os.environ["MATPLOTLIBRC"] = "agg", os.devnull
-    lines = Lines(0)
+    lines = InputLines(0)
     first = lines.next()
     if first is None:
         return
-    worker = Worker(lines, answers)
+    worker = JobLoop(lines, answers)
     worker.run(Tasks(pickle.loads(base64.b64decode(first)), worker.check, folder))
 
 

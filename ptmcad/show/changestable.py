@@ -6,6 +6,7 @@ Guarantee: the digits of an exact value are right; the ends of an enclosure are 
 from __future__ import annotations
 
 from ptmcad.answer.changes import Change, Changes
+from ptmcad.show.ranges.table import aligned
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.numerals import decimal, shortest_text
 
@@ -22,11 +23,12 @@ def changes_table(found: Changes) -> str:
     )
     rows = [(value_text(change), _kind(change), change.words) for change in found.changes]
     width = max((len(value) for value, _, _ in rows), default=0)
-    kinds = max((len(kind) for _, kind, _ in rows), default=0)
-    lines = [f"{title}: {'none' if not rows else len(rows)}"]
-    for value, kind, words in rows:
-        for number, text in enumerate(words):
-            lines.append(f"  {'' if number else value:>{width}}  {'' if number else kind:<{kinds}}  {text}".rstrip())
+    cells = [
+        ["", "" if number else value.rjust(width), "" if number else kind, text]
+        for value, kind, words in rows
+        for number, text in enumerate(words)
+    ]
+    lines = [f"{title}: {len(rows) or 'none'}", *aligned(cells)]
     for end, words in zip((free.low, free.high), found.at_ends, strict=True):
         if words:
             lines.append(f"  at {free.name} = {shortest_text(end)} itself: {'; '.join(words)}")

@@ -8,7 +8,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from ptmcad.answer.design import BestDesign
-from ptmcad.answer.words import noun
+from ptmcad.answer.words import sought
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import decimal, shortest_text
 
@@ -34,7 +34,7 @@ def design_table(found: BestDesign) -> str:
 
 
 def _asked(found: BestDesign) -> str:
-    number = f"{found.working} {'stable ' if found.model.tells_stability else ''}{noun(found.model, found.working)}"
+    number = f"{found.working} {sought(found.model, found.working)}"
     if found.along is not None:
         return f"the range of {_window(found.along)} with {number}"
     if found.fixed:

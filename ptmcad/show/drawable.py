@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-from ptmcad.model import ClosedMechanism, Mechanism, Model, System
+from ptmcad.model import Model, mechanism_in
 from ptmcad.model.moments import foreign
 
 
 def no_drawing(model: Model) -> str:
     """Why there is no picture, or no film, of a model's solutions."""
-    if isinstance(model, ClosedMechanism):
-        what = "X-joints" if model.mechanism.xjoints else "closed loops"
+    closed = mechanism_in(model)
+    if closed is not None:
+        what = "X-joints" if closed.xjoints else "closed loops"
         return f"of {model.name}, a mechanism with {what}, solve and plot draw poses, and nothing more is drawn yet"
     return f"solutions of a {_named(model)} cannot be drawn, as it has no points, bars or springs"
 
 
 def no_landscape(model: Model) -> str:
     """Why there is no picture of the energy; empty where there is one."""
-    if isinstance(model, System) and model.potential is None:
-        return f"the {_named(model)} has equations and no potential: there is no energy to be drawn"
     if not model.has_potential:
-        assert isinstance(model, Mechanism)
-        what = foreign(model)
+        mechanism = model.drawable
+        if mechanism is None:
+            return f"the {_named(model)} has equations and no potential: there is no energy to be drawn"
+        what = foreign(mechanism)
         return f"{what} of the {_named(model)} depends on another unknown: there is no potential, no energy to be drawn"
     if len(model.unknowns) > 2:
         return f"an energy can be drawn over one unknown or two, and the {_named(model)} has {len(model.unknowns)}"

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.answer.words import several
 from ptmcad.show.changestable import changes_table
 from ptmcad.show.table import NOT_COMPUTED, area_by_count, area_text, areas_are_known
 from ptmcad.text.numerals import shortest_text
@@ -20,9 +21,7 @@ def family_table(family: FamilyMap) -> str:
     for value, result in zip(values, family.members, strict=True):
         lines.append(f"{value:>{width}}  {len(result.regions):>7}  {len(result.cells):>5}  {_areas(result)}")
     if family.surfaces:
-        sizes = ", ".join(
-            f"{len(terms)} term{'s' * (len(terms) > 1)} of degree {_degree(terms)}" for terms in family.surfaces
-        )
+        sizes = ", ".join(f"{several(len(terms), 'term')} of degree {_degree(terms)}" for terms in family.surfaces)
         many = "surfaces" if len(family.surfaces) > 1 else "surface"
         lines.append(f"computed once for all: {many} where solutions meet, {sizes}")
     if family.changes is not None:

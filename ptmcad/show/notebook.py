@@ -8,14 +8,12 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Sequence
 from html import escape
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from ptmcad.answer.motion import Motion
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.model import Mechanism
+from ptmcad.show.render.backend import load_matplotlib
 from ptmcad.show.style import DEFAULT
 from ptmcad.show.table import NOT_COMPUTED, area_digits, areas_are_known, count_text, index_heading
 from ptmcad.text.enclosure import Enclosure
@@ -32,28 +30,26 @@ DIGITS = 6
 MAX_ROWS = 20
 FPS, DPI = 20, 80
 """Of a film."""
-PAGE_DPI = 100
+MAP_DPI, PAGE_DPI = 150, 100
 
 
 def picture(result: RegionMap, kind: str) -> bytes | None:
     """The map's picture as the content of a PNG or SVG; None where there is nothing to draw yet."""
     if not result.cells:
         return None
-    from ptmcad.show.render import draw
+    load_matplotlib()
+    from ptmcad.show.render.printing import content, settings
+    from ptmcad.show.render.regionmap import figure_of
 
-    with TemporaryDirectory(prefix="ptmcad-") as folder:
-        path = Path(folder) / f"map.{kind}"
-        draw(result, path)
-        return path.read_bytes()
+    with settings():
+        figure = figure_of(result, samples=False, dpi=MAP_DPI)
+    return content(figure, kind, dpi=MAP_DPI)
 
 
 def map_html(result: RegionMap) -> str:
     """The picture, and the regions with their counts and areas."""
     image = picture(result, "png")
-    shown = "" if image is None else (
-        f'<img alt="{escape(result.slice.heading)}" style="max-width:100%" '
-        f'src="data:image/png;base64,{b64encode(image).decode()}">'
-    )  # fmt: skip
+    shown = "" if image is None else _image(image, result.slice.heading)
     rows = [_region_row(result, k, r) for k, r in enumerate(result.regions[:MAX_ROWS])]
     if len(result.regions) > MAX_ROWS:
         rows.append(("…", f"{len(result.regions) - MAX_ROWS} more", "", "", ""))
@@ -86,29 +82,29 @@ def poses_html(poses: Poses) -> str:
 
 def comparison_html(comparison: Comparison) -> str:
     """Both maps and their difference, and how large that is."""
-    from ptmcad.show.render.backend import load_matplotlib
-
     load_matplotlib()
-    from ptmcad.show.render.comparing import draw_comparison, in_words
+    from ptmcad.show.render.comparing import comparison_figure, in_words
+    from ptmcad.show.render.printing import content, settings
 
-    with TemporaryDirectory(prefix="ptmcad-") as folder:
-        path = Path(folder) / "difference.png"
-        draw_comparison(comparison, path, PAGE_DPI, DEFAULT)
-        data = b64encode(path.read_bytes()).decode()
+    with settings():
+        figure = comparison_figure(comparison, PAGE_DPI, DEFAULT)
     words = "".join(f"<div>{escape(line)}</div>" for line in in_words(comparison))
-    return f'<img alt="{escape(repr(comparison))}" style="max-width:100%" src="data:image/png;base64,{data}">{words}'
+    return f"{_image(content(figure, 'png', dpi=PAGE_DPI), repr(comparison))}{words}"
 
 
 def image_html(data: bytes, what: str, words: str) -> str:
     """A picture in place, with what it is for those who do not see it, and words below."""
-    shown = f'<img alt="{escape(what)}" style="max-width:100%" src="data:image/png;base64,{b64encode(data).decode()}">'
-    return f"{shown}<div>{escape(words)}</div>"
+    return f"{_image(data, what)}<div>{escape(words)}</div>"
+
+
+def _image(data: bytes, what: str, kind: str = "png") -> str:
+    """A picture in place, with what it is for those who do not see it."""
+    source = f"data:image/{kind};base64,{b64encode(data).decode()}"
+    return f'<img alt="{escape(what)}" style="max-width:100%" src="{source}">'
 
 
 def grid_png(grid: Grid) -> bytes:
     """The grid's pixels as the content of a PNG."""
-    from ptmcad.show.render.backend import load_matplotlib
-
     load_matplotlib()
     from ptmcad.show.render import pixelmap
 
@@ -117,8 +113,6 @@ def grid_png(grid: Grid) -> bytes:
 
 def field_png(field: Field) -> bytes:
     """The field's pixels as the content of a PNG."""
-    from ptmcad.show.render.backend import load_matplotlib
-
     load_matplotlib()
     from ptmcad.show.render import pixelmap
 
@@ -135,50 +129,35 @@ def field_words(field: Field) -> str:
 
 def family_png(family: FamilyMap) -> bytes:
     """The members' maps side by side as the content of a PNG."""
-    from ptmcad.show.render.backend import load_matplotlib
-
     load_matplotlib()
-    from ptmcad.show.render.multiples import draw_multiples
+    from ptmcad.show.render.multiples import multiples_figure
+    from ptmcad.show.render.printing import content
 
-    with TemporaryDirectory(prefix="ptmcad-") as folder:
-        path = Path(folder) / "family.png"
-        draw_multiples(family, path, PAGE_DPI, DEFAULT)
-        return path.read_bytes()
+    return content(multiples_figure(family, PAGE_DPI, DEFAULT), "png", dpi=PAGE_DPI)
 
 
 def family_html(family: FamilyMap) -> str:
     """The maps side by side, and the table."""
-    data = b64encode(family_png(family)).decode()
-    image = f'<img alt="{escape(repr(family))}" style="max-width:100%" src="data:image/png;base64,{data}">'
-    return image + text_html(family.table())
+    return _image(family_png(family), repr(family)) + text_html(family.table())
 
 
 def design_html(found: BestDesign) -> str:
     """The picture of the values and bounds, and the answer in words."""
-    from ptmcad.show.render.backend import load_matplotlib
-
     load_matplotlib()
-    from ptmcad.show.render.design import draw_design
+    from ptmcad.show.render.design import figure_of_design
+    from ptmcad.show.render.printing import content
 
-    with TemporaryDirectory(prefix="ptmcad-") as folder:
-        path = Path(folder) / "design.png"
-        draw_design(found, path, PAGE_DPI)
-        data = b64encode(path.read_bytes()).decode()
-    image = f'<img alt="{escape(repr(found))}" style="max-width:100%" src="data:image/png;base64,{data}">'
-    return f"{image}{text_html(found.table())}"
+    return _image(content(figure_of_design(found), "png", dpi=PAGE_DPI), repr(found)) + text_html(found.table())
 
 
 def motion_html(motion: Motion) -> str:
     """The film, in place; in words where it cannot be drawn."""
-    if not isinstance(motion.result.slice.model, Mechanism):
+    if motion.result.slice.model.drawable is None:
         return text_html(repr(motion))
-    from ptmcad.show.render.backend import load_matplotlib
-
     load_matplotlib()
     from ptmcad.show.render.film import gif_bytes
 
-    data = b64encode(gif_bytes(motion, DEFAULT, FPS, DPI)).decode()
-    return f'<img alt="{escape(repr(motion))}" style="max-width:100%" src="data:image/gif;base64,{data}">'
+    return _image(gif_bytes(motion, DEFAULT, FPS, DPI), repr(motion), "gif")
 
 
 def text_html(text: str) -> str:

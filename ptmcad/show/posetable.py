@@ -14,14 +14,14 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.answer.words import counted, noun, of_what, untold
 from ptmcad.model import Mechanism, Model, built_in, mechanism_in
 from ptmcad.question.slice import merged
-from ptmcad.show.units import energy_unit
+from ptmcad.show.units import declared_units
 from ptmcad.text.enclosure import Enclosure, exact_text
 
 WIDTH = 100
 
 Column = tuple[str, str, list[str]]
 """Header, unit and entries."""
-Quantity = tuple[str, str, Sequence[Enclosure] | list[str]]
+Numbers = tuple[str, str, Sequence[Enclosure] | list[str]]
 """The same before numbers are written."""
 _MAX_BOUNDS = 6
 """Numbers that may be zero that are listed."""
@@ -72,7 +72,7 @@ def _units(poses: Poses) -> list[str]:
         units.get(what) or (f"that of {name}" if name else "")
         for what, name in zip(("length", "force"), mechanism.units, strict=True)
     )
-    product = energy_unit(units) if "length" in units and "force" in units else "their product"
+    product = declared_units(mechanism, units).get("energy", "their product")
     pivots = " and ".join(f"{angle} at {at}" for angle, at in mechanism.pivots.items())
     return [
         *([f"lengths and coordinates in {length}"] if length else []),
@@ -98,7 +98,7 @@ def _energy_note(poses: Poses) -> str:
     model = mechanism_in(poses.model) or poses.model
     if model.has_potential:
         return of_what(model, poses.parameters)
-    if not isinstance(model, Mechanism):
+    if model.drawable is None:
         return ""
     return "none" if poses.model.tells_stability else f"none, and {untold(model)}"
 
@@ -163,7 +163,7 @@ def _wrapped(label: str, parts: Sequence[str], separator: str = ", ") -> list[st
 def _blocks(poses: Poses, digits: int) -> list[list[Column]]:
     width = len(str(len(poses.equilibria)))
 
-    def written(quantity: Quantity) -> Column:
+    def written(quantity: Numbers) -> Column:
         header, unit, entries = quantity
         return header, unit, [x if isinstance(x, str) else x.text(digits) for x in entries]
 
@@ -171,19 +171,15 @@ def _blocks(poses: Poses, digits: int) -> list[list[Column]]:
     return [block for group in groups if group for block in _fitting(group, width)]
 
 
-def _groups(poses: Poses) -> list[list[Quantity]]:
+def _groups(poses: Poses) -> list[list[Numbers]]:
     found = poses.equilibria
     if not found:
         return []
-    model = poses.model
-    mechanism = mechanism_in(model)
-    moving = () if mechanism is None else mechanism.moving
-
-    first = found[0]
+    first, model = found[0], poses.model
     called = {"solution": noun(model, 1)}
     kinds = [kind_of(pose, model) for pose in found]
-    states: list[Quantity] = [("state", "", [called.get(kind, kind) for kind in kinds])]
-    if mechanism is not None:
+    states: list[Numbers] = [("state", "", [called.get(kind, kind) for kind in kinds])]
+    if mechanism_in(model) is not None:
         states.append(("flat", "", ["yes" if p.flat else "no" for p in found]))
     if first.may_be_admissible:
         said = {True: "yes", False: "no", None: "undecided"}
@@ -194,31 +190,12 @@ def _groups(poses: Poses) -> list[list[Quantity]]:
     if first.energy is not None:
         states.append(("energy", "", [p.known_energy for p in found]))
     states += [(f"eigenvalue {k + 1}", "", [p.eigenvalues[k] for p in found]) for k in range(len(first.eigenvalues))]
-    angles: list[Quantity] = [
-        (name, unit, [getattr(p, field)[i] for p in found])
-        for field, unit in (("angles", "rad"), ("degrees", "deg"))
-        for i, name in enumerate(model.angles)
+    groups = zip(*(pose.quantities(model) for pose in found), strict=True)
+    numbers: list[list[Numbers]] = [
+        [(column[0].name, column[0].unit, [each.value for each in column]) for column in zip(*group, strict=True)]
+        for group in groups
     ]
-    angles += [(name, "", [p.reals[i] for p in found]) for i, name in enumerate(model.reals)]
-    nodes: list[Quantity] = [
-        (f"{name} {axis}", "", [p.nodes[name][i] for p in found])
-        for name in found[0].nodes
-        if name in moving
-        for i, axis in enumerate("xy")
-    ]
-    springs: list[Quantity] = [
-        (f"{what} {s.start}{s.end}", "", [getattr(p.springs[k], what) for p in found])
-        for what in ("length", "force")
-        for k, s in enumerate(found[0].springs)
-    ]
-    torsion: list[Quantity] = [
-        (f"{what} {t.name}", unit, [getattr(p.torsion[k], field) for p in found])
-        for field, what, unit in (
-            ("deflection", "deflection", "rad"), ("degrees", "deflection", "deg"), ("moment", "moment", ""),
-        )
-        for k, t in enumerate(first.torsion)
-    ]  # fmt: skip
-    return [states, angles, nodes, springs, torsion]
+    return [states, *numbers]
 
 
 def _fitting(columns: Sequence[Column], used: int) -> list[list[Column]]:

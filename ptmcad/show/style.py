@@ -32,7 +32,7 @@ _COLOUR = re.compile(r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6})", re.ASCII)
 Size = tuple[float, float]
 
 
-class Place(Enum):
+class LegendPlace(Enum):
     """Where the legend stands."""
 
     RIGHT = "right"
@@ -44,7 +44,7 @@ PALETTES = ("default", "grey")
 LINES = ("solid", "dashed", "dotted")
 
 
-class Style(NamedTuple):
+class PictureStyle(NamedTuple):
     """How a picture of a map looks; what is None is chosen to fit.
 
     Attributes
@@ -67,7 +67,7 @@ class Style(NamedTuple):
     font_family: tuple[str, ...] = ()
     palette: str | tuple[str, ...] = "default"
     title: str | None = None
-    legend: Place | None = None
+    legend: LegendPlace | None = None
     line_width: float | None = None
     thin_lines: str = "solid"
     wide: float | None = None
@@ -100,30 +100,30 @@ class Style(NamedTuple):
         return self.line_width if self.line_width is not None else 1.3 * self.line_scale
 
 
-DEFAULT = Style()
+DEFAULT = PictureStyle()
 
 
 def _mm(width: float, height: float) -> Size:
     return width / 25.4, height / 25.4
 
 
-PRESETS: Mapping[str, Style] = {
+PRESETS: Mapping[str, PictureStyle] = {
     "default": DEFAULT,
-    "ieee": Style(size=(3.5, 2.6), font_size=8.0, title="", line_width=1.0, wide=7.16),
-    "elsevier": Style(size=_mm(90, 68), font_size=7.5, title="", line_width=1.0, wide=190 / 25.4),
-    "springer": Style(size=_mm(84, 64), font_size=8.0, title="", line_width=1.0, wide=174 / 25.4),
-    "beamer": Style(size=_mm(120, 70), font_size=9.0, title=""),
-    "poster": Style(size=_mm(600, 420), font_size=28.0),
+    "ieee": PictureStyle(size=(3.5, 2.6), font_size=8.0, title="", line_width=1.0, wide=7.16),
+    "elsevier": PictureStyle(size=_mm(90, 68), font_size=7.5, title="", line_width=1.0, wide=190 / 25.4),
+    "springer": PictureStyle(size=_mm(84, 64), font_size=8.0, title="", line_width=1.0, wide=174 / 25.4),
+    "beamer": PictureStyle(size=_mm(120, 70), font_size=9.0, title=""),
+    "poster": PictureStyle(size=_mm(600, 420), font_size=28.0),
 }
 """For a column of a journal, whose captions are the titles; for a slide and for a poster."""
 
 
-def styled(name: str | Style = "default", **options: Any) -> Style:
+def styled(name: str | PictureStyle = "default", **options: Any) -> PictureStyle:
     """A preset, or a style, with options of its own; those that are None are the preset's.
 
     Parameters
     ----------
-    options : fields of `Style`, each as its type or as text: ``size="90x70mm"``, ``palette="grey"``,
+    options : fields of `PictureStyle`, each as its type or as text: ``size="90x70mm"``, ``palette="grey"``,
         ``legend="below"``.
 
     Raises
@@ -132,9 +132,9 @@ def styled(name: str | Style = "default", **options: Any) -> Style:
         For an unknown preset or option, or a value that cannot be drawn; its key is the option.
 
     >>> styled("ieee", legend="below").legend
-    <Place.BELOW: 'below'>
+    <LegendPlace.BELOW: 'below'>
     """
-    if isinstance(name, Style):
+    if isinstance(name, PictureStyle):
         base = name
     elif name in PRESETS:
         base = PRESETS[name]
@@ -190,8 +190,13 @@ def _points(key: str, least: float, most: float, why: str) -> Any:
     return read
 
 
+def _parts(value: Any) -> list[Any]:
+    """Of a list, or of a text that is divided by commas."""
+    return [part.strip() for part in value.split(",")] if isinstance(value, str) else list(value)
+
+
 def _family(value: Any) -> tuple[str, ...]:
-    names = [part.strip() for part in value.split(",")] if isinstance(value, str) else list(value)
+    names = _parts(value)
     if not names or not all(isinstance(name, str) and name for name in names):
         raise ConfigError(f"{value!r} is not a font's family such as serif or Times New Roman", key="font_family")
     return tuple(names)
@@ -200,7 +205,7 @@ def _family(value: Any) -> tuple[str, ...]:
 def _palette(value: Any) -> str | tuple[str, ...]:
     if value in PALETTES:
         return str(value)
-    colours = [part.strip() for part in value.split(",")] if isinstance(value, str) else list(value)
+    colours = _parts(value)
     wrong = [c for c in colours if not (isinstance(c, str) and (_COLOUR.fullmatch(c) or c.lower() in NAMED))]
     if wrong or not colours:
         raise ConfigError(
@@ -236,10 +241,10 @@ def _one_of(key: str, kinds: tuple[str, ...]) -> Any:
     return read
 
 
-def _legend(value: Any) -> Place:
-    if isinstance(value, Place):
+def _legend(value: Any) -> LegendPlace:
+    if isinstance(value, LegendPlace):
         return value
-    return Place(_one_of("legend", tuple(place.value for place in Place))(value))
+    return LegendPlace(_one_of("legend", tuple(place.value for place in LegendPlace))(value))
 
 
 _READERS: Mapping[str, Any] = {

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.timings import COMPILATION
-from ptmcad.answer.words import index_words, noun
-from ptmcad.model import Mechanism, Model
+from ptmcad.answer.words import index_words, noun, several
+from ptmcad.model import Model
 from ptmcad.question.slice import Count
 from ptmcad.show.units import area_unit
 from ptmcad.text.bounds import certified_digits, interval_text, percent
@@ -21,7 +21,6 @@ if TYPE_CHECKING:  # a map of the exact engine has no cover
 
 _NAMES = {
     Count.STABLE: "stable",
-    Count.TOTAL: "in all",
     Count.ADMISSIBLE: "stable and admissible",
 }
 
@@ -31,8 +30,8 @@ def _count_name(result: RegionMap, region: Region) -> str:
     count, model = result.slice.count, result.slice.model
     if count is Count.INDEX:
         return index_heading(model)
-    if count is Count.TOTAL and not isinstance(model, Mechanism):
-        return noun(model, region.total or 0)
+    if count is Count.TOTAL:
+        return model.nouns.total or noun(model, region.total or 0)
     return _NAMES[count]
 
 
@@ -52,7 +51,7 @@ def count_text(region: Region, count: Count) -> str:
     return f"({', '.join(map(str, region.index))})" if region.index else "?"
 
 
-def _in_order(text: str) -> list[int]:
+def in_order(text: str) -> list[int]:
     """A count's numbers, by which counts are in order: 10 comes after 2."""
     return [int(number) for number in re.findall(r"\d+", text)]
 
@@ -93,7 +92,7 @@ def area_by_count(result: RegionMap) -> dict[str, tuple[Fraction, Fraction]]:
     for region in result.regions:
         areas.setdefault(count_text(region, result.slice.count), []).append(region.area)
     found = {}
-    for text in sorted(areas, key=_in_order):
+    for text in sorted(areas, key=in_order):
         low, high = (sum((area[end] for area in areas[text]), Fraction(0)) for end in (0, 1))
         found[text] = (low, high if result.cover is None else min(high, low + undetermined))
     return found
@@ -112,8 +111,7 @@ def _curves(result: RegionMap) -> str:
         (c.kind.value, c.polynomial.degrees, len(c.polynomial.terms)) for c in result.components if c.separates
     )
     curves = "; ".join(
-        f"{n} {kind} of degree {degrees[0]} in {names[0]}, {degrees[1]} in {names[1]} "
-        f"({terms} term{'s' * (terms != 1)})"
+        f"{n} {kind} of degree {degrees[0]} in {names[0]}, {degrees[1]} in {names[1]} ({several(terms, 'term')})"
         for (kind, degrees, terms), n in alike.items()
     )
     lines = [f"curves    {curves or 'no curve changes the count'}"]
@@ -128,8 +126,8 @@ def _curves(result: RegionMap) -> str:
 def _covered(cover: Cover) -> str:
     n = len(cover.rectangles)
     slanted = sum(len(patch.tubes) for patch in cover.patches)
-    tubes = f" and {slanted} slanted piece{'s' * (slanted != 1)}" if slanted else ""
-    return f"cover     {n} rectangle{'s' * (n != 1)}{tubes} around the curves where counts change"
+    tubes = f" and {several(slanted, 'slanted piece')}" if slanted else ""
+    return f"cover     {several(n, 'rectangle')}{tubes} around the curves where counts change"
 
 
 def _time(result: RegionMap) -> str:
@@ -146,7 +144,7 @@ def table(result: RegionMap) -> str:
     count = result.slice.count
     tally = Counter(f"{count_text(r, count)} {_count_name(result, r)}" for r in result.regions)
     counts = "; ".join(
-        f"{text}: {n} region{'s' * (n > 1)}" for text, n in sorted(tally.items(), key=lambda item: _in_order(item[0]))
+        f"{text}: {several(n, 'region')}" for text, n in sorted(tally.items(), key=lambda item: in_order(item[0]))
     )
     bounds = [(count_text(r, count), r.area) for r in result.regions]
     if result.cover is not None:
@@ -203,5 +201,6 @@ def _vanishing(result: RegionMap) -> list[str]:
     cells = sum(any("0" in e.signs for e in cell.solutions) for cell in result.cells)
     if not cells:
         return []
-    where = f"{cells} cell{'s' * (cells > 1)}"
-    return [f"zero      in {where} a condition for stability is 0 at a solution, which counts as unstable"]
+    return [
+        f"zero      in {several(cells, 'cell')} a condition for stability is 0 at a solution, which counts as unstable"
+    ]

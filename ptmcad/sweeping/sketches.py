@@ -18,7 +18,7 @@ from ptmcad.sweeping.pool import Pool
 from ptmcad.sweeping.run import processors
 
 if TYPE_CHECKING:
-    from ptmcad.show.sweeps.sketch import Sketch
+    from ptmcad.show.sweeps.sketch import Thumbnail
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ class Drawing:
     folder: Path
     timeout: float | None = None
 
-    def answer(self, number: int) -> Sketch:
+    def answer(self, number: int) -> Thumbnail:
         """The drawing of a member."""
         from ptmcad.show.sweeps.sketch import sketch
 
@@ -37,7 +37,7 @@ class Drawing:
 
 def sketches(
     folder: Path, numbers: Sequence[int], jobs: int | None, progress: Progress | None = None
-) -> Iterator[tuple[int, Sketch]]:
+) -> Iterator[tuple[int, Thumbnail]]:
     """The drawings of members, in any order.
 
     Raises

@@ -12,7 +12,7 @@ import ptmcad
 from ptmcad import extras
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
-from ptmcad.explore.panel import Families, Panel, panel_of
+from ptmcad.explore.panel import Families, SliderPanel, panel_of
 from ptmcad.explore.tasks import Tasks
 from ptmcad.options import Options
 from ptmcad.question.config import load, record_from_options, slice_from_mapping
@@ -21,11 +21,11 @@ from ptmcad.text.entry import plain_data
 from ptmcad.text.yamltree import read_text
 
 
-def panel(name: str, ranges: tuple[str, ...] = ()) -> Panel:
+def panel(name: str, ranges: tuple[str, ...] = ()) -> SliderPanel:
     return panel_of(record_from_options(Typed(CONFIGS / f"{name}.yaml")), ranges)
 
 
-def ends(found: Panel) -> dict[str, tuple[Fraction, Fraction, Fraction]]:
+def ends(found: SliderPanel) -> dict[str, tuple[Fraction, Fraction, Fraction]]:
     return {s.name: (s.low, s.value, s.high) for s in found.sliders}
 
 

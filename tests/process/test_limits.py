@@ -26,7 +26,6 @@ from ptmcad.cli import run
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.errors import ConfigError, PictureError
 from ptmcad.process.memory import MIN_ROOM, Bound, bounded, loading
-from ptmcad.process.output import text_writer
 from ptmcad.process.streams import quiet_stream
 
 pytestmark = linux
@@ -415,8 +414,6 @@ def test_lack_of_memory_is_no_failed_picture(tmp_path: Path) -> None:
         raise MemoryError
 
     with pytest.raises(MemoryError):
-        write_result(tmp_path, {"a.png": picture("a.png", fail), "a.json": text_writer("{}")}, "a.json", "{}")
+        write_result(tmp_path, {"a.png": picture("a.png", fail)}, "a.json", "{}")
     with pytest.raises(PictureError, match=r"a\.png cannot be drawn: drawing failed unexpectedly: integer .*a\.json"):
-        write_result(
-            tmp_path, {"a.png": picture("a.png", lambda _: 1 // 0), "a.json": text_writer("{}")}, "a.json", "{}"
-        )  # type: ignore[arg-type,return-value]
+        write_result(tmp_path, {"a.png": picture("a.png", lambda _: 1 // 0)}, "a.json", "{}")  # type: ignore[arg-type,return-value]

@@ -19,7 +19,7 @@ from ptmcad.show.render.regionmap import description
 from ptmcad.show.report import page
 from ptmcad.show.report.sections import regions
 from ptmcad.show.style import DEFAULT
-from ptmcad.show.table import _in_order, areas_are_known, region_area, table
+from ptmcad.show.table import areas_are_known, in_order, region_area, table
 from ptmcad.text.bounds import percent, share_text
 
 
@@ -91,4 +91,4 @@ def test_a_comparison_says_its_share_at_the_prompt_as_in_words() -> None:
     ],
 )
 def test_counts_are_in_the_order_of_numbers(texts: list[str], ordered: list[str]) -> None:
-    assert sorted(texts, key=_in_order) == ordered
+    assert sorted(texts, key=in_order) == ordered

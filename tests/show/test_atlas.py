@@ -17,16 +17,16 @@ import ptmcad
 from ptmcad.answer.sweep import CountedArea, Member, State, Summary, Sweep, Widest
 from ptmcad.cli import run
 from ptmcad.show.render.colours import Fill
-from ptmcad.show.report.atlas import MAX_MAPS, Frame, atlas, chosen, frame_of
-from ptmcad.show.sweeps.sketch import MAX_CHARACTERS, SIDE, Sketch, sketch
+from ptmcad.show.report.atlas import MAX_MAPS, SheetFrame, atlas, chosen, frame_of
+from ptmcad.show.sweeps.sketch import MAX_CHARACTERS, SIDE, Thumbnail, sketch
 
 HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\u2028"
 CUBIC = {"unknowns": {"x": "real"}, "potential": "x^4/4 + (a + c)*x^2/2 + d*b*x"}
 RECORD = {"name": "cusps", "system": CUBIC, "parameters": {"d": 2}, "axes": {"a": [-2, 2], "b": [-1, 1]}}
-FRAME = Frame((("rho", "0", "2"), ("L2", "0", "2")), f"L1 = 1, {HOSTILE}", "stable")
+FRAME = SheetFrame((("rho", "0", "2"), ("L2", "0", "2")), f"L1 = 1, {HOSTILE}", "stable")
 
 
-def family(rows: int, columns: int, error: str = "") -> tuple[Sweep, list[Member], dict[int, Sketch]]:
+def family(rows: int, columns: int, error: str = "") -> tuple[Sweep, list[Member], dict[int, Thumbnail]]:
     """A sweep over two parameters without a folder; its first member has failed."""
     members = []
     for k in range(rows * columns):
@@ -36,7 +36,7 @@ def family(rows: int, columns: int, error: str = "") -> tuple[Sweep, list[Member
         members.append(Member(k, place, State.DONE, found, file=f"results/000/{k:06}.json"))
     members[0] = Member(0, members[0].parameters, State.FAILED, error=error)
     states = {State.DONE: len(members) - 1, State.FAILED: 1}
-    drawn = Sketch(
+    drawn = Thumbnail(
         Fill("#c7e4f6"), ((Fill("#eda43f", "////"), f"M0 0 {SIDE} 0 {SIDE} 9z"),), (("2", Fill("#eda43f", "////")),)
     )
     return Sweep("family", Path("nowhere"), ("F3", "F4"), states), members, {m.number: drawn for m in members[1:]}

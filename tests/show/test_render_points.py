@@ -24,7 +24,7 @@ from ptmcad.show.render.leaders import Berth, meet, routed
 from ptmcad.show.render.overlay import Agreement
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import figure_of
-from ptmcad.show.style import MIN_FONT, PAGE_HEIGHT, Style, styled
+from ptmcad.show.style import MIN_FONT, PAGE_HEIGHT, PictureStyle, styled
 
 AT = ("rho=1,L2=3/2", "rho=3/2,L2=1/2", "rho=0.1,L2=1.8", "rho=1/4,L2=1/4")
 
@@ -36,7 +36,7 @@ def stored(tmp_path: Path) -> str:
     return str(path)
 
 
-def around(texts: tuple[str, ...], style: Style) -> Figure:
+def around(texts: tuple[str, ...], style: PictureStyle) -> Figure:
     result = shipped("fig4")
     points = [(at, poses_at(result, at)) for at in places(result, texts)]
     with settings(style):

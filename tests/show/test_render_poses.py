@@ -31,7 +31,7 @@ from ptmcad.show.render.clearance import Label, Stroke, crosses, overlap, place,
 from ptmcad.show.render.figure import draw_figure, point_of
 from ptmcad.show.render.landscape import contour_levels, copies, draw_landscape, energy_of
 from ptmcad.show.render.mechanism import PALE, STRONG
-from ptmcad.show.render.poses import draw_poses, in_order, printed_number, value_text
+from ptmcad.show.render.poses import draw_poses, printed_number, value_text
 from ptmcad.show.render.sketch import BAR_WIDTHS, MIN_TURNS, PIN, SPIRAL, arrow_lengths, frame_of, sketch
 from ptmcad.text.enclosure import Enclosure
 
@@ -231,7 +231,7 @@ def test_every_equilibrium_is_marked_and_numbered_once(name: str) -> None:
     assert sorted(identifiers(figure, "number-")) == [f"number-{k}" for k in range(1, n + 1)]
     markers = {a.get_gid(): a for a in figure.findobj() if str(a.get_gid()).startswith("equilibrium-")}
     symbols = {0: "o", 1: "X", 2: "^", None: "*"}
-    for number, pose in enumerate(in_order(found), 1):
+    for number, pose in enumerate(found.in_order, 1):
         marker = markers[f"equilibrium-{number}"]
         assert marker.get_marker() == symbols[pose.index]
         for shown, degrees in zip((marker.get_xdata()[0], marker.get_ydata()[0]), pose.degrees, strict=True):
@@ -448,7 +448,7 @@ def jaw() -> Poses:
 def test_torsion_springs_are_spirals_at_their_joints_in_every_pose() -> None:
     """From the pin's rim outwards to a point on the arm; those of one joint lie around each other."""
     figure = draw_poses(jaw())
-    shown = in_order(jaw())
+    shown = jaw().in_order
     scene = frame_of(shown)
     for number, pose in enumerate(shown, 1):
         lines = {line.get_gid(): line.get_xydata() for line in figure.axes[number - 1].lines if line.get_gid()}
@@ -464,7 +464,7 @@ def test_torsion_springs_are_spirals_at_their_joints_in_every_pose() -> None:
 
 
 def test_labels_keep_clear_of_torsion_springs() -> None:
-    scene, shown = frame_of(jaw().equilibria), in_order(jaw())
+    scene, shown = frame_of(jaw().equilibria), jaw().in_order
     for pose in shown:
         seen = sketch(jaw().model, pose, scene, arrow_lengths(jaw()))  # type: ignore[arg-type]
         turns = [stroke for line in seen.spirals if line is not None for stroke in polyline(line, 0.5)]

@@ -35,7 +35,7 @@ from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import draw_parts, figure_of, fit, left_out
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import told_apart
-from ptmcad.show.style import MIN_FONT, PRESETS, Place, Style, styled
+from ptmcad.show.style import MIN_FONT, PRESETS, LegendPlace, PictureStyle, styled
 from ptmcad.show.table import area_text
 
 SLIVERS = [Fraction(k // 2 + 1, 8) + (k % 2) * Fraction(1, 10**5) for k in range(6)]
@@ -57,7 +57,7 @@ PAGES = [
 ]  # fmt: skip
 
 
-def figure(result: RegionMap, style: Style) -> Figure:
+def figure(result: RegionMap, style: PictureStyle) -> Figure:
     with settings(style):
         made = figure_of(result, samples=True, dpi=100, style=style)
         FigureCanvasAgg(made).draw()
@@ -172,7 +172,7 @@ def test_a_title_breaks_at_no_equals_sign() -> None:
 
 
 def test_without_a_legend_there_is_none() -> None:
-    made = figure(shipped("fig4"), styled("ieee", legend=Place.NONE))
+    made = figure(shipped("fig4"), styled("ieee", legend=LegendPlace.NONE))
     assert not made.texts
     assert made.axes[0].get_position().width > 0.75
 

@@ -16,6 +16,7 @@ import ptmcad
 from ptmcad.ask.quantities import quantity, unit_of
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
+from ptmcad.model import ptm
 from ptmcad.question.config import slice_from
 from ptmcad.show.render.axes import axis_name
 from ptmcad.show.report.page import page
@@ -211,7 +212,7 @@ def test_without_declared_units_words_stand_for_them(tmp_path: Path) -> None:
     solved(record, "json,svg")
     assert "units" not in json.loads((tmp_path / "poses.json").read_text(encoding="utf-8"))
     assert {"x (length)", "U (force · length)"} <= words_of(tmp_path / "poses-landscape.svg")
-    assert energy_unit({"force": "kN"}) == "kN · length"
+    assert energy_unit(ptm(), {"force": "kN"}) == "kN · length"
 
 
 def test_the_page_has_the_declared_units_of_its_tables() -> None:

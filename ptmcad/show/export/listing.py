@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from ptmcad.answer.regionmap import Component
 from ptmcad.answer.slicevariety import SliceVariety
+from ptmcad.answer.words import several
 from ptmcad.show.polynomial_text import Style, polynomial_lines, symbols
 from ptmcad.text.numerals import text_of
 
@@ -47,10 +48,9 @@ def describe(component: Component, names: tuple[str, str]) -> str:
     """Kind, degree, degrees in the axes and number of terms of a component, and why it is left out if it is."""
     polynomial = component.polynomial
     i, j = polynomial.degrees
-    number = len(polynomial.terms)
     text = (
         f"{component.kind.value}, degree {polynomial.total_degree} ({i} in {names[0]}, {j} in {names[1]}), "
-        f"{number} term{'s' * (number > 1)}"
+        f"{several(len(polynomial.terms), 'term')}"
     )
     return f"{text}; {component.left_out}" if component.left_out else text
 
@@ -63,12 +63,11 @@ def slice_text(variety: SliceVariety) -> str:
 def listing(variety: SliceVariety) -> str:
     """The variety as text."""
     names = variety.slice.axis_names
-    number = len(variety.components)
     lines = [
         f"slice     {slice_text(variety)}",
         f"window    {window(variety)}",
-        f"variety   {number} component{'s' * (number != 1)}; {variety.complex_solutions} complex "
-        f"solution{'s' * (variety.complex_solutions != 1)} off them",
+        f"variety   {several(len(variety.components), 'component')}; "
+        f"{several(variety.complex_solutions, 'complex solution')} off them",
     ]
     for k, component in enumerate(variety.components, start=1):
         lines += ["", f"{k:<10}{describe(component, names)}"]

@@ -8,11 +8,10 @@ from __future__ import annotations
 from ptmcad.answer.branches import Branch, Branches, BranchPoint
 from ptmcad.answer.words import kind_name, noun
 from ptmcad.model import Model
-from ptmcad.show.ranges.numbers import known
+from ptmcad.show.ranges.numbers import fixed, known
 from ptmcad.show.ranges.table import aligned
 from ptmcad.show.units import with_unit
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.numerals import shortest_text
 
 DIGITS = 6
 
@@ -35,8 +34,8 @@ def table(found: Branches) -> str:
         numbers = zip(first.numbers, last.numbers, strict=True)
         changes = [f"{_text(a)} to {_text(b)}" for a, b in numbers]
         rows.append([_short(first), _short(last), kind(branch, found.model), *changes])
-    fixed = ", ".join(f"{n} = {shortest_text(v)}" for n, v in found.at.items())
-    lines = [f"branches along {found.along.name} at {fixed}, without the last 1/100000 before critical values", ""]
+    where = f"{found.along.name} at {fixed(found.at)}"
+    lines = [f"branches along {where}, without the last 1/100000 before critical values", ""]
     lines += aligned(rows)
     if found.undecided:
         lines += ["", f"not all solutions could be told apart at {len(found.undecided)} of the values tried"]

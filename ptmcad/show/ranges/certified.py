@@ -9,8 +9,8 @@ from fractions import Fraction
 
 from ptmcad.answer.intervals import CertifiedChange, CertifiedIntervals
 from ptmcad.answer.widths import Attainment, CertifiedWidths
-from ptmcad.show.ranges.numbers import known
-from ptmcad.show.ranges.table import aligned, nowhere, working_text
+from ptmcad.show.ranges.numbers import known, line_head
+from ptmcad.show.ranges.table import aligned, nowhere, with_edges, working_text
 from ptmcad.text.bounds import rounded
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text
@@ -18,7 +18,6 @@ from ptmcad.text.numerals import shortest_text
 
 def table(found: CertifiedIntervals, digits: int) -> str:
     """One row for each interval, then what lies between them."""
-    fixed = ", ".join(f"{n} = {shortest_text(v)}" for n, v in found.at.items())
     peaks = any(i.cones is not None for i in found.intervals)  # of the paper's mechanism only
     only_totals = all(i.index is None for i in found.intervals) and any(i.total is not None for i in found.intervals)
     told = ["stable", "min-saddle-max" if peaks else "index", *["peaks"] * peaks]
@@ -32,8 +31,7 @@ def table(found: CertifiedIntervals, digits: int) -> str:
         if i.index is not None:
             counts = [str(sum(i.index)), str(i.index[0]), "-".join(map(str, i.index)), *[str(i.cones)] * peaks]
         rows.append([_text(i.low, digits, up=True), _text(i.high, digits), *counts, shortest_text(i.sample)])
-    lines = [f"{found.along.name} in ({shortest_text(found.along.low)}, {shortest_text(found.along.high)}) at {fixed}"]
-    lines += ["", *aligned(rows)]
+    lines = [line_head(found.along, found.at), "", *aligned(rows)]
     if found.changes:
         changes = [["at", "what is met"]]
         for change in found.changes:
@@ -67,10 +65,7 @@ def width_table(found: CertifiedWidths, digits: int) -> str:
             open_part = ", a part of the window undecided" if row.undecided else ""
             rows.append([value, *ends, f"{known(one.width, min(digits, 6))}{open_part}"])
     ranges = f"operation range: where there are at least {working_text(found.model, found.working)}"
-    lines = [ranges, "", *aligned(rows)]
-    if any("*" in cell for row in rows for cell in row):
-        lines.append(f"* the edge of the window of {found.along.name}")
-    return "\n".join([*lines, "", widest_text(found)])
+    return "\n".join([ranges, "", *with_edges(rows, found.along), "", widest_text(found)])
 
 
 def widest_text(found: CertifiedWidths) -> str:

@@ -13,10 +13,11 @@ from flint import arb, ctx
 from ptmcad.answer.intervals import CountIntervals, End, Span
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
 from ptmcad.answer.widths import Maximum, OperationWidths
-from ptmcad.answer.words import kind_name, noun
-from ptmcad.model import Mechanism, Model, built_in
+from ptmcad.answer.words import assignments, followed, kind_name, noun, sought
+from ptmcad.model import Model, built_in
 from ptmcad.model.moments import acting
-from ptmcad.show.ranges.numbers import end_text, narrowly_known, settled, width_text
+from ptmcad.question.slice import Axis
+from ptmcad.show.ranges.numbers import end_text, line_head, narrowly_known, settled, width_text
 from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import decimal, shortest_text
@@ -30,7 +31,6 @@ _ANGLE_DIGITS = 8
 def table(found: CountIntervals, digits: int = 10) -> str:
     """One row for each interval, then what happens at their ends, then the operation range."""
     name = found.along.name
-    fixed = ", ".join(f"{n} = {shortest_text(v)}" for n, v in found.at.items())
     first = found.intervals[0]
     stable = ["stable"] * (first.stable is not None)
     index = [] if first.index is None else [_INDEX_HEADS.get(len(first.index), "index")]
@@ -40,8 +40,7 @@ def table(found: CountIntervals, digits: int = 10) -> str:
         counts += [str(i.stable)] if stable else []
         counts += ["-".join(map(str, i.index))] if i.index is not None else []
         rows.append([end_text(i.low, digits), end_text(i.high, digits), *counts, shortest_text(i.sample)])
-    lines = [f"{name} in ({shortest_text(found.along.low)}, {shortest_text(found.along.high)}) at {fixed}", ""]
-    lines += aligned(rows)
+    lines = [line_head(found.along, found.at), "", *aligned(rows)]
     if found.changes:
         lines.append("")
         changes = [["at", f"as {name} increases", "root of"]]
@@ -61,15 +60,14 @@ _WORDS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", 
 
 def operation_name(model: Model, number: int) -> str:
     """What the range of so many stable solutions is called: only a mechanism operates."""
-    if not isinstance(model, Mechanism):
-        return f"range with {working_text(model, number)}"
-    return "operation range" if number == 2 else f"operation range ({working_text(model, number)})"
+    nouns = model.nouns
+    return nouns.range if number == nouns.usual else nouns.range_with.format(working_text(model, number))
 
 
 def working_text(model: Model, number: int) -> str:
     """What there is in an operation range, such as two stable equilibria."""
     many = _WORDS[number] if number < len(_WORDS) else str(number)
-    return f"{many} {'stable ' * model.tells_stability}{noun(model, number)}"
+    return f"{many} {sought(model, number)}"
 
 
 def nowhere(model: Model, number: int) -> str:
@@ -100,6 +98,12 @@ def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
     return ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
+def with_edges(rows: Sequence[Sequence[str]], along: Axis) -> list[str]:
+    """Rows as lines, and what a mark at an end means, where there is one."""
+    marked = any("*" in cell for row in rows for cell in row)
+    return [*aligned(rows), *[f"* the edge of the window of {along.name}"] * marked]
+
+
 def width_table(found: OperationWidths, digits: int = 10) -> str:
     """The operation ranges at the tabulated values, and where they are widest."""
     range_name = operation_name(found.model, found.working)
@@ -112,10 +116,7 @@ def width_table(found: OperationWidths, digits: int = 10) -> str:
             window = [" *" if isinstance(e, Fraction) else "" for e in (i.low, i.high)]
             ends = [end_text(e, digits) + mark for e, mark in zip((i.low, i.high), window, strict=True)]
             rows.append([value, *ends, width_text(i, digits)])
-    lines = aligned(rows)
-    if any("*" in cell for row in rows for cell in row):
-        lines.append(f"* the edge of the window of {found.along.name}")
-    lines.append("")
+    lines = [*with_edges(rows, found.along), ""]
     if not found.maxima:
         lines.append(f"widest {range_name}: none, {nowhere(found.model, found.working)}")
     for m in found.maxima:
@@ -132,14 +133,14 @@ def maximum_text(found: Maximum, over: str, digits: int) -> str:
 def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:
     """What becomes of each pose in both directions."""
     name, model = found.along.name, found.model
-    what = "pose" if isinstance(model, Mechanism) else "solution"
     where = "at all points that were computed" if found.joined else "on the path"
     lines = []
     for path in found.paths:
         place = next(p for p in path.points if p.value == path.start)
-        side = f"; {_side(path, model)} {where}" if isinstance(model, Mechanism) and model.rising else ""
+        heights = _heights(model)
+        side = f"; {_side(path, heights)} {where}" if heights else ""
         at = f"{name} = {shortest_text(path.start)}"
-        lines.append(f"{what} {path.number} at {at}: {_unknowns(place, model, digits)}{side}")
+        lines.append(f"{model.nouns.pose} {path.number} at {at}: {_unknowns(place, model, digits)}{side}")
         ends = (("down", path.low), ("up", path.high))
         lines += [f"  {direction}: {_end(e, found, digits)}" for direction, e in ends]
     if found.joined and lines:
@@ -148,18 +149,17 @@ def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:
             "numbers on both sides of it, and is not proved; where several stable ones are left, steepest descent says "
             "to which the mechanism snaps"
         )
-    stable = "stable " * model.tells_stability
-    return "\n".join(lines) if lines else f"no {stable}{what} at {name} = {shortest_text(found.start)}"
+    return "\n".join(lines) if lines else f"no {followed(model)} at {name} = {shortest_text(found.start)}"
 
 
-def _heights(model: Mechanism) -> list[str]:
-    """What the heights of the moving points are called, such as y3 of A3."""
+def _heights(model: Model) -> list[str]:
+    """What the heights of the moving points are called, such as y3 of A3; none of a system."""
     own = model.name in built_in()  # whose points are numbered
-    return [f"y{name[1:]}" if own and name[1:].isdigit() else f"y of {name}" for name in model.rising]
+    rising = () if model.drawable is None else model.drawable.rising
+    return [f"y{name[1:]}" if own and name[1:].isdigit() else f"y of {name}" for name in rising]
 
 
-def _side(path: PosePath, model: Mechanism) -> str:
-    heights = _heights(model)
+def _side(path: PosePath, heights: Sequence[str]) -> str:
     if path.upright or path.reverse:
         return " and ".join(f"{y} {'>' if path.upright else '<'} 0" for y in heights)
     return f"{', '.join(heights)} of mixed sign" if len(heights) > 1 else f"{heights[0]} of either sign"
@@ -184,21 +184,22 @@ def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
     drop = None
     if end.energy is not None and end.target_energy is not None:
         drop = settled(Enclosure(end.energy.low - end.target_energy.high, end.energy.high - end.target_energy.low), 5)
-    kind = f" ({posture(end.target, model)})" if isinstance(model, Mechanism) and model.rising else ""
-    whose = "the mechanism" if isinstance(model, Mechanism) else "the state"
-    return f"{what}; {whose} snaps to {target}{kind}, where the energy is lower by {drop or 'an undecided amount'}"
+    heights = _heights(model)
+    kind = f" ({_posture(end.target, heights)})" if heights else ""
+    lower = drop or "an undecided amount"
+    return f"{what}; {model.nouns.whole} snaps to {target}{kind}, where the energy is lower by {lower}"
 
 
 def _event(end: PathEnd, model: Model) -> str:
     """What becomes of the pose that was followed, and of those that it meets."""
-    followed = f"the {'stable ' * model.tells_stability}{'pose' if isinstance(model, Mechanism) else 'solution'}"
+    what = f"the {followed(model)}"
     others = [_kind(k, model) for k in end.meeting[1:]]
     left = _listed([_kind(k, model) for k in end.leaving])
     if not others:
-        return f"{followed} goes on as {left}" if end.leaving else f"{followed} vanishes alone"
+        return f"{what} goes on as {left}" if end.leaving else f"{what} vanishes alone"
     if end.among:
-        return f"{followed} meets one or more of {_listed(others)} and vanishes"
-    merges = f"{followed} merges with {_listed(others)}"
+        return f"{what} meets one or more of {_listed(others)} and vanishes"
+    merges = f"{what} merges with {_listed(others)}"
     if not end.leaving:
         return f"fold: {merges} and both vanish" if len(others) == 1 else f"{merges} and all vanish"
     return f"{merges}, which leaves {left}"
@@ -212,14 +213,15 @@ def _listed(names: Sequence[str]) -> str:
 def _kind(negative: int, model: Model) -> str:
     """A solution by its Morse index; without a potential by whether it is stable."""
     if not model.has_potential:
-        told = ("a stable " if negative == 0 else "an unstable ") if model.tells_stability else ""
-        return f"{told or ('an ' if isinstance(model, Mechanism) else 'a ')}{noun(model, 1)}"
+        what = noun(model, 1)
+        if model.tells_stability:
+            return f"a stable {what}" if negative == 0 else f"an unstable {what}"
+        return f"an {what}" if what[0] in "aeiou" else f"a {what}"
     return f"a {kind_name(negative, len(model.unknowns))}"
 
 
-def posture(point: Target, model: Mechanism) -> str:
+def _posture(point: Target, heights: Sequence[str]) -> str:
     """The signs of the moving points' heights, such as y3 and y4."""
-    heights = _heights(model)
     if set(point.sides) == {1}:
         return ", ".join(f"{y} > 0" for y in heights)
     if set(point.sides) == {-1}:
@@ -228,9 +230,9 @@ def posture(point: Target, model: Mechanism) -> str:
 
 
 def _unknowns(point: PathPoint | Target, model: Model, digits: int) -> str:
-    angles = [f"{name} = {degrees(a, digits)}" for name, a in zip(model.angles, point.angles, strict=True)]
-    reals = zip(model.reals, point.reals, strict=True)
-    return ", ".join([*angles, *(f"{name} = {narrowly_known(x, digits) or UNDECIDED}" for name, x in reals)])
+    angles = (degrees(angle, digits) for angle in point.angles)
+    reals = (narrowly_known(x, digits) or UNDECIDED for x in point.reals)
+    return ", ".join(assignments(model, angles, reals))
 
 
 UNDECIDED = "undecided"

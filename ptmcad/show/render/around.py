@@ -13,7 +13,6 @@ from typing import Any
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
 from ptmcad.answer.poses import Poses
@@ -21,26 +20,31 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.model import mechanism_in
 from ptmcad.show.drawable import no_drawing
-from ptmcad.show.render.blocks import GAP, Block, Point, Side, Slot, arranged, sized
+from ptmcad.show.render.blocks import GAP, Block, BlockColumn, Slot, arranged, sized
 from ptmcad.show.render.clearance import Box, Position
+from ptmcad.show.render.inches import stroke, write_lines
 from ptmcad.show.render.layout import Layout
 from ptmcad.show.render.leaders import Course, routed
 from ptmcad.show.render.legend import INK
 from ptmcad.show.render.mechanism import STRONG, draw_sketch
 from ptmcad.show.render.overlay import Overlay
+from ptmcad.show.render.poses import pose_axes
 from ptmcad.show.render.regionmap import draw_parts, fit, left_out
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.sketch import Frame, Scene, arrow_lengths
-from ptmcad.show.style import MAX_SIDE, Style, styled
+from ptmcad.show.render.sketch import PanelFrame, Scene, arrow_lengths
+from ptmcad.show.render.view import Point
+from ptmcad.show.style import MAX_SIDE, PictureStyle, Size, styled
 
+DrawnMap = tuple[Figure, tuple[str, ...]]
+"""A picture of a map, and what it leaves out, in words."""
 MAX_POINTS = 12
 _STEPS, _STEP = 60, 1.05
 """How sizes are tried that would do."""
 
 
 def draw_around(
-    result: RegionMap, points: Sequence[tuple[Point, Poses]], style: Style, dpi: int, overlay: Overlay = ()
-) -> tuple[Figure, tuple[str, ...]]:
+    result: RegionMap, points: Sequence[tuple[Point, Poses]], style: PictureStyle, dpi: int, overlay: Overlay = ()
+) -> DrawnMap:
     """The map in the middle and poses at its sides; within `ptmcad.show.render.printing.settings`.
 
     Parameters
@@ -66,7 +70,7 @@ def draw_around(
         raise ConfigError(f"{error.message}: {_remedy(result, points, style, dpi)}", key=error.key) from error
 
 
-def _remedy(result: RegionMap, points: Sequence[tuple[Point, Poses]], style: Style, dpi: int) -> str:
+def _remedy(result: RegionMap, points: Sequence[tuple[Point, Poses]], style: PictureStyle, dpi: int) -> str:
     """The least size of the same shape in which poses have room, of a page that is given whole."""
     if style.size is None or style.wide is not None:
         return "give fewer points, or a size of your own"
@@ -84,8 +88,8 @@ def _remedy(result: RegionMap, points: Sequence[tuple[Point, Poses]], style: Sty
 
 
 def _drawn(
-    result: RegionMap, points: Sequence[tuple[Point, Poses]], style: Style, dpi: int, overlay: Overlay
-) -> tuple[Figure, tuple[str, ...]]:
+    result: RegionMap, points: Sequence[tuple[Point, Poses]], style: PictureStyle, dpi: int, overlay: Overlay
+) -> DrawnMap:
     """The figure, and what of the map had no room.
 
     Raises
@@ -106,7 +110,7 @@ def _drawn(
         wide = number * page.panel / 72
         slot = Slot(GAP if before else size[0] - wide - GAP, size[1] - GAP, wide, before)
         tips = [_tip(axes, seen.whole.view.approximate_position(points[n][0])) for n in side]
-        along = Side([blocks[n] for n in side], slot, frame, em, size[1])
+        along = BlockColumn([blocks[n] for n in side], slot, frame, em, size[1])
         chart = moved.chart
         order, courses = routed(tips, along.berths, texts, (chart[1] + 0.05, chart[1] + chart[3] - 0.05))
         for k, (block, place) in enumerate(along.placed(order)):
@@ -115,7 +119,7 @@ def _drawn(
     return figure, left_out(seen, layout)
 
 
-def _map_beside(result: RegionMap, style: Style, dpi: int, overlay: Overlay = ()) -> tuple[Any, Layout]:
+def _map_beside(result: RegionMap, style: PictureStyle, dpi: int, overlay: Overlay = ()) -> tuple[Any, Layout]:
     """What `fit` finds for the map between the poses."""
     try:
         return fit(result, shapes(result), False, dpi, style, overlay)
@@ -123,7 +127,7 @@ def _map_beside(result: RegionMap, style: Style, dpi: int, overlay: Overlay = ()
         raise ConfigError("the map and its legend have no room beside the poses", key=error.key) from error
 
 
-def _moved(layout: Layout, left: float, size: tuple[float, float]) -> Layout:
+def _moved(layout: Layout, left: float, size: Size) -> Layout:
     """The layout further to the right on a wider page."""
     return replace(
         layout,
@@ -170,42 +174,28 @@ def _tip(axes: Any, at: Position) -> Position:
     return (chart.x0 + at[0] * chart.width) * width, (chart.y0 + at[1] * chart.height) * tall
 
 
-def _draw_block(figure: Figure, block: Block, frame: Frame, slot: Slot, style: Style) -> None:
+def _draw_block(figure: Figure, block: Block, frame: PanelFrame, slot: Slot, style: PictureStyle) -> None:
     """A point's head and poses."""
-    width, tall = (float(side) for side in figure.get_size_inches())
-    inches, em = figure.dpi_scale_trans, style.base_font / 72
-    left = slot.start(block, frame)
-    for k, line in enumerate(block.head):
-        figure.text(
-            left, slot.top - 1.3 * em * (k + 0.5), line, transform=inches, fontsize=style.base_font, fontweight="bold",
-            va="center_baseline", color=INK,
-        )  # fmt: skip
-    top = slot.top - 1.3 * em * len(block.head)
+    line, left = 1.3 * style.base_font / 72, slot.start(block, frame)
+    look = {"fontweight": "bold", "va": "center_baseline", "color": INK}
+    write_lines(figure, (left, slot.top - line / 2), block.head, style.base_font, line, **look)
+    top = slot.top - line * len(block.head)
     mechanism = mechanism_in(block.poses.model)
     assert mechanism is not None  # others have been refused
     scene = Scene(mechanism, frame, arrow_lengths(block.poses))
     for k, pose in enumerate(block.shown):
         row, column = divmod(k, block.across)
-        box = (left + column * frame.width / 72, top - (row + 1) * frame.height / 72, frame.width / 72,
-               frame.height / 72)  # fmt: skip
-        panel = figure.add_axes((box[0] / width, box[1] / tall, box[2] / width, box[3] / tall))
-        panel.set_gid(f"pose-{block.number}-{k + 1}")
-        panel.set(xlim=(0, frame.width), ylim=(0, frame.height), xticks=[], yticks=[])
-        for spine in panel.spines.values():
-            spine.set(color="#b5b5b5", linewidth=0.6)
+        corner = (left + column * frame.width / 72, top - (row + 1) * frame.height / 72)
+        panel = pose_axes(figure, corner, frame, f"pose-{block.number}-{k + 1}", strong=False)
         draw_sketch(panel, scene.of(pose), STRONG, f"pose-{block.number}-{k + 1}-")
 
 
-def _lead(figure: Figure, course: Course, number: int, style: Style) -> None:
+def _lead(figure: Figure, course: Course, number: int, style: PictureStyle) -> None:
     """A line to a point of the map, and a mark there."""
-    inches, tip = figure.dpi_scale_trans, course[-1]
-    for thickness, colour in ((2.2, "white"), (0.8, INK)):
-        figure.add_artist(
-            Line2D(*zip(*course, strict=True), transform=inches, color=colour, linewidth=thickness, zorder=8,
-                   solid_joinstyle="round", gid=f"leader-{number}" if colour == INK else None)
-        )  # fmt: skip
-    figure.add_artist(
-        Line2D((tip[0],), (tip[1],), transform=inches, marker="D", markersize=5.5 * style.base_font / 9,
-               markerfacecolor="white", markeredgecolor=INK, markeredgewidth=1.2, linestyle="none", zorder=9,
-               gid=f"point-{number}")
+    xs, ys = zip(*course, strict=True)
+    stroke(figure, xs, ys, color="white", linewidth=2.2, zorder=8, solid_joinstyle="round")
+    stroke(figure, xs, ys, color=INK, linewidth=0.8, zorder=8, solid_joinstyle="round", gid=f"leader-{number}")
+    stroke(
+        figure, xs[-1:], ys[-1:], marker="D", markersize=5.5 * style.base_font / 9, markerfacecolor="white",
+        markeredgecolor=INK, markeredgewidth=1.2, linestyle="none", zorder=9, gid=f"point-{number}",
     )  # fmt: skip

@@ -14,7 +14,7 @@ from typing import Any
 
 from ptmcad.question.slice import Slice
 from ptmcad.show.units import unit, with_unit
-from ptmcad.text.numerals import magnitude, power_of_ten
+from ptmcad.text.numerals import decimal_places, magnitude, power_of_ten
 
 _LETTERS = (
     "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi"
@@ -162,8 +162,11 @@ def _cut(text: str, most: int) -> str:
 
 def _decimal(value: Fraction) -> str:
     """A decimal fraction, exactly."""
-    digits = 0
-    while (value * 10**digits).denominator != 1:
-        digits += 1
-    text = str((value * 10**digits).numerator).rjust(digits + 1, "0")
-    return f"{text[:-digits]}.{text[-digits:]}" if digits else text
+    return fixed(value, decimal_places(value) or 0)
+
+
+def fixed(value: Fraction, decimals: int) -> str:
+    """A number that has so many decimals at most, with just as many."""
+    digits = str(abs(value) * 10**decimals).zfill(decimals + 1)
+    text = f"{digits[:-decimals]}.{digits[-decimals:]}" if decimals else digits
+    return f"−{text}" if value < 0 else text

@@ -17,12 +17,11 @@ from ptmcad.answer.words import counted
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.leaders import Berth, Order
-from ptmcad.show.render.poses import assigned, in_order
-from ptmcad.show.render.sketch import Frame, frame_of
+from ptmcad.show.render.poses import assigned
+from ptmcad.show.render.sketch import PanelFrame, frame_of
 from ptmcad.show.render.textwidth import wrapped
-from ptmcad.show.style import PAGE_HEIGHT, Place, Style
-
-Point = tuple[Fraction, Fraction]
+from ptmcad.show.render.view import Point
+from ptmcad.show.style import PAGE_HEIGHT, LegendPlace, PictureStyle
 
 PANEL, MIN_PANEL = 138.0, 104.0
 """Width of a pose in points, and the least at which its letters have room."""
@@ -46,12 +45,12 @@ class Block:
     shown: tuple[Pose, ...]
     across: int
 
-    def height(self, frame: Frame, em: float) -> float:
+    def height(self, frame: PanelFrame, em: float) -> float:
         """In inches, with the space below."""
         rows = ceil(len(self.shown) / self.across)
         return len(self.head) * 1.3 * em + rows * frame.height / 72 + GAP
 
-    def width(self, frame: Frame) -> float:
+    def width(self, frame: PanelFrame) -> float:
         return max(1, min(len(self.shown), self.across)) * frame.width / 72
 
 
@@ -64,11 +63,11 @@ class Slot:
     width: float
     before: bool
 
-    def start(self, block: Block, frame: Frame) -> float:
+    def start(self, block: Block, frame: PanelFrame) -> float:
         """The block's left end: blocks stand as near to the map as they can."""
         return self.left + (self.width - block.width(frame) if self.before else 0.0)
 
-    def berth(self, block: Block, frame: Frame, em: float) -> Berth:
+    def berth(self, block: Block, frame: PanelFrame, em: float) -> Berth:
         """Where the line to the block's point may begin."""
         edge, towards = (self.left + self.width, 1.0) if self.before else (self.left, -1.0)
         low = self.top - block.height(frame, em) + GAP + _NEAR
@@ -80,7 +79,7 @@ class Slot:
 
 
 @dataclass(frozen=True, slots=True)
-class _Page:
+class _PosePage:
     """A page's width and, where it does not grow, its height; a panel's width in points, and how many side by side."""
 
     width: float
@@ -93,8 +92,8 @@ class _Page:
 class Plan:
     """The points' blocks, and the numbers of those at the left and at the right of the map, from above."""
 
-    page: _Page
-    frame: Frame
+    page: _PosePage
+    frame: PanelFrame
     blocks: Sequence[Block]
     sides: tuple[list[int], list[int]]
 
@@ -112,7 +111,7 @@ class Plan:
         return max(heights) + 2 * GAP
 
 
-def sized(plan: Plan, style: Style, points: int) -> tuple[Position, list[float], Style]:
+def sized(plan: Plan, style: PictureStyle, points: int) -> tuple[Position, list[float], PictureStyle]:
     """The page's size, inches that poses take at the left and at the right, and the style of the map between.
 
     Raises
@@ -124,13 +123,13 @@ def sized(plan: Plan, style: Style, points: int) -> tuple[Position, list[float],
     taken = [_taken(number, page.panel) for number in plan.most]
     width = page.width - sum(taken)
     tall = _height(page, plan.tall(style.base_font / 72), width, style, points)
-    inner = style._replace(size=(width, tall), font_size=style.base_font, legend=style.legend or Place.BELOW)
+    inner = style._replace(size=(width, tall), font_size=style.base_font, legend=style.legend or LegendPlace.BELOW)
     return (page.width, tall), taken, inner
 
 
-def arranged(result: RegionMap, points: Sequence[tuple[Point, Poses]], style: Style) -> Plan:
+def arranged(result: RegionMap, points: Sequence[tuple[Point, Poses]], style: PictureStyle) -> Plan:
     """Half of the points at each side of the map, few all at the right; on a page of a given width as fits best."""
-    shown = [_shown(poses) for _, poses in points]
+    shown = [poses.working for _, poses in points]
     usual = len(points) // 2 if len(points) > 3 else 0
     most = PAGE_HEIGHT if style.wide is not None else style.size[1] if style.size is not None else None
     found: list[tuple[float, Plan]] = []
@@ -154,12 +153,12 @@ def arranged(result: RegionMap, points: Sequence[tuple[Point, Poses]], style: St
 
 
 @dataclass(frozen=True, slots=True)
-class Side:
+class BlockColumn:
     """The blocks at one side of the map, from the slot at the top downwards on a page of some height."""
 
     blocks: Sequence[Block]
     first: Slot
-    frame: Frame
+    frame: PanelFrame
     em: float
     page: float
 
@@ -177,16 +176,11 @@ class Side:
 
 
 def _block(
-    result: RegionMap, n: int, point: tuple[Point, Poses], shown: tuple[Pose, ...], page: _Page, style: Style
+    result: RegionMap, n: int, point: tuple[Point, Poses], shown: tuple[Pose, ...], page: _PosePage, style: PictureStyle
 ) -> Block:
     at, poses = point
     wide = min(max(1, len(shown)), page.across) * page.panel
     return Block(n + 1, at, _lines(_head(result, n + 1, at, poses), wide, style), poses, shown, page.across)
-
-
-def _shown(poses: Poses) -> tuple[Pose, ...]:
-    told = poses.model.tells_stability
-    return tuple(pose for pose in in_order(poses) if pose.stable or not told)
 
 
 def _sides(points: Sequence[Point], left: int) -> tuple[list[int], list[int]]:
@@ -201,14 +195,14 @@ def _taken(number: int, panel: float) -> float:
     return number * panel / 72 + 2 * GAP if number else 0.0
 
 
-def _page(style: Style, numbers: Sequence[Sequence[int]]) -> _Page:
+def _page(style: PictureStyle, numbers: Sequence[Sequence[int]]) -> _PosePage:
     """The page for so many poses at each point at the left and at the right: side by side where that has room."""
     scale = style.base_font / 9
     largest = max(max(side, default=0) for side in numbers)
     width = style.widest
     if width is None:
         most = [max(side, default=0) for side in numbers]
-        return _Page(scale * _MAP[0] + sum(_taken(number, PANEL) for number in most), None, PANEL, largest)
+        return _PosePage(scale * _MAP[0] + sum(_taken(number, PANEL) for number in most), None, PANEL, largest)
     for across in range(largest, 0, -1):
         most = [max((min(number, across) for number in side), default=0) for side in numbers]
         # nearly half of the page is the map's; on a large page the poses do not grow beyond what they need
@@ -216,40 +210,41 @@ def _page(style: Style, numbers: Sequence[Sequence[int]]) -> _Page:
         room = (_SHARE * width - gaps) * 72 / sum(most)
         if room >= MIN_PANEL:
             height = None if style.wide is not None or style.size is None else style.size[1]
-            return _Page(width, height, min(room, PANEL * max(1.0, scale)), across)
+            return _PosePage(width, height, min(room, PANEL * max(1.0, scale)), across)
     least = sum(_taken(number, MIN_PANEL) for number in most) / _SHARE
     raise ConfigError(
         f"poses beside the map need a width of {least + 0.01:.2f} inches, and there are {width:.2f}", key="size"
     )
 
 
-def _frame(shown: Sequence[tuple[Pose, ...]], panel: float) -> Frame:
+def _frame(shown: Sequence[tuple[Pose, ...]], panel: float) -> PanelFrame:
     """The panels' sides and scale."""
     everything = [pose for poses in shown for pose in poses]
     if not everything:
-        return Frame(Fraction(1), 0.0, panel)
+        return PanelFrame(Fraction(1), 0.0, panel)
     return frame_of(everything, panel, min(_TALLEST, 0.9 * panel))
 
 
-def _height(page: _Page, tall: float, inner: float, style: Style, points: int) -> float:
+def _height(page: _PosePage, tall: float, inner: float, style: PictureStyle, points: int) -> float:
     """Of the page, whose poses are so tall and whose map is so wide with its numbers."""
+    natural = max(_MAP[1] / _MAP[0] * inner, tall)
     if page.height is None and style.wide is None:
-        return max(_MAP[1] / _MAP[0] * inner, tall)
+        return natural
     there = PAGE_HEIGHT if page.height is None else page.height
     if tall > there:
         raise ConfigError(
             f"poses at {points} points need a height of {tall + 0.01:.2f} inches, and there are {there:.2f}", key="size"
         )
-    return there if page.height is not None else min(there, max(_MAP[1] / _MAP[0] * inner, tall))
+    return there if page.height is not None else min(there, natural)
 
 
 def _head(result: RegionMap, number: int, at: Point, poses: Poses) -> str:
     where = ", ".join(assigned(axis.name, value) for axis, value in zip(result.slice.axes, at, strict=True))
-    if poses.model.tells_stability:
-        return f"{number}:  {where}; {poses.stable}\N{NO-BREAK SPACE}stable"
-    return f"{number}:  {where}; {counted(poses.model, len(poses.equilibria))}"
+    stable = poses.known_stable
+    what = counted(poses.model, len(poses.equilibria)) if stable is None else f"{stable}\N{NO-BREAK SPACE}stable"
+    return f"{number}:  {where}; {what}"
 
 
-def _lines(head: str, points: float, style: Style) -> Sequence[str]:
+def _lines(head: str, points: float, style: PictureStyle) -> Sequence[str]:
     """A head over poses of this width in points, or over the room for one."""
     return wrapped(head, max(points, MIN_PANEL) / 72, style.base_font, True)

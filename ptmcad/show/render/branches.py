@@ -5,24 +5,22 @@ Guarantee: as of `ptmcad.show.render.ranges`; lines join what is next to each ot
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from ptmcad.answer.branches import Branch, Branches
 from ptmcad.answer.paths import PosePaths
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.branches import kind
-from ptmcad.show.render.axes import heading_of, scale_of, symbol, with_symbols
-from ptmcad.show.render.legend import INK, Entry, draw_legend, height, width
+from ptmcad.show.render.axes import with_symbols
+from ptmcad.show.render.legend import INK, Entry, line_mark
 from ptmcad.show.render.paths import draw_paths
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.rangeplate import LEFT, LOOKS, RIGHT, SIZE, WIDE, axes_in, axis_name, beside, scaled, short
+from ptmcad.show.render.rangeplate import LOOKS, panelled, scaled
 from ptmcad.show.units import with_unit
 
-PANEL, GAP, FOOT = 2.0, 0.25, 0.55
 _OTHER: dict[str, Any] = {"color": INK, "linewidth": 1.4, "linestyle": "-"}
 _BEHIND: dict[str, Any] = {"color": "#8a8a8a", "linewidth": 0.9}
 """What changes where others are in front."""
@@ -32,30 +30,19 @@ _TURN = 180
 
 def draw_branches(slice: Slice, found: Branches) -> Figure:
     """A panel for each quantity."""
-    fixed = ", ".join(f"{symbol(n)} = {short(v)}" for n, v in found.at.items())
     kinds = list(dict.fromkeys(kind(b, found.model) for b in found.branches))
     kinds.sort(key=_rank)
-    entries = (Entry(("branches",), strong=True), *(Entry((name,), _mark(name)) for name in kinds))
-    last = len(found.quantities) - 1
-    tall = max((last + 1) * PANEL + last * GAP + FOOT, height(entries) + 0.2)
+    entries = (Entry(("branches",), strong=True), *(Entry((name,), line_mark(_look(name))) for name in kinds))
+    shown = (with_symbols(name.replace(":", " ")) for name in found.quantities)
+    names = [with_unit(*pair) for pair in zip(shown, found.units, strict=True)]
     words = f"{', '.join(found.quantities)} of all solutions along {found.along.name}: {', '.join(kinds)}."
     with settings():
-        figure = beside(f"{heading_of(slice)}; {fixed}", width(entries), tall, words)
-        scale = scale_of(found.along.low, found.along.high)
-        for number, (name, unit) in enumerate(zip(found.quantities, found.units, strict=True)):
-            bottom = tall - (number + 1) * PANEL - number * GAP
-            axes = axes_in(figure, (LEFT, bottom, WIDE, PANEL))
+        figure, panels = panelled(slice, found, names, entries, words)
+        for number, axes in enumerate(panels):
             for branch in sorted(found.branches, key=lambda b: bool(b.stable)):  # the stable ones on top
                 look = _look(kind(branch, found.model))
                 for xs, ys in _strokes(branch, number, found):
                     axes.plot(xs, ys, **look)
-            axes.set_xlim(scale.low, scale.high)
-            axes.margins(y=0.08)
-            axes.tick_params(labelsize=SIZE, labelbottom=number == last)
-            axes.set_ylabel(with_unit(with_symbols(name.replace(":", " ")), unit), fontsize=SIZE + 2)
-            if number == last:
-                axes.set_xlabel(axis_name(slice, found.along), fontsize=SIZE + 2, labelpad=2)
-        draw_legend(figure, entries, LEFT + WIDE + RIGHT, tall - 0.05)
     return figure
 
 
@@ -63,7 +50,7 @@ def draw_paths_and_branches(slice: Slice, paths: PosePaths, found: Branches) -> 
     """The paths of poses, and behind them the branches that no path follows; ``found`` has the unknowns, in order."""
     others = [branch for branch in found.branches if branch.stable is False or _is_left(branch, paths, found)]
     kinds = sorted({kind(branch, found.model) for branch in others}, key=_rank)
-    further = [Entry((f"{name}, not followed",), _mark(name, **_BEHIND)) for name in kinds]
+    further = [Entry((f"{name}, not followed",), line_mark(_look(name) | _BEHIND)) for name in kinds]
     figure = draw_paths(slice, paths, further)
     for number in range(len(found.quantities)):
         for branch in others:
@@ -113,11 +100,3 @@ def _look(name: str) -> dict[str, Any]:
 
 def _rank(name: str) -> int:
     return list(LOOKS).index(name) if name in LOOKS else len(LOOKS)
-
-
-def _mark(name: str, **changes: Any) -> Callable[[Any, float, float], None]:
-    def draw(figure: Any, left: float, middle: float) -> None:
-        look = _look(name) | changes
-        figure.add_artist(Line2D((left, left + 0.28), (middle, middle), transform=figure.dpi_scale_trans, **look))
-
-    return draw

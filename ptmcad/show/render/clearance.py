@@ -51,7 +51,7 @@ class Placed:
     @property
     def box(self) -> Box:
         """What the label covers."""
-        return _around(self.center, self.label.half)
+        return around(self.center, self.label.half)
 
 
 def polyline(points: Sequence[Position], half: float) -> Iterator[Stroke]:
@@ -87,7 +87,7 @@ def _best(label: Label, strokes: Sequence[Stroke], boxes: Sequence[Box], bounds:
             # 0, 1, -1, 2, -2, ... steps away from the wanted direction
             angle = start + 2 * pi / _DIRECTIONS * ((k + 1) // 2) * (1 if k % 2 else -1)
             center = _beside(label, angle, distance)
-            box = _around(center, label.half)
+            box = around(center, label.half)
             if box[0] < bounds[0] or box[1] < bounds[1] or box[2] > bounds[2] or box[3] > bounds[3]:
                 continue
             leader = _edge(label.at, box) if distance > 11 else None
@@ -95,7 +95,7 @@ def _best(label: Label, strokes: Sequence[Stroke], boxes: Sequence[Box], bounds:
             passed = 0
             if leader is not None:
                 line = Stroke(label.at, leader, 0.5)
-                passed = sum(crosses(line, other) for other in boxes if not _holds(other, label.at))
+                passed = sum(crosses(line, other) for other in boxes if not holds(other, label.at))
             if (covered, passed) < fewest:
                 fewest, best = (covered, passed), Placed(label, center, leader)
                 if covered + passed == 0:
@@ -116,11 +116,13 @@ def _edge(at: Position, box: Box) -> Position:
     return min(max(at[0], box[0]), box[2]), min(max(at[1], box[1]), box[3])
 
 
-def _around(center: Position, half: Position) -> Box:
+def around(center: Position, half: Position) -> Box:
+    """The box with such a middle."""
     return center[0] - half[0], center[1] - half[1], center[0] + half[0], center[1] + half[1]
 
 
-def _holds(box: Box, point: Position) -> bool:
+def holds(box: Box, point: Position) -> bool:
+    """Whether a point is in a box or on its edge."""
     return box[0] <= point[0] <= box[2] and box[1] <= point[1] <= box[3]
 
 

@@ -10,7 +10,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.collections import LineCollection
@@ -21,8 +20,9 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.colours import GREYS, HATCHES, Fill, undetermined_fill
-from ptmcad.show.render.fitting import MIN_SIDE, Parts, overhang, rewrapped
-from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, Wording, draw_legend, entries, hidden_words
+from ptmcad.show.render.fitting import MIN_SIDE, PageParts, overhang, rewrapped
+from ptmcad.show.render.inches import Box, axes_at, write_lines
+from ptmcad.show.render.legend import INK, Entry, Type, Wording, draw_legend, entries, hidden_words
 from ptmcad.show.render.painting import Paint, paint_map, paint_of
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.regionmap import whole_title
@@ -31,7 +31,7 @@ from ptmcad.show.render.slivers import seen_thin_walls
 from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.render.thinmarks import Marks, draw_marks, marks_of
 from ptmcad.show.render.view import Shapes
-from ptmcad.show.style import MIN_FONT, Place, Style
+from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, count_text
 from ptmcad.text.bounds import percent, share_text
 from ptmcad.text.numerals import shortest_text
@@ -49,7 +49,7 @@ NO_MARKS = Marks()
 
 
 @dataclass(frozen=True, slots=True)
-class _Panel:
+class _MapPanel:
     """A chart with what stands above and below it, and regions that are seen however narrow they are."""
 
     seen: Shapes
@@ -60,7 +60,7 @@ class _Panel:
     marks: Marks = NO_MARKS
 
 
-def draw_comparison(comparison: Comparison, path: Path, dpi: int, style: Style) -> None:
+def draw_comparison(comparison: Comparison, path: Path, dpi: int, style: PictureStyle) -> None:
     """Write the picture, as `ptmcad.show.render.printing.save` does.
 
     Raises
@@ -70,8 +70,6 @@ def draw_comparison(comparison: Comparison, path: Path, dpi: int, style: Style) 
     """
     with settings(style):
         figure = comparison_figure(comparison, dpi, style)
-    title = f"{whole_title(comparison.first)} and {whole_title(comparison.second)}"
-    figure.set_label(f"{title}\n{' '.join(in_words(comparison))}")
     save(figure, path, dpi=dpi, style=style)
 
 
@@ -123,13 +121,13 @@ def change_text(comparison: Comparison, change: Change) -> str:
     return f"{before} → {count_text(comparison.second.regions[change.after], count)}"
 
 
-def comparison_figure(comparison: Comparison, dpi: int, style: Style) -> Figure:
+def comparison_figure(comparison: Comparison, dpi: int, style: PictureStyle) -> Figure:
     """The picture; within `ptmcad.show.render.printing.settings`."""
     font = style.base_font
     em = font / 72
-    type = _type(style)
+    type = Type.of(style)
     first = shapes(comparison.first)
-    parts = Parts(comparison.first.slice, "", ((), ()), (first.view,))
+    parts = PageParts(comparison.first.slice, "", ((), ()), (first.view,))
     width = style.widest if style.widest is not None else 3 * (SIDE * font / 9 + 6 * em)
     how = Dress(max(MIN_FONT, 0.95 * font), 1.05 * font, (4, 5), scale=font / 9)
     left, below, right, _ = overhang(parts, first.view, (SIDE, SIDE), how)
@@ -152,25 +150,19 @@ def comparison_figure(comparison: Comparison, dpi: int, style: Style) -> Figure:
         box = (k * each + left + 0.3 * em, tall + rest - head - tall, side, tall)
         _draw(figure, panel, box, how, font)
         draw_legend(figure, panel.legend, box[0], box[1] - below - 0.8 * em, type)
+    title = f"{whole_title(comparison.first)} and {whole_title(comparison.second)}"
+    figure.set_label(f"{title}\n{' '.join(in_words(comparison))}")
     return figure
 
 
-def _type(style: Style) -> Type:
-    font = style.base_font
-    return Type(
-        font, max(MIN_FONT, 0.89 * font), font / 9, style.strong, style.strong * THIN / STRONG, style.thin_lines
-    )
-
-
-def _panels(comparison: Comparison, first: Shapes, style: Style, sides: tuple[float, float], dpi: int) -> list[_Panel]:
+def _panels(comparison: Comparison, first: Shapes, style: PictureStyle, sides: Size, dpi: int) -> list[_MapPanel]:
     """The two maps and the difference, with text as wide as they are."""
-    type, side = _type(style), sides[0]
-    small = max(MIN_FONT, 0.89 * style.base_font)
+    type, side = Type.of(style), sides[0]
     found: list[tuple[Shapes, Paint, str, Sequence[Entry], Mapping[int, Fill], Marks]] = []
     pair = (comparison.first, comparison.second)
     for letter, own, result, seen in zip(LETTERS, own_words(*pair), pair, (first, shapes(pair[1])), strict=True):
-        paint = paint_of(result, style)
-        marks = marks_of(seen, sides, dpi, small)
+        paint = paint_of(style, result)
+        marks = marks_of(seen, sides, dpi, type.detail)
         thin = seen_thin_walls(seen, (72 * sides[0], 72 * sides[1]))
         paint = replace(paint, thin_walls=thin)
         told = entries(result, thin, False, marks.hidden, Wording(paint.fill, paint.undetermined))
@@ -187,12 +179,12 @@ def _panels(comparison: Comparison, first: Shapes, style: Style, sides: tuple[fl
     names = [""] * len(decomposition.regions)
     for change in comparison.changes:
         names[change.region] = change_text(comparison, change)
-    marks = marks_of(whole, sides, dpi, small, names)
+    marks = marks_of(whole, sides, dpi, type.detail, names)
     changes = [*_differences(comparison, style), *([Entry((hidden_words(marks.hidden),))] if marks.hidden else [])]
     found.append((whole, bare, f"Difference, {' → '.join(LETTERS)}", changes, fills, marks))
-    untold = style.legend is Place.NONE
+    untold = style.legend is LegendPlace.NONE
     return [
-        _Panel(
+        _MapPanel(
             seen, paint, _head(title, side, type),
             [] if untold else [rewrapped(entry, side, type) for entry in told], outlined, marks,
         )
@@ -226,7 +218,7 @@ def _head(title: str, side: float, type: Type) -> list[str]:
     return lines if len(lines) <= _MAX_HEAD else [*lines[: _MAX_HEAD - 1], f"{lines[_MAX_HEAD - 1]} …"]
 
 
-def _fills(comparison: Comparison, style: Style) -> dict[int, Fill]:
+def _fills(comparison: Comparison, style: PictureStyle) -> dict[int, Fill]:
     """Of each change, by the number of its region; others are white."""
     faces = GREYS[2:] if style.palette == "grey" else CHANGES
     found: dict[int, Fill] = {}
@@ -236,7 +228,7 @@ def _fills(comparison: Comparison, style: Style) -> dict[int, Fill]:
     return found
 
 
-def _differences(comparison: Comparison, style: Style) -> list[Entry]:
+def _differences(comparison: Comparison, style: PictureStyle) -> list[Entry]:
     fills, open_part = _fills(comparison, style), _undetermined(comparison)
     if comparison.changes:
         area = _area(comparison, comparison.area)
@@ -252,10 +244,9 @@ def _differences(comparison: Comparison, style: Style) -> list[Entry]:
     return told
 
 
-def _draw(figure: Figure, panel: _Panel, box: tuple[float, float, float, float], how: Dress, font: float) -> None:
-    width, tall = (float(side) for side in figure.get_size_inches())
-    left, bottom, wide, high = box
-    axes: Any = figure.add_axes((left / width, bottom / tall, wide / width, high / tall))
+def _draw(figure: Figure, panel: _MapPanel, box: Box, how: Dress, font: float) -> None:
+    left, bottom, _, high = box
+    axes = axes_at(figure, box)
     result = panel.seen.result
     paint_map(axes, panel.seen, "", panel.paint)
     for number, fill in panel.outlined.items():
@@ -268,8 +259,6 @@ def _draw(figure: Figure, panel: _Panel, box: tuple[float, float, float, float],
         )  # fmt: skip
     draw_marks(axes, panel.marks, font / 9)
     dress(axes, result.slice, panel.seen.view.x, panel.seen.view.y, how)
-    for k, line in enumerate(reversed(panel.head)):
-        figure.text(
-            left, bottom + high + 0.35 * font / 72 + 1.35 * font / 72 * (k + 0.5), line, fontsize=font,
-            fontweight="bold", va="center", transform=figure.dpi_scale_trans, color=INK,
-        )  # fmt: skip
+    em = font / 72
+    first = (left, bottom + high + 0.35 * em + 0.675 * em)
+    write_lines(figure, first, reversed(panel.head), font, -1.35 * em, fontweight="bold", color=INK)

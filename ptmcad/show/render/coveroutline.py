@@ -25,7 +25,7 @@ from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.slanted import shown as with_steps
 from ptmcad.cover.subdivision import FREE
 from ptmcad.show.render.simplification import simplified_polygons
-from ptmcad.show.render.view import Floats, Same, View
+from ptmcad.show.render.view import CellShape, Floats, Same, View, WallShape
 
 TOLERANCE = 1.5e-4
 """Of the view's side; 0.05 pt where the side is 4.6 inches."""
@@ -59,13 +59,13 @@ class CoverOutline:
         for cell in self.result.regions[region].cells:
             yield from found[cell]
 
-    def cells(self, tolerance: float = 0.0) -> Iterator[tuple[int, list[Floats]]]:
+    def cells(self, tolerance: float = 0.0) -> Iterator[CellShape]:
         """Every cell's outlines; with a tolerance those that collapse are among them, as a line or a point."""
         for cell, found in enumerate(_polygons(Same(self), tolerance)):
             if found:
                 yield cell, list(found)
 
-    def walls(self, tolerance: float = 0.0) -> Iterator[tuple[int, bool, Floats]]:
+    def walls(self, tolerance: float = 0.0) -> Iterator[WallShape]:
         """None: a certified map knows no curve, only what encloses the curves."""
         return iter(())
 
@@ -162,7 +162,7 @@ def _components_of(result: RegionMap, complement: Components) -> Mapping[int, in
     for number, cell in enumerate(result.cells):
         place = [
             (value - axis.low) / (axis.high - axis.low) * complement.cover.steps
-            for axis, value in zip(result.slice.axes, (cell.sample[0], cell.sample[1]), strict=True)
+            for axis, value in zip(result.slice.axes, cell.sample, strict=True)
         ]
         component = complement.locate(*place)
         if component is None or component in found.values():

@@ -21,10 +21,10 @@ from ptmcad.answer.design import BestDesign
 from ptmcad.question.slice import Axis
 from ptmcad.show.designtable import design_table, value_text
 from ptmcad.show.render.axes import scale_of, symbol
+from ptmcad.show.render.inches import write_lines
 from ptmcad.show.render.legend import INK
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.rangeplate import LEFT, RIGHT, SIZE, WIDE, axes_in, figure_of, scaled
-from ptmcad.show.style import DEFAULT, Style
 
 TALL = 3.6
 BAR = 0.16
@@ -34,9 +34,9 @@ COLOURS = "viridis"
 _COLUMNS = 96
 
 
-def draw_design(found: BestDesign, path: Path, dpi: int = 150, style: Style = DEFAULT) -> None:
+def draw_design(found: BestDesign, path: Path) -> None:
     """Draw the values over the design parameters, with the bounds and the best one, into a file."""
-    save(figure_of_design(found), path, dpi=dpi, style=style)
+    save(figure_of_design(found), path)
 
 
 def figure_of_design(found: BestDesign) -> Figure:
@@ -52,8 +52,7 @@ def figure_of_design(found: BestDesign) -> Figure:
         else:
             _draw_plane(figure, axes, found, foot)
         axes.tick_params(labelsize=SIZE)
-        for k, line in enumerate(reversed(lines)):
-            figure.text(LEFT, 0.2 + 0.2 * k, line, transform=figure.dpi_scale_trans, fontsize=SIZE)
+        write_lines(figure, (LEFT, 0.2), reversed(lines), SIZE, -0.2, va="baseline")
     return figure
 
 

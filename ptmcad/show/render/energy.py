@@ -13,20 +13,17 @@ from fractions import Fraction
 from math import radians
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import moments_work
 from ptmcad.exact.models.potential import squared_lengths, system_from
 from ptmcad.exact.models.system import polynomial_at
-from ptmcad.model import Mechanism, Model
+from ptmcad.model import Model
 from ptmcad.model.evaluate import value_at
 from ptmcad.model.moments import moments_at
+from ptmcad.show.render.view import Floats
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import magnitude
-
-Floats = NDArray[np.float64]
-
 
 Terms = tuple[tuple[tuple[int, ...], float], ...]
 
@@ -87,7 +84,8 @@ def energy_of(model: Model, parameters: Mapping[str, Fraction]) -> Energy:
     sizes = [abs(c) for c in (*exact.values(), *moments.values())]
     unit = Fraction(10) ** magnitude(max(sizes, default=Fraction(1)))
     roots = []
-    springs = zip(model.springs, squared_lengths(model), strict=True) if isinstance(model, Mechanism) else ()
+    mechanism = model.drawable
+    springs = () if mechanism is None else zip(mechanism.springs, squared_lengths(mechanism), strict=True)
     for spring, square in springs:
         free = value_at(spring.free, dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters))
         pull = value_at(spring.stiffness, parameters) * free

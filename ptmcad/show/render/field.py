@@ -13,25 +13,23 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from ptmcad.answer.boundaries import NONE, Boundary
 from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
-from ptmcad.model import System
 from ptmcad.show.render.axes import Dress, dress, scale_of, with_symbols
 from ptmcad.show.render.colours import Fill, undetermined_fill
 from ptmcad.show.render.fieldlines import branch_edges, contour_lines
-from ptmcad.show.render.fitting import MIN_SIDE
-from ptmcad.show.render.legend import INK, RIM_INK, STRONG, SWATCH, THIN, Entry, Type, draw_legend, in_rows
-from ptmcad.show.render.textwidth import ALLOWANCE, text_width, wrapped
+from ptmcad.show.render.fitting import MIN_SIDE, beside, dressed
+from ptmcad.show.render.inches import Box
+from ptmcad.show.render.legend import INK, RIM_INK, STRONG, Entry, Type, draw_rows, in_rows, line_mark
+from ptmcad.show.render.textwidth import text_width, wrapped
 from ptmcad.show.render.view import Floats, View
-from ptmcad.show.style import DEFAULT, MIN_FONT, Place, Style
+from ptmcad.show.style import DEFAULT, MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.show.units import with_unit
 
 SIDE, GAP, BAR = 4.6, 0.2, 0.2
@@ -54,20 +52,25 @@ def title_of(result: RegionMap, field: Field) -> str:
 def pose_words(result: RegionMap, field: Field) -> str:
     """Such as ``stable pose 1``."""
     word, _, number = field.pose.partition(":")
-    solution = "solution" if isinstance(result.slice.model, System) else "pose"
+    solution = result.slice.model.nouns.pose
     return f"{solution} {number}" if word == "pose" else f"{word} {solution} {number}"
 
 
 def description(field: Field) -> str:
     """What the picture shows, in words."""
-    known = field.values[~np.isnan(field.values)]
+    known = field.known
     if not known.size:
         return f"{_absent(field)[0].upper()}{_absent(field)[1:]}."
     return f"{field.quantity} of {field.pose} from {known.min():.6g} to {known.max():.6g}, {field.shares}."
 
 
 def field_figure(
-    result: RegionMap, field: Field, boundaries: Sequence[Boundary], contours: int, dpi: int, style: Style = DEFAULT
+    result: RegionMap,
+    field: Field,
+    boundaries: Sequence[Boundary],
+    contours: int,
+    dpi: int,
+    style: PictureStyle = DEFAULT,
 ) -> Figure:
     """The picture, to be called within `settings`.
 
@@ -81,7 +84,7 @@ def field_figure(
     axes: Any = figure.add_axes((0.2, 0.2, 0.5, 0.5))
     axes.set_gid("map")
     axes.set_facecolor(_EMPTY)
-    known = field.values[~np.isnan(field.values)]
+    known = field.known
     view = View.whole(result)
     if (field.region == NONE).any():
         fill_empty(axes, field, _extent(view), undetermined_fill(style.palette))
@@ -96,14 +99,11 @@ def field_figure(
             shares = _shares(result, boundary.points)
             axes.plot(*shares.T, color=INK, linewidth=style.strong, transform=axes.transAxes)
     chart = (SIDE, SIDE) if style.size is None else (0.6 * style.size[0], 0.6 * style.size[1])
-    how = Dress()
-    if not style.flows:
-        ticks = max(MIN_FONT, 0.95 * font)
-        many = [int(max(2, min(8, side / (ems * ticks / 72)))) for side, ems in zip(chart, (3.3, 2.0), strict=True)]
-        how = Dress(ticks, max(MIN_FONT, 1.05 * font), (many[0], many[1]), scale=font / 9)
-    dress(axes, result.slice, view.x, view.y, how)
-    legend = [] if style.legend is Place.NONE else _legend(result, field, boundaries, style)
-    _Page(figure, axes, bar_axes, title_of(result, field) if style.title is None else style.title, legend, style).set()
+    dress(axes, result.slice, view.x, view.y, Dress() if style.flows else dressed(font, chart))
+    legend = [] if style.legend is LegendPlace.NONE else _legend(result, field, boundaries, style)
+    _FieldPage(
+        figure, axes, bar_axes, title_of(result, field) if style.title is None else style.title, legend, style
+    ).set()
     figure.set_label(f"{title_of(result, field)}\n{description(field)}")
     return figure
 
@@ -115,21 +115,22 @@ def _extent(view: View) -> tuple[float, ...]:
 def fill_empty(axes: Any, field: Field, extent: Sequence[float], fill: Fill) -> None:
     """The pixels of which the map says nothing, and in white those of its regions, over which the values come."""
     axes.patch.set(facecolor=fill.face, hatch=fill.hatch or None, edgecolor=RIM_INK, linewidth=0)
-    axes.imshow(
-        np.where(field.region == NONE, np.nan, 0.0), origin="lower", extent=tuple(extent), aspect="auto",
-        cmap=ListedColormap([_EMPTY]), interpolation="nearest", gid="empty",
+    show_pixels(axes, np.where(field.region == NONE, np.nan, 0.0), extent, cmap=ListedColormap([_EMPTY]), gid="empty")
+
+
+def show_pixels(axes: Any, values: Any, extent: Sequence[float], **look: Any) -> Any:
+    """An image of values, row after row from the bottom, without any smoothing."""
+    return axes.imshow(
+        values, origin="lower", extent=tuple(extent), aspect="auto", interpolation="nearest", **look
     )  # fmt: skip
 
 
-def _fill(figure: Figure, axes: Any, field: Field, view: View, number: int, style: Style) -> Any:
+def _fill(figure: Figure, axes: Any, field: Field, view: View, number: int, style: PictureStyle) -> Any:
     """The pixels with their lines, and the scale, whose axes are returned."""
     extent = _extent(view)
-    known = field.values[~np.isnan(field.values)]
-    low, high = float(known.min()), float(known.max())
-    image = axes.imshow(
-        field.values, origin="lower", extent=extent, aspect="auto", cmap=_colours(style), interpolation="nearest",
-        vmin=low, vmax=high if high > low else low + 1.0, gid="values",
-    )  # fmt: skip
+    low, high = float(field.known.min()), float(field.known.max())
+    span = {"vmin": low, "vmax": high if high > low else low + 1.0}
+    image = show_pixels(axes, field.values, extent, cmap=_colours(style), gid="values", **span)
     lines = {**_LINES, "linewidths": 0.6 * style.line_scale}
     levels = contour_lines(axes, field, extent, number)
     for found in filter(None, levels.values()):
@@ -161,7 +162,7 @@ def _fill(figure: Figure, axes: Any, field: Field, view: View, number: int, styl
     return bar_axes
 
 
-def _colours(style: Style) -> Any:
+def _colours(style: PictureStyle) -> Any:
     """The palette's, from the least value to the largest."""
     if style.palette == "default":
         return COLOURS
@@ -170,18 +171,18 @@ def _colours(style: Style) -> Any:
     return LinearSegmentedColormap.from_list("own", list(faces))
 
 
-def _edge(style: Style) -> Sequence[tuple[float, str, Any]]:
+def _edge(style: PictureStyle) -> Sequence[tuple[float, str, Any]]:
     """Width, colour and dashes of the lines that make an edge between branches, from below."""
     return ((2.4 * style.line_scale, "white", "solid"), (1.1 * style.line_scale, INK, (0, (3.0, 1.6))))
 
 
-def _legend(result: RegionMap, field: Field, boundaries: Sequence[Boundary], style: Style) -> list[Entry]:
+def _legend(result: RegionMap, field: Field, boundaries: Sequence[Boundary], style: PictureStyle) -> list[Entry]:
     """What lines, white and grey mean, as far as they are there."""
     told = [Entry(("the count changes",), STRONG)] if any(b.separates for b in boundaries) else []
-    if field.jumps is not None and any(jump.any() for jump in field.jumps):
+    if any(jump.any() for jump in field.jumps or ()):
         told.append(Entry((f"the branch of {pose_words(result, field)} changes",), _edge_mark))
     unknown = field.region == NONE
-    if (np.isnan(field.values) & ~unknown).any() and not np.isnan(field.values).all():
+    if (np.isnan(field.values) & ~unknown).any() and field.known.size:
         what = "barrier" if field.quantity == "barrier" else pose_words(result, field)
         told.append(Entry((f"no {what}" if not field.missed + field.beyond else "no value",), Fill(_EMPTY)))
     if unknown.any():
@@ -191,16 +192,11 @@ def _legend(result: RegionMap, field: Field, boundaries: Sequence[Boundary], sty
     return told
 
 
-def _edge_mark(figure: Any, left: float, middle: float) -> None:
-    for width, colour, kind in _edge(DEFAULT):
-        figure.add_artist(
-            Line2D((left, left + SWATCH), (middle, middle), transform=figure.dpi_scale_trans, color=colour,
-                   linewidth=width, linestyle=kind)
-        )  # fmt: skip
+_edge_mark = line_mark(*({"color": c, "linewidth": width, "linestyle": kind} for width, c, kind in _edge(DEFAULT)))
 
 
 @dataclass(frozen=True, slots=True)
-class _Page:
+class _FieldPage:
     """The parts of a picture, which are set where they have room: what stands beside axes is measured."""
 
     figure: Figure
@@ -208,7 +204,7 @@ class _Page:
     bar: Any
     title: str
     legend: Sequence[Entry]
-    style: Style
+    style: PictureStyle
 
     def set(self) -> None:
         """Give all parts their places; a page without a size gets the one that it needs.
@@ -220,7 +216,7 @@ class _Page:
         """
         font, size = self.style.base_font, self.style.size
         em, scale = font / 72, font / 9
-        type = Type(font, max(MIN_FONT, 0.89 * font), scale, self.style.strong, self.style.strong * THIN / STRONG)
+        type = Type.of(self.style)
         side = SIDE * scale
         wide, tall = size or (side + 2.2 * scale, side + 1.5 * scale)
         title_font = max(MIN_FONT, 1.22 * font)
@@ -229,8 +225,8 @@ class _Page:
         head = 1.35 * title_font / 72 * len(lines) + (0.7 if lines else 0.4) * em
         foot = 1.35 * type.line * len([row for row in rows if row]) + 0.5 * em
         for _ in range(3):  # how many numbers an axis has depends on its length
-            left, below, right, above = _beside(self.figure, self.axes)
-            gap, after = (0.0, 0.0) if self.bar is None else (GAP * scale, _beside(self.figure, self.bar)[2])
+            left, below, right, above = beside(self.figure, self.axes)
+            gap, after = (0.0, 0.0) if self.bar is None else (GAP * scale, beside(self.figure, self.bar)[2])
             bar = gap and BAR * scale
             rest = (left + max(right, gap + bar + after) + 0.8 * em, below + above + head + foot)
             if size is None:
@@ -255,21 +251,11 @@ class _Page:
             )  # fmt: skip
             if max(text_width(line, title_font) for line in lines) > wide - corner[0] - 0.5 * em:
                 title.set_position((72 * (0.75 * em - corner[0]), 72 * above + 0.5 * font))
-        for k, row in enumerate(reversed(rows)):
-            for at, entry in row:
-                draw_legend(self.figure, [entry], 0.75 * em + at, 0.35 * em + 1.35 * type.line * (k + 0.85), type)
+        step = 1.35 * type.line
+        draw_rows(self.figure, rows, (0.75 * em, 0.35 * em + step * (len(rows) - 0.15)), step, type)
 
 
-def _beside(figure: Figure, axes: Any) -> tuple[float, float, float, float]:
-    """Inches that numbers and names take at the left of axes, below, at the right and above."""
-    canvas: Any = FigureCanvasAgg(figure)
-    outer, inner = axes.get_tightbbox(canvas.get_renderer()), axes.get_window_extent()
-    sides = (inner.x0 - outer.x0, inner.y0 - outer.y0, outer.x1 - inner.x1, outer.y1 - inner.y1)
-    left, below, right, above = (max(0.0, float(side)) / figure.dpi * ALLOWANCE for side in sides)
-    return left, below, right, above
-
-
-def _place(axes: Any, box: tuple[float, float, float, float], size: tuple[float, float]) -> None:
+def _place(axes: Any, box: Box, size: Size) -> None:
     axes.set_position((box[0] / size[0], box[1] / size[1], box[2] / size[0], box[3] / size[1]))
 
 

@@ -39,7 +39,7 @@ def contour_lines(axes: Any, field: Field, extent: Sequence[float], number: int)
     """
     from matplotlib.ticker import MaxNLocator
 
-    known = field.values[~np.isnan(field.values)]
+    known = field.known
     if number < 1 or min(field.values.shape) < 2 or not known.size or not known.min() < known.max():
         return {}
     levels = [v for v in MaxNLocator(nbins=number + 1).tick_values(known.min(), known.max())
@@ -117,7 +117,7 @@ def branch_edges(field: Field, extent: Sequence[float]) -> list[Floats]:
 
     They end at the border of a region, within a pixel of it.
     """
-    if field.jumps is None or not any(jump.any() for jump in field.jumps):
+    if field.jumps is None:
         return []
     pixel, origin = _pixels(field, extent)
     return [_smooth(np.array(chain) / 2) * pixel + origin for chain in _chains(*field.jumps)]

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
-from fractions import Fraction
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -20,6 +19,7 @@ from ptmcad.model import mechanism_in
 from ptmcad.question.slice import Slice
 from ptmcad.show.render import regionmap
 from ptmcad.show.render.axes import heading_of
+from ptmcad.show.render.inches import stroke, write_lines
 from ptmcad.show.render.layout import GAP, LEFT, SIDE
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.mechanism import spring_mark, symbol_mark
@@ -29,16 +29,15 @@ from ptmcad.show.render.poses import (
     assigned,
     below_panel,
     describe,
-    in_order,
     panel,
     scale_bar,
     support_legend,
     value_text,
 )
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.regionmap import Room
+from ptmcad.show.render.regionmap import FreeSpace
 from ptmcad.show.render.sketch import Scene, arrow_lengths, frame_of
-from ptmcad.show.render.view import View
+from ptmcad.show.render.view import Point, View
 
 _GAP, _RIM, _LINE = 0.2, 0.15, 0.2
 _MAX_HEIGHT = 134.0
@@ -60,8 +59,7 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
         When the poses are those of no point of the map's window.
     """
     x, y = point_of(result.slice, poses)
-    told = poses.model.tells_stability
-    shown = [pose for pose in in_order(poses) if pose.stable or not told]
+    shown, told = poses.working, poses.known_stable is not None
     arrows = arrow_lengths(poses)
     mechanism = mechanism_in(poses.model)
     assert mechanism is not None  # `arrow_lengths` has refused others
@@ -82,14 +80,14 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
     key = height(entries) + 0.35
     with settings():
         # what the parts mean stands below the map's legend, unless that is long or insets are there
-        figure = regionmap.figure_of(result, False, _DPI, Room(wide + _GAP + _RIM, panels))
+        figure = regionmap.figure_of(result, False, _DPI, FreeSpace(wide + _GAP + _RIM, panels))
         lowest = min(text.get_position()[1] for text in figure.texts)
         chart: Any = figure.axes[0]
         width, tall = (float(side) for side in figure.get_size_inches())
         bottom = chart.get_position().y0 * tall
         left, place = width - wide - _RIM, (LEFT + SIDE + GAP, bottom + key)
         if len(figure.axes) > 1 or lowest - 0.3 < bottom + key:
-            figure = regionmap.figure_of(result, False, _DPI, Room(wide + _GAP + _RIM, panels + key))
+            figure = regionmap.figure_of(result, False, _DPI, FreeSpace(wide + _GAP + _RIM, panels + key))
             chart = figure.axes[0]
             tall = float(figure.get_size_inches()[1])
             place = (left, chart.get_position().y1 * tall - panels)
@@ -119,22 +117,18 @@ _LOADS = (Entry(("load",), symbol_mark("load")),)
 
 def _write_head(figure: Figure, lines: Sequence[str], left: float, top: float) -> None:
     """Where the poses are, with the point's mark."""
-    inches = figure.dpi_scale_trans
-    figure.add_artist(Line2D((left + 0.04,), (top - _LINE / 2,), transform=inches, gid="point-in-head", **_POINT))
-    for k, line in enumerate(lines):
-        figure.text(
-            left + 0.16, top - _LINE * (k + 0.5), line, transform=inches, fontsize=9,
-            fontweight="bold", va="center", color=INK,
-        )  # fmt: skip
+    middle = top - _LINE / 2
+    stroke(figure, (left + 0.04,), (middle,), gid="point-in-head", **_POINT)
+    write_lines(figure, (left + 0.16, middle), lines, 9, _LINE, fontweight="bold", color=INK)
 
 
-def _mark(chart: Any, result: RegionMap, point: tuple[Fraction, Fraction]) -> None:
+def _mark(chart: Any, result: RegionMap, point: Point) -> None:
     """A diamond at the point, in the axes' own scales."""
     x, y = View.whole(result).approximate_position(point)
     chart.add_artist(Line2D((x,), (y,), transform=chart.transAxes, gid="point", **_POINT))
 
 
-def point_of(slice: Slice, poses: Poses) -> tuple[Fraction, Fraction]:
+def point_of(slice: Slice, poses: Poses) -> Point:
     """The point of the slice's window whose mechanism the poses are of.
 
     Raises

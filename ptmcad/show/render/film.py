@@ -22,7 +22,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.extras import require_ffmpeg
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.stage import Pixels, Stage
-from ptmcad.show.style import Style
+from ptmcad.show.style import PictureStyle
 
 FORMATS = ("gif", "mp4")
 REST = 0.8
@@ -40,7 +40,7 @@ class Pictures(Protocol):
         """The picture with this number."""
 
 
-def save_film(motion: Motion, path: Path, style: Style, fps: int, dpi: int) -> None:
+def save_film(motion: Motion, path: Path, style: PictureStyle, fps: int, dpi: int) -> None:
     """Write the motion as a file, whose suffix gives the format.
 
     Raises
@@ -53,7 +53,7 @@ def save_film(motion: Motion, path: Path, style: Style, fps: int, dpi: int) -> N
     save_pictures(lambda: Stage(motion, style, dpi), path, style, fps)
 
 
-def save_pictures(make: Callable[[], Pictures], path: Path, style: Style, fps: int) -> None:
+def save_pictures(make: Callable[[], Pictures], path: Path, style: PictureStyle, fps: int) -> None:
     """Write pictures one after the other as a file, whose suffix gives the format.
 
     Parameters
@@ -77,7 +77,7 @@ def save_pictures(make: Callable[[], Pictures], path: Path, style: Style, fps: i
             path.write_bytes(_gif(make(), fps))
 
 
-def gif_bytes(motion: Motion, style: Style, fps: int, dpi: int) -> bytes:
+def gif_bytes(motion: Motion, style: PictureStyle, fps: int, dpi: int) -> bytes:
     """The motion as the content of an animated GIF."""
     with settings(style):
         return _gif(Stage(motion, style, dpi), fps)

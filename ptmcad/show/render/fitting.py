@@ -21,11 +21,13 @@ from matplotlib.figure import Figure
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import Dress, dress
-from ptmcad.show.render.layout import Box, Layout, Texts
-from ptmcad.show.render.legend import STRONG, THIN, Entry, Type
+from ptmcad.show.render.clearance import Position
+from ptmcad.show.render.inches import Box
+from ptmcad.show.render.layout import Layout, Texts
+from ptmcad.show.render.legend import Entry, Type
 from ptmcad.show.render.textwidth import ALLOWANCE, wrapped
 from ptmcad.show.render.view import Same, View
-from ptmcad.show.style import MIN_FONT, Place, Style
+from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 
 MIN_SIDE = 11.0
 """Sides of the map, in widths of an m: a smaller one is no picture."""
@@ -42,12 +44,12 @@ _LOOK = ("axes", "font", "mathtext", "text", "xtick", "ytick")
 MAX_TITLE_LINES = 2
 
 
-Measured = tuple[Box, tuple[float, float]]
+Measured = tuple[Box, Size]
 """Spaces around axes, and the lengths of their names."""
 
 
 @dataclass(frozen=True, slots=True)
-class Parts:
+class PageParts:
     """What has to be laid out.
 
     Attributes
@@ -65,7 +67,7 @@ class Parts:
     measured: dict[tuple[View, Dress], Measured] = field(default_factory=dict)
 
 
-def fitted(parts: Parts, style: Style, size: tuple[float, float]) -> Layout:
+def fitted(parts: PageParts, style: PictureStyle, size: Size) -> Layout:
     """The layout of the parts on a page of this size, in inches; within `ptmcad.show.render.printing.settings`.
 
     Raises
@@ -85,16 +87,16 @@ def fitted(parts: Parts, style: Style, size: tuple[float, float]) -> Layout:
     raise ConfigError(
         f"axes and legend do not fit into {_inches(size)} in text of {_fonts(style)[-1]:g} points; "
         f"the least size of this shape that does is {_inches(larger, up=True)}"
-        + ("" if style.legend is Place.NONE else ", or leave the legend out"),
+        + ("" if style.legend is LegendPlace.NONE else ", or leave the legend out"),
         key="size",
     )
 
 
-def _inches(size: tuple[float, float], up: bool = False) -> str:
+def _inches(size: Size, up: bool = False) -> str:
     return "x".join(f"{side + (0.005 if up else 0):.2f}" for side in size) + "in"
 
 
-def _fonts(style: Style) -> list[float]:
+def _fonts(style: PictureStyle) -> list[float]:
     """The sizes of text that are tried: the one that is asked for, or smaller and smaller ones."""
     first = style.base_font
     if style.font_size is not None:
@@ -103,15 +105,15 @@ def _fonts(style: Style) -> list[float]:
 
 
 @dataclass(frozen=True, slots=True)
-class _Page:
+class _PageLayout:
     """A page that is being laid out, with sizes of text.
 
     ``em`` is the font's size in inches, and ``rim`` the space around everything.
     """
 
-    parts: Parts
-    style: Style
-    size: tuple[float, float]
+    parts: PageParts
+    style: PictureStyle
+    size: Size
     font: float
 
     @property
@@ -124,10 +126,7 @@ class _Page:
 
     @property
     def type(self) -> Type:
-        return Type(
-            head=self.font, detail=_points(0.89 * self.font), scale=self.font / 9, strong=self.style.strong,
-            thin=self.style.strong * THIN / STRONG, thin_lines=self.style.thin_lines,
-        )  # fmt: skip
+        return Type.of(self.style, self.font)
 
     @property
     def texts(self) -> Texts:
@@ -135,11 +134,7 @@ class _Page:
 
     def dressed(self, width: float, height: float, small: bool = False) -> Dress:
         """Sizes at axes of these sides, with as many numbers as there is room for."""
-        ticks = _points((0.78 if small else 0.95) * self.font)
-        names = _points((0.78 if small else 1.05) * self.font)
-        most = 4 if small else 8
-        intervals = [int(max(2, min(most, side / (ems * ticks / 72)))) for side, ems in ((width, 3.3), (height, 2.0))]
-        return Dress(ticks, names, (intervals[0], intervals[1]), small, self.font / 9)
+        return dressed(self.font, (width, height), small)
 
     def title(self) -> list[str]:
         title = self.parts.title
@@ -158,9 +153,7 @@ class _Page:
         lines = len(self.title())
         return self.size[1] - self.rim - (self.title_line * lines + 0.3 * self.em if lines else 0.35 * self.em)
 
-    def layout(
-        self, chart: Box, legend: Sequence[tuple[tuple[float, float], Sequence[Entry]]], insets: Sequence[Box]
-    ) -> Layout:
+    def layout(self, chart: Box, legend: Sequence[tuple[Position, Sequence[Entry]]], insets: Sequence[Box]) -> Layout:
         inset = insets[0] if insets else chart
         return Layout(
             size=self.size, chart=chart, title=self.title(),
@@ -170,13 +163,24 @@ class _Page:
         )  # fmt: skip
 
 
+def dressed(font: float, sides: Size, small: bool = False) -> Dress:
+    """Sizes at axes of these sides beside text of this size, with as many numbers as there is room for."""
+    ticks = _points((0.78 if small else 0.95) * font)
+    names = _points((0.78 if small else 1.05) * font)
+    most = 4 if small else 8
+    across, up = (
+        int(max(2, min(most, side / (ems * ticks / 72)))) for side, ems in zip(sides, (3.3, 2.0), strict=True)
+    )
+    return Dress(ticks, names, (across, up), small, font / 9)
+
+
 def _points(size: float) -> float:
     return max(MIN_FONT, size)
 
 
-def _on(parts: Parts, style: Style, size: tuple[float, float], font: float) -> Layout | None:
+def _on(parts: PageParts, style: PictureStyle, size: Size, font: float) -> Layout | None:
     """The first layout, in the order in which parts are given up, that has room for what it shows."""
-    page = _Page(parts, style, size, font)
+    page = _PageLayout(parts, style, size, font)
     for legend in parts.legend:
         for insets in dict.fromkeys((len(parts.views) - 1, 0)):
             found = _placed(page, legend, insets)
@@ -185,18 +189,20 @@ def _on(parts: Parts, style: Style, size: tuple[float, float], font: float) -> L
     return None
 
 
-def _placed(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
+def _placed(page: _PageLayout, legend: Sequence[Entry], insets: int) -> Layout | None:
     """The legend where it is asked for; else at the right unless the map is much larger when it is below."""
     place = page.style.legend
     if place is not None:
-        return {Place.RIGHT: _right, Place.BELOW: _below, Place.NONE: _alone}[place](page, legend, insets)
+        return {LegendPlace.RIGHT: _right, LegendPlace.BELOW: _below, LegendPlace.NONE: _alone}[place](
+            page, legend, insets
+        )
     right, below = _right(page, legend, insets), _below(page, legend, insets)
     if right is None or below is None:
         return right or below
     return right if min(right.chart[2:]) >= _NEARLY * min(below.chart[2:]) else below
 
 
-def _right(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
+def _right(page: _PageLayout, legend: Sequence[Entry], insets: int) -> Layout | None:
     """The legend, and insets below it, at the right of the map."""
     em, (width, _) = page.em, page.size
     for least in (*(max(share * width, MIN_SIDE * em) for share in _GOOD), MIN_SIDE * em):
@@ -219,7 +225,7 @@ def _right(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
     return None
 
 
-def _below(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
+def _below(page: _PageLayout, legend: Sequence[Entry], insets: int) -> Layout | None:
     """The legend in columns below the map, and insets in a row between."""
     em, (width, _) = page.em, page.size
     best: tuple[float, list[list[Entry]]] | None = None
@@ -249,12 +255,12 @@ def _below(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
     )
 
 
-def _alone(page: _Page, _legend: Sequence[Entry], insets: int) -> Layout | None:
+def _alone(page: _PageLayout, _legend: Sequence[Entry], insets: int) -> Layout | None:
     found = _over(page, page.rim, insets)
     return None if found is None else page.layout(found[0], (), found[1])
 
 
-def _over(page: _Page, bottom: float, insets: int) -> tuple[Box, list[Box]] | None:
+def _over(page: _PageLayout, bottom: float, insets: int) -> tuple[Box, list[Box]] | None:
     """The map and a row of insets above a height."""
     em, width = page.em, page.size[0]
     boxes: list[Box] = []
@@ -270,22 +276,20 @@ def _over(page: _Page, bottom: float, insets: int) -> tuple[Box, list[Box]] | No
     return None if chart is None else (chart, boxes)
 
 
-def _chart(page: _Page, width: float, height: float) -> Box | None:
+def _chart(page: _PageLayout, width: float, height: float) -> Box | None:
     """The map's place in a part of the page at its left and top; None where that is too small."""
-    em = page.em
-    least = MIN_SIDE * em
     inner = (0.8 * width, 0.8 * height)
     for _ in range(3):  # what numbers take depends on how many there are, hence on the sides
-        if inner[0] < least or inner[1] < least:
+        if min(inner) < MIN_SIDE * page.em:
             return None
         left, below, right, _above = overhang(page.parts, page.parts.views[0], inner, page.dressed(*inner))
         inner = (width - left - right, height - below)
-    if inner[0] < least or inner[1] < least:
+    if min(inner) < MIN_SIDE * page.em:
         return None
     return (page.rim + left, page.top - inner[1], *inner)
 
 
-def _stacked(page: _Page, place: tuple[float, float, float], insets: int) -> list[Box] | None:
+def _stacked(page: _PageLayout, place: tuple[float, float, float], insets: int) -> list[Box] | None:
     """Insets one below the other, from a left end and a top in a column of some width."""
     left, top, column = place
     boxes: list[Box] = []
@@ -304,12 +308,12 @@ def _stacked(page: _Page, place: tuple[float, float, float], insets: int) -> lis
     return boxes
 
 
-def _inset_head(page: _Page) -> float:
+def _inset_head(page: _PageLayout) -> float:
     """Inches of the two lines over an inset."""
     return 3.0 * page.texts.inset / 72
 
 
-def _inset_overhang(page: _Page) -> Box:
+def _inset_overhang(page: _PageLayout) -> Box:
     """What numbers and names of the insets' axes take: the most of all."""
     sides = (_INSET[0] * page.em, _INSET[1] * page.em)
     found = [overhang(page.parts, view, sides, page.dressed(*sides, small=True)) for view in page.parts.views[1:]]
@@ -317,7 +321,7 @@ def _inset_overhang(page: _Page) -> Box:
     return left, below + 0.3 * page.em, right, above
 
 
-def overhang(parts: Parts, view: View, sides: tuple[float, float], how: Dress) -> Box:
+def overhang(parts: PageParts, view: View, sides: Size, how: Dress) -> Box:
     """Inches that numbers and names take at the left, below, at the right and above axes of these sides."""
     key = (view, how)
     if key not in parts.measured:
@@ -341,14 +345,21 @@ def _measured(of: Same[Slice], view: View, how: Dress, _: tuple[str, ...]) -> Me
     renderer = canvas.get_renderer()
     axes: Any = figure.add_axes((1 / 3, 1 / 3, 1 / 3, 1 / 3))
     dress(axes, of.it, view.x, view.y, how)
-    outer, inner = axes.get_tightbbox(renderer), axes.get_window_extent(renderer)
-    spaces = (inner.x0 - outer.x0, inner.y0 - outer.y0, outer.x1 - inner.x1, outer.y1 - inner.y1)
-    left, below, right, above = (max(0.0, float(space)) / 72 * ALLOWANCE for space in spaces)
+    spaces = beside(figure, axes)
     names = (
         axes.xaxis.label.get_window_extent(renderer).width / 72,
         axes.yaxis.label.get_window_extent(renderer).height / 72,
     )
-    return (left, below, right, above), names
+    return spaces, names
+
+
+def beside(figure: Figure, axes: Any) -> Box:
+    """Inches that numbers and names take at the left of axes, below, at the right and above."""
+    canvas: Any = FigureCanvasAgg(figure)
+    outer, inner = axes.get_tightbbox(canvas.get_renderer()), axes.get_window_extent()
+    sides = (inner.x0 - outer.x0, inner.y0 - outer.y0, outer.x1 - inner.x1, outer.y1 - inner.y1)
+    left, below, right, above = (max(0.0, float(side)) / figure.dpi * ALLOWANCE for side in sides)
+    return left, below, right, above
 
 
 def rewrapped(entry: Entry, width: float, type: Type) -> Entry:

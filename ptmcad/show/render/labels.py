@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from math import cos, hypot, pi, sin
+from math import cos, dist, pi, sin
 
 import numpy as np
 
+from ptmcad.show.render.clearance import Box, Position, around, holds, overlap
 from ptmcad.show.render.textwidth import text_width
 from ptmcad.show.render.view import Shapes
+from ptmcad.show.style import Size
 
 FONT_SIZE = 8.0
 _DIRECTIONS = 32
@@ -29,7 +31,6 @@ one of another count: more than all distances."""
 TRIED = _DIRECTIONS * len(_DISTANCES)
 
 Image = np.ndarray[tuple[int, int], np.dtype[np.int64]]
-Box = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,14 +40,14 @@ class Placement:
     ``clear`` says whether label and arrow are within the picture and clear of all those before them.
     """
 
-    tip: tuple[float, float]
-    label: tuple[float, float]
+    tip: Position
+    label: Position
     size: float
     clear: bool = True
 
 
 def place(
-    tips: Sequence[tuple[float, float]], texts: Sequence[str], seen: Shapes, sides: tuple[float, float],
+    tips: Sequence[Position], texts: Sequence[str], seen: Shapes, sides: Size,
     size: float = FONT_SIZE, skip: bool = False, homes: Sequence[Collection[int]] = (),
 ) -> list[Placement]:  # fmt: skip
     """Places for the texts, one after the other.
@@ -62,7 +63,7 @@ def place(
     points = [(x * sides[0], y * sides[1]) for x, y in tips]
     scale = min(*sides, 331.2) / 331.2
     taken: list[Box] = []
-    arrows: list[tuple[tuple[float, float], tuple[float, float]]] = []
+    arrows: list[tuple[Position, Position]] = []
     result = []
     for number, (tip, text) in enumerate(zip(points, texts, strict=True)):
         half = (36 * text_width(text, size) + 0.25 * size + 1, 0.85 * size + 1)
@@ -73,14 +74,14 @@ def place(
                 x, y = tip[0] + (half[0] + distance) * cos(angle), tip[1] + (half[1] + distance) * sin(angle)
                 # a tip at the frame has room beside itself, along the frame
                 x, y = (_within(v, h, side) for v, h, side in zip((x, y), half, sides, strict=True))
-                box = (x - half[0], y - half[1], x + half[0], y + half[1])
+                box = around((x, y), half)
                 cost = distance + (_OTHER_REGION if distance < scale * _SHORT else 0.0)
                 cost += 1e6 * sum(
                     max(0.0, e)
                     for e in (_EDGE - box[0], _EDGE - box[1], box[2] - sides[0] + _EDGE, box[3] - sides[1] + _EDGE)
                 )
-                cost += 1e4 * sum(_overlap(box, other) for other in taken)
-                cost += 1e3 * sum(_near(box, p) for p in points)
+                cost += 1e4 * sum(overlap(_wider(box, 2), other) for other in taken)
+                cost += 1e3 * sum(holds(_wider(box, 6), p) for p in points)
                 cost += 1e3 * sum(_crosses(a, b, tip, (x, y)) for a, b in arrows)
                 cost += 1e3 * sum(_meets(box, a, b) for a, b in arrows)
                 cost += 1e3 * sum(_meets(other, tip, (x, y)) for other in taken) if skip else 0.0
@@ -95,7 +96,7 @@ def place(
         result.append(Placement(tips[number], (label[0] / sides[0], label[1] / sides[1]), size, clear))
         if skip and not clear:
             continue
-        taken.append((label[0] - half[0], label[1] - half[1], label[0] + half[0], label[1] + half[1]))
+        taken.append(around(label, half))
         arrows.append((tip, label))
     return result
 
@@ -105,28 +106,24 @@ def _within(middle: float, half: float, side: float) -> float:
     return min(max(middle, half + _EDGE), side - half - _EDGE) if 2 * (half + _EDGE) <= side else middle
 
 
-def _overlap(a: Box, b: Box) -> bool:
-    return a[0] < b[2] + 2 and b[0] < a[2] + 2 and a[1] < b[3] + 2 and b[1] < a[3] + 2
+def _wider(box: Box, by: float) -> Box:
+    return box[0] - by, box[1] - by, box[2] + by, box[3] + by
 
 
-def _near(box: Box, point: tuple[float, float]) -> bool:
-    return box[0] - 6 < point[0] < box[2] + 6 and box[1] - 6 < point[1] < box[3] + 6
-
-
-def _meets(box: Box, a: tuple[float, float], b: tuple[float, float]) -> bool:
+def _meets(box: Box, a: Position, b: Position) -> bool:
     """Whether an arrow passes through a box, seen at points a few points apart."""
-    n = max(2, int(hypot(b[0] - a[0], b[1] - a[1]) / 4))
-    return any(_near(box, (a[0] + (b[0] - a[0]) * k / n, a[1] + (b[1] - a[1]) * k / n)) for k in range(n + 1))
+    n, near = max(2, int(dist(a, b) / 4)), _wider(box, 6)
+    return any(holds(near, (a[0] + (b[0] - a[0]) * k / n, a[1] + (b[1] - a[1]) * k / n)) for k in range(n + 1))
 
 
-def _crosses(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float], d: tuple[float, float]) -> bool:
-    def side(p: tuple[float, float], q: tuple[float, float], r: tuple[float, float]) -> bool:
+def _crosses(a: Position, b: Position, c: Position, d: Position) -> bool:
+    def side(p: Position, q: Position, r: Position) -> bool:
         return (q[0] - p[0]) * (r[1] - p[1]) > (q[1] - p[1]) * (r[0] - p[0])
 
     return side(a, b, c) != side(a, b, d) and side(c, d, a) != side(c, d, b)
 
 
-def _passed(image: Image, a: tuple[float, float], b: tuple[float, float], sides: tuple[float, float]) -> int:
+def _passed(image: Image, a: Position, b: Position, sides: Size) -> int:
     """How many other regions than one an arrow passes, from its tip to its label's centre."""
     steps = np.linspace(0.0, 1.0, 24)
     row, column = (
@@ -136,7 +133,7 @@ def _passed(image: Image, a: tuple[float, float], b: tuple[float, float], sides:
     return len(np.unique(image[row, column])) - 1
 
 
-def _covered(image: Image, box: Box, sides: tuple[float, float]) -> list[int]:
+def _covered(image: Image, box: Box, sides: Size) -> list[int]:
     """The regions that the box covers."""
     rows, columns = image.shape
     left, right = (int(min(max(v / sides[0], 0.0), 0.999) * columns) for v in (box[0], box[2]))

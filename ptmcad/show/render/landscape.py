@@ -18,7 +18,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise, product
-from math import hypot
+from math import dist
 from typing import Any
 
 import numpy as np
@@ -30,17 +30,18 @@ from matplotlib.lines import Line2D
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import noun
 from ptmcad.errors import ConfigError
-from ptmcad.model import Mechanism, Model
-from ptmcad.model.elements import UnknownKind
+from ptmcad.model import Model
 from ptmcad.model.moments import moments_at
 from ptmcad.show.drawable import no_landscape
 from ptmcad.show.render.axes import Scale, scale_of, symbol
-from ptmcad.show.render.clearance import Box, Label, Stroke, place
-from ptmcad.show.render.energy import Energy, Floats, drawn, energy_of, is_cut
-from ptmcad.show.render.legend import INK, SWATCH, Entry, Mark, draw_legend
-from ptmcad.show.render.poses import TITLE_LINE, describe, empty, heading, in_order, kind, titled, value_text
+from ptmcad.show.render.clearance import Box, Label, Position, Stroke, place
+from ptmcad.show.render.energy import Energy, drawn, energy_of, is_cut
+from ptmcad.show.render.inches import axes_at
+from ptmcad.show.render.legend import INK, Entry, draw_legend, point_mark
+from ptmcad.show.render.poses import TITLE_LINE, describe, empty, heading, kind, titled, value_text
 from ptmcad.show.render.printing import settings
-from ptmcad.show.units import energy_unit, with_unit
+from ptmcad.show.render.view import Floats
+from ptmcad.show.units import energy_unit, unit_of_unknown, with_unit
 
 SIDE, LEFT, BOTTOM, BAR, KEY, MARGIN = 4.6, 0.85, 0.65, 1.25, 2.2, 0.15
 """In inches: the square's side, the space at its left and below, the colour bar, the legend, the rim."""
@@ -58,6 +59,10 @@ _MARKERS = {
 }
 
 _PLURALS = {"stable (minimum)": "stable (minima)", "saddle": "saddles", "maximum": "maxima"}
+_NUMBER: dict[str, Any] = {
+    "fontsize": 9, "fontweight": "bold", "color": INK, "ha": "center", "va": "center", "zorder": 7,
+}  # fmt: skip
+"""How an equilibrium's number is written."""
 _COLUMNS = 90
 """Characters of a line of the title."""
 _SPACE = "\N{NO-BREAK SPACE}"
@@ -66,14 +71,14 @@ _RING = 5.0
 
 
 @dataclass(frozen=True, slots=True)
-class Side:
+class UnknownAxis:
     """An axis of the picture: an unknown from ``low`` to ``high``, an angle in degrees."""
 
     name: str
     low: float
     high: float
     is_angle: bool
-    unit: str = ""
+    unit: str
 
     def sampled(self, number: int) -> tuple[Floats, Floats]:
         """So many values as they are shown, and as the energy takes them."""
@@ -82,7 +87,7 @@ class Side:
 
     @property
     def label(self) -> str:
-        return with_unit(symbol(self.name), "degrees" if self.is_angle else self.unit)
+        return with_unit(symbol(self.name), self.unit)
 
     def share(self, value: float) -> float:
         """Where a value lies, from 0 to 1."""
@@ -92,19 +97,14 @@ class Side:
         return copies(value) if self.is_angle else (value,)
 
 
-def sides_of(model: Model, shown: Sequence[Pose], units: Mapping[str, str]) -> tuple[Side, ...]:
+def sides_of(model: Model, shown: Sequence[Pose], units: Mapping[str, str]) -> tuple[UnknownAxis, ...]:
     """The axes: angles all round, and for each unknown on the line a range that holds all equilibria."""
-    found = [Side(name, -180.0, 180.0, True) for name in model.angles]
+    found = [UnknownAxis(name, -180.0, 180.0, True, unit_of_unknown(model, name, units)) for name in model.angles]
     for k, name in enumerate(model.reals):
         low, high = (end(float(pose.reals[k]) for pose in shown) for end in (min, max))
         room = max((high - low) / 2, max(abs(low), abs(high)) / 4) or 1.0
-        found.append(Side(name, low - room, high + room, False, _unit(model, name, units)))
+        found.append(UnknownAxis(name, low - room, high + room, False, unit_of_unknown(model, name, units)))
     return tuple(found)
-
-
-def _unit(model: Model, name: str, units: Mapping[str, str]) -> str:
-    """Of an unknown on the line: a length's, or none."""
-    return units.get("length", "length") if model.unknowns[name] is UnknownKind.LENGTH else ""
 
 
 def place_of(pose: Pose) -> tuple[float, ...]:
@@ -122,7 +122,7 @@ def draw_landscape(poses: Poses) -> Figure:
     """
     if reason := no_landscape(poses.model):
         raise ConfigError(reason)
-    shown = in_order(poses)
+    shown = poses.in_order
     if not shown:
         return empty(poses)
     return (_draw_curve if len(poses.model.unknowns) == 1 else _draw_contours)(poses, shown)
@@ -135,7 +135,7 @@ def _draw_curve(poses: Poses, shown: Sequence[Pose]) -> Figure:
     values, inputs = side.sampled(_FINE)
     heights = energy(inputs)
     with settings():
-        figure, axes, _ = _page(poses, KEY + 2 * MARGIN, f"{side.name} as a curve")
+        figure, axes = _page(poses, KEY + 2 * MARGIN, f"{side.name} as a curve")
         axes.plot(values, heights, color=_COLOURS[0], linewidth=1.6, zorder=3)
         room = 0.08 * float(np.ptp(heights)) or 1.0
         low, high = float(heights.min()) - room, float(heights.max()) + room
@@ -143,38 +143,30 @@ def _draw_curve(poses: Poses, shown: Sequence[Pose]) -> Figure:
         if side.is_angle:
             axes.set_xticks(range(-180, 181, 60))
         scale = _energy_scale(energy, (low, high))
-        _energy_ticks(axes, scale, energy, _energy_unit(poses))
+        _energy_ticks(axes, scale, energy, energy_unit(poses.model, poses.units))
         for number, pose in enumerate(shown, 1):
-            marker, size_of, face = _MARKERS[_kind(pose)]
             (value,) = place_of(pose)
             for k, x in enumerate(side.copies(value)):
-                axes.add_artist(
-                    Line2D(
-                        (x,), (energy.level(pose, (x,)),), marker=marker, markersize=size_of, markerfacecolor=face,
-                        markeredgecolor=INK, linestyle="none", clip_on=False, zorder=6,
-                        gid=f"equilibrium-{number}" if k == 0 else None,
-                    )
-                )  # fmt: skip
+                gid = f"equilibrium-{number}" if k == 0 else None
+                _add_marker(axes, (x, energy.level(pose, (x,))), gid, **_marker(_kind(pose)))
             x = side.copies(value)[0]
             level = energy.level(pose, (x,))
             inward = -1 if side.share(x) > 0.9 else 1
             axes.annotate(
                 str(number), (x, level), xytext=(9 * inward, -11 if pose.stable else 11), textcoords="offset points",
-                fontsize=9, fontweight="bold", color=INK, ha="center", va="center", zorder=7, gid=f"number-{number}",
+                gid=f"number-{number}", **_NUMBER,
             )  # fmt: skip
         draw_legend(figure, tuple(_legend(poses, shown)), LEFT + SIDE + 2 * MARGIN, BOTTOM + SIDE)
     return figure
 
 
-def _page(poses: Poses, beside: float, what: str) -> tuple[Figure, Any, tuple[float, float]]:
-    """The figure with so much room beside the landscape, its axes, and its size."""
+def _page(poses: Poses, beside: float, what: str) -> tuple[Figure, Any]:
+    """The figure with so much room beside the landscape, and its axes."""
     title = _title(poses)
     size = (LEFT + SIDE + beside, BOTTOM + SIDE + TITLE_LINE * len(title) + 3 * MARGIN)
     figure = titled(title, size, LEFT)
     figure.set_label(f"{' '.join(title)}\n{drawn(poses)} over {what}. {describe(poses)}")
-    axes = figure.add_axes((LEFT / size[0], BOTTOM / size[1], SIDE / size[0], SIDE / size[1]))
-    axes.set_gid("landscape")
-    return figure, axes, size
+    return figure, axes_at(figure, (LEFT, BOTTOM, SIDE, SIDE), "landscape")
 
 
 def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
@@ -184,7 +176,7 @@ def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
     critical = sorted({level for pose in shown for level in _levels(energy, sides, pose)})
     levels = contour_levels(critical, float(heights.min()), float(heights.max()))
     with settings():
-        figure, axes, size = _page(poses, BAR + KEY + MARGIN, f"{_what(sides)} as contours")
+        figure, axes = _page(poses, BAR + KEY + MARGIN, f"{_what(sides)} as contours")
         colours = LinearSegmentedColormap.from_list("energy", _COLOURS, N=256)
         norm = BoundaryNorm(levels, colours.N)
         clipped = np.clip(heights, levels[0], levels[-1])
@@ -196,9 +188,9 @@ def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
         _decorate(axes, sides)
         _mark(axes, sides, shown)
         scale = _energy_scale(energy, levels)
-        bar = figure.add_axes(((LEFT + SIDE + 0.2) / size[0], BOTTOM / size[1], 0.16 / size[0], SIDE / size[1]))
+        bar = axes_at(figure, (LEFT + SIDE + 0.2, BOTTOM, 0.16, SIDE))
         figure.colorbar(filled, cax=bar, spacing="proportional", drawedges=False, ticks=[])
-        _energy_ticks(bar, scale, energy, _energy_unit(poses))
+        _energy_ticks(bar, scale, energy, energy_unit(poses.model, poses.units))
         for value in through:
             bar.axhline(value, color=INK, linewidth=1.2)
         left = LEFT + SIDE + BAR + 0.1
@@ -206,7 +198,7 @@ def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
     return figure
 
 
-def _levels(energy: Energy, sides: Sequence[Side], pose: Pose) -> list[float]:
+def _levels(energy: Energy, sides: Sequence[UnknownAxis], pose: Pose) -> list[float]:
     """Where a pose lies: once, and again at the other edge of an angle."""
     places = product(*(side.copies(value) for side, value in zip(sides, place_of(pose), strict=True)))
     return [energy.level(pose, place) for place in places]
@@ -227,13 +219,13 @@ def _title(poses: Poses) -> list[str]:
     return [*lines, *textwrap.wrap(f"V {about} U{work}{unit}: {drawn(poses).lower().rstrip(',')}", _COLUMNS)]
 
 
-def _sampled(energy: Energy, sides: Sequence[Side], number: int) -> tuple[tuple[Floats, Floats], Floats]:
+def _sampled(energy: Energy, sides: Sequence[UnknownAxis], number: int) -> tuple[tuple[Floats, Floats], Floats]:
     """What is shown along the sides, and the energy, shape (number, number), the first unknown along rows."""
     (across, first), (up, second) = (side.sampled(number) for side in sides)
     return (across, up), energy(first[None, :], second[:, None])
 
 
-def _what(sides: Sequence[Side]) -> str:
+def _what(sides: Sequence[UnknownAxis]) -> str:
     return "the two angles" if all(side.is_angle for side in sides) else " and ".join(side.name for side in sides)
 
 
@@ -251,7 +243,7 @@ def contour_levels(critical: Sequence[float], low: float, high: float) -> list[f
     return levels
 
 
-def _decorate(axes: Any, sides: Sequence[Side]) -> None:
+def _decorate(axes: Any, sides: Sequence[UnknownAxis]) -> None:
     for side, set_limits, set_ticks in (
         (sides[0], axes.set_xlim, axes.set_xticks),
         (sides[1], axes.set_ylim, axes.set_yticks),
@@ -264,15 +256,15 @@ def _decorate(axes: Any, sides: Sequence[Side]) -> None:
     axes.set_ylabel(sides[1].label, fontsize=11)
 
 
-def _mark(axes: Any, sides: Sequence[Side], shown: Sequence[Pose]) -> None:
+def _mark(axes: Any, sides: Sequence[UnknownAxis], shown: Sequence[Pose]) -> None:
     """A marker for each equilibrium, again at the opposite edge of an angle, and its number once."""
     length = SIDE * 72
 
-    def on_paper(place: Sequence[float]) -> tuple[float, float]:
+    def on_paper(place: Sequence[float]) -> Position:
         x, y = (side.share(value) * length for side, value in zip(sides, place, strict=True))
         return x, y
 
-    def back(place: Sequence[float]) -> tuple[float, float]:
+    def back(place: Sequence[float]) -> Position:
         x, y = (s.low + v / length * (s.high - s.low) for s, v in zip(sides, place, strict=True))
         return x, y
 
@@ -280,23 +272,14 @@ def _mark(axes: Any, sides: Sequence[Side], shown: Sequence[Pose]) -> None:
     places = [on_paper(first_copy(sides, pose)) for pose in shown]
     boxes: list[Box] = []
     for number, pose in enumerate(shown, 1):
-        marker, size, face = _MARKERS[_kind(pose)]
         own = first_copy(sides, pose)
         # what is drawn later on the same place would hide it: it stands out around that
-        size += _RING * sum(
-            hypot(*(a - b for a, b in zip(places[number - 1], p, strict=True))) < near for p in places[number:]
-        )
+        look = _marker(_kind(pose), _RING * sum(dist(places[number - 1], p) < near for p in places[number:]))
         first, second = place_of(pose)
         for x in sides[0].copies(first):
             for y in sides[1].copies(second):
-                axes.add_artist(
-                    Line2D(
-                        (x,), (y,), marker=marker, markersize=size, markerfacecolor=face, markeredgecolor=INK,
-                        markeredgewidth=1.0, linestyle="none", clip_on=False, zorder=6,
-                        gid=f"equilibrium-{number}" if (x, y) == own else None,
-                    )
-                )  # fmt: skip
-                (u, v), half = on_paper((x, y)), size / 2 + 1
+                _add_marker(axes, (x, y), f"equilibrium-{number}" if (x, y) == own else None, **look)
+                (u, v), half = on_paper((x, y)), look["markersize"] / 2 + 1
                 boxes.append((u - half, v - half, u + half, v + half))
     labels = []
     for number, at in enumerate(places, 1):
@@ -309,9 +292,8 @@ def _mark(axes: Any, sides: Sequence[Side], shown: Sequence[Pose]) -> None:
             line = [back(end) for end in (placed.label.at, placed.leader)]
             axes.add_collection(LineCollection([line], colors=INK, linewidths=0.6, zorder=5), autolim=False)
         axes.text(
-            x, y, placed.label.text, fontsize=9, fontweight="bold", color=INK, ha="center", va="center", zorder=7,
+            x, y, placed.label.text, gid=f"number-{placed.label.text}", **_NUMBER,
             bbox={"boxstyle": "round,pad=0.12", "facecolor": "white", "edgecolor": "none", "alpha": 0.85},
-            gid=f"number-{placed.label.text}",
         )  # fmt: skip
 
 
@@ -320,7 +302,7 @@ def copies(angle: float) -> tuple[float, ...]:
     return (180.0, -180.0) if abs(angle) > 179.75 else (angle,)
 
 
-def first_copy(sides: Sequence[Side], pose: Pose) -> tuple[float, float]:
+def first_copy(sides: Sequence[UnknownAxis], pose: Pose) -> Position:
     """Where an equilibrium's number belongs."""
     x, y = (side.copies(value)[0] for side, value in zip(sides, place_of(pose), strict=True))
     return x, y
@@ -333,11 +315,6 @@ def _kind(pose: Pose) -> str:
 def _energy_scale(energy: Energy, levels: Sequence[float]) -> Scale:
     low, high = (energy.offset + energy.unit * Fraction(v) for v in (levels[0], levels[-1]))
     return scale_of(low, high)
-
-
-def _energy_unit(poses: Poses) -> str:
-    """A mechanism's; none of a system's potential."""
-    return energy_unit(poses.units) if isinstance(poses.model, Mechanism) else ""
 
 
 def _energy_ticks(axes: Any, scale: Scale, energy: Energy, unit: str) -> None:
@@ -363,7 +340,7 @@ def _legend(poses: Poses, shown: Sequence[Pose]) -> Iterator[Entry]:
     model = poses.model
     yield Entry((noun(model).capitalize(),), strong=True)
     kinds = [_kind(pose) for pose in shown]
-    for name, (marker, size, face) in _MARKERS.items():
+    for name in _MARKERS:
         if name in kinds:
             several = kinds.count(name) > 1
             count = f"{kinds.count(name)} {_PLURALS.get(name, name) if several else name}"
@@ -371,7 +348,7 @@ def _legend(poses: Poses, shown: Sequence[Pose]) -> Iterator[Entry]:
             lines = [count, f"{'numbers' if several else 'number'} {numbers}"]
             if name == "degenerate":
                 lines += [f"multiplicity {p.multiplicity}" for p in shown if p.index is None]
-            yield Entry(tuple(lines), _marker_mark(marker, size, face))
+            yield Entry(tuple(lines), point_mark(**_marker(name)))
     if any(len(copies(float(angle))) == 2 for p in shown for angle in p.degrees):
         level = ("at two levels of V: one pose",) if is_cut(poses) else ("which are the same",)
         yield Entry(("at 180° marked at both edges,", *level))
@@ -384,13 +361,13 @@ def _legend(poses: Poses, shown: Sequence[Pose]) -> Iterator[Entry]:
     yield Entry(("dark: low, light: high",))
 
 
-def _marker_mark(marker: str, size: float, face: str) -> Mark:
-    def mark(figure: Any, left: float, middle: float) -> None:
-        figure.add_artist(
-            Line2D(
-                (left + SWATCH / 2,), (middle,), transform=figure.dpi_scale_trans, marker=marker, markersize=size,
-                markerfacecolor=face, markeredgecolor=INK, markeredgewidth=1.0, linestyle="none",
-            )
-        )  # fmt: skip
+def _marker(kind: str, further: float = 0.0) -> dict[str, Any]:
+    """How equilibria of a kind are marked, so many points larger than others."""
+    marker, size, face = _MARKERS[kind]
+    return {"marker": marker, "markersize": size + further, "markerfacecolor": face, "markeredgecolor": INK,
+            "markeredgewidth": 1.0, "linestyle": "none"}  # fmt: skip
 
-    return mark
+
+def _add_marker(axes: Any, place: Sequence[float], gid: str | None, **look: Any) -> None:
+    x, y = place
+    axes.add_artist(Line2D((x,), (y,), clip_on=False, zorder=6, gid=gid, **look))

@@ -10,6 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from ptmcad.show.render.axes import SMALL, Dress
+from ptmcad.show.render.clearance import Position
+from ptmcad.show.render.inches import Box
 from ptmcad.show.render.legend import Entry, Type
 
 SIDE, LEFT, BOTTOM, COLUMN, GAP, MARGIN = 4.6, 0.85, 0.65, 2.6, 0.25, 0.15
@@ -19,10 +21,6 @@ BLOCK = INSET_ABOVE + INSET_HEIGHT + INSET_BELOW
 TITLE_LINE = 0.22
 WIDEST = LEFT + SIDE + GAP + 2 * COLUMN + MARGIN
 """Of a picture that grows with what it shows, whatever there is to zoom: what has no room beside the map goes below."""
-
-Box = tuple[float, float, float, float]
-"""Left, bottom, width, height."""
-Corner = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,11 +48,11 @@ class Layout:
     shortened : whether the legend has no areas because they have no room.
     """
 
-    size: Corner
+    size: Position
     chart: Box
     title: Sequence[str]
-    title_at: Corner
-    legend: Sequence[tuple[Corner, Sequence[Entry]]]
+    title_at: Position
+    legend: Sequence[tuple[Position, Sequence[Entry]]]
     insets: Sequence[Box]
     title_line: float = TITLE_LINE
     type: Type = field(default_factory=Type)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from itertools import combinations, pairwise
 from math import dist
 
-from ptmcad.show.render.clearance import Box, Position, Stroke, crosses
+from ptmcad.show.render.clearance import Box, Position, Stroke, around, crosses, holds
 
 Course = tuple[Position, ...]
 """From a berth to a point, straight or with one bend."""
@@ -77,8 +77,8 @@ def _best(
     """Courses of little cost for an order: the cheapest of each alone, then of each beside the others."""
     offered = []
     for n, berth in zip(order, berths, strict=True):
-        marks = [_around(other) for k, other in enumerate(targets) if k != n]
-        free = [box for box in (*boxes, *marks) if not _holds(box, targets[n])]
+        marks = [around(other, (_MARK, _MARK)) for k, other in enumerate(targets) if k != n]
+        free = [box for box in (*boxes, *marks) if not holds(box, targets[n])]
         offered.append([(_alone(course, berth, free), course) for course in _courses(berth, targets[n], heights)])
     chosen = [min(courses) for courses in offered]
     for _ in range(_ROUNDS):
@@ -133,11 +133,3 @@ def _touch(a: Position, b: Position, c: Position, d: Position) -> bool:
 
 def _turn(a: Position, b: Position, c: Position) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-
-
-def _around(at: Position) -> Box:
-    return at[0] - _MARK, at[1] - _MARK, at[0] + _MARK, at[1] + _MARK
-
-
-def _holds(box: Box, point: Position) -> bool:
-    return box[0] <= point[0] <= box[2] and box[1] <= point[1] <= box[3]

@@ -6,7 +6,7 @@ Guarantee: every digit of an area is certified, and the same as in the table (`p
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +14,10 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.words import counted, noun
 from ptmcad.question.slice import Count, Slice
+from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
+from ptmcad.show.render.inches import stroke, write
+from ptmcad.show.style import MIN_FONT, PictureStyle
 from ptmcad.show.table import area_by_count, area_text, areas_are_known, count_text, index_heading
 from ptmcad.text.bounds import percent
 
@@ -57,6 +60,13 @@ class Type:
     strong: float = STRONG
     thin: float = THIN
     thin_lines: str = "solid"
+
+    @classmethod
+    def of(cls, style: PictureStyle, font: float | None = None) -> Type:
+        """As large as a style's text, or text of another size, is."""
+        font = style.base_font if font is None else font
+        thin = style.strong * THIN / STRONG
+        return cls(font, max(MIN_FONT, 0.89 * font), font / 9, style.strong, thin, style.thin_lines)
 
     @property
     def line(self) -> float:
@@ -147,12 +157,26 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int, wording:
         yield Entry((hidden_words(hidden),))
 
 
-def _dashed(figure: Any, left: float, middle: float) -> None:
-    from matplotlib.lines import Line2D
+def line_mark(*looks: Mapping[str, Any]) -> Mark:
+    """A line, or several on each other from below."""
 
-    line = Line2D((left, left + SWATCH), (middle, middle), transform=figure.dpi_scale_trans, color=INK, linewidth=1)
-    line.set_linestyle("dashed")
-    figure.add_artist(line)
+    def mark(figure: Any, left: float, middle: float) -> None:
+        for look in looks:
+            stroke(figure, (left, left + SWATCH), (middle, middle), **look)
+
+    return mark
+
+
+def point_mark(**look: Any) -> Mark:
+    """A marker."""
+
+    def mark(figure: Any, left: float, middle: float) -> None:
+        stroke(figure, (left + SWATCH / 2,), (middle,), **look)
+
+    return mark
+
+
+_dashed = line_mark({"color": INK, "linewidth": 1, "linestyle": "dashed"})
 
 
 def hidden_words(hidden: int) -> str:
@@ -196,9 +220,13 @@ def width(legend: Iterable[Entry]) -> float:
     return max(map(Type().entry_width, legend), default=0.0)
 
 
-def in_rows(entries: Sequence[Entry], width: float, type: Type) -> list[list[tuple[float, Entry]]]:
-    """The legend in rows, each entry with its place from the left in inches."""
-    lines: list[list[tuple[float, Entry]]] = [[]]
+Rows = list[list[tuple[float, Entry]]]
+"""A legend in rows, each entry with its place from the left in inches."""
+
+
+def in_rows(entries: Sequence[Entry], width: float, type: Type) -> Rows:
+    """The legend in rows of a width."""
+    lines: Rows = [[]]
     at = 0.0
     for entry in entries:
         each = type.entry_width(entry) + 0.2 * type.scale
@@ -210,56 +238,44 @@ def in_rows(entries: Sequence[Entry], width: float, type: Type) -> list[list[tup
     return lines
 
 
+def draw_rows(figure: Any, rows: Rows, at: Position, step: float, type: Type) -> None:
+    """A legend in rows from a place in inches downwards."""
+    for k, row in enumerate(rows):
+        for left, entry in row:
+            draw_legend(figure, [entry], at[0] + left, at[1] - k * step, type)
+
+
 def draw_legend(figure: Any, legend: Sequence[Entry], left: float, top: float, type: Type | None = None) -> None:
     """Draw the entries from the place given in inches downwards."""
     type = type or Type()
-    inches = figure.dpi_scale_trans
     for entry in legend:
         middle = top - type.line / 2
         _draw_mark(figure, entry.mark, left, middle, type)
         for k, line in enumerate(entry.lines):
-            figure.text(
-                left + (0 if entry.mark is None else type.indent),
-                middle - k * type.line,
-                line,
-                transform=inches,
-                va="center_baseline",
-                fontsize=type.head if k < entry.heads else type.detail,
-                color=INK if k < entry.heads else "#444444",
-                fontweight="bold" if entry.strong else "normal",
-            )
+            size, colour = (type.head, INK) if k < entry.heads else (type.detail, "#444444")
+            at = (left + (0 if entry.mark is None else type.indent), middle - k * type.line)
+            weight = "bold" if entry.strong else "normal"
+            write(figure, at, line, size, va="center_baseline", color=colour, fontweight=weight)
         top -= type.entry_height(entry)
 
 
 def _draw_mark(figure: Any, mark: Fill | float | str | Mark | None, left: float, middle: float, type: Type) -> None:
-    from matplotlib.lines import Line2D
     from matplotlib.patches import Rectangle
 
-    kind: Any
-    inches, swatch, tall = figure.dpi_scale_trans, SWATCH * type.scale, FILL * type.scale
+    swatch, tall = SWATCH * type.scale, FILL * type.scale
     match mark:
         case Fill(face, hatch):
             figure.add_artist(
                 Rectangle(
-                    (left, middle - tall / 2), swatch, tall, transform=inches, facecolor=face, hatch=hatch or None,
-                    edgecolor=INK, linewidth=0.4,
+                    (left, middle - tall / 2), swatch, tall, transform=figure.dpi_scale_trans, facecolor=face,
+                    hatch=hatch or None, edgecolor=INK, linewidth=0.4,
                 )
             )  # fmt: skip
         case float(width):
             width, kind = (type.strong, "solid") if width == STRONG else (type.thin, type.thin_lines)
-            figure.add_artist(
-                Line2D(
-                    (left, left + swatch), (middle, middle), transform=inches, color=INK, linewidth=width,
-                    linestyle=kind,
-                )
-            )  # fmt: skip
+            stroke(figure, (left, left + swatch), (middle, middle), color=INK, linewidth=width, linestyle=kind)
         case str():
-            figure.add_artist(
-                Line2D(
-                    (left + swatch / 2,), (middle,), transform=inches, color=INK, marker="o",
-                    markersize=2.5 * type.scale,
-                )
-            )  # fmt: skip
+            stroke(figure, (left + swatch / 2,), (middle,), color=INK, marker="o", markersize=2.5 * type.scale)
         case None:
             pass
         case draw:

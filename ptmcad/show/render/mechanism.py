@@ -33,7 +33,7 @@ from ptmcad.show.spiral import spiral
 
 
 @dataclass(frozen=True, slots=True)
-class Style:
+class SketchColours:
     """Colours of two bars (more have the first one), springs, loads, supports and text."""
 
     bars: tuple[str, str]
@@ -43,11 +43,11 @@ class Style:
     text: str
 
 
-STRONG = Style(("#17365d", "#d0751b"), "#1f1f1f", "#a4133c", "#3a3a3a", INK)
-PALE = Style(("#a9bacb", "#f3d9ba"), "#8f8f8f", "#d9a3b2", "#a3a3a3", "#666666")
+STRONG = SketchColours(("#17365d", "#d0751b"), "#1f1f1f", "#a4133c", "#3a3a3a", INK)
+PALE = SketchColours(("#a9bacb", "#f3d9ba"), "#8f8f8f", "#d9a3b2", "#a3a3a3", "#666666")
 
 
-def draw_sketch(axes: Any, seen: Sketch, style: Style, prefix: str) -> None:
+def draw_sketch(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> None:
     """Draw a sketch into axes of which a unit is a point."""
     _supports(axes, seen, style, prefix)
     few = len(seen.bars) <= len(BAR_WIDTHS)
@@ -94,7 +94,7 @@ def _arrow(start: Position, end: Position, colour: str, gid: str | None = None) 
     )  # fmt: skip
 
 
-def _supports(axes: Any, seen: Sketch, style: Style, prefix: str) -> None:
+def _supports(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> None:
     """Rails or the telescopic base, a support under each fixed point and a slider around each sliding one."""
     for number, ends in enumerate(seen.rails, 1):
         _line(axes, ends, style.base, 1.8, f"{prefix}base" + (f"-{number}" if number > 1 else ""), 1)
@@ -132,7 +132,7 @@ def _slider(x: float, y: float, colour: str, upright: bool = False) -> Any:
     )  # fmt: skip
 
 
-def bar_mark(number: int, style: Style = STRONG, many: bool = False) -> Mark:
+def bar_mark(number: int, style: SketchColours = STRONG, many: bool = False) -> Mark:
     """A bar in a legend: of two a number, or one of many."""
     return _line_mark([(0.0, 0.0), (SWATCH, 0.0)], style.bars[number], MANY_BARS if many else BAR_WIDTHS[number])
 

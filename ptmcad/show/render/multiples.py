@@ -14,33 +14,31 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from ptmcad.answer.counts import counted_by
 from ptmcad.answer.family import FamilyMap
-from ptmcad.answer.regionmap import Region
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress, symbol
-from ptmcad.show.render.colours import Fill, filler, undetermined_fill
-from ptmcad.show.render.fitting import MIN_SIDE, Parts, overhang
+from ptmcad.show.render.fitting import MIN_SIDE, PageParts, overhang
+from ptmcad.show.render.inches import axes_at, write, write_lines
 from ptmcad.show.render.legend import (
     INK,
     STRONG,
     THIN,
     Entry,
+    Rows,
     Type,
-    draw_legend,
+    draw_rows,
     head_of,
     hidden_words,
     in_rows,
     thin_entry,
 )
-from ptmcad.show.render.painting import Paint, paint_map
+from ptmcad.show.render.painting import Paint, fills_by_count, paint_map, paint_of
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import seen_thin_walls
 from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.render.thinmarks import draw_marks, marks_of
-from ptmcad.show.style import MIN_FONT, Place, Style
-from ptmcad.show.table import count_text
+from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.text.numerals import shortest_text
 
 SIDE = 1.75
@@ -48,7 +46,7 @@ SIDE = 1.75
 _MAX_COLUMNS = 6
 
 
-def draw_multiples(family: FamilyMap, path: Path, dpi: int, style: Style) -> None:
+def draw_multiples(family: FamilyMap, path: Path, dpi: int, style: PictureStyle) -> None:
     """Write the picture, as `ptmcad.show.render.printing.save` does.
 
     Raises
@@ -56,9 +54,7 @@ def draw_multiples(family: FamilyMap, path: Path, dpi: int, style: Style) -> Non
     ConfigError
         When it does not fit into the style's size.
     """
-    figure = multiples_figure(family, dpi, style)
-    figure.set_label(f"{title_of(family)}\n{in_words(family)}")
-    save(figure, path, dpi=dpi, style=style)
+    save(multiples_figure(family, dpi, style), path, dpi=dpi, style=style)
 
 
 def title_of(family: FamilyMap) -> str:
@@ -73,16 +69,6 @@ def in_words(family: FamilyMap) -> str:
     )
 
 
-def paint_of_family(family: FamilyMap, style: Style) -> Paint:
-    """Colours that are the same in all maps."""
-    count = family.members[0].slice.count
-    every = [region for result in family.members for region in result.regions]
-    return Paint(
-        filler(every, count, style.palette), undetermined_fill(style.palette), style.strong,
-        style.strong * THIN / STRONG, style.thin_lines, style.line_scale,
-    )  # fmt: skip
-
-
 def family_entries(family: FamilyMap, paint: Paint, thin: bool = False, hidden: int = 0) -> list[Entry]:
     """The legend: a fill for each count that some member has.
 
@@ -91,14 +77,9 @@ def family_entries(family: FamilyMap, paint: Paint, thin: bool = False, hidden: 
     thin : whether curves at which the count does not change are seen.
     hidden : number of regions that are not seen and have no label.
     """
-    count = family.members[0].slice.count
-    every: list[Region] = [region for result in family.members for region in result.regions]
-    found: dict[tuple[str, Fill], None] = {}
-    for region in sorted(every, key=lambda r: counted_by(r, count)):
-        found[count_text(region, count), paint.fill(region)] = None
     head = head_of(family.members[0].slice)
     told = [Entry(head, strong=True, heads=len(head))]
-    told += [Entry((text,), fill) for text, fill in found]
+    told += [Entry((text,), fill) for text, fill in fills_by_count(paint, *family.members).items()]
     if any(result.cover is not None for result in family.members):
         told.append(Entry(("undetermined",), paint.undetermined))
     if any(result.cover is None and len(result.regions) > 1 for result in family.members):
@@ -115,7 +96,7 @@ def value_text(family: FamilyMap, value: Fraction) -> str:
     return f"{symbol(family.free.name)} = {shortest_text(value).replace('-', '−')}"
 
 
-def multiples_figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
+def multiples_figure(family: FamilyMap, dpi: int, style: PictureStyle) -> Figure:
     """The picture.
 
     Raises
@@ -124,32 +105,30 @@ def multiples_figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
         When it does not fit into the style's size.
     """
     with settings(style):
-        return _figure(family, dpi, style)
+        figure = _figure(family, dpi, style)
+    figure.set_label(f"{title_of(family)}\n{in_words(family)}")
+    return figure
 
 
-def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
+def _figure(family: FamilyMap, dpi: int, style: PictureStyle) -> Figure:
     font = style.base_font
     em = font / 72
-    type = Type(
-        font, max(MIN_FONT, 0.89 * font), font / 9, style.strong, style.strong * THIN / STRONG, style.thin_lines
-    )
+    type = Type.of(style)
     how = Dress(max(MIN_FONT, 0.85 * font), 0.95 * font, (4, 4), scale=font / 9)
     seen = [shapes(result) for result in family.members]
-    parts = Parts(family.members[0].slice, "", ((), ()), (seen[0].view,))
+    parts = PageParts(family.members[0].slice, "", ((), ()), (seen[0].view,))
     left, below, right, _ = overhang(parts, seen[0].view, (SIDE, SIDE), how)
     columns = _columns(len(seen), style.size)
     rows = math.ceil(len(seen) / columns)
     gap, head = max(right, 1.9 * em), 1.7 * em
     wide = style.size[0] if style.size is not None else left + columns * (SIDE * font / 9 + gap)
     side = (wide - left) / columns - gap
-    title = title_of(family) if style.title is None else style.title
-    titles = wrapped(title, wide - 1.2 * em, font, True) if title else []
-    paint = paint_of_family(family, style)
+    paint = paint_of(style, *family.members)
     marks = [marks_of(shape, (side, side), dpi, max(MIN_FONT, 0.85 * font)) for shape in seen]
     thin = any(seen_thin_walls(shape, (72 * side, 72 * side)) for shape in seen)
     paint = replace(paint, thin_walls=thin)
     told = family_entries(family, paint, thin, sum(mark.hidden for mark in marks))
-    lines = [] if style.legend is Place.NONE else in_rows(told, wide - 1.2 * em, type)
+    titles, lines = titles_and_rows(family, style, told, wide, type)
     rest = 1.5 * em * len(titles) + 0.4 * em + rows * head + below + (type.line * 1.35) * len(lines) + 0.7 * em
     between = 0.5 * em * (rows - 1)
     tall = (style.size[1] - rest - between) / rows if style.size is not None else side
@@ -157,39 +136,26 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
         raise ConfigError(f"{len(seen)} maps do not fit: make it larger, or draw fewer members", key="size")
     height = rest + between + rows * tall
     figure = Figure(figsize=(wide, height), dpi=dpi, facecolor="white")
-    for k, line in enumerate(titles):
-        figure.text(
-            0.6 * em, height - 1.5 * em * (k + 0.6), line, fontsize=font, fontweight="bold", va="center",
-            transform=figure.dpi_scale_trans, color=INK,
-        )  # fmt: skip
+    write_lines(figure, (0.6 * em, height - 0.9 * em), titles, font, 1.5 * em, fontweight="bold", color=INK)
     top = height - 1.5 * em * len(titles) - 0.4 * em
     for k, (value, shape) in enumerate(zip(family.values, seen, strict=True)):
         row, column = divmod(k, columns)
         box = (left + column * (side + gap), top - (row + 1) * (head + tall) - row * 0.5 * em, side, tall)
-        axes = _axes(figure, box)
+        axes = axes_at(figure, box)
         paint_map(axes, shape, f"{k}-", paint)
         dress(axes, shape.result.slice, shape.view.x, shape.view.y, how)
         draw_marks(axes, marks[k], font / 9)
         _strip_inner(axes, column > 0, k + columns < len(seen))
-        figure.text(
-            box[0], box[1] + tall + 0.75 * em, value_text(family, value), fontsize=font, va="center",
-            transform=figure.dpi_scale_trans, color=INK,
-        )  # fmt: skip
+        write(figure, (box[0], box[1] + tall + 0.75 * em), value_text(family, value), font, color=INK)
     draw_flowed(figure, lines, em, type)
     return figure
 
 
-def _columns(number: int, size: tuple[float, float] | None) -> int:
+def _columns(number: int, size: Size | None) -> int:
     """So that charts are about as wide as high."""
     if size is None:
         return min(number, 3 if number in (3, 5, 6, 9) else 4 if number in (7, 8, 12) else _MAX_COLUMNS)
     return max(1, min(number, round(math.sqrt(number * size[0] / size[1]))))
-
-
-def _axes(figure: Figure, box: tuple[float, float, float, float]) -> Any:
-    width, height = (float(side) for side in figure.get_size_inches())
-    left, bottom, wide, tall = box
-    return figure.add_axes((left / width, bottom / height, wide / width, tall / height))
 
 
 def _strip_inner(axes: Any, has_left: bool, has_below: bool) -> None:
@@ -202,8 +168,17 @@ def _strip_inner(axes: Any, has_left: bool, has_below: bool) -> None:
         axes.tick_params(axis="x", labelbottom=False)
 
 
-def draw_flowed(figure: Figure, lines: Sequence[Sequence[tuple[float, Entry]]], em: float, type: Type) -> None:
+def titles_and_rows(
+    family: FamilyMap, style: PictureStyle, told: Sequence[Entry], wide: float, type: Type
+) -> tuple[list[str], Rows]:
+    """The lines of the title and the rows of the legend of a figure of a width in inches, as the style wants them."""
+    title = title_of(family) if style.title is None else style.title
+    inner = wide - 1.2 * style.base_font / 72
+    titles = wrapped(title, inner, style.base_font, True) if title else []
+    return titles, [] if style.legend is LegendPlace.NONE else in_rows(told, inner, type)
+
+
+def draw_flowed(figure: Figure, lines: Rows, em: float, type: Type) -> None:
     """A legend in rows at the figure's foot."""
-    for k, entries in enumerate(reversed(lines)):
-        for at, entry in entries:
-            draw_legend(figure, [entry], 0.6 * em + at, 0.5 * em + (k + 1) * type.line * 1.35, type)
+    step = 1.35 * type.line
+    draw_rows(figure, lines, (0.6 * em, 0.5 * em + len(lines) * step), step, type)

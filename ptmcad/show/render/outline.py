@@ -25,7 +25,7 @@ from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.answer.regionmap import RegionMap, Stack
 from ptmcad.exact.cad.curves import Curve, by_component, curves_of
 from ptmcad.show.render.simplification import simplified_line
-from ptmcad.show.render.view import Floats, Interval, Same, View
+from ptmcad.show.render.view import CellShape, Floats, Interval, Same, View, WallShape
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.plane import PlanePolynomial
 
@@ -95,7 +95,7 @@ class Outline:
                     yield np.concatenate([bottom, top[::-1]])
                     start = None
 
-    def cells(self, tolerance: float = 0.0) -> Iterator[tuple[int, list[Floats]]]:
+    def cells(self, tolerance: float = 0.0) -> Iterator[CellShape]:
         """Every cell of the view with its outline, stack after stack from below."""
         for stack in self.stacks:
             for level, number in enumerate(self.result.stacks[stack.number].cells):
@@ -106,8 +106,8 @@ class Outline:
         """None: an exact map leaves nothing open between its cells."""
         return iter(())
 
-    def walls(self, tolerance: float = 0.0) -> Iterator[tuple[int, bool, Floats]]:
-        """Every wall as (component, whether it separates two regions, polyline)."""
+    def walls(self, tolerance: float = 0.0) -> Iterator[WallShape]:
+        """Every wall."""
         for stack in self.stacks:
             for level, wall in enumerate(self.result.stacks[stack.number].walls):
                 separates = self.region(stack.number, level) != self.region(stack.number, level + 1)
@@ -117,9 +117,7 @@ class Outline:
             if left in by_number and left + 1 in by_number:
                 yield from self._line(position, component, by_number[left], by_number[left + 1])
 
-    def _line(
-        self, position: float, component: int, left: StackOutline, right: StackOutline
-    ) -> Iterator[tuple[int, bool, Floats]]:
+    def _line(self, position: float, component: int, left: StackOutline, right: StackOutline) -> Iterator[WallShape]:
         before, after = left.heights[:, -1], right.heights[:, 0]
         for low, high in pairwise(np.unique(np.concatenate([before, after]))):
             middle = (low + high) / 2

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
-from fractions import Fraction
 from typing import Any
 
-from ptmcad.show.render.legend import INK, SWATCH, Entry, Mark
-from ptmcad.show.render.view import View
+from ptmcad.answer.words import several
+from ptmcad.show.render.legend import INK, Entry, point_mark
+from ptmcad.show.render.view import Point, View
 
 
 class Agreement(Enum):
@@ -35,7 +35,7 @@ _SHAPES: dict[Agreement, dict[str, Any]] = {
 class Measured:
     """A point in the axes' order, with a label that may be empty."""
 
-    at: tuple[Fraction, Fraction]
+    at: Point
     label: str = ""
     agreement: Agreement = Agreement.UNTOLD
 
@@ -49,18 +49,8 @@ def overlay_entries(overlay: Overlay) -> tuple[Entry, ...]:
     for kind in Agreement:
         number = sum(point.agreement is kind for point in overlay)
         if number:
-            found.append(Entry((kind.value, f"{number} point{'s' * (number != 1)}"), _mark(kind)))
+            found.append(Entry((kind.value, several(number, "point")), point_mark(**_style(kind, 1.0))))
     return tuple(found)
-
-
-def _mark(kind: Agreement) -> Mark:
-    def mark(figure: Any, left: float, middle: float) -> None:
-        from matplotlib.lines import Line2D
-
-        inches = figure.dpi_scale_trans
-        figure.add_artist(Line2D((left + SWATCH / 2,), (middle,), transform=inches, **_style(kind, 1.0)))
-
-    return mark
 
 
 def _style(kind: Agreement, scale: float) -> dict[str, Any]:

@@ -8,11 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.show.render.colours import Fill, filler, undetermined_fill
 from ptmcad.show.render.legend import CORE, INK, RIM, RIM_INK, STRONG, THIN
 from ptmcad.show.render.view import Floats, Shapes
-from ptmcad.show.style import Style
+from ptmcad.show.style import PictureStyle
+from ptmcad.show.table import count_text
 
 _OVER = 0.004
 """Of the view's sides: more than half a rim's width."""
@@ -31,15 +33,23 @@ class Paint:
     thin_walls: bool = True
 
 
-def paint_of(result: RegionMap, style: Style) -> Paint:
+def paint_of(style: PictureStyle, *results: RegionMap) -> Paint:
+    """The same for all maps that are drawn beside each other, which count the same."""
     return Paint(
-        filler(result.regions, result.slice.count, style.palette),
+        filler([region for result in results for region in result.regions], results[0].slice.count, style.palette),
         undetermined_fill(style.palette),
         style.strong,
         style.strong * THIN / STRONG,
         style.thin_lines,
         style.line_scale,
     )
+
+
+def fills_by_count(paint: Paint, *results: RegionMap) -> dict[str, Fill]:
+    """What the counts of some maps are filled with, by their texts and in their order."""
+    count = results[0].slice.count
+    regions = sorted((r for result in results for r in result.regions), key=lambda r: counted_by(r, count))
+    return {count_text(region, count): paint.fill(region) for region in regions}
 
 
 def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = None) -> None:

@@ -19,7 +19,7 @@ from ptmcad.answer.counts import Counts
 from ptmcad.answer.field import Field
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import UNDETERMINED, fill_of_counts
-from ptmcad.show.render.field import COLOURS, bar_text, description, fill_empty
+from ptmcad.show.render.field import COLOURS, bar_text, description, fill_empty, show_pixels
 from ptmcad.show.render.legend import INK
 from ptmcad.show.render.printing import printed, settings
 
@@ -37,10 +37,8 @@ def grid_png(grid: Grid, dpi: int) -> bytes:
     codes = np.searchsorted(np.array([NONE, *known]), counts)
     with settings():
         figure, axes = _chart(grid, dpi)
-        image = axes.imshow(
-            codes, origin="lower", extent=grid.extent, aspect="auto", interpolation="nearest",
-            cmap=ListedColormap(colours), norm=BoundaryNorm(np.arange(len(colours) + 1) - 0.5, len(colours)),
-        )  # fmt: skip
+        steps = BoundaryNorm(np.arange(len(colours) + 1) - 0.5, len(colours))
+        image = show_pixels(axes, codes, grid.extent, cmap=ListedColormap(colours), norm=steps)
         _walls(axes, grid, grid.region)
         shown = [k for k in range(len(colours)) if k or (counts == NONE).any()]
         bar = figure.colorbar(image, ax=axes, boundaries=[shown[0] - 0.5, *(k + 0.5 for k in shown)], ticks=shown)
@@ -56,9 +54,7 @@ def field_png(field: Field, dpi: int) -> bytes:
         if (field.region == NONE).any():
             fill_empty(axes, field, field.extent, UNDETERMINED)
         if np.isfinite(field.values).any():
-            image = axes.imshow(
-                field.values, origin="lower", extent=field.extent, aspect="auto", interpolation="nearest", cmap=COLOURS
-            )  # fmt: skip
+            image = show_pixels(axes, field.values, field.extent, cmap=COLOURS)
             figure.colorbar(image, ax=axes).set_label(bar_text(field))
         _walls(axes, field, field.region)
         return printed(figure, "png", dpi, repr(field), description(field))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,25 +10,26 @@ import numpy as np
 from matplotlib.patches import Patch
 from matplotlib.transforms import Affine2D
 
-from ptmcad.answer.counts import counted_by
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import expect
 from ptmcad.show.render.around import draw_around
 from ptmcad.show.render.axes import axis_name
-from ptmcad.show.render.blocks import Point
+from ptmcad.show.render.colours import Fill
 from ptmcad.show.render.legend import INK, head_of
 from ptmcad.show.render.overlay import Overlay
-from ptmcad.show.render.painting import paint_map, paint_of
+from ptmcad.show.render.painting import fills_by_count, paint_map, paint_of
 from ptmcad.show.render.poses import describe
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.regionmap import description, figure_of, whole_title
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.style import Place, Style, styled
-from ptmcad.show.table import count_text
+from ptmcad.show.render.view import Point
+from ptmcad.show.style import LegendPlace, PictureStyle, styled
 
 
-def plot(result: RegionMap, ax: Any, style: str | Style, samples: bool, dpi: int, options: dict[str, Any]) -> Any:
+def plot(
+    result: RegionMap, ax: Any, style: str | PictureStyle, samples: bool, dpi: int, options: dict[str, Any]
+) -> Any:
     """A figure of its own, or the axes that were given, with the map in them.
 
     Raises
@@ -47,39 +48,46 @@ def plot(result: RegionMap, ax: Any, style: str | Style, samples: bool, dpi: int
         return figure_of(result, samples, dpi, style=made)
 
 
-def draw_on(axes: Any, result: RegionMap, samples: bool, style: Style) -> None:
+def draw_on(axes: Any, result: RegionMap, samples: bool, style: PictureStyle) -> None:
     """The map in a caller's axes, in the units of its own axes, so that the caller can add to it.
 
     Without insets and arrows; its legend stands at the axes' right.
     """
-    whole, paint = shapes(result), paint_of(result, style)
+    whole, paint = shapes(result), paint_of(style, result)
     sides = [tuple(float(end) for end in whole.view.along(k)) for k in (0, 1)]
     unit_square = Affine2D().scale(*(high - low for low, high in sides)).translate(*(low for low, _ in sides))
     paint_map(axes, whole, "", paint, unit_square + axes.transData)
     if samples:
-        points = np.array([[float(v) for v in (c.sample[0], c.sample[1])] for c in result.cells])
+        points = np.array([c.sample for c in result.cells], dtype=float)
         axes.plot(*points.T, "o", markersize=2.5 * paint.scale, color=INK, gid="samples")
     axes.set(xlim=sides[0], ylim=sides[1], xlabel=axis_name(result.slice, 0), ylabel=axis_name(result.slice, 1))
     title = whole_title(result) if style.title is None else style.title
     if title:
         axes.set_title(title, loc="left", wrap=True)
-    if style.legend is not Place.NONE:
-        count = result.slice.count
-        regions = sorted(result.regions, key=lambda r: counted_by(r, count))
-        found = {count_text(r, count): paint.fill(r) for r in regions}
-        handles = [
-            Patch(facecolor=fill.face, hatch=fill.hatch or None, edgecolor=INK, linewidth=0.4, label=text)
-            for text, fill in found.items()
-        ]
-        below = style.legend is Place.BELOW
+    if style.legend is not LegendPlace.NONE:
+        handles = handles_of(fills_by_count(paint, result))
+        below = style.legend is LegendPlace.BELOW
         axes.legend(
             handles=handles, title=head_of(result.slice)[0], ncols=len(handles) if below else 1, borderaxespad=0,
             loc="upper left", bbox_to_anchor=(0.0, -0.2) if below else (1.03, 1.0), frameon=False,
         )  # fmt: skip
 
 
+def handles_of(fills: Mapping[str, Fill]) -> list[Patch]:
+    """What matplotlib's own legends show of fills, by their texts."""
+    return [
+        Patch(facecolor=fill.face, hatch=fill.hatch or None, edgecolor=INK, linewidth=0.4, label=text)
+        for text, fill in fills.items()
+    ]
+
+
 def draw_with_poses(
-    result: RegionMap, points: Sequence[tuple[Point, Poses]], path: Path, dpi: int, style: Style, overlay: Overlay
+    result: RegionMap,
+    points: Sequence[tuple[Point, Poses]],
+    path: Path,
+    dpi: int,
+    style: PictureStyle,
+    overlay: Overlay,
 ) -> tuple[str, ...]:
     """Write the map with the stable poses at points around it; what had no room is returned, in words.
 

@@ -14,20 +14,23 @@ from fractions import Fraction
 from typing import Any
 
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from ptmcad.answer.poses import Pose, Poses
-from ptmcad.answer.words import counted, kind_name, noun, of_what, untold
+from ptmcad.answer.words import assignments, counted, kind_name, noun, of_what, untold
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism, Model, Support, mechanism_in
-from ptmcad.model.joints import joints_of
+from ptmcad.model.joints import torsion_springs
+from ptmcad.model.moments import PointForce, loads_at
 from ptmcad.question.slice import merged
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import symbol, with_symbols
+from ptmcad.show.render.clearance import Position
+from ptmcad.show.render.inches import axes_at, stroke, write, write_lines
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_mark, symbol_mark, torsion_mark
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.sketch import MAX_ARROW, MIN_ARROW, Frame, Scene, arrow_lengths, frame_of, load_values
+from ptmcad.show.render.sketch import MAX_ARROW, MIN_ARROW, PanelFrame, Scene, arrow_lengths, components, frame_of
+from ptmcad.show.style import Size
 from ptmcad.show.units import energy_unit
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import magnitude, power_of_ten, shortest_text
@@ -59,7 +62,7 @@ def draw_poses(poses: Poses) -> Figure:
     mechanism = mechanism_in(poses.model)
     if mechanism is None:
         raise ConfigError(no_drawing(poses.model))
-    shown = in_order(poses)
+    shown = poses.in_order
     if not shown:
         return empty(poses)
     frame, arrows = frame_of(shown), arrow_lengths(poses)
@@ -86,11 +89,6 @@ def draw_poses(poses: Poses) -> Figure:
     return figure
 
 
-def in_order(poses: Poses) -> tuple[Pose, ...]:
-    """Stable equilibria first, then the others, each by energy, as they are stored."""
-    return tuple(sorted(poses.equilibria, key=lambda pose: pose.stable is not True))
-
-
 def kind(pose: Pose) -> str:
     """What an equilibrium is, in words; just that where nothing says what is stable."""
     if pose.multiplicity > 1:
@@ -102,8 +100,7 @@ def kind(pose: Pose) -> str:
 
 def unknown_texts(model: Model, pose: Pose) -> list[str]:
     """The unknowns with their values: angles in degrees."""
-    angles = [f"{symbol(name)} = {number_text(a)}°" for name, a in zip(model.angles, pose.degrees, strict=True)]
-    return angles + [f"{symbol(name)} = {number_text(x)}" for name, x in zip(model.reals, pose.reals, strict=True)]
+    return assignments(model, (f"{number_text(a)}°" for a in pose.degrees), map(number_text, pose.reals), symbol)
 
 
 def _lines_below(model: Model, pose: Pose) -> list[str]:
@@ -120,29 +117,27 @@ def below_panel(pose: Pose, model: Model) -> float:
     return BELOW + 0.16 * (len(_lines_below(model, pose)) - 2)
 
 
-def panel(figure: Figure, scene: Scene, pose: Pose, number: int, corner: tuple[float, float]) -> Any:
+def panel(figure: Figure, scene: Scene, pose: Pose, number: int, corner: Position) -> Any:
     """One pose in axes at a place in inches, with its kind above and energy and angles below."""
     mechanism, frame = scene.mechanism, scene.frame
-    width, tall = figure.get_size_inches()
     strong = pose.stable is True or not mechanism.tells_stability
     style = STRONG if strong else PALE
-    axes = figure.add_axes((corner[0] / width, corner[1] / tall, frame.width / 72 / width, frame.height / 72 / tall))
-    axes.set_gid(f"pose-{number}")
+    axes = pose_axes(figure, corner, frame, f"pose-{number}", strong)
+    draw_sketch(axes, scene.of(pose), style, f"pose-{number}-")
+    colour, weight = (INK, "bold") if strong else ("#555555", "normal")
+    flat = ", flat" if pose.flat else ""
+    above = (corner[0], corner[1] + frame.height / 72 + 0.12)
+    write(figure, above, f"{number}  {kind(pose)}{flat}", 9, fontweight=weight, color=colour)
+    write_lines(figure, (corner[0], corner[1] - 0.11), _lines_below(mechanism, pose), 8, 0.16, color=colour)
+    return axes
+
+
+def pose_axes(figure: Figure, corner: Position, frame: PanelFrame, gid: str, strong: bool) -> Any:
+    """Axes in which a unit is a point, in a dark frame or a pale one."""
+    axes = axes_at(figure, (*corner, frame.width / 72, frame.height / 72), gid)
     axes.set(xlim=(0, frame.width), ylim=(0, frame.height), xticks=[], yticks=[])
     for spine in axes.spines.values():
         spine.set(color=INK if strong else "#b5b5b5", linewidth=1.0 if strong else 0.6)
-    draw_sketch(axes, scene.of(pose), style, f"pose-{number}-")
-    inches = figure.dpi_scale_trans
-    colour = INK if strong else "#555555"
-    flat = ", flat" if pose.flat else ""
-    figure.text(
-        corner[0], corner[1] + frame.height / 72 + 0.12, f"{number}  {kind(pose)}{flat}", transform=inches, fontsize=9,
-        fontweight="bold" if strong else "normal", color=colour, va="center",
-    )  # fmt: skip
-    for k, line in enumerate(_lines_below(mechanism, pose)):
-        figure.text(
-            corner[0], corner[1] - 0.11 - 0.16 * k, line, transform=inches, fontsize=8, color=colour, va="center"
-        )
     return axes
 
 
@@ -187,8 +182,8 @@ def values(poses: Poses) -> list[str]:
     texts = [assigned(name, value) for name, value in rest.items()]
     texts += [assigned(name, value) for name, value in loads.items() if value]
     mechanism = mechanism_in(model)
-    unloaded = mechanism is not None and bool(mechanism.loads) and not any(load_values(poses).values())
-    return [*texts, "no load"] if unloaded else texts
+    acting = () if mechanism is None else loads_at(mechanism, poses.parameters)
+    return [*texts, "no load"] if acting and not any(components(acting).values()) else texts
 
 
 def heading(poses: Poses, columns: int) -> list[str]:
@@ -200,7 +195,7 @@ def heading(poses: Poses, columns: int) -> list[str]:
 def _count(poses: Poses) -> str:
     if not poses.equilibria:
         return noun(poses.model).capitalize()
-    stable = f", {poses.stable} stable," if poses.model.tells_stability else ""
+    stable = "" if poses.known_stable is None else f", {poses.known_stable} stable,"
     return f"{counted(poses.model, len(poses.equilibria))}{stable}"
 
 
@@ -210,11 +205,10 @@ def describe(poses: Poses) -> str:
         f"{n}: {kind(p)}{', flat' if p.flat else ''}, "
         + ("" if p.energy is None else f"U {number_text(p.energy)}, ")
         + _unknowns_in_words(poses.model, p)
-        for n, p in enumerate(in_order(poses), 1)
+        for n, p in enumerate(poses.in_order, 1)
     ]
-    what = "system" if mechanism_in(poses.model) is None else "mechanism"
     return (
-        f"{noun(poses.model).capitalize()} of the {what}, {', '.join(values(poses))}. "
+        f"{noun(poses.model).capitalize()} of the {poses.model.record_key}, {', '.join(values(poses))}. "
         + "; ".join(parts)
         + poses.remark
     )
@@ -230,12 +224,10 @@ def _unknowns_in_words(model: Model, pose: Pose) -> str:
     return ", ".join(([", ".join(angles) + " degrees"] if angles else []) + reals)
 
 
-def titled(lines: Sequence[str], size: tuple[float, float], left: float) -> Figure:
+def titled(lines: Sequence[str], size: Size, left: float) -> Figure:
     """A page of a size in inches with a title at the top."""
     figure = Figure(figsize=size, facecolor="white")
-    for k, line in enumerate(lines):
-        middle = size[1] - MARGIN - TITLE_LINE * (k + 0.5)
-        figure.text(left, middle, line, transform=figure.dpi_scale_trans, fontsize=11, va="center")
+    write_lines(figure, (left, size[1] - MARGIN - TITLE_LINE / 2), lines, 11, TITLE_LINE)
     return figure
 
 
@@ -253,19 +245,19 @@ def legend(poses: Poses, arrows: Mapping[str, float]) -> Iterator[Entry]:
     mechanism = mechanism_in(poses.model)
     assert mechanism is not None
     yield Entry(("Poses",), strong=True)
-    if poses.model.tells_stability:
+    if poses.known_stable is not None:
         yield Entry(("stable: strong colours, dark frame",), bar_mark(0, STRONG))
         yield Entry(("unstable or degenerate: pale",), bar_mark(0, PALE))
     else:
         yield Entry(tuple(textwrap.wrap(untold(mechanism), _KEY_COLUMNS)))
     if mechanism.has_potential:
         left_out = of_what(mechanism, poses.parameters)
-        yield Entry((f"U: energy, in {energy_unit(poses.units)}", *textwrap.wrap(left_out, _KEY_COLUMNS)))
+        yield Entry((f"U: energy, in {energy_unit(mechanism, poses.units)}", *textwrap.wrap(left_out, _KEY_COLUMNS)))
     yield Entry(())
     yield Entry(("Parts",), strong=True)
     yield from parts_legend(mechanism)
     if arrows:
-        loads = list(_load_texts(mechanism, load_values(poses)))
+        loads = list(_load_texts(mechanism, loads_at(mechanism, poses.parameters)))
         shortened = any(abs(length) == MIN_ARROW < MAX_ARROW for length in arrows.values())
         lines = ["loads; arrows in proportion to them" if len(loads) > 1 else "load"]
         lines += ["except that short ones are lengthened"] if shortened else []
@@ -282,7 +274,7 @@ def parts_legend(mechanism: Mechanism) -> Iterator[Entry]:
             yield Entry((f"bar {name}{width[number]}",), bar_mark(number))
     else:
         yield Entry(tuple(textwrap.wrap(f"bars {', '.join(bars)}", _KEY_COLUMNS)), bar_mark(0, many=True))
-    springs = ["".join(map(symbol, (spring.start, spring.end))) for spring in mechanism.springs]
+    springs = ["".join(map(symbol, ends)) for ends in mechanism.spring_ends]
     if springs:
         names = textwrap.wrap(f"spring{'s' * (len(springs) > 1)} {', '.join(springs)};", _KEY_COLUMNS)
         yield Entry((*names, "drawn aside where one lies on", "a bar or is very short"), spring_mark())
@@ -292,9 +284,9 @@ def parts_legend(mechanism: Mechanism) -> Iterator[Entry]:
 
 def torsion_legend(mechanism: Mechanism) -> Iterator[Entry]:
     """Torsion springs at their joints, and those of which no joint is known."""
-    joints = list(zip(mechanism.torsion, joints_of(mechanism), strict=True))
-    drawn = [f"{with_symbols(to_text(t.angle))} at {symbol(joint.point)}" for t, joint in joints if joint is not None]
-    others = [with_symbols(to_text(t.angle)) for t, joint in joints if joint is None]
+    springs = [(with_symbols(to_text(spring.angle)), joint) for spring, joint in torsion_springs(mechanism)]
+    drawn = [f"{angle} at {symbol(joint.point)}" for angle, joint in springs if joint is not None]
+    others = [angle for angle, joint in springs if joint is None]
     for texts, end, mark in ((drawn, "", torsion_mark()), (others, "; not drawn", None)):
         if texts:
             each = ", ".join(text.replace(" ", "\N{NO-BREAK SPACE}") for text in texts)
@@ -314,13 +306,14 @@ def support_legend(mechanism: Mechanism) -> Iterator[Entry]:
         yield Entry((f"vertical slider{'s' * (len(rising) > 1)}, at {', '.join(rising)}",), symbol_mark("slider"))
 
 
-def _load_texts(mechanism: Mechanism, known: Mapping[str, Fraction]) -> Iterator[str]:
+def _load_texts(mechanism: Mechanism, acting: Sequence[PointForce]) -> Iterator[str]:
     """The components of loads that are not zero: a parameter by its name, with the points where it acts at several.
 
     What was given as a number or an expression is a force across, Fx, or up, Fy, at its point.
     """
     places: dict[str, list[str]] = {}
-    for load in mechanism.loads:
+    known = components(acting)
+    for load in acting:
         for axis, name in zip("xy", load.names, strict=True):
             what = symbol(name) if name in mechanism.parameters else f"F{axis} at {symbol(load.point)}"
             if known[name]:
@@ -337,21 +330,17 @@ _KEY_COLUMNS = 33
 _SCALE_ROOM = 0.3
 
 
-def scale_bar(figure: Figure, frame: Frame, place: tuple[float, float], units: Mapping[str, str]) -> None:
+def scale_bar(figure: Figure, frame: PanelFrame, place: Position, units: Mapping[str, str]) -> None:
     """A bar of known length, at most 60 points long, from a place in inches to the right."""
     left, middle = place
     step = _round_below(Fraction(60) / frame.scale)
     length = float(step * frame.scale) / 72
-    inches = figure.dpi_scale_trans
-    line = Line2D(
-        (left, left, left, left + length, left + length, left + length),
-        (middle - 0.04, middle + 0.04, middle, middle, middle + 0.04, middle - 0.04),
-        transform=inches, color=INK, linewidth=0.9, gid="scale",
-    )  # fmt: skip
-    figure.add_artist(line)
+    xs = (left, left, left, left + length, left + length, left + length)
+    ys = (middle - 0.04, middle + 0.04, middle, middle, middle + 0.04, middle - 0.04)
+    stroke(figure, xs, ys, color=INK, linewidth=0.9, gid="scale")
     text = f"length {printed_number(Enclosure(step, step).text(2))}"
     text += f" {units['length']}" if "length" in units else ""
-    figure.text(left + length + 0.1, middle, text, transform=inches, fontsize=8, va="center_baseline", color="#444444")
+    write(figure, (left + length + 0.1, middle), text, 8, va="center_baseline", color="#444444")
 
 
 def _round_below(value: Fraction) -> Fraction:

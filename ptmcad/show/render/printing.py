@@ -13,14 +13,14 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from html import escape
-from io import BytesIO, StringIO
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import matplotlib
 from matplotlib.figure import Figure
 
-from ptmcad.show.style import DEFAULT, Style
+from ptmcad.show.style import DEFAULT, PictureStyle
 
 FORMATS = ("png", "svg", "pdf", "eps")
 
@@ -45,11 +45,18 @@ _CHANGING = re.compile(rb"^%%CreationDate:.*\n", re.MULTILINE)
 _TEXT_STYLE = re.compile(r"""(?<=<text style=")[^"<>]*'DejaVu Sans'""")
 _SIMILAR = "'Bitstream Vera Sans', Verdana, Geneva, sans-serif"
 """Fonts about as wide as the one that SVG text was measured in, for where that is not installed."""
+_UNDATED: dict[str, dict[str, str | None]] = {
+    "svg": {"Date": None, "Creator": "ptmcad"},
+    "pdf": {"CreationDate": None, "Creator": "ptmcad", "Producer": None},
+    "eps": {"Creator": "ptmcad"},
+    "png": {"Software": None},
+}
+"""What is written of the making of a picture."""
 _KEPT = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
 
 
 @contextmanager
-def settings(style: Style = DEFAULT) -> Iterator[None]:
+def settings(style: PictureStyle = DEFAULT) -> Iterator[None]:
     """Matplotlib's own defaults and the project's fonts, not a user's matplotlibrc; for drawing and for printing.
 
     A style's font comes first; letters that it lacks are taken from the one that comes with matplotlib.
@@ -77,7 +84,7 @@ def suffix_of(path: Path) -> str:
     return suffix
 
 
-def save(figure: Figure, path: Path, *, dpi: int = 150, style: Style = DEFAULT) -> None:
+def save(figure: Figure, path: Path, *, dpi: int = 150, style: PictureStyle = DEFAULT) -> None:
     """Write a figure whose label is its title and, on further lines, its description.
 
     Parameters
@@ -96,7 +103,7 @@ def save(figure: Figure, path: Path, *, dpi: int = 150, style: Style = DEFAULT) 
     path.write_bytes(content(figure, suffix_of(path), dpi=dpi, style=style))
 
 
-def content(figure: Figure, suffix: str, *, dpi: int = 150, style: Style = DEFAULT) -> bytes:
+def content(figure: Figure, suffix: str, *, dpi: int = 150, style: PictureStyle = DEFAULT) -> bytes:
     """What `save` writes."""
     title, _, description = str(figure.get_label()).partition("\n")
     with settings(style):
@@ -105,38 +112,18 @@ def content(figure: Figure, suffix: str, *, dpi: int = 150, style: Style = DEFAU
 
 def printed(figure: Figure, suffix: str, dpi: int, title: str, description: str) -> bytes:
     """The picture as a file's content, without dates and versions; to be called within `settings`."""
-    figure.set_dpi(dpi)
-    canvas: Any
-    if suffix == "svg":
-        from matplotlib.backends.backend_svg import FigureCanvasSVG
-
-        text = StringIO()
-        canvas = FigureCanvasSVG(figure)
-        canvas.print_svg(text, metadata={"Date": None, "Creator": "ptmcad", "Title": title})
-        head = f"<title>{escape(title, quote=False)}</title>"
-        described = f"{head}\n <desc>{escape(description, quote=False)}</desc>"
-        content = _TEXT_STYLE.sub(rf"\g<0>, {_SIMILAR}", text.getvalue())
-        return content.replace(head, described, 1).replace("<svg ", '<svg role="img" ', 1).encode()
     data = BytesIO()
-    if suffix == "pdf":
-        from matplotlib.backends.backend_pdf import FigureCanvasPdf
-
-        canvas = FigureCanvasPdf(figure)
-        metadata = {"CreationDate": None, "Creator": "ptmcad", "Producer": None, "Title": title}
-        canvas.print_pdf(data, metadata=metadata)
-    elif suffix == "eps":
-        from matplotlib.backends.backend_ps import FigureCanvasPS
-
-        canvas = FigureCanvasPS(figure)
-        with _opaque():
-            canvas.print_eps(data, metadata={"Creator": "ptmcad", "Title": _ascii(title)})
+    metadata = {**_UNDATED[suffix], "Title": _ascii(title) if suffix == "eps" else title}
+    with _opaque():
+        figure.savefig(data, format=suffix, dpi=dpi, metadata=metadata)
+    if suffix == "eps":
         return _CHANGING.sub(b"", data.getvalue())
-    else:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-        canvas = FigureCanvasAgg(figure)
-        canvas.print_png(data, metadata={"Software": None, "Title": title})
-    return data.getvalue()
+    if suffix != "svg":
+        return data.getvalue()
+    head = f"<title>{escape(title, quote=False)}</title>"
+    described = f"{head}\n <desc>{escape(description, quote=False)}</desc>"
+    content = _TEXT_STYLE.sub(rf"\g<0>, {_SIMILAR}", data.getvalue().decode())
+    return content.replace(head, described, 1).replace("<svg ", '<svg role="img" ', 1).encode()
 
 
 @contextmanager

@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
 from matplotlib.figure import Figure
 
+from ptmcad.answer.branches import Branches
+from ptmcad.answer.intervals import End
+from ptmcad.answer.paths import PosePaths
 from ptmcad.question.slice import Axis, Slice
-from ptmcad.show.render.axes import scale_of, symbol
+from ptmcad.show.render.axes import heading_of, scale_of, symbol
+from ptmcad.show.render.inches import Box, axes_at, write_lines
+from ptmcad.show.render.legend import Entry, Type, draw_legend, width
 from ptmcad.show.render.textwidth import wrapped
+from ptmcad.show.style import Size
 from ptmcad.show.units import unit, with_unit
+from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text
 
 WIDE, LEFT, RIGHT, LINE, MARGIN = 6.2, 0.85, 0.3, 0.22, 0.15
 """In inches: the axes, the space at their sides, a line of the title, the rim."""
+PANEL, GAP, FOOT = 2.0, 0.25, 0.55
+"""Of a panel of several, the space between two, and that below the last."""
 SIZE = 8.0
 TITLE = 11.0
 """In points: text, and a title's."""
@@ -36,27 +45,55 @@ def beside(heading: str, key: float, tall: float, words: str) -> Figure:
     return figure_of(wrapped(heading, wide - LEFT - MARGIN, TITLE)[:3], (wide, tall), words)
 
 
-def figure_of(title: Sequence[str], size: tuple[float, float], words: str) -> Figure:
+def figure_of(title: Sequence[str], size: Size, words: str) -> Figure:
     """A figure under a title of these lines, its size in inches that of what is below it."""
     tall = size[1] + LINE * len(title) + 2 * MARGIN
     figure = Figure(figsize=(size[0], tall), facecolor="white")
     figure.set_label(f"{' '.join(title)}\n{words}")
-    for k, line in enumerate(title):
-        figure.text(LEFT, tall - MARGIN - LINE * (k + 0.5), line, transform=figure.dpi_scale_trans, fontsize=TITLE,
-                    va="center")  # fmt: skip
+    write_lines(figure, (LEFT, tall - MARGIN - LINE / 2), title, TITLE, LINE)
     return figure
 
 
-def axes_in(figure: Figure, box: tuple[float, float, float, float]) -> Any:
-    """Axes in a box of inches: left, bottom, width, height."""
-    wide, tall = figure.get_size_inches()
-    return figure.add_axes((box[0] / wide, (box[1] + MARGIN) / tall, box[2] / wide, box[3] / tall))
+def heading(slice: Slice, at: Mapping[str, Fraction]) -> str:
+    """Of what is shown along a line of a slice."""
+    return f"{heading_of(slice)}; {', '.join(f'{symbol(name)} = {short(value)}' for name, value in at.items())}"
+
+
+def panelled(
+    slice: Slice, found: PosePaths | Branches, names: Sequence[str], entries: Sequence[Entry], words: str
+) -> tuple[Figure, list[Any]]:
+    """A figure with a legend beside panels one below the other, for what has these names; and the panels' axes."""
+    last = len(names) - 1
+    tall = max((last + 1) * PANEL + last * GAP + FOOT, Type().height(entries) + 0.2)
+    figure = beside(heading(slice, found.at), width(entries), tall, words)
+    scale = scale_of(found.along.low, found.along.high)
+    panels = []
+    for number, name in enumerate(names):
+        axes = axes_in(figure, (LEFT, tall - (number + 1) * PANEL - number * GAP, WIDE, PANEL))
+        axes.set_xlim(scale.low, scale.high)
+        axes.margins(y=0.08)
+        axes.tick_params(labelsize=SIZE, labelbottom=number == last)
+        axes.set_ylabel(name, fontsize=SIZE + 2)
+        panels.append(axes)
+    axes.set_xlabel(axis_name(slice, found.along), fontsize=SIZE + 2, labelpad=2)
+    draw_legend(figure, entries, LEFT + WIDE + RIGHT, tall - 0.05)
+    return figure, panels
+
+
+def axes_in(figure: Figure, box: Box) -> Any:
+    """Axes in a box, above the rim."""
+    return axes_at(figure, (box[0], box[1] + MARGIN, box[2], box[3]))
 
 
 def scaled(value: Fraction, axis: Axis) -> float:
     """Where a value stands on an axis whose numbers are scaled as `scale_of` says."""
     scale = scale_of(axis.low, axis.high)
     return float((value - scale.offset) / Fraction(10) ** scale.exponent)
+
+
+def middle_of(end: End | Enclosure) -> Fraction:
+    """A number on or near an end."""
+    return end if isinstance(end, Fraction) else (end.low + end.high) / 2
 
 
 def axis_name(slice: Slice, axis: Axis) -> str:

@@ -18,16 +18,16 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from ptmcad.answer.counts import Counts, MorseIndex
-from ptmcad.answer.intervals import CountIntervals, End, OperationSpan
-from ptmcad.answer.widths import CertifiedRange, CertifiedWidths, OperationWidths
-from ptmcad.answer.words import counted, noun
-from ptmcad.model import Mechanism
+from ptmcad.answer.intervals import CountIntervals, End
+from ptmcad.answer.widths import CertifiedWidths, OperationWidths
+from ptmcad.answer.words import counted, noun, several, sought
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.ranges.certified import widest_text
 from ptmcad.show.ranges.numbers import end_text, width_text
 from ptmcad.show.ranges.table import maximum_text, operation_name, working_text
 from ptmcad.show.render.axes import heading_of, scale_of, symbol
 from ptmcad.show.render.colours import fill_of_counts, fill_of_index
+from ptmcad.show.render.inches import write, write_lines
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height, width
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.rangeplate import (
@@ -39,11 +39,11 @@ from ptmcad.show.render.rangeplate import (
     axis_name,
     beside,
     figure_of,
+    heading,
+    middle_of,
     scaled,
-    short,
 )
 from ptmcad.show.units import unit, with_unit
-from ptmcad.text.enclosure import Enclosure
 
 BAR, LABELS, ROOM = 0.62, 0.42, 0.36
 MAX_BAR, SHARE_OF_ROW = 6.0, 0.6
@@ -58,12 +58,10 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
     upright = sum(len(t) + 2 for t in texts) * SIZE * 0.64 > WIDE * 72
     space = 0.95 if upright else LABELS
     legend = tuple(_bar_legend(found))
-    fixed = ", ".join(f"{symbol(n)} = {short(v)}" for n, v in found.at.items())
-    heading = f"{heading_of(slice)}; {fixed}"
     below = ROOM + 0.35 + space
     tall = max(below + BAR + 0.45, height(legend) + 0.2)
     with settings():
-        figure = beside(heading, width(legend), tall, _words(found))
+        figure = beside(heading(slice, found.at), width(legend), tall, _words(found))
         axes = axes_in(figure, (LEFT, below, WIDE, BAR))
         scale = scale_of(found.along.low, found.along.high)
         for i in found.intervals:
@@ -95,7 +93,7 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
 
 def _bar_legend(found: CountIntervals) -> list[Entry]:
     model = found.model
-    entries = [Entry((f"{'stable ' * model.tells_stability}{noun(model)}",), strong=True)]
+    entries = [Entry((sought(model),), strong=True)]
     seen: list[Counts] = []
     for i in found.intervals:
         if i.counts not in seen:
@@ -115,7 +113,7 @@ def _unstable(index: MorseIndex | None) -> tuple[str, ...]:
     if index is None:
         return ()
     saddles, maxima = sum(index[1:-1]), index[-1]
-    between = [f"{saddles} saddle{'s' * (saddles != 1)}"] if len(index) > 2 else []
+    between = [several(saddles, "saddle")] if len(index) > 2 else []
     return (", ".join([*between, f"{maxima} maxim{'um' if maxima == 1 else 'a'}"]),)
 
 
@@ -128,8 +126,8 @@ def _labels(
     drop = 0.2 / BAR
     for place, center, text in zip(places, centers, texts, strict=True):
         axes.plot([place, place, center], [0, -0.05 / BAR, -drop], color=INK, linewidth=0.6, clip_on=False)
-        figure.text(LEFT + center * WIDE, below - 0.22, text, transform=figure.dpi_scale_trans, ha="center", va="top",
-                    fontsize=SIZE, rotation=90 if upright else 0)  # fmt: skip
+        at = (LEFT + center * WIDE, below - 0.22)
+        write(figure, at, text, SIZE, ha="center", va="top", rotation=90 if upright else 0)
 
 
 def spread(places: Sequence[float], half: float) -> list[float]:
@@ -194,9 +192,8 @@ def draw_widths(slice: Slice, found: OperationWidths | CertifiedWidths) -> Figur
                            markersize=6, clip_on=False, zorder=3)  # fmt: skip
         upper.set_ylim(fibre.low, fibre.high)
         upper.set_ylabel(axis_name(slice, along), fontsize=SIZE + 2)
-        range_name = "operation range" if isinstance(found.model, Mechanism) else "range"
         known = unit(slice, slice.axis_names.index(along.name))
-        lower.set_ylabel(f"width of the\n{with_unit(range_name, known)}", fontsize=SIZE + 1)
+        lower.set_ylabel(f"width of the\n{with_unit(found.model.nouns.range, known)}", fontsize=SIZE + 1)
         lower.set_ylim(bottom=0)
         lower.margins(y=0.12)
         for axes in (upper, lower):
@@ -204,8 +201,7 @@ def draw_widths(slice: Slice, found: OperationWidths | CertifiedWidths) -> Figur
             axes.tick_params(labelsize=SIZE)
         upper.tick_params(labelbottom=False)
         lower.set_xlabel(axis_name(slice, over), fontsize=SIZE + 2, labelpad=2)
-        for k, line in enumerate(texts):
-            figure.text(LEFT, foot - 0.55 - 0.2 * k, line, transform=figure.dpi_scale_trans, fontsize=SIZE, va="center")
+        write_lines(figure, (LEFT, foot - 0.55), texts, SIZE, 0.2)
     return figure
 
 
@@ -217,34 +213,27 @@ def _draw_bars(axes: Any, found: OperationWidths | CertifiedWidths) -> None:
     thick = min(MAX_BAR, SHARE_OF_ROW * nearest / (scale.high - scale.low) * WIDE * 72)
     bars: list[tuple[float, float, float]] = []
     for row in found.rows:
-        bars += [(scaled(row.value, found.over), *_ends_of(i, found.along)) for i in row.operation]
+        for one in row.operation:
+            low, high = (scaled(middle_of(end), found.along) for end in (one.low, one.high))
+            bars.append((scaled(row.value, found.over), low, high))
     places, lows, highs = ([bar[k] for bar in bars] for k in range(3))
     axes.vlines(places, lows, highs, color=fill_of_index((2, 3, 1)).face, linewidth=thick, capstyle="butt", gid="bars")
     for ends in (lows, highs):
         axes.plot(places, ends, "_", color=INK, markersize=thick, markeredgewidth=1.2, gid="ends")
 
 
-def _ends_of(interval: OperationSpan | CertifiedRange, along: Axis) -> tuple[float, float]:
-    return _scaled_end(interval.low, along), _scaled_end(interval.high, along)
-
-
 def _where(found: OperationWidths | CertifiedWidths) -> str:
     """What the operation range is."""
     if isinstance(found, CertifiedWidths):
         return f"where there are at least {working_text(found.model, found.working)}"
-    if found.working == 2 and isinstance(found.model, Mechanism):
+    if found.working == found.model.nouns.usual:
         return "where two equilibria are stable"
     return f"where there {'is' if found.working == 1 else 'are'} {working_text(found.model, found.working)}"
 
 
 def _place(end: End, along: Axis) -> float:
     """Where an end lies in the window, from 0 to 1."""
-    value = end if isinstance(end, Fraction) else (end.low + end.high) / 2
-    return float((value - along.low) / (along.high - along.low))
-
-
-def _scaled_end(end: End | Enclosure, axis: Axis) -> float:
-    return scaled(end if isinstance(end, Fraction) else (end.low + end.high) / 2, axis)
+    return float((middle_of(end) - along.low) / (along.high - along.low))
 
 
 def _words(found: CountIntervals) -> str:

@@ -19,11 +19,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.answer.words import noun
+from ptmcad.answer.words import noun, several
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import dress, heading_of
-from ptmcad.show.render.fitting import Parts, fitted
-from ptmcad.show.render.labels import place
+from ptmcad.show.render.fitting import PageParts, fitted
+from ptmcad.show.render.inches import Box, axes_at, write_lines
 from ptmcad.show.render.layout import SIDE, Layout, flowing
 from ptmcad.show.render.legend import (
     INK,
@@ -40,9 +40,9 @@ from ptmcad.show.render.painting import Paint, paint_map, paint_of
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import MAX_ZOOMS, Sliver, Zoom, seen_thin_walls, thin_regions, unstable_zooms, zooms
-from ptmcad.show.render.thinmarks import RESOLVED, Marks, draw_marks, homes_of, ranked
+from ptmcad.show.render.thinmarks import RESOLVED, Marks, counts_of, draw_marks, placed_marks, ranked
 from ptmcad.show.render.view import Shapes
-from ptmcad.show.style import DEFAULT, Place, Style
+from ptmcad.show.style import DEFAULT, LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, areas_are_known, count_text, region_area
 
 TITLE_COLUMNS, TITLE_LINES = 80, 3
@@ -51,7 +51,7 @@ _ZOOMED_COLUMNS = 34
 
 
 def draw(
-    result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150, style: Style = DEFAULT,
+    result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150, style: PictureStyle = DEFAULT,
     overlay: Overlay = (),
 ) -> tuple[str, ...]:  # fmt: skip
     """Write the picture of a map.
@@ -84,7 +84,6 @@ def draw(
     """
     with settings(style):
         figure, missing = _figure(result, samples, dpi, NO_ROOM, style, overlay)
-    figure.set_label(f"{' '.join(_title(result))}\n{description(result)}")
     save(figure, path, dpi=dpi, style=style)
     return missing
 
@@ -104,12 +103,13 @@ class _Seen:
     thin_lines: bool = False
     unnamed: int = 0
 
-    def with_room(self, sides: tuple[float, float], size: float) -> _Seen:
+    def with_room(self, sides: Size, size: float) -> _Seen:
         """The same but for what has no label of its own in a picture with sides in points, where no inset stands."""
         ranked = self.ranked
-        homes = homes_of(self.whole.result, ranked)
-        marks = place(*self._labels(ranked), self.whole, sides, size, skip=True, homes=homes)
-        kept = [sliver for sliver, mark in zip(ranked, marks, strict=True) if mark.clear]
+        names = [_name_of(self.whole.result, sliver, None) for sliver in ranked]
+        marks = Marks(ranked, names=names)
+        marks = placed_marks(self.whole, marks, counts_of(self.whole.result), sides, size, skip=True)
+        kept = [sliver for sliver, mark in zip(ranked, marks.placed, strict=True) if mark.clear]
         if len(kept) == len(ranked):
             return self
         views = tuple(replace(zoom, slivers=tuple(s for s in zoom.slivers if s in kept)) for zoom in self.views)
@@ -117,11 +117,6 @@ class _Seen:
         lines = parts[1] > 0 or seen_thin_walls(self.whole, sides)
         views = tuple(zoom for zoom in views if zoom.slivers)
         return replace(self, views=views, thin_lines=lines, unnamed=self.unnamed + parts[0] - parts[1])
-
-    def _labels(self, slivers: Sequence[Sliver]) -> tuple[list[tuple[float, float]], list[str]]:
-        """Where thin regions are, and their counts."""
-        tips = [self.whole.view.approximate_position(sliver.at) for sliver in slivers]
-        return tips, [_name_of(self.whole.result, sliver, None) for sliver in slivers]
 
     @property
     def ranked(self) -> list[Sliver]:
@@ -138,7 +133,7 @@ class _Seen:
         return [sliver for zoom in self.views for sliver in zoom.slivers]
 
 
-def _seen(whole: Shapes, sides: tuple[float, float], dpi: int, earlier: _Seen | None = None) -> _Seen:
+def _seen(whole: Shapes, sides: Size, dpi: int, earlier: _Seen | None = None) -> _Seen:
     """What is seen of a map with sides in inches."""
     pixels = round(min(sides) * min(dpi, RESOLVED))
     thin = thin_regions(whole, pixels)
@@ -151,25 +146,30 @@ def _seen(whole: Shapes, sides: tuple[float, float], dpi: int, earlier: _Seen | 
 
 
 @dataclass(frozen=True, slots=True)
-class Room:
+class FreeSpace:
     """Inches left free at the right of a picture that grows with what it shows, and how tall it is there at least."""
 
     beside: float = 0.0
     tallest: float = 0.0
 
 
-NO_ROOM = Room()
+NO_ROOM = FreeSpace()
 
 
 def figure_of(
-    result: RegionMap, samples: bool, dpi: int, room: Room = NO_ROOM, style: Style = DEFAULT, overlay: Overlay = ()
+    result: RegionMap,
+    samples: bool,
+    dpi: int,
+    room: FreeSpace = NO_ROOM,
+    style: PictureStyle = DEFAULT,
+    overlay: Overlay = (),
 ) -> Figure:
     """The picture, to be called within `settings`."""
     return _figure(result, samples, dpi, room, style, overlay)[0]
 
 
 def _figure(
-    result: RegionMap, samples: bool, dpi: int, room: Room, style: Style, overlay: Overlay
+    result: RegionMap, samples: bool, dpi: int, room: FreeSpace, style: PictureStyle, overlay: Overlay
 ) -> tuple[Figure, tuple[str, ...]]:
     """The picture, and what it leaves out."""
     whole = shapes(result)
@@ -181,6 +181,7 @@ def _figure(
     else:
         seen, layout = fit(result, whole, samples, dpi, style, overlay)
     figure = Figure(figsize=layout.size, dpi=dpi, facecolor="white")
+    figure.set_label(f"{' '.join(_title(result))}\n{description(result)}")
     draw_parts(figure, seen, layout, style, samples, overlay)
     return figure, left_out(seen, layout)
 
@@ -190,7 +191,7 @@ def left_out(seen: _Seen, layout: Layout) -> tuple[str, ...]:
     found = []
     lost, drawn = len(seen.views) + seen.unnamed, len(layout.insets)
     if lost > drawn and not drawn:
-        found.append(f"{lost} zoomed view{'s' * (lost > 1)} of parts that are too thin to be seen")
+        found.append(f"{several(lost, 'zoomed view')} of parts that are too thin to be seen")
     if seen.unnamed:
         found.append("labels of such parts, in which unstable ones differ")
     if layout.shortened:
@@ -199,7 +200,7 @@ def left_out(seen: _Seen, layout: Layout) -> tuple[str, ...]:
 
 
 def fit(
-    result: RegionMap, whole: Shapes, samples: bool, dpi: int, style: Style, overlay: Overlay = ()
+    result: RegionMap, whole: Shapes, samples: bool, dpi: int, style: PictureStyle, overlay: Overlay = ()
 ) -> tuple[_Seen, Layout]:
     """What is to be drawn on a page of a given size, and where.
 
@@ -208,7 +209,7 @@ def fit(
     wide, tall = style.size or (8.4, 5.7)
     seen, tries = _seen(whole, (wide / 2, tall / 2), dpi), 3
     while True:
-        parts = Parts(
+        parts = PageParts(
             result.slice,
             whole_title(result) if style.title is None else style.title,
             _legend(result, seen, samples, style, overlay),
@@ -236,22 +237,22 @@ def fit(
         seen = again
 
 
-def _natural(style: Style, parts: Parts) -> tuple[float, float]:
+def _natural(style: PictureStyle, parts: PageParts) -> Size:
     """A size for a map as large as in a picture that grows with what it shows, in proportion to the text."""
     scale = style.base_font / 9
     lines = sum(len(entry.lines) for entry in parts.legend[0])
-    wide = {Place.RIGHT: 8.4, None: 8.4, Place.BELOW: 6.0, Place.NONE: 5.7}[style.legend]
-    tall = 5.7 + (0.1 * lines if style.legend is Place.BELOW else 0.0)
+    wide = {LegendPlace.RIGHT: 8.4, None: 8.4, LegendPlace.BELOW: 6.0, LegendPlace.NONE: 5.7}[style.legend]
+    tall = 5.7 + (0.1 * lines if style.legend is LegendPlace.BELOW else 0.0)
     return wide * scale, tall * scale
 
 
 def _legend(
-    result: RegionMap, seen: _Seen, samples: bool, style: Style, overlay: Overlay = (), told: bool = True
+    result: RegionMap, seen: _Seen, samples: bool, style: PictureStyle, overlay: Overlay = (), told: bool = True
 ) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
     """The legend with areas and without; ``told`` says whether it tells how many thin regions have no label."""
-    if style.legend is Place.NONE:
+    if style.legend is LegendPlace.NONE:
         return (), ()
-    paint = paint_of(result, style)
+    paint = paint_of(style, result)
     with_areas, without = (
         entries(result, seen.thin_lines, samples, seen.hidden * told, Wording(paint.fill, paint.undetermined, areas))
         for areas in (True, False)
@@ -260,15 +261,14 @@ def _legend(
     return (*with_areas, *further), (*without, *further)
 
 
-def draw_parts(figure: Figure, seen: _Seen, layout: Layout, style: Style, samples: bool, overlay: Overlay = ()) -> Any:
+def draw_parts(
+    figure: Figure, seen: _Seen, layout: Layout, style: PictureStyle, samples: bool, overlay: Overlay = ()
+) -> Any:
     """Everything in its place; the map's axes."""
-    result, inches, paint = seen.whole.result, figure.dpi_scale_trans, paint_of(seen.whole.result, style)
+    result, paint = seen.whole.result, paint_of(style, seen.whole.result)
     on_map = replace(paint, thin_walls=seen.thin_lines)
-    left, middle = layout.title_at
-    for k, line in enumerate(layout.title):
-        at = middle - layout.title_line * k
-        figure.text(left, at, line, transform=inches, fontsize=layout.texts.title, va="center")
-    axes = _axes(figure, layout.chart, "map")
+    write_lines(figure, layout.title_at, layout.title, layout.texts.title, layout.title_line)
+    axes = axes_at(figure, layout.chart, "map")
     paint_map(axes, seen.whole, "", on_map)
     if samples:
         points = np.array([seen.whole.view.approximate_position(c.sample) for c in result.cells])
@@ -297,7 +297,7 @@ def _title(result: RegionMap) -> list[str]:
     return textwrap.wrap(whole_title(result), TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …") or [""]
 
 
-def _title_lines(result: RegionMap, style: Style) -> list[str]:
+def _title_lines(result: RegionMap, style: PictureStyle) -> list[str]:
     """Lines over a picture that grows with what it shows."""
     if style.title is None:
         return _title(result)
@@ -318,22 +318,11 @@ def _name_of(result: RegionMap, sliver: Sliver, number: int | None) -> str:
     return f"{letters}: {text}"
 
 
-def _axes(figure: Figure, box: tuple[float, float, float, float], gid: str) -> Any:
-    """Axes at a place given in inches: left, bottom, width, height."""
-    width, tall = figure.get_size_inches()
-    axes = figure.add_axes((box[0] / width, box[1] / tall, box[2] / width, box[3] / tall))
-    axes.set_gid(gid)
-    return axes
-
-
-def _inset(
-    figure: Figure, zoom: Zoom, names: Sequence[str], box: tuple[float, float, float, float], layout: Layout,
-    paint: Paint,
-) -> None:  # fmt: skip
+def _inset(figure: Figure, zoom: Zoom, names: Sequence[str], box: Box, layout: Layout, paint: Paint) -> None:
     """Axes with the zoomed view of one or more slivers."""
     result = zoom.outline.result
     number = zoom.slivers[0].region
-    axes = _axes(figure, box, f"sliver-{number}")
+    axes = axes_at(figure, box, f"sliver-{number}")
     paint_map(axes, zoom.outline, f"sliver-{number}-", paint)
     dress(axes, result.slice, zoom.outline.view.x, zoom.outline.view.y, layout.inset_axes)
     if any(sliver.cell is not None for sliver in zoom.slivers):
@@ -361,12 +350,10 @@ def _mark(
     axes: Any, seen: _Seen, slivers: Sequence[Sliver], names: Sequence[str], layout: Layout, paint: Paint
 ) -> None:  # fmt: skip
     """An arrow to every sliver, labels apart from each other."""
-    tips = [seen.whole.view.approximate_position(sliver.at) for sliver in slivers]
-    sides = (layout.chart[2] * 72, layout.chart[3] * 72)
+    sides, told = (layout.chart[2] * 72, layout.chart[3] * 72), counts_of(seen.whole.result)
     skip = not layout.insets
-    homes = homes_of(seen.whole.result, slivers)
-    placed = place(tips, names, seen.whole, sides, layout.texts.arrow, skip=skip, homes=homes)
-    draw_marks(axes, Marks(slivers, placed, names), paint.scale)
+    marks = placed_marks(seen.whole, Marks(slivers, names=names), told, sides, layout.texts.arrow, skip)
+    draw_marks(axes, marks, paint.scale)
 
 
 def description(result: RegionMap) -> str:

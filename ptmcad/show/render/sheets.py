@@ -13,7 +13,6 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.family import FamilyMap
@@ -22,8 +21,8 @@ from ptmcad.question.slice import Count
 from ptmcad.show.render.colours import Fill
 from ptmcad.show.render.legend import INK, THIN, Entry
 from ptmcad.show.render.painting import Paint
+from ptmcad.show.render.view import Floats
 
-Floats = NDArray[np.float64]
 Pair = tuple[tuple[int, ...], tuple[int, ...]]
 """The counts on both sides of a sheet."""
 

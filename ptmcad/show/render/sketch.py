@@ -12,15 +12,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import hypot
+from math import dist, hypot
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.model import Mechanism, Support, mechanism_in
 from ptmcad.model.elements import Load
-from ptmcad.model.evaluate import value_at
 from ptmcad.model.joints import joints_of
+from ptmcad.model.moments import PointForce, loads_at
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.clearance import Box, Label, Placed, Position, Stroke, distance, place, polyline
+from ptmcad.show.render.view import Point
 from ptmcad.show.spiral import spirals
 
 BAR_WIDTHS = (5.5, 3.2)
@@ -45,7 +46,7 @@ LABEL_HALF_HEIGHT, LABEL_SIZE = 5.6, 9.0
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class PanelFrame:
     """What all panels have in common: points to the unit of length, and their sides in points."""
 
     scale: Fraction
@@ -91,20 +92,20 @@ class Sketch:
     labels: tuple[Placed, ...]
 
 
-def frame_of(shown: Sequence[Pose], width: float = WIDTH, most_height: float = MAX_HEIGHT) -> Frame:
+def frame_of(shown: Sequence[Pose], width: float = WIDTH, most_height: float = MAX_HEIGHT) -> PanelFrame:
     """The frame that shows all these poses at one scale, as large as the width and the height allow."""
     sides = [[high - low for low, high in _sides(_centers(pose).values())] for pose in shown]
     wide, tall = (max(side[k] for side in sides) for k in (0, 1))
     room = (Fraction(width - 2 * MARGIN), Fraction(most_height - 2 * MARGIN))
     scale = min((r / side for r, side in zip(room, (wide, tall), strict=True) if side), default=Fraction(1))
-    return Frame(scale, max(MIN_HEIGHT, float(tall * scale) + 2 * MARGIN), width)
+    return PanelFrame(scale, max(MIN_HEIGHT, float(tall * scale) + 2 * MARGIN), width)
 
 
-def _centers(pose: Pose) -> dict[str, tuple[Fraction, Fraction]]:
+def _centers(pose: Pose) -> dict[str, Point]:
     return {name: (x.center, y.center) for name, (x, y) in pose.nodes.items()}
 
 
-def _sides(points: Iterable[tuple[Fraction, Fraction]]) -> tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]:
+def _sides(points: Iterable[Point]) -> tuple[Point, Point]:
     """The least and the largest x, and the same for y."""
     xs, ys = zip(*points, strict=True)
     return (min(xs), max(xs)), (min(ys), max(ys))
@@ -112,22 +113,24 @@ def _sides(points: Iterable[tuple[Fraction, Fraction]]) -> tuple[tuple[Fraction,
 
 def arrow_lengths(poses: Poses) -> dict[str, float]:
     """The loads that are not zero, and the lengths of their arrows: by force, but none shorter than is seen."""
-    loads = load_values(poses)
-    largest = max(map(abs, loads.values()), default=Fraction(0))
+    mechanism = mechanism_in(poses.model)
+    assert mechanism is not None
+    forces = components(loads_at(mechanism, poses.parameters))
+    return arrows_of(forces, max(map(abs, forces.values()), default=Fraction(0)))
+
+
+def arrows_of(forces: Mapping[str, Fraction], largest: Fraction) -> dict[str, float]:
+    """The lengths of the arrows of those that are not zero, in proportion to the largest."""
     return {
-        name: (1 if load > 0 else -1) * max(MIN_ARROW, MAX_ARROW * float(abs(load) / largest))
-        for name, load in loads.items()
-        if load
+        name: (1 if force > 0 else -1) * max(MIN_ARROW, MAX_ARROW * float(abs(force) / largest))
+        for name, force in forces.items()
+        if force
     }
 
 
-def load_values(poses: Poses) -> dict[str, Fraction]:
+def components(loads: Iterable[PointForce]) -> dict[str, Fraction]:
     """The components of all loads by their names; constants and expressions are named by their text."""
-    mechanism = mechanism_in(poses.model)
-    assert mechanism is not None
-    values = dict.fromkeys(mechanism.variables, Fraction(0)) | dict(poses.parameters)
-    components = (pair for load in mechanism.loads for pair in zip(load.names, (load.x, load.y), strict=True))
-    return {name: value_at(tree, values) for name, tree in components}
+    return {name: force for load in loads for name, force in zip(load.names, load.force, strict=True)}
 
 
 def bar_width(mechanism: Mechanism, number: int) -> float:
@@ -140,7 +143,7 @@ class Scene:
     """What the sketches of several poses have in common; ``arrows`` are lengths of loads."""
 
     mechanism: Mechanism
-    frame: Frame
+    frame: PanelFrame
     arrows: Mapping[str, float]
 
     def of(self, pose: Pose) -> Sketch:
@@ -148,7 +151,7 @@ class Scene:
         return sketch(self.mechanism, pose, self.frame, self.arrows)
 
 
-def sketch(mechanism: Mechanism, pose: Pose, frame: Frame, arrows: Mapping[str, float]) -> Sketch:
+def sketch(mechanism: Mechanism, pose: Pose, frame: PanelFrame, arrows: Mapping[str, float]) -> Sketch:
     """A pose in a frame, with arrows of these lengths."""
     return sketched(mechanism, frame.nodes(pose), (frame.width, frame.height), arrows)
 
@@ -167,8 +170,8 @@ def sketched(
     bars = tuple((nodes[a], nodes[b]) for a, b in mechanism.bars)
     drawn = [Stroke(a, b, bar_width(mechanism, number) / 2) for number, (a, b) in enumerate(bars)]
     springs = []
-    for spring in mechanism.springs:
-        line = _spring(nodes[spring.start], nodes[spring.end], drawn, turns)
+    for start, end in mechanism.spring_ends:
+        line = _spring(nodes[start], nodes[end], drawn, turns)
         springs.append(line)
         drawn += polyline(line, 0.5)
     wound = spirals(joints_of(mechanism), nodes, *SPIRAL, SPIRAL_GAP)
@@ -209,7 +212,7 @@ def _symbols(mechanism: Mechanism, nodes: Mapping[str, Position]) -> Iterator[Bo
 
 def _spring(start: Position, end: Position, drawn: Sequence[Stroke], turns: int | None) -> tuple[Position, ...]:
     """The zigzag between two nodes, aside when something is already drawn there or they are too near."""
-    length = hypot(end[0] - start[0], end[1] - start[1])
+    length = dist(start, end)
     along = ((end[0] - start[0]) / length, (end[1] - start[1]) / length) if length > 1e-6 else (1.0, 0.0)
     if along[0] < -1e-9 or (abs(along[0]) <= 1e-9 and along[1] < 0):  # aside means above first, not below
         return _spring(end, start, drawn, turns)[::-1]
@@ -221,7 +224,7 @@ def _spring(start: Position, end: Position, drawn: Sequence[Stroke], turns: int 
 
 
 def _zigzag(start: Position, end: Position, along: Position, aside: float, turns: int | None) -> tuple[Position, ...]:
-    length = hypot(end[0] - start[0], end[1] - start[1])
+    length = dist(start, end)
     wound = max(_MIN_LENGTH, length - 2 * _END)
     across = (-along[1], along[0])
     middle = ((start[0] + end[0]) / 2 + across[0] * aside, (start[1] + end[1]) / 2 + across[1] * aside)
@@ -245,10 +248,10 @@ def _covered(line: Sequence[Position], drawn: Sequence[Stroke]) -> bool:
 
 def _arrows(loads: Sequence[Load], nodes: Mapping[str, Position], lengths: Mapping[str, float]) -> Iterator[Arrow]:
     """The loads' arrows; where some would lie on each other, they stand side by side."""
+    at = [nodes[load.point] for load in loads]
     for number, load in enumerate(loads):
-        x, y = nodes[load.point]
-        at = [nodes[other.point] for other in loads]
-        near = [k for k, (u, v) in enumerate(at) if hypot(u - x, v - y) < 5]
+        x, y = at[number]
+        near = [k for k, other in enumerate(at) if dist(other, at[number]) < 5]
         side = 5.2 * (near.index(number) - (len(near) - 1) / 2)
         horizontal, vertical = load.names
         if horizontal in lengths:
@@ -270,7 +273,7 @@ def _labels(nodes: Mapping[str, Position]) -> Iterator[Label]:
     """One label for each node, or for the nodes that coincide on paper."""
     groups: list[list[str]] = []
     for name, at in nodes.items():
-        near = [g for g in groups if hypot(at[0] - nodes[g[0]][0], at[1] - nodes[g[0]][1]) < _SAME]
+        near = [g for g in groups if dist(at, nodes[g[0]]) < _SAME]
         if near:
             near[0].append(name)
         else:

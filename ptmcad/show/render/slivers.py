@@ -18,7 +18,9 @@ from numpy.typing import NDArray
 from ptmcad.answer.regionmap import Merge, Region, RegionMap
 from ptmcad.cover.graph import connected
 from ptmcad.question.slice import Count
-from ptmcad.show.render.view import Interval, Same, Shapes, View
+from ptmcad.show.render.clearance import Box
+from ptmcad.show.render.view import Interval, Point, Same, Shapes, View
+from ptmcad.show.style import Size
 
 STEPS = 100
 MAX_ZOOMS = 12
@@ -39,7 +41,7 @@ class Sliver:
     """
 
     region: int
-    at: tuple[Fraction, Fraction]
+    at: Point
     cell: int | None = None
 
 
@@ -90,7 +92,7 @@ def _part(result: RegionMap, finer: RegionMap, sliver: Sliver) -> Sliver:
     return Sliver(result.cells[cell].region, sliver.at, cell)
 
 
-def seen_thin_walls(whole: Shapes, sides: tuple[float, float]) -> bool:
+def seen_thin_walls(whole: Shapes, sides: Size) -> bool:
     """Whether a wall that separates nothing is further than a line's width from the frame of a picture somewhere;
     of solutions that are not isolated there is a line of another kind.
 
@@ -172,7 +174,7 @@ def _zoom(whole: Shapes, region: int) -> Shapes:
     return seen
 
 
-def _bounding_box(seen: Shapes, region: int) -> tuple[float, float, float, float] | None:
+def _bounding_box(seen: Shapes, region: int) -> Box | None:
     """The visible part of the region: left, right, bottom, top in the view's coordinates."""
     parts = [np.clip(polygon, 0.0, 1.0) for polygon in seen.polygons(region)]
     if not parts:
@@ -202,7 +204,7 @@ def _shortened(shown: Interval, at: Fraction, window: Interval, factor: Fraction
     return low, low + width
 
 
-def _thick(seen: Shapes, region: int) -> tuple[int, tuple[Fraction, Fraction]]:
+def _thick(seen: Shapes, region: int) -> tuple[int, Point]:
     """Half the side, in pixels, of the largest square within the region in the view (-1: none), and its centre."""
     depth, *place = innermost(seen.raster(_PIXELS, _PIXELS) == region)
     if depth < 0:
@@ -212,7 +214,7 @@ def _thick(seen: Shapes, region: int) -> tuple[int, tuple[Fraction, Fraction]]:
     return depth, (view.x[0] + (view.x[1] - view.x[0]) * x, view.y[0] + (view.y[1] - view.y[0]) * y)
 
 
-def inside(seen: Shapes, region: int) -> tuple[Fraction, Fraction]:
+def inside(seen: Shapes, region: int) -> Point:
     """A sample point of the region, one in the view if there is any, in the axes' order."""
     (left, right), (bottom, top) = seen.view.x, seen.view.y
     result: RegionMap = seen.result

@@ -6,6 +6,7 @@ boundary surface, where one is given; the picture says that they are interpolate
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -18,14 +19,15 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import axis_name, symbol
-from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, in_rows
-from ptmcad.show.render.multiples import draw_flowed, family_entries, in_words, paint_of_family, title_of, value_text
-from ptmcad.show.render.painting import Paint
+from ptmcad.show.render.inches import Box, write_lines
+from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type
+from ptmcad.show.render.multiples import draw_flowed, family_entries, in_words, title_of, titles_and_rows, value_text
+from ptmcad.show.render.painting import Paint, paint_of
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sheets import BOX, add_sheets, sheet_colours, sheet_entries
-from ptmcad.show.render.textwidth import text_width, wrapped
-from ptmcad.show.style import MIN_FONT, Place, Style
+from ptmcad.show.render.textwidth import text_width
+from ptmcad.show.style import MIN_FONT, PictureStyle
 from ptmcad.show.units import unit_of_free, with_unit
 
 SIZE = (5.8, 5.5)
@@ -35,15 +37,14 @@ MAX_FLOORS = 7
 """Of filled maps: more would hide each other."""
 
 
-def draw_solid(family: FamilyMap, path: Path, dpi: int, style: Style, surface: BoundarySurface | None = None) -> None:
+def draw_solid(
+    family: FamilyMap, path: Path, dpi: int, style: PictureStyle, surface: BoundarySurface | None = None
+) -> None:
     """Write the picture, as `ptmcad.show.render.printing.save` does."""
-    figure = solid_figure(family, dpi, style, surface)
-    words = in_words(family) if surface is None else f"{in_words(family)}. Surface: {surface.words()}"
-    figure.set_label(f"{title_of(family)}, in three dimensions\n{words}")
-    save(figure, path, dpi=dpi, style=style)
+    save(solid_figure(family, dpi, style, surface), path, dpi=dpi, style=style)
 
 
-def solid_figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySurface | None = None) -> Figure:
+def solid_figure(family: FamilyMap, dpi: int, style: PictureStyle, surface: BoundarySurface | None = None) -> Figure:
     """The picture: at most `MAX_FLOORS` maps are filled, of the other members there are the curves.
 
     Parameters
@@ -51,17 +52,19 @@ def solid_figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySur
     surface : drawn instead of the maps, with the members' curves on it.
     """
     with settings(style):
-        return _figure(family, dpi, style, surface)
+        figure = _figure(family, dpi, style, surface)
+    words = in_words(family) if surface is None else f"{in_words(family)}. Surface: {surface.words()}"
+    figure.set_label(f"{title_of(family)}, in three dimensions\n{words}")
+    return figure
 
 
-def _figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySurface | None) -> Figure:
+def _figure(family: FamilyMap, dpi: int, style: PictureStyle, surface: BoundarySurface | None) -> Figure:
     font = style.base_font
     em, small = font / 72, max(MIN_FONT, 0.85 * font)
     wide, tall = style.size or SIZE
     figure = Figure(figsize=(wide, tall), dpi=dpi, facecolor="white")
-    title = title_of(family) if style.title is None else style.title
-    paint = paint_of_family(family, style)
-    type = Type(font, max(MIN_FONT, 0.89 * font), font / 9, style.strong, style.strong * THIN / STRONG)
+    paint = paint_of(style, *family.members)
+    type = replace(Type.of(style), thin_lines="solid")
     colours = {} if surface is None else sheet_colours(family, surface, paint)
     told = family_entries(family, paint)
     if surface is None:
@@ -69,8 +72,7 @@ def _figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySurface 
     else:
         fills = [entry for entry in told if entry.mark != STRONG]
         told = sheet_entries(surface, colours, fills if _lowest(family) else fills[:1])
-    lines = [] if style.legend is Place.NONE else in_rows(told, wide - 1.2 * em, type)
-    titles = wrapped(title, wide - 1.2 * em, font, True) if title else []
+    titles, lines = titles_and_rows(family, style, told, wide, type)
     head, foot = 1.5 * em * len(titles) + 0.4 * em, 1.35 * type.line * len(lines) + (0.7 * em if lines else 0.0)
     # names of axes are so many letters below the box, whose lowest corner is a tenth above the axes' end
     foot += max(0.0, 4.8 * em - 0.1 * (tall - head - foot))
@@ -89,16 +91,12 @@ def _figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySurface 
             inches = min(box[2] * wide, box[3] * tall) / _BOX_DIAGONAL
             add_sheets(axes, surface, colours, _curves(family), 0.6 * paint.strong / 72 / inches)
     axes.set(xlim=_ends(family.axes[0]), ylim=_ends(family.axes[1]), zlim=_ends(family.free))
-    for k, line in enumerate(titles):
-        figure.text(
-            0.6 * em, tall - em - 1.5 * em * k, line, fontsize=font, fontweight="bold", va="center",
-            transform=figure.dpi_scale_trans, color=INK,
-        )  # fmt: skip
+    write_lines(figure, (0.6 * em, tall - em), titles, font, 1.5 * em, fontweight="bold", color=INK)
     draw_flowed(figure, lines, em, type)
     return figure
 
 
-def _axes(figure: Figure, box: tuple[float, float, float, float], family: FamilyMap, font: float) -> Any:
+def _axes(figure: Figure, box: Box, family: FamilyMap, font: float) -> Any:
     """Empty axes in three dimensions, in parallel projection."""
     from matplotlib.ticker import MaxNLocator
     from mpl_toolkits.mplot3d import Axes3D

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from math import degrees
+from math import degrees, remainder
 from typing import Any
 
 import numpy as np
@@ -23,23 +23,23 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from ptmcad.answer.motion import Motion, Step
-from ptmcad.answer.words import counted, noun
+from ptmcad.answer.words import assignments, counted, noun
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism
-from ptmcad.model.evaluate import value_at
+from ptmcad.model.moments import loads_at
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import Dress, dress, symbol
-from ptmcad.show.render.clearance import Placed
-from ptmcad.show.render.legend import INK, Entry, Type, draw_legend, head_of
+from ptmcad.show.render.clearance import Placed, Position
+from ptmcad.show.render.inches import axes_at, write
+from ptmcad.show.render.legend import INK, Entry, Rows, Type, draw_rows, head_of, in_rows
 from ptmcad.show.render.mechanism import PALE, STRONG, draw_sketch
-from ptmcad.show.render.painting import paint_map, paint_of
+from ptmcad.show.render.painting import fills_by_count, paint_map, paint_of
 from ptmcad.show.render.regionmap import whole_title
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.sketch import MAX_ARROW, MIN_ARROW, Sketch, own_labels, sketched
+from ptmcad.show.render.sketch import Sketch, arrows_of, components, own_labels, sketched
 from ptmcad.show.render.textwidth import text_width
-from ptmcad.show.render.view import View
-from ptmcad.show.style import Style
-from ptmcad.show.table import count_text
+from ptmcad.show.render.view import Point, View
+from ptmcad.show.style import PictureStyle, Size
 
 SIZE = (9.0, 5.1)
 MIN_SIZE = (6.5, 3.4)
@@ -56,6 +56,8 @@ GLIDE = 4
 """Steps before and after, over which a label's place is averaged."""
 SIZES = (10.0, 8.5, 7.5)
 """In points: the title, other text, numbers at the axes."""
+TYPE = Type(SIZES[1], SIZES[1])
+"""Of the legend."""
 FALLING = "#a4133c"
 FOLLOWED, STABLE, UNSTABLE = "#111111", "#3d6b8c", "#bdbdbd"
 
@@ -67,10 +69,10 @@ class _World:
     """From the mechanism's plane to points on paper."""
 
     scale: float
-    shift: tuple[float, float]
-    sides: tuple[float, float]
+    shift: Position
+    sides: Size
 
-    def places(self, mechanism: Mechanism, step: Step) -> dict[str, tuple[float, float]]:
+    def places(self, mechanism: Mechanism, step: Step) -> dict[str, Position]:
         (dx, dy), k = self.shift, self.scale
         return {name: (x * k + dx, y * k + dy) for name, (x, y) in zip(mechanism.points, step.points, strict=True)}
 
@@ -84,32 +86,33 @@ def check_drawable(motion: Motion) -> Mechanism:
         For a system: it has no points to be drawn.
     """
     model = motion.result.slice.model
-    if not isinstance(model, Mechanism):
+    if model.drawable is None:
         raise ConfigError(no_drawing(model))
-    return model
+    return model.drawable
 
 
 class Stage:
     """The pictures of a motion, one for each of its steps; to be used within `printing.settings`."""
 
-    def __init__(self, motion: Motion, style: Style, dpi: int):
+    def __init__(self, motion: Motion, style: PictureStyle, dpi: int):
         self.motion, self.mechanism = motion, check_drawable(motion)
         size = style.size or SIZE
         if size[0] < MIN_SIZE[0] or size[1] < MIN_SIZE[1]:
             raise ConfigError(f"a film needs at least {MIN_SIZE[0]:g}x{MIN_SIZE[1]:g}in", key="size")
         self.figure = Figure(figsize=size, dpi=dpi, facecolor="white")
-        self.canvas = _canvas(self.figure)
+        canvas: Any = FigureCanvasAgg(self.figure)
+        self.canvas = canvas
         width, tall = size
         title = whole_title(motion.result) if style.title is None else style.title
         for line in textwrap.wrap(title, int(11 * width), max_lines=1, placeholder=" …"):
-            self._text(LEFT, tall - 0.2, line, SIZES[0], va="center")
+            self._text((LEFT, tall - 0.2), line, SIZES[0])
         top = tall - (TOP if title else TOP - 0.28)
         key = _key(motion, style, width - LEFT - RIGHT)
         foot = BOTTOM + LINE * len(key)
         side = min(0.5 * width - LEFT, top - foot)
-        self.chart = self._axes((LEFT, top - side, side, side), "map")
+        self.chart = axes_at(self.figure, (LEFT, top - side, side, side), "map")
         self._map(style)
-        self._legend(key, foot - BOTTOM)
+        draw_rows(self.figure, key, (LEFT, foot - BOTTOM + 0.04), LINE, TYPE)
         self._right(LEFT + side + GAP, top, foot)
         self.where = (LEFT, top + 0.13)
         self.sketches = _sketches(motion, self.mechanism, self.world)
@@ -124,25 +127,20 @@ class Stage:
         curved = has_energy and top - foot - chart - 0.55 >= MIN_PANEL
         low = foot + chart + 0.55 if curved else foot
         sides = (wide * 72, (top - low) * 72)
-        self.panel = self._axes((left, low, wide, top - low), "mechanism")
+        self.panel = axes_at(self.figure, (left, low, wide, top - low), "mechanism")
         self.panel.set(xlim=(0, sides[0]), ylim=(0, sides[1]), xticks=[], yticks=[])
         self.world = _world(self.motion, sides)
         self.above, self.below = (left, top + 0.13), (left, low - 0.15)
         self.curve: Any = None
         if curved:
-            self.curve = self._axes((left + 0.35, foot, wide - 0.35, chart), "energy")
+            self.curve = axes_at(self.figure, (left + 0.35, foot, wide - 0.35, chart), "energy")
             self._energy()
 
     def __len__(self) -> int:
         return len(self.motion.steps)
 
-    def frames(self) -> Iterator[Pixels]:
-        """The pictures as arrays of red, green and blue, shape (height, width, 3), in the order of the steps."""
-        for number in range(len(self.motion.steps)):
-            yield self.frame(number)
-
     def frame(self, number: int) -> Pixels:
-        """The picture of a step."""
+        """The picture of a step as an array of red, green and blue, shape (height, width, 3)."""
         self.canvas.restore_region(self.background)
         for artists in self._moving(number):
             for artist in sorted(artists, key=lambda a: a.get_zorder()):
@@ -198,7 +196,7 @@ class Stage:
         where = ",  ".join(f"{symbol(n)} = {float(v):.4g}" for n, v in zip(names, step.at, strict=True)).replace(
             "-", "−"
         )
-        yield self._text(*self.where, where, SIZES[1], va="center")
+        yield self._text(self.where, where, SIZES[1])
         if step.falling:
             what, colour = "the pose has vanished: steepest descent, no equilibrium", FALLING
         elif step.total is None and step.stable is None:
@@ -210,29 +208,22 @@ class Stage:
             what, colour = f"one of exactly {counted(model, step.total)}{stable}", INK
         wide = self.world.sides[0] / 72
         size = min(SIZES[1], SIZES[1] * wide / text_width(what, SIZES[1]))
-        yield self._text(*self.above, what, size, va="center", color=colour)
-        angles = len(model.angles)
-        texts = [f"{symbol(n)} = {_turned(degrees(v)):.1f}°".replace("-", "−")
-                 for n, v in zip(model.angles, step.unknowns, strict=False)]  # fmt: skip
-        texts += [f"{symbol(n)} = {v:.4g}".replace("-", "−")
-                  for n, v in zip(model.reals, step.unknowns[angles:], strict=True)]  # fmt: skip
-        yield self._text(*self.below, ",  ".join(texts), SIZES[1], va="center")
+        yield self._text(self.above, what, size, colour)
+        turns = len(model.angles)
+        angles = (f"{remainder(degrees(angle), 360):.1f}°" for angle in step.unknowns[:turns])
+        texts = assignments(model, angles, (f"{x:.4g}" for x in step.unknowns[turns:]), symbol)
+        yield self._text(self.below, ",  ".join(texts).replace("-", "−"), SIZES[1])
 
-    def _map(self, style: Style) -> None:
+    def _map(self, style: PictureStyle) -> None:
         result = self.motion.result
         whole = shapes(result)
-        paint_map(self.chart, whole, "", paint_of(result, style))
+        paint_map(self.chart, whole, "", paint_of(style, result))
         dress(self.chart, result.slice, whole.view.x, whole.view.y, Dress(SIZES[2], SIZES[1], (6, 6)))
         track = [whole.view.approximate_position(at) for at in self.motion.path]
         self.chart.add_artist(
             Line2D(*zip(*track, strict=True), color=INK, linewidth=0.9, linestyle=(0, (4, 2)),
                    transform=self.chart.transAxes, zorder=6)
         )  # fmt: skip
-
-    def _legend(self, key: list[list[tuple[float, Entry]]], top: float) -> None:
-        for k, row in enumerate(key):
-            for left, entry in row:
-                draw_legend(self.figure, (entry,), LEFT + left, top - LINE * k + 0.04, Type(SIZES[1], SIZES[1]))
 
     def _energy(self) -> None:
         """The chart's frame, and behind the followed pose all equilibria whose energy lies in it."""
@@ -259,26 +250,11 @@ class Stage:
         if several:
             axes.set_title(f"dots: {which}, stable ones blue", fontsize=SIZES[2], loc="right", pad=2)
 
-    def _axes(self, box: tuple[float, float, float, float], gid: str) -> Any:
-        width, tall = self.figure.get_size_inches()
-        axes = self.figure.add_axes((box[0] / width, box[1] / tall, box[2] / width, box[3] / tall))
-        axes.set_gid(gid)
-        return axes
-
-    def _text(self, x: float, y: float, text: str, size: float, **how: Any) -> Any:
-        how.setdefault("color", INK)
-        return self.figure.text(x, y, text, transform=self.figure.dpi_scale_trans, fontsize=size, **how)
+    def _text(self, at: Position, text: str, size: float, colour: str = INK) -> Any:
+        return write(self.figure, at, text, size, color=colour)
 
 
-def _canvas(figure: Figure) -> Any:
-    return FigureCanvasAgg(figure)
-
-
-def _turned(angle: float) -> float:
-    return angle - 360 * round(angle / 360)
-
-
-def _world(motion: Motion, sides: tuple[float, float]) -> _World:
+def _world(motion: Motion, sides: Size) -> _World:
     """One scale for all steps, and their middle in the middle."""
     places = np.array([step.points for step in motion.steps]).reshape(-1, 2)
     low, high = places.min(axis=0), places.max(axis=0)
@@ -291,8 +267,8 @@ def _world(motion: Motion, sides: tuple[float, float]) -> _World:
 def _sketches(motion: Motion, mechanism: Mechanism, world: _World) -> list[Sketch]:
     """The mechanism at each step; labels keep their side while they can, and glide where they cannot."""
     arrows, sketches = _arrows(motion, mechanism), list[Sketch]()
-    offsets: dict[str, tuple[float, float]] = {}
-    ways: list[dict[str, tuple[float, float]]] = []
+    offsets: dict[str, Position] = {}
+    ways: list[dict[str, Position]] = []
     for step in motion.steps:
         labels = partial(own_labels, offsets=dict(offsets))
         seen = sketched(mechanism, world.places(mechanism, step), world.sides, arrows[step.at], TURNS, labels)
@@ -302,7 +278,7 @@ def _sketches(motion: Motion, mechanism: Mechanism, world: _World) -> list[Sketc
     return [replace(seen, labels=tuple(_glided(seen.labels, ways, k))) for k, seen in enumerate(sketches)]
 
 
-def _glided(labels: Iterable[Placed], ways: list[dict[str, tuple[float, float]]], number: int) -> Iterator[Placed]:
+def _glided(labels: Iterable[Placed], ways: list[dict[str, Position]], number: int) -> Iterator[Placed]:
     """Labels at the mean of where they stand in the steps around, without lines that lead to them."""
     near = ways[max(0, number - GLIDE) : number + GLIDE + 1]
     for placed in labels:
@@ -310,42 +286,23 @@ def _glided(labels: Iterable[Placed], ways: list[dict[str, tuple[float, float]]]
         yield replace(placed, center=(placed.label.at[0] + x, placed.label.at[1] + y), leader=None)
 
 
-def _arrows(motion: Motion, mechanism: Mechanism) -> dict[tuple[Fraction, Fraction], dict[str, float]]:
+def _arrows(motion: Motion, mechanism: Mechanism) -> dict[Point, dict[str, float]]:
     """For each point the lengths of its loads' arrows, in proportion to the largest load of the motion."""
-    slice = motion.result.slice
-    components = [pair for load in mechanism.loads for pair in zip(load.names, (load.x, load.y), strict=True)]
-    loads: dict[tuple[Fraction, Fraction], dict[str, Fraction]] = {}
+    parameters = motion.result.slice.parameters
+    forces = {}
     for at in {step.at for step in motion.steps}:
-        values = dict.fromkeys(mechanism.variables, Fraction(0)) | {
-            name: e.evaluate(*at) for name, e in slice.parameters.items()
-        }
-        loads[at] = {name: value_at(tree, values) for name, tree in components}
-    largest = max((abs(v) for own in loads.values() for v in own.values()), default=Fraction(0))
-    return {
-        at: {
-            name: (1 if v > 0 else -1) * max(MIN_ARROW, MAX_ARROW * float(abs(v) / largest))
-            for name, v in own.items()
-            if v
-        }
-        for at, own in loads.items()
-    }
+        values = {name: expression.evaluate(*at) for name, expression in parameters.items()}
+        forces[at] = components(loads_at(mechanism, values))
+    largest = max((abs(force) for own in forces.values() for force in own.values()), default=Fraction(0))
+    return {at: arrows_of(own, largest) for at, own in forces.items()}
 
 
-def _key(motion: Motion, style: Style, width: float) -> list[list[tuple[float, Entry]]]:
+def _key(motion: Motion, style: PictureStyle, width: float) -> Rows:
     """The legend in rows: each entry with its distance from the left, in inches."""
     result = motion.result
-    paint = paint_of(result, style)
-    found = {count_text(r, result.slice.count): paint.fill(r) for r in result.regions}
-    entries = [Entry((head_of(result.slice)[0],))] + [Entry((text,), fill) for text, fill in sorted(found.items())]
+    paint = paint_of(style, result)
+    fills = fills_by_count(paint, result)
+    entries = [Entry((head_of(result.slice)[0],)), *(Entry((text,), fill) for text, fill in fills.items())]
     if result.cover is not None and result.undetermined:
         entries.append(Entry(("undetermined",), paint.undetermined))
-    rows: list[list[tuple[float, Entry]]] = [[]]
-    left = 0.0
-    for entry in entries:
-        wide = text_width(entry.lines[0], SIZES[1]) + (0.0 if entry.mark is None else Type().indent) + 0.2
-        if rows[-1] and left + wide - 0.2 > width:
-            rows.append([])
-            left = 0.0
-        rows[-1].append((left, entry))
-        left += wide
-    return rows
+    return in_rows(entries, width + 0.2, TYPE)

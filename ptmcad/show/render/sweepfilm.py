@@ -13,18 +13,17 @@ from typing import Any
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
-from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import symbol
+from ptmcad.show.render.colours import Fill
 from ptmcad.show.render.film import save_pictures
-from ptmcad.show.render.legend import INK, head_of
-from ptmcad.show.render.painting import paint_of
-from ptmcad.show.render.plotting import draw_on
+from ptmcad.show.render.legend import head_of
+from ptmcad.show.render.painting import fills_by_count, paint_of
+from ptmcad.show.render.plotting import draw_on, handles_of
 from ptmcad.show.render.stage import Pixels
-from ptmcad.show.style import Place, Style
-from ptmcad.show.table import count_text
+from ptmcad.show.style import LegendPlace, PictureStyle
+from ptmcad.show.table import in_order
 from ptmcad.text.numerals import fraction_of, shortest_text
 
 SIZE = (7.0, 5.2)
@@ -45,23 +44,16 @@ class SweepFilm:
     """
 
     def __init__(
-        self, maps: Callable[[int], RegionMap], values: Sequence[Mapping[str, str]], style: Style, dpi: int
+        self, maps: Callable[[int], RegionMap], values: Sequence[Mapping[str, str]], style: PictureStyle, dpi: int
     ) -> None:
         self.maps, self.values, self.dpi = maps, values, dpi
-        self.style = style._replace(legend=Place.NONE, title="")
-        self.legend: dict[tuple[int, ...], Any] = {}
-        head = ""
+        self.style = style._replace(legend=LegendPlace.NONE, title="")
+        self.head, fills = "", dict[str, Fill]()
         for number in range(len(values)):
             result = maps(number)
-            paint, count = paint_of(result, style), result.slice.count
-            head = head_of(result.slice)[0]
-            for region in result.regions:
-                fill = paint.fill(region)
-                self.legend[counted_by(region, count)] = Patch(
-                    facecolor=fill.face, hatch=fill.hatch or None, edgecolor=INK, linewidth=0.4,
-                    label=count_text(region, count),
-                )  # fmt: skip
-        self.head = head
+            fills |= fills_by_count(paint_of(style, result), result)
+            self.head = head_of(result.slice)[0]
+        self.legend = handles_of({text: fills[text] for text in sorted(fills, key=in_order)})
 
     def __len__(self) -> int:
         return len(self.values)
@@ -73,23 +65,19 @@ class SweepFilm:
         text = ",  ".join(f"{symbol(n)} = {shortest_text(fraction_of(v))}" for n, v in self.values[number].items())
         figure.text(_BOX[0], 0.93, text if len(text) <= _MAX_LENGTH else f"{text[:_MAX_LENGTH]}…", fontsize=12)
         figure.legend(
-            handles=[self.legend[count] for count in sorted(self.legend)], title=self.head, loc="upper left",
+            handles=self.legend, title=self.head, loc="upper left",
             bbox_to_anchor=(_BOX[0] + _BOX[2] + 0.02, _BOX[1] + _BOX[3]), borderaxespad=0, frameon=False, fontsize=9,
         )  # fmt: skip
-        canvas: Any = _canvas(figure)
+        canvas: Any = FigureCanvasAgg(figure)
         canvas.draw()
         return np.asarray(canvas.buffer_rgba())[..., :3].copy()
-
-
-def _canvas(figure: Figure) -> Any:
-    return FigureCanvasAgg(figure)
 
 
 def save_sweep_film(
     maps: Callable[[int], RegionMap],
     values: Sequence[Mapping[str, str]],
     path: Path,
-    style: Style,
+    style: PictureStyle,
     fps: int,
     dpi: int = 100,
 ) -> None:

@@ -6,7 +6,7 @@ Guarantee: labels are apart from each other and within the drawing; regions whos
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
@@ -14,6 +14,7 @@ from ptmcad.show.render.labels import Placement, place
 from ptmcad.show.render.legend import INK
 from ptmcad.show.render.slivers import Sliver, inside, thin_regions
 from ptmcad.show.render.view import Shapes
+from ptmcad.show.style import Size
 from ptmcad.show.table import count_text
 
 RESOLVED = 42
@@ -51,15 +52,25 @@ def ranked(whole: Shapes, slivers: Sequence[Sliver], thin: Sequence[int]) -> lis
     return [*first, *(sliver for sliver in by_size if sliver not in first)]
 
 
-def homes_of(result: RegionMap, slivers: Sequence[Sliver]) -> list[list[int]]:
-    """For each thin region all that have its count."""
-    texts = [count_text(region, result.slice.count) for region in result.regions]
-    return [[n for n, text in enumerate(texts) if text == texts[sliver.region]] for sliver in slivers]
+def placed_marks(whole: Shapes, marks: Marks, told: Sequence[str], sides: Size, size: float, skip: bool) -> Marks:
+    """The marks with places for their names.
+
+    Parameters
+    ----------
+    told : what is said of each region of the map: the label of one best stands where the same is true.
+    sides, size, skip : as of `place`.
+    """
+    tips = [whole.view.approximate_position(sliver.at) for sliver in marks.slivers]
+    homes = [[n for n, text in enumerate(told) if text == told[sliver.region]] for sliver in marks.slivers]
+    return replace(marks, placed=place(tips, marks.names, whole, sides, size, skip=skip, homes=homes))
 
 
-def marks_of(
-    whole: Shapes, sides: tuple[float, float], dpi: int, size: float, names: Sequence[str] | None = None
-) -> Marks:
+def counts_of(result: RegionMap) -> list[str]:
+    """The counts of all regions as texts."""
+    return [count_text(region, result.slice.count) for region in result.regions]
+
+
+def marks_of(whole: Shapes, sides: Size, dpi: int, size: float, names: Sequence[str] | None = None) -> Marks:
     """The marks of a map in a drawing of its own, without insets.
 
     Parameters
@@ -71,15 +82,14 @@ def marks_of(
     """
     result = whole.result
     resolved = RESOLVED if names is None else RIMMED
-    told = names if names is not None else [count_text(region, result.slice.count) for region in result.regions]
+    told = names if names is not None else counts_of(result)
     thin = [n for n in thin_regions(whole, round(min(sides) * min(dpi, resolved))) if told[n]]
     if not thin:
         return Marks()
     slivers = ranked(whole, [Sliver(n, inside(whole, n)) for n in thin], thin)
-    tips = [whole.view.approximate_position(sliver.at) for sliver in slivers]
     labels = [told[sliver.region] for sliver in slivers]
-    homes = [[n for n, name in enumerate(told) if name == label] for label in labels]
-    found = place(tips, labels, whole, (72 * sides[0], 72 * sides[1]), size, skip=True, homes=homes)
+    marks = Marks(slivers, names=labels)
+    found = placed_marks(whole, marks, told, (72 * sides[0], 72 * sides[1]), size, skip=True).placed
     clear = [k for k, placement in enumerate(found) if placement.clear]
     return Marks(
         [slivers[k] for k in clear], [found[k] for k in clear], [labels[k] for k in clear], len(thin) - len(clear)

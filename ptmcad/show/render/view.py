@@ -15,9 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.show.render.clearance import Position
 
 Floats = NDArray[np.float64]
 Interval = tuple[Fraction, Fraction]
+Point = tuple[Fraction, Fraction]
+"""Of a map, in the order of its axes."""
+CellShape = tuple[int, list[Floats]]
+"""A cell's number and its closed polygons."""
+WallShape = tuple[int, bool, Floats]
+"""The component that a wall lies on, whether it separates two regions, and its polyline."""
 T = TypeVar("T")
 
 
@@ -51,7 +58,7 @@ class View:
         """The interval of axis 0 or 1."""
         return self.y if axis else self.x
 
-    def approximate_position(self, point: tuple[Fraction, Fraction]) -> tuple[float, float]:
+    def approximate_position(self, point: Point) -> Position:
         """A point in the view's own coordinates, (0, 0) to (1, 1)."""
         (left, right), (bottom, top) = self.x, self.y
         return float((point[0] - left) / (right - left)), float((point[1] - bottom) / (top - bottom))
@@ -84,12 +91,12 @@ class Shapes(Protocol):
         """
         ...
 
-    def cells(self, tolerance: float = 0.0) -> Iterator[tuple[int, list[Floats]]]:
+    def cells(self, tolerance: float = 0.0) -> Iterator[CellShape]:
         """Every cell of the view and its closed polygons, with a tolerance as ``polygons`` has one."""
         ...
 
-    def walls(self, tolerance: float = 0.0) -> Iterator[tuple[int, bool, Floats]]:
-        """Every wall as (component, whether it separates two regions, polyline), with such a tolerance."""
+    def walls(self, tolerance: float = 0.0) -> Iterator[WallShape]:
+        """Every wall, with such a tolerance."""
         ...
 
     def edges(self) -> Iterator[Floats]:

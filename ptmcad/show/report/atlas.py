@@ -9,7 +9,6 @@ the page says so.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -21,8 +20,10 @@ from ptmcad.show.render.axes import heading_of, named, symbol
 from ptmcad.show.render.colours import UNDETERMINED, Fill
 from ptmcad.show.report.chart import hatch_id, pattern_defs
 from ptmcad.show.report.page import asset, harmless, policy_of, template
-from ptmcad.show.sweeps.sketch import SIDE, Sketch
-from ptmcad.show.sweeps.table import middle
+from ptmcad.show.report.sections import swatch
+from ptmcad.show.sweeps.sketch import SIDE, Thumbnail
+from ptmcad.show.sweeps.table import count_order, middle
+from ptmcad.show.table import in_order
 from ptmcad.text.numerals import fraction_of, shortest_text
 from ptmcad.version import __version__
 
@@ -33,7 +34,7 @@ _MAX_ERROR = 200
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class SheetFrame:
     """What all maps of a sweep have in common: the axes' names and windows as texts, and what is counted."""
 
     axes: tuple[tuple[str, str, str], ...]
@@ -47,7 +48,7 @@ def chosen(sweep: Sweep) -> Sequence[int]:
     return range(0, len(sweep), every)
 
 
-def atlas(sweep: Sweep, frame: Frame, members: Sequence[Member], sketches: Mapping[int, Sketch]) -> str:
+def atlas(sweep: Sweep, frame: SheetFrame, members: Sequence[Member], sketches: Mapping[int, Thumbnail]) -> str:
     """The whole page as HTML text.
 
     Parameters
@@ -97,7 +98,7 @@ def _sorted(values: Iterable[str]) -> list[str]:
     return sorted(values, key=fraction_of)
 
 
-def _axis(frame: Frame, number: int) -> str:
+def _axis(frame: SheetFrame, number: int) -> str:
     name, low, high = frame.axes[number]
     return f"{symbol(name)} from {low} to {high}"
 
@@ -111,9 +112,9 @@ def _banners(sweep: Sweep, members: Sequence[Member]) -> Iterator[str]:
         yield f'<p class="banner">The page shows one of {every} members; the index has all {len(sweep)}.</p>'
 
 
-def _cell(sweep: Sweep, member: Member, sketch: Sketch | None) -> str:
+def _cell(sweep: Sweep, member: Member, sketch: Thumbnail | None) -> str:
     """One map of the sheet, as a button."""
-    label = ", ".join(f"{symbol(n)} = {_shown(member.parameters[n])}" for n in sweep.names)
+    label = ", ".join(f"{symbol(n)} = {_shown(fraction_of(member.parameters[n]))}" for n in sweep.names)
     if sketch is None:
         return (
             f'<button type="button" class="small none" data-m="{member.number}" aria-label="{escape(label)}: '
@@ -130,36 +131,31 @@ def _cell(sweep: Sweep, member: Member, sketch: Sketch | None) -> str:
     )
 
 
-def _legend(sketches: Collection[Sketch], frame: Frame) -> Iterator[str]:
+def _legend(sketches: Collection[Thumbnail], frame: SheetFrame) -> Iterator[str]:
     """The fills of all counts that occur, in the order of the counts, and that of what is undetermined."""
     found = {text: fill for each in sketches for text, fill in each.legend}
-    in_order = sorted(found.items(), key=lambda item: [int(n) for n in re.findall(r"\d+", item[0])])
-    shown = [(f"{frame.counted}: {text}", fill) for text, fill in in_order]
+    shown = [(f"{frame.counted}: {text}", found[text]) for text in sorted(found, key=in_order)]
     if any(each.plate == UNDETERMINED for each in sketches):
         shown.append(("undetermined", UNDETERMINED))
     for text, fill in shown:
-        hatch = f'<rect width="30" height="18" {_paint(fill, hatched=True)}/>' if fill.hatch else ""
-        yield (
-            f'<li><svg class="swatch" viewBox="0 0 30 18" aria-hidden="true"><rect width="30" height="18" '
-            f"{_paint(fill)}/>{hatch}</svg>{escape(text)}</li>"
-        )
+        yield f"<li>{swatch(fill)}{escape(text)}</li>"
 
 
 def _paint(fill: Fill, hatched: bool = False) -> str:
     return f'fill="{f"url(#{hatch_id(fill.hatch)})" if hatched else escape(fill.face)}"'
 
 
-def _shown(value: str) -> str:
-    text = shortest_text(fraction_of(value))
-    return text if len(text) <= 14 else f"{float(fraction_of(value)):.6g}"
+def _shown(value: Fraction) -> str:
+    text = shortest_text(value)
+    return text if len(text) <= 14 else f"{float(value):.6g}"
 
 
 def _data(
-    sweep: Sweep, frame: Frame, members: Sequence[Member], values: Mapping[str, Sequence[str]], columns: int
+    sweep: Sweep, frame: SheetFrame, members: Sequence[Member], values: Mapping[str, Sequence[str]], columns: int
 ) -> dict[str, Any]:
     """What the script shows."""
     places = {name: {value: k for k, value in enumerate(found)} for name, found in values.items()}
-    counts = sorted({a.count for m in members if m.summary for a in m.summary.areas}, key=_count_order)
+    counts = sorted({a.count for m in members if m.summary for a in m.summary.areas}, key=count_order)
     along = next((m.summary.widest.along for m in members if m.summary and m.summary.widest), "")
     over = next((name for name, _, _ in frame.axes if name != along), "")
     return {
@@ -169,20 +165,12 @@ def _data(
         "over": symbol(over),
         "axes": [{"name": symbol(name), "low": low, "high": high} for name, low, high in frame.axes],
         "swept": [
-            {"name": symbol(name), "texts": [_shown(v) for v in found], "values": [_float(v) for v in found]}
-            for name, found in values.items()
+            {"name": symbol(name), "texts": list(map(_shown, found)), "values": list(map(float, found))}
+            for name, found in ((name, list(map(fraction_of, texts))) for name, texts in values.items())
         ],
         "counts": counts,
         "members": [_member_data(sweep, m, places, counts) for m in members],
     }
-
-
-def _count_order(count: str) -> tuple[int, ...]:
-    return (-1,) if count == "?" else tuple(map(int, count.split("-")))
-
-
-def _float(value: str) -> float:
-    return float(fraction_of(value))
 
 
 def _member_data(
@@ -214,15 +202,10 @@ def _rounded(value: Fraction) -> float:
     return float(f"{float(value):.6g}")
 
 
-def frame_of(sweep: Sweep, slice: Any, sketches: Iterable[Sketch]) -> Frame:
+def frame_of(sweep: Sweep, slice: Any, sketches: Iterable[Thumbnail]) -> SheetFrame:
     """What the maps have in common, from the slice of one of them and the drawings of all on the page."""
-    axes = tuple((a.name, _shown_fraction(a.low), _shown_fraction(a.high)) for a in slice.axes)
+    axes = tuple((a.name, _shown(a.low), _shown(a.high)) for a in slice.axes)
     common = set[str](slice.fixed).intersection(*(sketch.fixed for sketch in sketches))
     fixed = [part for part in slice.fixed if part in common and part.partition(" = ")[0] not in sweep.names]
     heading = heading_of(slice) if slice.title else ", ".join(named(part, slice.parameters) for part in fixed)
-    return Frame(axes, heading, slice.count.value)
-
-
-def _shown_fraction(value: Fraction) -> str:
-    text = shortest_text(value)
-    return text if len(text) <= 14 else f"{float(value):.6g}"
+    return SheetFrame(axes, heading, slice.count.value)

@@ -7,16 +7,15 @@ of its last digit of every number between the bounds.
 from __future__ import annotations
 
 from fractions import Fraction
-from math import atan2, isqrt
+from math import atan2
 
+from ptmcad.text.balls import rational_bounds
 from ptmcad.text.bounds import nearest_multiple
 from ptmcad.text.numerals import integer_text, magnitude
 
 Bounds = tuple[Fraction, Fraction]
 
 _PI = (Fraction(3141592653589793238, 10**18), Fraction(3141592653589793239, 10**18))
-_BITS = 96
-"""Of the square roots' and the angles' own precision, well beyond that of stored boxes."""
 _MAX_PLAIN_PLACES = 12
 """Places before or after the point from which the form with an exponent is used."""
 
@@ -50,17 +49,8 @@ def power(a: Bounds, exponent: int) -> Bounds:
 
 def square_root(a: Bounds) -> Bounds:
     """The square root of a number that is not negative, though its lower bound may be."""
-    low, high = (_root(max(end, Fraction(0)), up) for end, up in zip(a, (False, True), strict=True))
-    return low, high
-
-
-def _root(value: Fraction, up: bool) -> Fraction:
-    if value == 0:
-        return value
-    shift = max(0, _BITS - value.numerator.bit_length() + value.denominator.bit_length())
-    scaled = (value.numerator << 2 * shift) // value.denominator
-    root = isqrt(scaled)
-    return Fraction(root + 1 if up and Fraction(root**2, 1 << 2 * shift) != value else root, 1 << shift)
+    low, high = (rational_bounds(lambda ball: ball.sqrt(), max(end, Fraction(0))) for end in a)
+    return low[0], high[1]
 
 
 def degrees(cosine: Bounds, sine: Bounds) -> Bounds | None:
@@ -83,30 +73,13 @@ def degrees(cosine: Bounds, sine: Bounds) -> Bounds | None:
 def cosine_sine(angle: Bounds) -> tuple[Bounds, Bounds]:
     """Cosine and sine of an angle in radians: those at the middle of its bounds, which nothing leaves faster than the
     angle itself."""
-    middle = sum(angle) / 2
-    turns = round(middle / (2 * _PI[0]))
-    known = Fraction(round((middle - turns * 2 * _PI[0]) * 2**90), 2**90)
-    slack = (angle[1] - angle[0]) / 2 + Fraction(1, 2**90) + 2 * abs(turns) * (_PI[1] - _PI[0])
-    cosine, sine = ((low - slack, high + slack) for low, high in _cosine_sine(known))
+    slack = (angle[1] - angle[0]) / 2
+    cosine, sine = ((low - slack, high + slack) for low, high in _cosine_sine((angle[0] + angle[1]) / 2))
     return cosine, sine
 
 
 def _cosine_sine(angle: Fraction) -> tuple[Bounds, Bounds]:
-    """Bounds of cosine and sine of a number in [-4, 4] with a denominator of at most `_BITS` bits, from Taylor sums.
-
-    In units of 2^-_BITS, the error of a term is at most 4/k times that of the one before it, and 2 for rounding twice;
-    it stays below 13, and there are fewer than 60 terms. Those left out are halved from one to the next and sum up to
-    less than 60.
-    """
-    scaled = (angle.numerator << _BITS) // angle.denominator
-    sums = [0, 0]
-    term, k = 1 << _BITS, 0
-    while k < 8 or abs(term) > 16:
-        sums[k % 2] += term if k % 4 < 2 else -term
-        k += 1
-        term = (term * scaled >> _BITS) // k
-    cosine, sine = ((Fraction(total - 1000, 1 << _BITS), Fraction(total + 1000, 1 << _BITS)) for total in sums)
-    return cosine, sine
+    return rational_bounds(lambda ball: ball.cos(), angle), rational_bounds(lambda ball: ball.sin(), angle)
 
 
 def decimal_text(a: Bounds, exponent: int) -> str:

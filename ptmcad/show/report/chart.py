@@ -17,21 +17,21 @@ from math import ceil
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import Cell, Region
-from ptmcad.answer.words import counted
+from ptmcad.answer.words import stable_of
 from ptmcad.model import Model
 from ptmcad.question.slice import Count
+from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.slivers import innermost, thin_regions, zooms
-from ptmcad.show.render.view import Shapes
-from ptmcad.show.report.frame import RIM, SIDE, frame, room
+from ptmcad.show.render.view import Floats, Shapes
+from ptmcad.show.report.frame import SIDE, frame, room
 from ptmcad.show.report.pathdata import GRID, path_data
 from ptmcad.show.table import count_text
 from ptmcad.text.numerals import shortest_text
 
-Mark = tuple[str, tuple[float, float]]
+Mark = tuple[str, Position]
 """A letter and its place in the view, as fractions of the sides."""
 Label = tuple[int, float, float]
 """A region and the place of its count."""
@@ -49,17 +49,17 @@ LABEL, _LETTER = 42, 0.55
 
 
 @dataclass(frozen=True, slots=True)
-class Chart:
+class MapPictures:
     """The whole window, and views of thin regions, as SVG; ``places`` are the samples' positions in the window."""
 
     whole: str
     details: tuple[str, ...]
-    places: tuple[tuple[float, float], ...]
+    places: tuple[Position, ...]
     thin_walls: bool
     hidden: int
 
 
-def chart(seen: Shapes) -> Chart:
+def chart(seen: Shapes) -> MapPictures:
     """The pictures of a map."""
     result = seen.result
     thin = thin_regions(seen, MAP_PIXELS)
@@ -68,8 +68,8 @@ def chart(seen: Shapes) -> Chart:
     tips = [
         (letter, seen.view.approximate_position(sliver.at)) for letter, zoom in marks for sliver in zoom.slivers[:1]
     ]
-    places = tuple(seen.view.approximate_position((c.sample[0], c.sample[1])) for c in result.cells)
-    return Chart(
+    places = tuple(seen.view.approximate_position(c.sample) for c in result.cells)
+    return MapPictures(
         whole=_picture(seen, "map", tips, region_labels(seen)),
         details=tuple(_picture(zoom.outline, f"detail-{letter}", (), ()) for letter, zoom in marks),
         places=places,
@@ -127,11 +127,9 @@ def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[La
     around = room(seen, detail=name != "map")
     plate = "plate" if result.cover is None else "undetermined"
     parts = [
-        f'<svg id="{name}" class="map" role="group" '
-        f'viewBox="0 0 {around.left + SIDE + around.right} {RIM + SIDE + around.bottom}" '
-        f'aria-label="{escape(_window_text(seen))}">',
+        f'<svg id="{name}" class="map" role="group" viewBox="{around.view}" aria-label="{escape(_window_text(seen))}">',
         f'<clipPath id="{name}-window"><rect width="{SIDE}" height="{SIDE}"/></clipPath>',
-        f'<g transform="translate({around.left} {RIM})">',
+        f'<g transform="{around.place}">',
         f'<rect class="{plate}" width="{SIDE}" height="{SIDE}"/><g clip-path="url(#{name}-window)">',
     ]
     parts.append(f'<g transform="scale({1 / GRID:g})">')
@@ -165,17 +163,17 @@ def _shortened(value: Fraction) -> str:
     return text if len(text) <= 12 else f"{float(value):.6g}" if abs(value) < 10**300 else text[:12] + "…"
 
 
-def _placed(line: NDArray[np.float64]) -> NDArray[np.float64]:
+def _placed(line: Floats) -> Floats:
     """Fractions of the view's sides in the picture's units, from above."""
-    placed: NDArray[np.float64] = np.stack([line[:, 0], 1 - line[:, 1]], axis=1) * SIDE
+    placed: Floats = np.stack([line[:, 0], 1 - line[:, 1]], axis=1) * SIDE
     return placed
 
 
-def _open(line: NDArray[np.float64]) -> str:
+def _open(line: Floats) -> str:
     return path_data(_placed(line))
 
 
-def _closed(polygon: NDArray[np.float64]) -> str:
+def _closed(polygon: Floats) -> str:
     return path_data(_placed(polygon), closed=True)
 
 
@@ -259,7 +257,7 @@ def counts_text(part: Cell | Region, model: Model) -> str:
         return "counts not known"
     if total is None:
         return f"{stable} stable"
-    return counted(model, total) if stable is None else f"{stable} stable of {counted(model, total)}"
+    return stable_of(model, stable, total)
 
 
 def region_labels(seen: Shapes) -> list[Label]:

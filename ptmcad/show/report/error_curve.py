@@ -30,7 +30,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
-class Series:
+class MeasuredSeries:
     """Measurements of one method: pairs (seconds, error), both positive, in the order in which they are joined."""
 
     name: str
@@ -42,7 +42,7 @@ class ErrorCurve:
     """What the error is, in words, and its measurements."""
 
     error: str
-    series: tuple[Series, ...]
+    series: tuple[MeasuredSeries, ...]
 
 
 def read_error_curve(path: Path) -> ErrorCurve:
@@ -74,7 +74,7 @@ def _some(codec: Codec[T], most: int) -> Codec[tuple[T, ...]]:
     return Codec(list, read)
 
 
-_SERIES = record_of(Series, name=line(60), points=_some(listed(Codec[float](float, _positive), 2), _MAX_POINTS))
+_SERIES = record_of(MeasuredSeries, name=line(60), points=_some(listed(Codec[float](float, _positive), 2), _MAX_POINTS))
 _CURVE = record_of(ErrorCurve, error=line(200), series=_some(_SERIES, _MAX_SERIES))
 
 
@@ -104,25 +104,26 @@ def _picture(curve: ErrorCurve) -> Iterator[str]:
     (left, right), (low, high) = (_decades([p[k] for p in points]) for k in (0, 1))
     yield f'<svg class="map chart" viewBox="0 0 {_LEFT + _WIDTH + 24} {24 + _HEIGHT + _BOTTOM}" role="img" '
     yield f'aria-label="{escape(curve.error)}, against seconds"><g transform="translate({_LEFT} 24)">'
+
+    def across(decade: float) -> float:
+        return (decade - left) / (right - left) * _WIDTH
+
+    def down(decade: float) -> float:
+        return _HEIGHT - (decade - low) / (high - low) * _HEIGHT
+
     for decade in range(left, right + 1, max(1, (right - left) // 6)):
-        x = (decade - left) / (right - left) * _WIDTH
+        x = across(decade)
         yield f'<path class="grid" d="M{x:.1f} 0V{_HEIGHT}"/>'
         yield f'<text class="number x" x="{x:.1f}" y="{_HEIGHT + 14}" dy=".8em">{power_of_ten(decade)}</text>'
     for decade in range(low, high + 1, max(1, (high - low) // 6)):
-        y = _HEIGHT - (decade - low) / (high - low) * _HEIGHT
+        y = down(decade)
         yield f'<path class="grid" d="M0 {y:.1f}H{_WIDTH}"/>'
         yield f'<text class="number y" x="-14" y="{y:.1f}" dy=".36em">{power_of_ten(decade)}</text>'
     yield f'<text class="name" x="{_WIDTH / 2}" y="{_HEIGHT + _BOTTOM - 16}">seconds</text>'
     yield f'<text class="name" transform="translate({36 - _LEFT} {_HEIGHT / 2}) rotate(-90)">error</text>'
     yield f'<rect class="frame" width="{_WIDTH}" height="{_HEIGHT}"/>'
     for k, s in enumerate(curve.series):
-        places = [
-            (
-                (log10(x) - left) / (right - left) * _WIDTH,
-                _HEIGHT - (log10(y) - low) / (high - low) * _HEIGHT,
-            )
-            for x, y in s.points
-        ]
+        places = [(across(log10(x)), down(log10(y))) for x, y in s.points]
         yield f'<path class="series s{k}" d="M{"L".join(f"{x:.1f} {y:.1f}" for x, y in places)}"/>'
         for x, y in places:
             mark = _MARKS[k % len(_MARKS)]

@@ -8,6 +8,7 @@ from __future__ import annotations
 from html import escape
 
 from ptmcad.answer.regionmap import Component, RegionMap
+from ptmcad.answer.words import several
 from ptmcad.show.polynomial_text import Style, polynomial_text, symbols
 from ptmcad.show.report.sections import copied
 from ptmcad.text.numerals import integer_text
@@ -39,7 +40,7 @@ def _curve(number: int, component: Component, names: tuple[str, str], known: boo
         role = "what it separates was not computed"
     title = (
         f"Curve {number}: {component.kind.value}, degree {p.degrees[0]} in {names[0]}, {p.degrees[1]} in {names[1]}, "
-        f"{p.total_degree} in all, {len(p.terms)} term{'s' * (len(p.terms) != 1)}; {role}"
+        f"{p.total_degree} in all, {several(len(p.terms), 'term')}; {role}"
     )
     return f"<details><summary>{escape(title)}</summary>{_formula(component, names)}</details>"
 

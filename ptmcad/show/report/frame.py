@@ -12,8 +12,8 @@ from fractions import Fraction
 from html import escape
 from math import ceil
 
-from ptmcad.show.render.axes import Scale, scale_of, symbol
-from ptmcad.show.render.view import Shapes
+from ptmcad.show.render.axes import Scale, fixed, scale_of, symbol
+from ptmcad.show.render.view import Interval, Shapes
 from ptmcad.show.units import unit
 from ptmcad.text.numerals import magnitude, shortest_text
 
@@ -30,7 +30,7 @@ _MAX_NAME = 24
 
 
 @dataclass(frozen=True, slots=True)
-class Room:
+class Margins:
     """What is left around the window for numbers and names, and the size of the names' type on phones."""
 
     left: float
@@ -38,14 +38,24 @@ class Room:
     bottom: float
     name: float
 
+    @property
+    def view(self) -> str:
+        """The picture's own coordinates, as SVG has them."""
+        return f"0 0 {self.left + SIDE + self.right} {RIM + SIDE + self.bottom}"
 
-def room(seen: Shapes, detail: bool) -> Room:
+    @property
+    def place(self) -> str:
+        """Where the window begins."""
+        return f"translate({self.left} {RIM})"
+
+
+def room(seen: Shapes, detail: bool) -> Margins:
     """The room that the numbers of a view need: of the whole window, or of thin regions, where the type is larger."""
     number, name = (_DETAIL, _DETAIL) if detail else (_NUMBER, _NAME)
     across, up = (ticks(interval, scale_of(*interval)) for interval in (seen.view.x, seen.view.y))
     beside = max((_width(text) for text, _ in up), default=0) * number
     beyond = max(((float(at) - 1) * SIDE + _width(text) * number / 2 for text, at in across), default=0)
-    return Room(
+    return Margins(
         left=ceil(max(_LEFT, 14 + beside + 6 + 1.3 * name)),
         right=ceil(max(RIM, beyond + 2)),
         bottom=ceil(max(_BOTTOM, 18 + 1.1 * number + 1.1 * name + 20)),
@@ -58,7 +68,7 @@ def _width(text: str) -> float:
     return sum(_WIDTHS.get(character, 0.64) for character in text)
 
 
-def frame(seen: Shapes, room: Room) -> Iterator[str]:
+def frame(seen: Shapes, room: Margins) -> Iterator[str]:
     """The frame with ticks, numbers and names, as elements of a group whose origin is its upper left corner."""
     yield f'<rect class="frame" width="{SIDE}" height="{SIDE}"/>'
     slice = seen.result.slice
@@ -83,7 +93,7 @@ def frame(seen: Shapes, room: Room) -> Iterator[str]:
             yield f'<text class="name" transform="{place}">{text}</text>'
 
 
-def ticks(interval: tuple[Fraction, Fraction], scale: Scale) -> list[tuple[str, Fraction]]:
+def ticks(interval: Interval, scale: Scale) -> list[tuple[str, Fraction]]:
     """At most `_MAX_TICKS` + 1 round numbers of a scale, as text, and where they are between the ends (0 to 1)."""
     low, high = interval
     power = Fraction(10) ** scale.exponent
@@ -94,10 +104,4 @@ def ticks(interval: tuple[Fraction, Fraction], scale: Scale) -> list[tuple[str, 
     first, last = -(-shown[0] // step), shown[1] // step
     values = [k * step for k in range(int(first), int(last) + 1)]
     decimals = max((len(shortest_text(v).partition(".")[2]) for v in values), default=0)
-    return [(_fixed(v, decimals), (v - shown[0]) / (shown[1] - shown[0])) for v in values]
-
-
-def _fixed(value: Fraction, decimals: int) -> str:
-    digits = str(abs(value) * 10**decimals).zfill(decimals + 1)
-    text = f"{digits[:-decimals]}.{digits[-decimals:]}" if decimals else digits
-    return f"−{text}" if value < 0 else text
+    return [(fixed(v, decimals), (v - shown[0]) / (shown[1] - shown[0])) for v in values]

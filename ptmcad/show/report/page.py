@@ -18,9 +18,9 @@ from ptmcad.answer.consistency import check_numbers
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import index_words, moments_work, untold
 from ptmcad.errors import ConfigError
-from ptmcad.model import Mechanism, Model, Support
+from ptmcad.model import Model, Support
 from ptmcad.model.elements import UnknownKind
-from ptmcad.model.joints import joints_of
+from ptmcad.model.joints import torsion_springs
 from ptmcad.model.work import split_moments
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import heading_of, symbol, with_symbols
@@ -28,7 +28,7 @@ from ptmcad.show.render.colours import fill_of
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.report import sections
-from ptmcad.show.report.chart import SLACK, Chart, chart, counts_text, pattern_defs
+from ptmcad.show.report.chart import SLACK, MapPictures, chart, counts_text, pattern_defs
 from ptmcad.show.report.equilibria import at_sample, both
 from ptmcad.show.report.error_curve import ErrorCurve, error_section
 from ptmcad.show.report.formulas import curves
@@ -103,12 +103,12 @@ def _curves(result: RegionMap) -> str:
 
 def _shown(model: Model) -> str:
     """What a cell's button shows."""
-    if not isinstance(model, Mechanism):
+    if model.drawable is None:
         return "its solutions"
     return "its poses and its energy" if model.has_potential else "its poses"
 
 
-def _details(drawn: Chart) -> str:
+def _details(drawn: MapPictures) -> str:
     """The views of thin regions below the map."""
     if not drawn.details:
         return ""
@@ -152,25 +152,26 @@ def harmless(data: object) -> str:
 def drawing_of(model: Model) -> dict[str, Any]:
     """What the script draws of a mechanism, by the numbers of its points; of a system only the unknowns' names."""
     unknowns = {"unknowns": [symbol(name) for name in (*model.angles, *model.reals)]}
-    if not isinstance(model, Mechanism):
+    mechanism = model.drawable
+    if mechanism is None:
         empty = ("points", "rods", "springs", "loaded", "moving", "pinned", "sliding", "rising")
         return unknowns | {name: [] for name in empty}
-    number = {name: n for n, name in enumerate(model.points)}
+    number = {name: n for n, name in enumerate(mechanism.points)}
 
     def held(support: Support) -> list[int]:
-        return [number[name] for name, kind in model.supports.items() if kind is support]
+        return [number[name] for name, kind in mechanism.supports.items() if kind is support]
 
     # a mechanism without torsion springs says nothing of them
     torsion = [
         {"name": with_symbols(spring.name), "at": [number[name] for name in joint if name] if joint else []}
-        for spring, joint in zip(model.torsion, joints_of(model), strict=True)
+        for spring, joint in torsion_springs(mechanism)
     ]
     return unknowns | {
-        "points": [symbol(name) for name in model.points],
-        "rods": [[number[a], number[b]] for a, b in model.bars],
-        "springs": [[number[spring.start], number[spring.end]] for spring in model.springs],
-        "loaded": [number[load.point] for load in model.loads],
-        "moving": [number[name] for name in model.moving],
+        "points": [symbol(name) for name in mechanism.points],
+        "rods": [[number[a], number[b]] for a, b in mechanism.bars],
+        "springs": [[number[a], number[b]] for a, b in mechanism.spring_ends],
+        "loaded": [number[name] for name in mechanism.loaded],
+        "moving": [number[name] for name in mechanism.moving],
         "pinned": held(Support.PIN),
         "sliding": held(Support.SLIDER_X),
         "rising": held(Support.SLIDER_Y),
@@ -180,19 +181,20 @@ def drawing_of(model: Model) -> dict[str, Any]:
 
 def _work(model: Model) -> str:
     """What the energies of poses leave out, where moments work; empty where there are none, or no energies."""
-    if not isinstance(model, Mechanism) or not model.has_potential:
+    mechanism = model.drawable
+    if mechanism is None or not mechanism.has_potential:
         return ""
-    acted = [moment.unknown for moment in split_moments(model).steady]
+    acted = [moment.unknown for moment in split_moments(mechanism).steady]
     return moments_work(model, acted) if acted else ""
 
 
 def _declared(slice: Slice) -> dict[str, Any]:
     """The units that the record declares of lengths, forces and energies, and of each unknown."""
-    if not isinstance(slice.model, Mechanism):
+    if slice.model.drawable is None:
         return {}
-    of_length = slice.units.get("length", "")
-    lengths = [kind is UnknownKind.LENGTH for kind in (slice.model.unknowns[n] for n in _unknowns(slice.model))]
-    return {**declared_units(slice.units), "unknowns": [of_length if is_length else "" for is_length in lengths]}
+    of_length = {UnknownKind.LENGTH: slice.units.get("length", "")}
+    unknowns = [of_length.get(slice.model.unknowns[name], "") for name in _unknowns(slice.model)]
+    return {**declared_units(slice.model, slice.units), "unknowns": unknowns}
 
 
 def _unknowns(model: Model) -> tuple[str, ...]:
@@ -200,7 +202,7 @@ def _unknowns(model: Model) -> tuple[str, ...]:
     return (*model.angles, *model.reals)
 
 
-def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
+def _data(result: RegionMap, drawn: MapPictures) -> dict[str, Any]:
     """What the script shows and draws."""
     names, model = result.slice.axis_names, result.slice.model
     return {
@@ -209,10 +211,10 @@ def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
         "slack": 0 if result.cover is None else SLACK,
         "base": result.base,
         "axes": [symbol(name) for name in names],
-        "drawable": isinstance(model, Mechanism),
+        "drawable": model.drawable is not None,
         "units": _declared(result.slice),
         "told": model.tells_stability,
-        "untold": "" if model.tells_stability or not isinstance(model, Mechanism) else untold(model),
+        "untold": untold(model),
         "work": _work(model),
         "landscape": len(model.angles) == len(model.unknowns) == 2 and model.has_potential,
         "index": index_words(len(model.unknowns) + 1),

@@ -9,11 +9,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ptmcad.show.render.view import Floats
+
 GRID = 20
 """Steps of the grid in one of the picture's units; what is drawn by such data is scaled down by as much."""
 
 
-def path_data(line: NDArray[np.float64], *, closed: bool = False) -> str:
+def path_data(line: Floats, *, closed: bool = False) -> str:
     """The data of a polyline, or of a polygon; corners within a side along an axis are left out.
 
     A line that is shorter than a step is drawn one step long: a browser leaves out one without length.

@@ -10,14 +10,13 @@ from html import escape
 
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.answer.words import index_words, noun
-from ptmcad.model import Mechanism
+from ptmcad.answer.words import index_words, noun, several
 from ptmcad.question.slice import Count
 from ptmcad.show.render.axes import named, symbol
 from ptmcad.show.render.colours import Fill, fill_of
-from ptmcad.show.render.legend import entries
+from ptmcad.show.render.legend import Entry, entries
 from ptmcad.show.report.bounds import exactly
-from ptmcad.show.report.chart import Chart, counts_text, hatch_id
+from ptmcad.show.report.chart import MapPictures, counts_text, hatch_id
 from ptmcad.show.report.equilibria import both, distinct_parameters
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.show.table import NOT_COMPUTED, area_digits, areas_are_known, stability_in_words
@@ -106,7 +105,7 @@ def question(result: RegionMap) -> str:
     index = ", ".join(index_words(len(slice.model.unknowns) + 1).split("-"))
     counted_by = _COUNTED[slice.count].format(noun=noun(slice.model), index=" and ".join(index.rsplit(", ", 1)))
     items = [
-        ("Mechanism" if isinstance(slice.model, Mechanism) else "System", slice.model.title or slice.mechanism),
+        (slice.model.record_key.capitalize(), slice.model.title or slice.mechanism),
         ("Axes", axes),
         ("Parameters", shown + (f"{'; ' if shown else ''}zero: {zero}" if zero else "") or "none"),
         ("Count", f"regions are distinguished by {counted_by}"),
@@ -123,17 +122,17 @@ def answer(result: RegionMap) -> str:
         return f"no cells were computed; {result.status.value}"
     if result.cover is not None:
         return (
-            f"{regions} region{'s' * (regions != 1)}, {percent(result.undetermined)} of the window undetermined; "
+            f"{several(regions, 'region')}, {percent(result.undetermined)} of the window undetermined; "
             f"{result.status.value}"
         )
     curves = sum(c.separates for c in result.components)
     return (
-        f"{regions} region{'s' * (regions != 1)} in {cells} cell{'s' * (cells != 1)}, parted by {curves} "
-        f"curve{'s' * (curves != 1)}; {result.status.value}"
+        f"{several(regions, 'region')} in {several(cells, 'cell')}, parted by {several(curves, 'curve')}; "
+        f"{result.status.value}"
     )
 
 
-def legend(result: RegionMap, chart: Chart) -> str:
+def legend(result: RegionMap, chart: MapPictures) -> str:
     """What colours and lines mean, in words."""
     parts = []
     for entry in entries(result, chart.thin_walls, samples=False, hidden=chart.hidden):
@@ -141,16 +140,18 @@ def legend(result: RegionMap, chart: Chart) -> str:
             case Fill() as fill:
                 parts.append(f"<li>{swatch(fill)}<span>{escape(': '.join(_head_and_rest(entry.lines)))}</span></li>")
             case float(width):
-                line = f'<path class="{"wall strong" if width > 1 else "wall"}" d="M0 9H30"/>'
-                mark = f'<svg class="swatch line" viewBox="0 0 30 18" aria-hidden="true">{line}</svg>'
-                parts.append(f"<li>{mark}<span>{escape(' '.join(entry.lines))}</span></li>")
+                parts.append(_line_entry('"wall strong"' if width > 1 else '"wall"', entry))
             case _ if callable(entry.mark):  # of curves on which solutions are not isolated
-                line = '<path class="wall strong" stroke-dasharray="6 4" d="M0 9H30"/>'
-                mark = f'<svg class="swatch line" viewBox="0 0 30 18" aria-hidden="true">{line}</svg>'
-                parts.append(f"<li>{mark}<span>{escape(' '.join(entry.lines))}</span></li>")
+                parts.append(_line_entry('"wall strong" stroke-dasharray="6 4"', entry))
             case _ if entry.lines:
                 parts.append(f"<li><b>{escape(' '.join(entry.lines))}</b></li>")
     return f'<ul class="legend" aria-label="Legend">{"".join(parts)}</ul>'
+
+
+def _line_entry(look: str, entry: Entry) -> str:
+    line = f'<path class={look} d="M0 9H30"/>'
+    mark = f'<svg class="swatch line" viewBox="0 0 30 18" aria-hidden="true">{line}</svg>'
+    return f"<li>{mark}<span>{escape(' '.join(entry.lines))}</span></li>"
 
 
 def _head_and_rest(lines: tuple[str, ...]) -> tuple[str, ...]:

@@ -13,6 +13,7 @@ import numpy as np
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
 from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.simplification import simplified_line
 from ptmcad.show.render.view import Floats
 from ptmcad.show.table import count_text
 
@@ -24,7 +25,7 @@ MAX_CHARACTERS = 6000
 
 
 @dataclass(frozen=True, slots=True)
-class Sketch:
+class Thumbnail:
     """What is painted: the plate's fill, and over it fills with the data of their SVG paths.
 
     Attributes
@@ -39,7 +40,7 @@ class Sketch:
     fixed: tuple[str, ...] = ()
 
 
-def sketch(result: RegionMap) -> Sketch:
+def sketch(result: RegionMap) -> Thumbnail:
     """The drawing of a map.
 
     Raises
@@ -60,7 +61,7 @@ def sketch(result: RegionMap) -> Sketch:
         if fill != plate:
             pieces.setdefault(fill, []).extend(seen.polygons(number))
     for factor in (1, 3, 9):
-        drawn = Sketch(plate, tuple((fill, _data(found, factor * TOLERANCE)) for fill, found in pieces.items()),
+        drawn = Thumbnail(plate, tuple((fill, _data(found, factor * TOLERANCE)) for fill, found in pieces.items()),
                        tuple(legend.items()), result.slice.fixed)  # fmt: skip
         if sum(len(data) for _, data in drawn.paths) <= MAX_CHARACTERS:
             break
@@ -72,36 +73,10 @@ def _data(polygons: list[Floats], tolerance: float) -> str:
     parts = []
     for polygon in polygons:
         half = len(polygon) // 2
-        kept = np.concatenate([simplified(polygon[:half], tolerance), simplified(polygon[half:], tolerance)])
+        kept = np.concatenate([simplified_line(part, tolerance) for part in (polygon[:half], polygon[half:])])
         placed = np.rint(np.stack([kept[:, 0], 1 - kept[:, 1]], axis=1) * SIDE).astype(int)
         placed = placed[np.concatenate([[True], (placed[1:] != placed[:-1]).any(axis=1)])]
         if len(placed) > 2:
             corners = " ".join(f"{x} {y}" for x, y in placed.tolist())
             parts.append(f"M{corners}z")
     return "".join(parts)
-
-
-def simplified(line: Floats, tolerance: float) -> Floats:
-    """The corners of a polyline without which it would move by more than the tolerance (Douglas and Peucker).
-
-    >>> simplified(np.array([[0, 0], [1, 0.01], [2, 0], [2, 1]], dtype=float), 0.1).tolist()
-    [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]]
-    """
-    if len(line) < 3:
-        return line
-    kept = {0, len(line) - 1}
-    waiting = [(0, len(line) - 1)]
-    while waiting:
-        first, last = waiting.pop()
-        if last - first < 2:
-            continue
-        along, inner = line[last] - line[first], line[first + 1 : last] - line[first]
-        square = float(along @ along)
-        share = np.clip(inner @ along / square, 0, 1) if square else np.zeros(len(inner))
-        off = np.hypot(*(inner - share[:, None] * along).T)
-        furthest = int(np.argmax(off))
-        if off[furthest] > tolerance:
-            middle = first + 1 + furthest
-            kept.add(middle)
-            waiting += [(first, middle), (middle, last)]
-    return line[sorted(kept)]

@@ -15,6 +15,7 @@ from io import StringIO
 from typing import Any
 
 from ptmcad.answer.sweep import CountedArea, Member, State, Sweep, Widest
+from ptmcad.show.ranges.table import aligned
 from ptmcad.text.numerals import fraction_of, shortest_text
 
 Members = Callable[[], Iterable[Member]]
@@ -45,9 +46,7 @@ def table(sweep: Sweep, members: Members) -> str:
     rows = [head, *(_cells(sweep, member) for member in shown)]
     if left_out:
         rows.insert(1 + _SHOWN // 2, ["…"] + [""] * (len(head) - 1))
-    wide = [max(len(row[k]) for row in rows) for k in range(len(head))]
-    lines += ["  ".join(f"{cell:<{w}}" for cell, w in zip(row, wide, strict=True)).rstrip() for row in rows]
-    return "\n".join(lines)
+    return "\n".join([*lines, *aligned(rows)])
 
 
 def _some(members: Iterable[Member], number: int) -> tuple[list[Member], bool]:
@@ -94,10 +93,11 @@ def csv_text(sweep: Sweep, members: Members) -> str:
 def counts_in(members: Iterable[Member]) -> tuple[str, ...]:
     """The counts of regions that occur in any member, in increasing order."""
     found = {area.count for member in members if member.summary for area in member.summary.areas}
-    return tuple(sorted(found, key=_order))
+    return tuple(sorted(found, key=count_order))
 
 
-def _order(count: str) -> tuple[int, ...]:
+def count_order(count: str) -> tuple[int, ...]:
+    """What counts are sorted by."""
     return (-1,) if count == "?" else tuple(map(int, count.split("-")))
 
 
