@@ -10,6 +10,7 @@ import pytest
 import ptmcad
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load, slice_from_mapping
+from ptmcad.question.config.designs import design_from
 
 MECHANISM = """\
 name: t
@@ -170,6 +171,17 @@ def test_a_fault_has_its_line_and_key(
     found = [fault for fault in caught.value.faults if fault.key != "axes.c"]
     assert [(Path(fault.file or ""), fault.line, fault.key) for fault in found] == expected
     assert part in found[0].message
+
+
+def test_a_system_without_a_value_of_its_parameters_is_told() -> None:
+    system = {"parameters": None, "unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]}
+    with pytest.raises(ConfigError, match=r"system\.parameters: has no value"):
+        slice_from_mapping({"system": system, "axes": {"a": [0, 1], "b": [0, 1]}})
+
+
+def test_a_design_without_axes_is_told() -> None:
+    with pytest.raises(ConfigError, match="axes: is missing: a slice needs two axes"):
+        design_from({"parameters": {"k": 1}, "design": {"maximise": "range", "over": {"L2": [1, 2]}}})
 
 
 def test_faults_of_values_are_told_with_those_of_the_description(tmp_path: Path) -> None:

@@ -184,7 +184,7 @@ def checked_design(tree: Tree, given: Mapping[str, Written] | None = None) -> De
             if asked is not None:
                 raise tree.entries[other].place.error(f"a design has no {other!r}: its parameters are those of 'over'")
     unread = record.unread | _entries(entries.get("over")).keys()
-    if faults.found and (not entries or len(record.axes) != 2):
+    if len(record.axes) != 2 or (faults.found and not entries):
         note_values(record, faults, unread)
     record = record._replace(design=None, unread=unread if faults.found else frozenset())
     return _design(record, Node.of(Tree(entries, place), faults))

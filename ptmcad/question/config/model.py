@@ -189,8 +189,7 @@ def _read(node: Tree, faults: Faults, used: Iterable[str] = (), is_system: bool 
     for error in placed:
         with faults:
             raise error
-    doubtful = _doubtful(model, found)
-    return Described(model, node, doubtful | _undeclared(model, found) if is_system and placed else doubtful)
+    return Described(model, node, _doubtful(model, found, is_system) if placed else frozenset())
 
 
 def _mechanism(data: Mapping[str, Any], used: set[str], faults: Faults) -> Model:
@@ -247,11 +246,11 @@ def _names_in_values(record: Tree) -> Iterator[str]:
                 continue  # a fault of that value
 
 
-def _doubtful(model: Model, faults: Faults) -> frozenset[str]:
+def _doubtful(model: Model, faults: Faults, is_system: bool) -> frozenset[str]:
     """The parameters of which nothing can be said with such faults."""
     if ["parameters"] in faults.steps:
         return frozenset(model.parameters)
-    names = faulty_entries(faults, "parameters")
+    names = faulty_entries(faults, "parameters") | (_undeclared(model, faults) if is_system else frozenset())
     return frozenset(names | {name for name, p in model.parameters.items() if p.alias_of in names})
 
 
