@@ -157,12 +157,12 @@ class Element(NamedTuple):
     idle: str = ""
 
 
-class _Names(dict[str, Place]):
+class _CoordinateNames(dict[str, Place]):
     def __missing__(self, point: str) -> Place:
         return Name(f"{point}.x"), Name(f"{point}.y")
 
 
-NAMES: Mapping[str, Place] = _Names()
+NAMES: Mapping[str, Place] = _CoordinateNames()
 """The names of points' coordinates, ``P.x`` and ``P.y``, in place of what these are."""
 
 

@@ -21,9 +21,9 @@ from itertools import combinations
 from ptmcad.errors import ExpressionError
 from ptmcad.model.description import Mechanism
 from ptmcad.model.elements import Closing
-from ptmcad.model.evaluate import evaluate
-from ptmcad.model.proofs import Points, Polynomial
-from ptmcad.text.expressions import Expression, constant
+from ptmcad.model.involutions import SliceRing
+from ptmcad.model.proofs import Points
+from ptmcad.text.expressions import Expression
 
 IN_TWO_WAYS = (
     ", as lengths of its bars add up alike: two ways of assembling it meet there, and flat poses are multiple "
@@ -52,10 +52,6 @@ _KITE = (
 )
 
 
-_PLACE = Fraction(355, 113), Fraction(1393, 985)
-"""Values of the axes that nobody has chosen."""
-
-
 class Fold(Enum):
     """Why a loop folds flat."""
 
@@ -82,28 +78,27 @@ class FourBar:
     corners: tuple[str, str, str, str]
 
     def fold(self, parameters: Mapping[str, Expression]) -> Fold | None:
-        """Why the loop folds flat at all values of the axes; None where it does not, or that is too long to be told."""
+        """Why the loop folds flat at all values of the axes; None where it does not, or that is not shown."""
         try:
-            there = {name: constant(value.evaluate(*_PLACE)) for name, value in parameters.items()}
-            # few products of long expressions are worked out where one point tells that they are no equal ones
-            return None if self._fold(there) is None else self._fold(parameters)
+            return self._fold(Points(self.mechanism, SliceRing(self.mechanism.unknowns, parameters)))
         except ExpressionError:
             return None
 
-    def _fold(self, parameters: Mapping[str, Expression]) -> Fold | None:
-        points = Points(self.mechanism)
+    def _fold(self, points: Points) -> Fold | None:
         a, p, q, b = self.corners
-        one, two, ground = (_value(points.squared(*pair), parameters) for pair in ((a, p), (q, b), (b, a)))
-        coupler = _value(evaluate(self.closing.length, points.ring), parameters) ** 2
-        if _same(one, two) and _same(coupler, ground):
-            return Fold.RHOMBUS if _same(one, ground) else Fold.PARALLELOGRAM
-        if _same(one, ground) and _same(coupler, two):
+        one, two, ground = (points.squared(*pair) for pair in ((a, p), (q, b), (b, a)))
+        length = points.value(self.closing.length)
+        coupler = length * length
+        if one == two and coupler == ground:
+            return Fold.RHOMBUS if one == ground else Fold.PARALLELOGRAM
+        if one == ground and coupler == two:
             return Fold.KITE_P
-        if _same(one, coupler) and _same(two, ground):
+        if one == coupler and two == ground:
             return Fold.KITE_Q
+        four = points.ring.constant(Fraction(4))
         s = one + coupler - two - ground
-        t = s**2 - (one * coupler + two * ground) * Fraction(4)
-        return Fold.EQUAL_SUMS if _same(t**2, one * two * coupler * ground * Fraction(64)) else None
+        t = s * s - (one * coupler + two * ground) * four
+        return Fold.EQUAL_SUMS if t * t == one * two * coupler * ground * four * four * four else None
 
     def turns_freely(self) -> bool:
         """Whether the loop is all that joins the only two unknowns, angles that turn its sides to all directions.
@@ -197,27 +192,3 @@ def may_be_flat(mechanism: Mechanism, parameters: Mapping[str, Expression]) -> s
 def closed_by(mechanism: Mechanism) -> str:
     """The closing bars as a sentence has them: the loop that these close."""
     return " and ".join(f"{c.start}{c.end}" for c in mechanism.closing)
-
-
-def _same(one: Expression, two: Expression) -> bool:
-    """As functions: equal ones need not be written alike."""
-    return not (one - two).numerator
-
-
-def _value(polynomial: Polynomial, parameters: Mapping[str, Expression]) -> Expression:
-    """The value of a polynomial in the parameters.
-
-    Raises
-    ------
-    ExpressionError
-        Where something else is in it.
-    """
-    total = constant(0)
-    for monomial, c in polynomial.terms.items():
-        term = constant(c)
-        for name, exponent in monomial:
-            if name not in parameters:
-                raise ExpressionError(f"{name} is no parameter")
-            term = term * parameters[name] ** exponent
-        total = total + term
-    return total

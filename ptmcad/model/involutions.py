@@ -129,7 +129,7 @@ def involutions(model: Model, parameters: Mapping[str, Expression], window: Wind
     """
     if len(model.unknowns) > MAX_UNKNOWNS:
         return []
-    ring = _Slice(model.unknowns, parameters, window)
+    ring = SliceRing(model.unknowns, parameters, window)
     try:
         parts = list(_parts(model, ring))
     except ExpressionError:
@@ -152,13 +152,15 @@ def involutions(model: Model, parameters: Mapping[str, Expression], window: Wind
     return list(dict.fromkeys(found))[1:]  # the identity comes first
 
 
-class _Slice(Ring):
+class SliceRing(Ring):
     """The ring with the slice's parameters in it, as polynomials in the axes, measured from the window's middle.
 
     A denominator's inverse is a variable. What becomes of it where the axes change is not known.
     """
 
-    def __init__(self, unknowns: Collection[str], parameters: Mapping[str, Expression], window: Window | None) -> None:
+    def __init__(
+        self, unknowns: Collection[str], parameters: Mapping[str, Expression], window: Window | None = None
+    ) -> None:
         super().__init__(MAX_WORK)
         self.unknowns, self.parameters = unknowns, parameters
         self.has_denominators = False
@@ -181,7 +183,7 @@ class _Slice(Ring):
         return total * self.variable(f"over {given.denominator}")
 
 
-def _parts(model: Model, ring: _Slice) -> Iterator[_Part]:
+def _parts(model: Model, ring: SliceRing) -> Iterator[_Part]:
     """What an involution has to keep, but for the order."""
     unknowns = {name for u in model.unknowns for name in (u, f"cos {u}", f"sin {u}")}
 

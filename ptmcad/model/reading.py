@@ -101,24 +101,6 @@ class Unread(dict[str, tuple[Tree, Tree]]):
         return ZERO, ZERO
 
 
-def point_name(name: object, key: str, points: Mapping[str, object]) -> str:
-    """The name of a point that there is, or of one that there may be."""
-    if isinstance(name, str) and (name in points or isinstance(points, Unread)):
-        return name
-    known = f"; the points are {', '.join(points)}" if points else ": there are no points"
-    if isinstance(name, str) and points:
-        raise ConfigError(f"there is no point {quoted(name)}{did_you_mean(name, points) or known}", key=key)
-    raise ConfigError(f"{as_written(name)} is no point's name{known}", key=key)
-
-
-def ends(entry: Node, points: Mapping[str, object]) -> tuple[str, str]:
-    """The names of two different points."""
-    start, end = (point_name(end.plain, entry.key, points) for end in entry.pair("two points", "[A1, A3]"))
-    if start == end:
-        raise entry.fault(f"both ends are {start}")
-    return start, end
-
-
 # ------------------------------------------------------------------------------------------- parameters and unknowns
 
 
@@ -260,9 +242,15 @@ class Context:
             "unknowns": part(reading(self.unknowns_of, **unknown), instead={}),
         }  # fmt: skip
 
-    def known_point(self, entry: Node, name: str) -> str:
-        """The name of a point that there is."""
-        return point_name(name, entry.key, self.points)
+    def known_point(self, entry: Node, name: object) -> str:
+        """The name of a point that there is, or of one that there may be."""
+        points = self.points
+        if isinstance(name, str) and (name in points or isinstance(points, Unread)):
+            return name
+        known = f"; the points are {', '.join(points)}" if points else ": there are no points"
+        if isinstance(name, str) and points:
+            raise entry.fault(f"there is no point {quoted(name)}{did_you_mean(name, points) or known}")
+        raise entry.fault(f"{as_written(name)} is no point's name{known}")
 
     def known_unknown(self, entry: Node, name: str) -> str:
         """The name of an unknown that there is."""
@@ -277,7 +265,14 @@ class Context:
 
     def between(self) -> Codec[tuple[str, str]]:
         """Two points that there are."""
-        return reading(lambda entry: ends(entry, self.points), **two(NAME_SCHEMA), description="Two points.")
+        return reading(self._ends, **two(NAME_SCHEMA), description="Two points.")
+
+    def _ends(self, entry: Node) -> tuple[str, str]:
+        """The names of two different points."""
+        start, end = (self.known_point(entry, end.plain) for end in entry.pair("two points", "[A1, A3]"))
+        if start == end:
+            raise entry.fault(f"both ends are {start}")
+        return start, end
 
     # ------------------------------------------------------------------------------------------------- expressions
 
