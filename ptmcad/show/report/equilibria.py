@@ -130,11 +130,11 @@ def _solutions(
     """The solutions, the stable ones first, then by energy; all numbers of a kind to the same last place."""
     system = compiled(model)
     boxes = [_box(s, model, polynomial) for s in cell.solutions]
-    told = _Pose(
+    formulas = _Pose(
         None if polynomial or not system.has_index else system.energy(),
         *((system.points, system.stretches, system.deflections) if system.are_slopes else ()),
     )
-    poses: list[_Pose] = [evaluated(told, _Within(system, values, box)) for box in boxes]
+    poses: list[_Pose] = [evaluated(formulas, _Within(system, values, box)) for box in boxes]
     energies = [pose.energy for pose in poses] if potential is None else [energy(potential, box) for box in boxes]
     known = [bounds for bounds in energies if bounds is not None]
     energy_place = _place(known)
@@ -167,7 +167,7 @@ def _solutions(
 
 
 class _Pose(NamedTuple):
-    """What is told of a pose, as formulas, or as their bounds."""
+    """What is shown of a pose, as formulas, or as their bounds."""
 
     energy: Any
     points: Mapping[str, tuple[Any, Any]] = MappingProxyType({})
