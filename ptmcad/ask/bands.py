@@ -15,7 +15,7 @@ from itertools import groupby
 from ptmcad.answer.counts import operation_number
 from ptmcad.answer.intervals import CertifiedInterval
 from ptmcad.answer.widths import CertifiedRange, CertifiedRow, CertifiedWidths
-from ptmcad.ask.quantities import told_mechanism
+from ptmcad.ask.quantities import open_chain
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.errors import HypothesisError
 from ptmcad.options import Progress
@@ -45,7 +45,7 @@ def certified_widths(
         if progress is not None:
             progress("rows", k, rows)
     working = operation_number(slice.model, ())
-    if told_mechanism(slice.model) is None:
+    if open_chain(slice.model) is None:
         # as without free lengths: a loop is stable somewhere nearly everywhere
         working = max((i.working or 0 for _, row, _ in found for i in row), default=working) or working
     table = tuple(

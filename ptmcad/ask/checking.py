@@ -21,7 +21,7 @@ from ptmcad.ask.classification import check_flat_loops, check_taken, flat_loops
 from ptmcad.ask.engines import is_certified
 from ptmcad.ask.forecast import QUICK, Forecast, curve_text, forecast, seconds_to_discriminant, way_text
 from ptmcad.ask.forecast import cost_text as in_figures
-from ptmcad.ask.quantities import told_mechanism
+from ptmcad.ask.quantities import open_chain
 from ptmcad.ask.timed import returns_within
 from ptmcad.errors import ConfigError, DegenerateSliceError, LimitReached, shown
 from ptmcad.exact.models import ParametricSystem
@@ -298,7 +298,7 @@ _TORSION = (
 def asked_text(slice: Slice) -> Iterator[str]:
     """What a slice asks as lines of text, before anything is computed."""
     model = slice.model
-    mechanism = told_mechanism(model)
+    mechanism = open_chain(model)
     yield f"{'system' if mechanism is None else 'mechanism':<12}{model.name}"
     yield f"{'unknowns':<12}{', '.join(f'{name} ({kind.value})' for name, kind in model.unknowns.items())}"
     if mechanism is not None:

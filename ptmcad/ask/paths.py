@@ -30,7 +30,7 @@ from ptmcad.ask.fields.descent import descent
 from ptmcad.ask.fields.equations import Floats, apart
 from ptmcad.ask.fields.field import unknowns_of
 from ptmcad.ask.fields.track import Track, followed
-from ptmcad.ask.quantities import told_mechanism
+from ptmcad.ask.quantities import open_chain
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.landing import landing, line_of, merger
 from ptmcad.errors import ConfigError
@@ -64,7 +64,7 @@ def joined_paths(
     Parameters and errors are those of `ptmcad.exact.ranges.path.pose_paths`, and closed loops are refused; ``progress``
     is called as progress("paths: pose", done, total).
     """
-    mechanism = told_mechanism(slice.model)
+    mechanism = open_chain(slice.model)
     if mechanism is None:
         raise ConfigError(
             "poses of closed loops are not followed where springs have free lengths: leave --path out, and solve tells "

@@ -112,7 +112,7 @@ def quantities(model: Model) -> dict[str, Quantity]:
     found = [unknown(model, name) for name in (*model.angles, *model.reals)]
     if model.has_potential:
         found += [_of_energy(model, kind, OPTION) for kind in (QuantityKind.ENERGY, QuantityKind.STIFFNESS)]
-    mechanism = told_mechanism(model)
+    mechanism = open_chain(model)
     if mechanism is not None:
         *of_springs, _, x, y = OF_PARTS
         found += [_of_part(model, kind, name, OPTION) for kind in of_springs for name in mechanism.spring_numbers]
@@ -161,14 +161,14 @@ def _of_energy(model: Model, kind: QuantityKind, key: str) -> Quantity:
     return Quantity(kind.value, kind, f"force{_TIMES}length" if mechanism_in(model) else "")
 
 
-def told_mechanism(model: Model) -> Mechanism | None:
-    """The mechanism of whose parts something is told: none yet whose unknowns loops or X-joints hold."""
+def open_chain(model: Model) -> Mechanism | None:
+    """The mechanism, of whose parts quantities are known by name: none yet with closed loops or X-joints."""
     mechanism = mechanism_in(model)
     return None if mechanism is None or mechanism.closing or mechanism.xjoints else mechanism
 
 
 def _of_part(model: Model, kind: QuantityKind, name: str, key: str) -> Quantity:
-    mechanism = told_mechanism(model)
+    mechanism = open_chain(model)
     springs = {} if mechanism is None else mechanism.spring_numbers
     match kind:
         case QuantityKind.ANGLE:

@@ -80,9 +80,9 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     others = {n: v for n, v in distinct_parameters(values, model).items() if n not in cell.sample.names}
     return {
         "parameters": [[n, both(v)] for n, v in others.items()],
-        "loads": [[float(component.bounds[0]) for component in force] for force in loads],
+        "loads": [[float(component[0]) for component in force] for force in loads],
         "potential": [[*exponents, float(c)] for exponents, c in (potential or {}).items()] if drawn else [],
-        "moments": [float(moment.bounds[0]) for moment in moments if any(any(m.bounds) for m in moments)],
+        "moments": [float(moment[0]) for moment in moments if any(map(any, moments))],
         "equilibria": _solutions(model, cell, known, potential, polynomial) if drawn else [],
     }
 
@@ -130,19 +130,17 @@ def _solutions(
     """The solutions, the stable ones first, then by energy; all numbers of a kind to the same last place."""
     system = compiled(model)
     boxes = [_box(s, model, polynomial) for s in cell.solutions]
-    told = _Pose(
+    formulas = _Pose(
         None if polynomial or not system.has_index else system.energy(),
         *((system.points, system.stretches, system.deflections) if system.are_slopes else ()),
     )
-    poses: list[_Pose] = [evaluated(told, _Within(system, values, box)) for box in boxes]
-    energies = [None if pose.energy is None else pose.energy.bounds for pose in poses]
-    if potential is not None:
-        energies = [energy(potential, box) for box in boxes]
+    poses: list[_Pose] = [evaluated(formulas, _Within(system, values, box)) for box in boxes]
+    energies = [pose.energy for pose in poses] if potential is None else [energy(potential, box) for box in boxes]
     known = [bounds for bounds in energies if bounds is not None]
-    energy_place = last_place(known, _DIGITS)
+    energy_place = _place(known)
     turns = 2 * len(model.angles)
     reals = [box[turns:] for box in boxes]
-    real_place = last_place([x for row in reals for x in row], _DIGITS)
+    real_place = _place(x for row in reals for x in row)
     mechanism = mechanism_in(model) if system.are_slopes else None
     parts = [{} for _ in boxes] if mechanism is None else _parts(mechanism, poses)
     kinds = [kind_of(solution, model) for solution in cell.solutions]
@@ -169,7 +167,7 @@ def _solutions(
 
 
 class _Pose(NamedTuple):
-    """What is told of a pose, as formulas, or as their bounds."""
+    """What is shown of a pose, as formulas, or as their bounds."""
 
     energy: Any
     points: Mapping[str, tuple[Any, Any]] = MappingProxyType({})
@@ -186,25 +184,25 @@ def _parts(mechanism: Mechanism, poses: Sequence[_Pose]) -> list[dict[str, Any]]
     found = []
     for pose in poses:
         shown = {
-            name: f"({decimal_text(x.bounds, length_place)}, {decimal_text(y.bounds, length_place)})"
+            name: f"({decimal_text(x, length_place)}, {decimal_text(y, length_place)})"
             for name, (x, y) in pose.points.items()
         }
         turned = [
-            (_angle_text(degrees(cosine.bounds, sine.bounds)), decimal_text(moment.bounds, moment_place))
+            (_angle_text(degrees(cosine, sine)), decimal_text(moment, moment_place))
             for cosine, sine, moment in pose.deflections
         ]
         entry: dict[str, Any] = {
-            "nodes": [[_drawn(x.bounds) for x in place] for place in pose.points.values()],
+            "nodes": [[_drawn(x) for x in place] for place in pose.points.values()],
             "places": [shown[name] for name in mechanism.moving],
-            "lengths": [decimal_text(length.bounds, length_place) for length, _, _ in pose.stretches],
-            "forces": [decimal_text(force.bounds, force_place) for _, _, force in pose.stretches],
+            "lengths": [decimal_text(length, length_place) for length, _, _ in pose.stretches],
+            "forces": [decimal_text(force, force_place) for _, _, force in pose.stretches],
         }
         found.append(entry | ({"deflections": turned} if turned else {}))
     return found
 
 
-def _place(values: Iterable[_Bounded]) -> int:
-    return last_place([value.bounds for value in values], _DIGITS)
+def _place(values: Iterable[Bounds]) -> int:
+    return last_place(list(values), _DIGITS)
 
 
 def _drawn(value: Bounds) -> float:
@@ -235,23 +233,20 @@ def _box(solution: Solution, model: Model, polynomial: bool) -> tuple[Bounds, ..
     return (*(bounds for end in ends[:angles] for bounds in cosine_sine(end)), *ends[angles:])
 
 
-@dataclass(frozen=True, slots=True)
-class _Bounded:
+class _Bounded(tuple[Fraction, Fraction]):
     """Bounds as a number."""
 
-    bounds: Bounds
-
     def __neg__(self) -> _Bounded:
-        return _Bounded(times(exactly(-1), self.bounds))
+        return _Bounded(times(exactly(-1), self))
 
-    def __add__(self, other: _Bounded) -> _Bounded:
-        return _Bounded(plus(self.bounds, other.bounds))
+    def __add__(self, other: Any) -> _Bounded:
+        return _Bounded(plus(self, other))
 
-    def __sub__(self, other: _Bounded) -> _Bounded:
-        return self + -other
+    def __sub__(self, other: Any) -> _Bounded:
+        return self.__add__(-other)
 
-    def __mul__(self, other: _Bounded) -> _Bounded:
-        return _Bounded(power(self.bounds, 2) if self is other else times(self.bounds, other.bounds))
+    def __mul__(self, other: Any) -> _Bounded:
+        return _Bounded(power(self, 2) if self is other else times(self, other))
 
 
 @dataclass(frozen=True, slots=True)
@@ -277,4 +272,4 @@ class _Within:
         return _Bounded(self.box[2 * self.system.angles.index(number) + 1])
 
     def length(self, x: _Bounded, y: _Bounded) -> _Bounded:
-        return _Bounded(square_root((x * x + y * y).bounds))
+        return _Bounded(square_root(x * x + y * y))
