@@ -23,7 +23,8 @@ ROOT = Path(__file__).resolve().parents[1]
 
 @pytest.fixture(autouse=True)
 def without_numba(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in [name for name in sys.modules if name.startswith("ptmcad.certified.")]:
+    loaded = [name for name in sys.modules if name.startswith("ptmcad.certified.")]
+    for name in (*loaded, *({"ptmcad.formulas.compiled"} & sys.modules.keys())):
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "numba", None)
 

@@ -1,4 +1,4 @@
-"""Which engine a slice needs."""
+"""Which engine makes a slice's map; of a point `solving.needs_intervals` says it, of a line `question.line`."""
 
 from __future__ import annotations
 

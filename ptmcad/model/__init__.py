@@ -1,4 +1,5 @@
-"""Mechanisms as data: a description, read from a record, that engines and checkers derive their formulas from.
+"""Mechanisms as data: a description, read from a record, compiled once into formulas for the
+engines; the checker derives its own.
 
 Guarantee: nothing here computes an equilibrium; a description that was read can be evaluated in any ring.
 """

@@ -1,7 +1,8 @@
 """The kinds of count as one table: what is counted, what that asks of a model, where it changes, and how it is called.
 
 Guarantee: data and plain functions that look at no solution. The question, both engines, answers with their documents,
-tables, pictures and pages read this table and name no kind of their own; a new kind is a new row.
+tables, pictures and pages read this table for words, colours and margins; a new kind with a predicate is a new row,
+and rows in the checker, which derives predicates by itself.
 """
 
 from __future__ import annotations

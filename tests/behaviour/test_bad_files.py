@@ -55,8 +55,8 @@ WRONG: tuple[Any, ...] = (None, True, -1, "x", [], {"a": 1})
 
 ASKING = """
 from ptmcad.algebra import bases
-from ptmcad.algebra.fibre import Work
-bases.MANY, bases.SMALL = 1, Work(0, 0, 0, 0)
+from ptmcad.algebra.fibre import WorkLimit
+bases.MANY, bases.SMALL = 1, WorkLimit(0, 0, 0, 0)
 from ptmcad.__main__ import main
 main()
 """

@@ -2,9 +2,9 @@
 
 Or the solutions of a system's equations; and of either, what has to be positive at those that count.
 
-Guarantee: every term is read off the description. Up to a constant the potential is V - sum of K_s |d_s|, with V and
-the coordinates of d_s trigonometric polynomials: a spring of stiffness k and free length l0 between points that are d
-apart has the energy k |d|^2/2 - k l0 |d| + k l0^2/2, so that K = k l0.
+Guarantee: every term is one of the compiled system's. Up to a constant the potential is V - sum of K_s |d_s|, with V
+and the coordinates of d_s trigonometric polynomials: a spring of stiffness k and free length l0 between points that are
+d apart has the energy k |d|^2/2 - k l0 |d| + k l0^2/2, so that K = k l0.
 """
 
 from __future__ import annotations

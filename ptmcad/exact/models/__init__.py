@@ -1,4 +1,4 @@
-"""Mechanisms as polynomial systems: a description turned into a `ParametricSystem`."""
+"""Mechanisms as polynomial systems: compiled formulas expanded into a `ParametricSystem`."""
 
 from __future__ import annotations
 
