@@ -15,7 +15,7 @@ from ptmcad.cover import components, tubes, union_area
 from ptmcad.cover.rectangles import Cover, Patch, Tube
 from ptmcad.cover.slanted import shown, stepped
 from ptmcad.cover.subdivision import FREE
-from ptmcad.verification.certified.slanted import Frame
+from ptmcad.verification.certified.slanted import SlantedFrame
 from ptmcad.verification.certified.sweep import sweep
 from ptmcad.verification.report import Violation
 
@@ -96,7 +96,7 @@ def test_places_and_sides_agree_with_de_casteljau(patch: Patch, seed: int) -> No
         within = any(abs(a) <= tube.half for a, tube in zip(away, patch.tubes, strict=True))
         expected = None if within else sum(a > 0 for a in away)
         assert tubes.place(patch, u, v) == expected
-        assert Frame(patch, 0).place(u, v) == expected
+        assert SlantedFrame(patch, 0).place(u, v) == expected
     for end, height in ((0, bottom), (1, top)):
         pieces = tubes.side(patch, 1 - patch.along, end)
         assert pieces[0].low == low and pieces[-1].high == high
@@ -127,7 +127,7 @@ def test_areas_of_parts_are_lower_bounds_and_near(patch: Patch) -> None:
             total += max(Fraction(0), min(roof, Fraction(top)) - max(floor, Fraction(bottom)))
         total *= Fraction(high - low, columns)
         assert abs(total - area) <= Fraction((top - bottom) * (high - low), 50)
-        assert area <= Frame(patch, 0).parts[number] <= area + 4 * (top - bottom + high - low)
+        assert area <= SlantedFrame(patch, 0).parts[number] <= area + 4 * (top - bottom + high - low)
 
 
 def test_a_tube_from_side_to_side_parts_the_window_and_drawn_steps_cover_it() -> None:

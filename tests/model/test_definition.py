@@ -25,8 +25,9 @@ from support.shipped_records import CONFIGS
 import ptmcad
 from ptmcad.ask.fields.equations import state_at
 from ptmcad.exact.models import system_from
-from ptmcad.exact.models.potential import deflections_of, geometry_of, squared_lengths
+from ptmcad.formulas.values import evaluated, values
 from ptmcad.model import Mechanism, Model, described, described_system, mechanism_in, without_loops
+from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.text.tree import Number
 
 Rationals = Mapping[str, Fraction]
@@ -42,17 +43,81 @@ def in_floats(model: Model, parameters: Rationals, unknowns: Rationals) -> Value
     """The equations of fields and films."""
     at = np.array([float(unknowns[name]) for name in (*model.angles, *model.reals)])
     state = state_at(model, {name: float(value) for name, value in parameters.items()}, at)
-    of_mechanism = state.points is not None
+    of_mechanism = bool(state.points)
     return Values(
         residuals=state.residuals,
         jacobian=state.jacobian,
         energy=state.energy,
         conditions=None if of_mechanism else state.conditions,
         stability=None if of_mechanism else state.stability,
-        points=state.points,
-        lengths=state.lengths if of_mechanism else None,
-        forces=state.forces if of_mechanism else None,
+        points=state.points or None,
+        lengths=[length for length, _, _ in state.stretches] if of_mechanism else None,
+        forces=[force for *_, force in state.stretches] if of_mechanism else None,
     )
+
+
+class _InMpmath:
+    """Numbers of many digits as an arithmetic for a compiled system's formulas, at a place."""
+
+    def __init__(self, system: CompiledSystem, at: Mapping[str, mpf]):
+        self.at = [at.get(name, mpf(0)) for name in system.names]
+        self.turns = {k: (mp.cos(self.at[k]), mp.sin(self.at[k])) for k in system.angles}
+        for f in system.followers:
+            cosine, sine, below = values((f.cosine, f.sine, f.below), self)
+            self.turns[f.variable] = cosine / below, sine / below
+
+    def constant(self, value: Fraction) -> mpf:
+        return mpf(value.numerator) / value.denominator
+
+    def variable(self, number: int) -> mpf:
+        return self.at[number]
+
+    def cos(self, number: int) -> mpf:
+        return self.turns[number][0]
+
+    def sin(self, number: int) -> mpf:
+        return self.turns[number][1]
+
+    def length(self, x: mpf, y: mpf) -> mpf:
+        return mp.hypot(x, y)
+
+    def inverse_length(self, x: mpf, y: mpf) -> mpf:
+        return 1 / mp.hypot(x, y)
+
+    def direction(self, x: mpf, y: mpf) -> mpf:
+        return x / mp.hypot(x, y)
+
+
+def in_formulas(model: Model, parameters: Rationals, unknowns: Rationals) -> Values:
+    """The compiled system, with the derivatives of its graph and with free lengths."""
+    system = compiled(model)
+    has_springs = bool(system.points)
+    with mp.workdps(50):
+        at = {name: mpf(value.numerator) / value.denominator for name, value in {**parameters, **unknowns}.items()}
+        arithmetic = _InMpmath(system, at)
+        relaxed = range(len(system.springs)) if system.tangent or system.are_slopes else ()
+        equations = system.balance(relaxed)
+        energy = system.energy()
+        found = evaluated(
+            {
+                "residuals": equations,
+                "jacobian": tuple(
+                    tuple(system.graph.derivative(equation, k) for k in system.unknowns) for equation in equations
+                ),
+                "points": dict(system.points),
+                "lengths": tuple(spring.length for spring in system.springs),
+                "forces": tuple(spring.force for spring in system.springs),
+                "deflections": tuple((turned.cosine, turned.sine) for turned in system.torsion),
+                "conditions": system.inequalities,
+                "stability": system.stability,
+            },
+            arithmetic,
+        )
+        if has_springs:
+            found |= {"conditions": None, "stability": None}
+        else:
+            found |= dict.fromkeys(("points", "lengths", "forces", "deflections"))
+        return Values(energy=None if energy is None else values([energy], arithmetic)[0], **found)
 
 
 def in_polynomials(model: Model, parameters: Rationals, unknowns: Rationals) -> Values:
@@ -78,25 +143,18 @@ def in_polynomials(model: Model, parameters: Rationals, unknowns: Rationals) -> 
             return total
 
         is_system = not isinstance(model, Mechanism)
-        shown: dict[str, Any] = {}
-        if isinstance(model, Mechanism):
-            shown = {
-                "points": {name: (number(x), number(y)) for name, (x, y) in geometry_of(model).nodes.items()},
-                "lengths": [mp.sqrt(number(squared)) for squared in squared_lengths(model)],
-                "deflections": [(number(cosine), number(sine)) for cosine, sine in deflections_of(model)],
-            }
         return Values(
             residuals=[number(e) for e in system.equations],
             jacobian=[[number(e) for e in row] for row in system.jacobian],
             energy=None if system.potential is None else number(system.potential),
             conditions=[number(e) for e in system.inequalities] if is_system else None,
             stability=[number(e) for e in system.stability] if is_system else None,
-            **shown,
         )
 
 
 FLOATS, EXACT = (in_floats, 1e-8, True), (in_polynomials, 1e-20, False)
-OWNERS = [pytest.param(owner, id=owner[0].__name__) for owner in (FLOATS, EXACT)]
+COMPILED = in_formulas, 1e-20, True
+OWNERS = [pytest.param(owner, id=owner[0].__name__) for owner in (FLOATS, EXACT, COMPILED)]
 
 
 # ----------------------------------------------------------------------------------------------------- comparison
