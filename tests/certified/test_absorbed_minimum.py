@@ -18,7 +18,7 @@ import ptmcad
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.points import plain_counter as point_counter
 from ptmcad.certified.search import search_curve
-from ptmcad.model.ptm import RECORD
+from ptmcad.model.mechanisms import RECORD
 from ptmcad.question.slice import Count, Slice
 
 FLAT_CONE = {

@@ -23,7 +23,7 @@ from ptmcad.certified import engine
 from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.errors import ConfigError, DegenerateSliceError
-from ptmcad.model.ptm import RECORD
+from ptmcad.model.mechanisms import RECORD
 from ptmcad.question.slice import Count, Slice
 from ptmcad.verification import verify
 

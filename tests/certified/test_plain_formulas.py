@@ -26,7 +26,7 @@ from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.trigonometric import Harmonics
 from ptmcad.certified.search import search_curve
 from ptmcad.errors import ConfigError, GeometryError
-from ptmcad.model.ptm import RECORD
+from ptmcad.model.mechanisms import RECORD
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 from ptmcad.show.ranges.certified import table as interval_table

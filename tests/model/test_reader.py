@@ -19,8 +19,8 @@ from ptmcad.errors import MAX_FAULTS, ConfigError, Faults
 from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models.potential import system_from
 from ptmcad.model import Mechanism, described, described_system, ptm, recognised, without_loops, work
+from ptmcad.model.mechanisms import RECORD
 from ptmcad.model.proofs import check_bars, check_unknowns
-from ptmcad.model.ptm import RECORD
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs" / "mechanisms"
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from ptmcad.errors import Faults, Place
 from ptmcad.model import ptm
-from ptmcad.model.ptm import MEANINGS
+from ptmcad.model.mechanisms import MEANINGS
 from ptmcad.model.reading import DEFINITIONS, MAX_NAME, VALUE, Context
 from ptmcad.model.record import mechanism_codec
 from ptmcad.model.systems import system_codec

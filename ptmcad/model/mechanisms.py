@@ -1,9 +1,11 @@
-"""The planar tensegrity mechanism of Wenger & Chablat, as a record: two crossed bars, three springs, one slider."""
+"""The built-in mechanisms as records: that of Wenger & Chablat, two crossed bars, three springs, one slider."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
+from ptmcad.errors import ConfigError
 from ptmcad.model.description import Mechanism
 from ptmcad.model.record import described
 
@@ -71,3 +73,43 @@ MEANINGS = {
 def ptm() -> Mechanism:
     """The paper's mechanism."""
     return described(RECORD, proved=True)
+
+
+def mechanism_of(name: str) -> Mechanism:
+    """The built-in mechanism of a name.
+
+    Raises
+    ------
+    KeyError
+        When there is none; `ptmcad.question.config` refuses such names before.
+    """
+    return _BUILT_IN[name]()
+
+
+def built_in() -> tuple[str, ...]:
+    """The names of the mechanisms that `mechanism_of` has."""
+    return tuple(_BUILT_IN)
+
+
+def recognised(found: Mechanism) -> Mechanism:
+    """A mechanism that was described, or the built-in one that it is, whether or not its symmetries were written down.
+
+    Raises
+    ------
+    ConfigError
+        When it has the name of a built-in one and is another.
+    """
+    if found.name not in _BUILT_IN:
+        return found
+    known = _BUILT_IN[found.name]()
+    if replace(found, symmetries=known.symmetries) != known:
+        raise ConfigError(f"'{found.name}' is the name of a built-in mechanism, which is another", key="name")
+    return known
+
+
+def known_of(name: str) -> Mechanism:
+    """What is known of a mechanism by its name, as a stored result has it: nothing of one that is not built in."""
+    return _BUILT_IN[name]() if name in _BUILT_IN else Mechanism(name, {}, {}, {}, (), {}, (), ())
+
+
+_BUILT_IN = {"ptm": ptm}
