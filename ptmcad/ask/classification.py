@@ -21,7 +21,8 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.timings import with_compilation
 from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached, expect, quoted
-from ptmcad.model import ClosedMechanism, ptm
+from ptmcad.model import ptm
+from ptmcad.model.description import looped
 from ptmcad.options import Options, Progress
 from ptmcad.process.memory import loading
 from ptmcad.question.config import slice_from
@@ -248,19 +249,14 @@ def _certified(slice: Slice, options: Options) -> RegionMap:
         raise LimitReached(f"{stop}; the map to go on from has no more, and is kept", partial=kept_map) from stop
 
 
-def _loops(slice: Slice) -> ClosedMechanism | None:
-    """The model with loops that leave one degree of freedom; None where there is no such loop."""
-    return slice.model if isinstance(slice.model, ClosedMechanism) and slice.model.tangent else None
-
-
 def flat_loops(slice: Slice) -> str:
     """What to say of loops that leave parts of a certified map undecided; empty where nothing is known of any."""
-    loops = _loops(slice)
-    if loops is None:
+    mechanism = looped(slice.model)
+    if mechanism is None:
         return ""
     from ptmcad.model.fourbars import may_be_flat
 
-    return may_be_flat(loops.mechanism, slice.parameters)
+    return may_be_flat(mechanism, slice.parameters)
 
 
 def check_flat_loops(slice: Slice) -> None:
@@ -270,7 +266,7 @@ def check_flat_loops(slice: Slice) -> None:
     ------
     DegenerateSliceError
     """
-    if _loops(slice) is not None:
+    if looped(slice.model) is not None:
         from ptmcad.certified.plain.problem import check_loops
 
         check_loops(slice)

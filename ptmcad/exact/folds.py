@@ -41,10 +41,10 @@ def with_folds(
     ----------
     at : points of the slice that nobody has chosen.
     """
-    mechanism, tangent = looped(model), compiled(model).tangent
-    if mechanism is None or not tangent:
+    mechanism = looped(model)
+    if mechanism is None:
         return error
-    flat = elements_of(model, tangent)
+    flat = elements_of(model, compiled(model).tangent)
     seen = {p: found for p in at if (found := _folds_at(flat, system, parameters, p)) is not None}
     if not seen or not all(seen.values()):
         return error

@@ -494,8 +494,8 @@ class ClosedMechanism(System):
 
 
 def looped(model: Model) -> Mechanism | None:
-    """The mechanism whose loops a model closes, as it was described; None where there are none."""
-    return model.mechanism if isinstance(model, ClosedMechanism) else None
+    """The mechanism whose loops leave one degree of freedom, as it was described; None where there are none."""
+    return model.mechanism if isinstance(model, ClosedMechanism) and model.tangent else None
 
 
 def equations_in(model: Model) -> System | None:
