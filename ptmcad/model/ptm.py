@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
-from ptmcad.model.description import Mechanism
+from ptmcad.model.description import Mechanism, Model
 from ptmcad.model.record import described
 
 RECORD = {
@@ -71,3 +72,8 @@ MEANINGS = {
 def ptm() -> Mechanism:
     """The paper's mechanism."""
     return described(RECORD, proved=True)
+
+
+def title_of(spring: Any, model: Model) -> str:
+    """Of a spring as it is described, or compiled: the paper's are named by their ends, as in all answers."""
+    return f"{spring.start}{spring.end}" if model == ptm() else spring.name
