@@ -6,14 +6,14 @@ that holds zero is of a number that is zero or too small to be distinguished fro
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ptmcad.answer import with_methods
 from ptmcad.answer.regionmap import Status
-from ptmcad.model import Model, mechanism_in
+from ptmcad.model import Model
 from ptmcad.question.counts import Count
 from ptmcad.text.enclosure import Enclosure
 
@@ -59,6 +59,28 @@ class NamedNumber(NamedTuple):
     name: str
     unit: str
     value: Enclosure
+
+
+def springs_of(
+    elastic: tuple[Any, Any], constant: Callable[[Any], Fraction], stretch: Callable[[Any], tuple[Any, Any]],
+    turn: Callable[[Any], Any],
+) -> dict[str, Any]:  # fmt: skip
+    """The springs of a pose, between points and between directions, by the fields' names.
+
+    Parameters
+    ----------
+    elastic : as of a compiled model.
+    constant : the value of a stiffness or a free length.
+    stretch : length and force of a spring.
+    turn : deflection of a torsion spring, in radians and in degrees, and its moment.
+    """
+    linear, angular = elastic
+    return {
+        "springs": tuple(
+            Spring(s.name, s.start, s.end, constant(s.stiffness), *stretch(s), constant(s.free)) for s in linear
+        ),
+        "torsion": tuple(TorsionSpring(s.name, constant(s.stiffness), *turn(s)) for s in angular),
+    }
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +129,11 @@ class Pose:
         return self.further.get(Count.ADMISSIBLE.value)
 
     @property
+    def forces(self) -> tuple[Enclosure, ...]:
+        """Of the springs, positive where one is longer than its free length."""
+        return tuple(spring.force for spring in self.springs)
+
+    @property
     def has_predicates(self) -> bool:
         """Whether it is asked if predicates hold: where some spring has a free length, or it is said that they do."""
         return bool(self.further) or any(spring.free_length for spring in self.springs)
@@ -119,7 +146,7 @@ class Pose:
     def quantities(self, model: Model) -> tuple[tuple[NamedNumber, ...], ...]:
         """Unknowns, coordinates of points that move, springs' lengths and forces, torsion springs' deflections and
         moments; the same ones for all poses of a model."""
-        mechanism = mechanism_in(model)
+        mechanism = model.whole
         moving = () if mechanism is None else mechanism.moving
         unknowns = [
             NamedNumber(name, unit, number)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Mapping
 from fractions import Fraction
 
-from ptmcad.model import Model, mechanism_in
+from ptmcad.model import Model
 from ptmcad.model.work import acting, foreign, moments_at, split_moments
 
 
@@ -16,7 +16,7 @@ def noun(model: Model, number: int = 2) -> str:
     >>> noun(ptm()), noun(ptm(), 1)
     ('equilibria', 'equilibrium')
     """
-    if mechanism_in(model) is not None:
+    if model.whole is not None:
         return "equilibrium" if number == 1 else "equilibria"
     return "solution" if number == 1 else "solutions"
 

@@ -302,7 +302,7 @@ def asked_text(slice: Slice) -> Iterator[str]:
     yield f"{'system' if mechanism is None else 'mechanism':<12}{model.name}"
     yield f"{'unknowns':<12}{', '.join(f'{name} ({kind.value})' for name, kind in model.unknowns.items())}"
     if mechanism is not None:
-        turning = sum(moment.unknown in model.angles for moment in mechanism.moments)
+        turning = sum(unknown in model.angles for unknown in mechanism.work)
         parts = {
             ("bar", "bars"): len(mechanism.bars),
             ("body", "bodies"): len(mechanism.bodies),
@@ -310,7 +310,7 @@ def asked_text(slice: Slice) -> Iterator[str]:
             ("torsion spring", "torsion springs"): len(mechanism.torsion),
             ("load", "loads"): len(mechanism.loads),
             ("moment", "moments"): turning,
-            ("force on a length", "forces on lengths"): len(mechanism.moments) - turning,
+            ("force on a length", "forces on lengths"): len(mechanism.work) - turning,
         }
         words = (f"{number} {one if number == 1 else many}" for (one, many), number in parts.items() if number)
         yield f"{'parts':<12}{', '.join(words)}"

@@ -12,7 +12,7 @@ from enum import Enum
 
 from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
-from ptmcad.model import Mechanism, Model, mechanism_in
+from ptmcad.model import Mechanism, Model
 from ptmcad.model.elements import UnknownKind
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import Enclosure
@@ -158,12 +158,12 @@ def unknown(model: Model, name: str) -> Quantity | None:
 def _of_energy(model: Model, kind: QuantityKind, key: str) -> Quantity:
     if not model.has_potential:
         raise ConfigError(f"solutions of {model.name} have no energy{_there_are(tuple(quantities(model)))}", key=key)
-    return Quantity(kind.value, kind, f"force{_TIMES}length" if mechanism_in(model) else "")
+    return Quantity(kind.value, kind, f"force{_TIMES}length" if model.whole else "")
 
 
 def open_chain(model: Model) -> Mechanism | None:
     """The mechanism, of whose parts quantities are known by name: none yet with closed loops or X-joints."""
-    mechanism = mechanism_in(model)
+    mechanism = model.whole
     return None if mechanism is None or mechanism.closing or mechanism.xjoints else mechanism
 
 
@@ -177,7 +177,7 @@ def _of_part(model: Model, kind: QuantityKind, name: str, key: str) -> Quantity:
             what, known, unit = "spring", tuple(springs), kind.value
         case _:
             what, known, unit = "point", () if mechanism is None else tuple(mechanism.points), "length"
-    if mechanism is not mechanism_in(model) and kind is not QuantityKind.ANGLE:
+    if mechanism is not model.whole and kind is not QuantityKind.ANGLE:
         raise ConfigError(f"of closed loops, as {model.name} has, only the unknowns are told yet", key=key)
     if name not in known:
         there = f": they are {', '.join(known)}" if known else ": there are none"

@@ -12,7 +12,7 @@ from ptmcad.answer.poses import DIGITS, MAX_DIGITS, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.manyangles import poses_by_search, work_by_msolve, work_for
 from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
-from ptmcad.model import Model, mechanism_in, ptm
+from ptmcad.model import Model, ptm
 from ptmcad.process.memory import loading
 from ptmcad.question.config import point_from, point_from_mapping, units_of
 from ptmcad.question.slice import Slice, have_free_lengths
@@ -86,7 +86,7 @@ def poses_at(model: Model, parameters: Mapping[str, Fraction], digits: int) -> P
     from ptmcad.exact.poses import exact_poses
 
     given = {n: v for n, v in parameters.items() if n not in model.free_lengths}
-    most = None if mechanism_in(model) is None else work_for(model)
+    most = None if model.whole is None else work_for(model)
     try:
         return exact_poses(model, given, digits, most)
     except LimitReached:

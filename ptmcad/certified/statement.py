@@ -12,7 +12,7 @@ from ptmcad.answer.regionmap import PlanStep, System
 from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.plan import beforehand
 from ptmcad.model import Model
-from ptmcad.model.description import equations_in, mechanism_in
+from ptmcad.model.description import equations_in
 from ptmcad.model.involutions import Involution
 from ptmcad.model.statement import energy_text
 from ptmcad.model.work import Split, split_moments
@@ -28,7 +28,7 @@ def system_text(model: Model, has_free_lengths: bool = False) -> System:
     what is zero where each loop is closed. Of a system without a potential, and of loops without free lengths, the
     equations. What is positive at solutions is there as the record says it.
     """
-    unknowns, own, mechanism = tuple(model.unknowns), equations_in(model), mechanism_in(model)
+    unknowns, own, mechanism = tuple(model.unknowns), equations_in(model), model.whole
     if own is not None and not has_free_lengths:
         potential = "" if own.potential is None else to_text(own.potential)
         texts = [tuple(map(to_text, trees)) for trees in (own.equations, own.inequalities, own.stability)]

@@ -20,7 +20,7 @@ from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import set_option
 from ptmcad.cli.values import point
 from ptmcad.errors import ConfigError
-from ptmcad.model import Model, mechanism_in
+from ptmcad.model import Model
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import file_name, point_from_options, units_of
 from ptmcad.question.examples import POINT
@@ -48,7 +48,7 @@ def drawable(model: Model, names: tuple[str, ...], start: str, landscape: bool) 
         For pictures of a system's poses, where no landscape is asked for.
     """
     landscapes = tuple(name for name in names if name.startswith(f"{start}-landscape."))
-    if mechanism_in(model) is None:
+    if model.whole is None:
         kept = tuple(name for name in names if name.endswith(".json") or name in landscapes)
         if kept != names and not landscape:
             further = ", or --landscape" if not no_landscape(model) else ""

@@ -19,7 +19,7 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.number_field import FieldElement
 from ptmcad.algebra.points import RealPoint, value_at
-from ptmcad.answer.poses import Pose, Spring, TorsionSpring
+from ptmcad.answer.poses import Pose, springs_of
 from ptmcad.exact.point_system import PointSystem
 from ptmcad.exact.stiffness import RealNumber, Stiffness, eigenvalues, square_root, stiffness_of
 from ptmcad.formulas.values import evaluated, values
@@ -48,8 +48,7 @@ class Quantities(NamedTuple):
     turns: tuple[tuple[Any, Any], ...]
     reals: tuple[Any, ...]
     points: Mapping[str, tuple[Any, Any]]
-    springs: tuple[Any, ...]
-    torsion: tuple[Any, ...]
+    elastic: tuple[tuple[Any, ...], tuple[Any, ...]]
     energy: Any
 
     @classmethod
@@ -57,7 +56,7 @@ class Quantities(NamedTuple):
         """As formulas."""
         angles, reals = (tuple(map(known.graph.variable, numbers)) for numbers in (known.angles, known.reals))
         energy = known.smooth if known.has_energy else None
-        return cls(tuple((a.cos(), a.sin()) for a in angles), reals, known.points, known.springs, known.torsion, energy)
+        return cls(tuple((a.cos(), a.sin()) for a in angles), reals, known.points, known.elastic, energy)
 
 
 class _AtSolution:
@@ -208,17 +207,17 @@ def _pose(solution: ExactSolution, settled: _Settled) -> Pose:
         radians = _angle(number(cosine), number(sine))
         return settled(radians), settled(_degrees(radians, cosine))
 
-    def spring(part: Any) -> Spring:
-        length, stiffness = square_root(number(part.square)), number(part.stiffness)
-        assert stiffness.exact is not None
-        force = None if length.exact is None else stiffness.exact * length.exact
-        tension = RealNumber(force, length.ball * stiffness.ball)
-        return Spring(part.name, part.start, part.end, stiffness.exact, settled(length), settled(tension))
+    def constant(element: FieldElement) -> Fraction:
+        assert element.rational is not None
+        return element.rational
 
-    def torsion(part: Any) -> TorsionSpring:
-        stiffness = number(part.stiffness).exact
-        assert stiffness is not None
-        return TorsionSpring(part.name, stiffness, *angle(part.cosine, part.sine), enclosed(part.moment))
+    def stretch(spring: Any) -> tuple[Enclosure, Enclosure]:
+        length, stiffness = square_root(number(spring.square)), constant(spring.stiffness)
+        force = None if length.exact is None else stiffness * length.exact
+        return settled(length), settled(RealNumber(force, length.ball * ball_of(stiffness)))
+
+    def turn(spring: Any) -> tuple[Enclosure, ...]:
+        return *angle(spring.cosine, spring.sine), enclosed(spring.moment)
 
     angles = [angle(*turn) for turn in seen.turns]
     eigen = tuple(map(settled, eigenvalues(stiffness, number))) if stiffness.is_symmetric else ()
@@ -233,7 +232,6 @@ def _pose(solution: ExactSolution, settled: _Settled) -> Pose:
         degrees=tuple(degrees for _, degrees in angles),
         cosines_sines=tuple(enclosed(x) for turn in seen.turns for x in turn),
         nodes={name: (enclosed(x), enclosed(y)) for name, (x, y) in seen.points.items()},
-        springs=tuple(map(spring, seen.springs)),
         energy=None if seen.energy is None else enclosed(seen.energy),
         eigenvalues=eigen,
         multiplicity=solution.point.multiplicity,
@@ -241,7 +239,7 @@ def _pose(solution: ExactSolution, settled: _Settled) -> Pose:
         stable=stable,
         flat=bool(seen.points) and all(y.is_zero for _, y in seen.points.values()),
         reals=tuple(map(enclosed, seen.reals)),
-        torsion=tuple(map(torsion, seen.torsion)),
+        **springs_of(seen.elastic, constant, stretch, turn),
     )
 
 

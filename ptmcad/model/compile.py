@@ -19,7 +19,7 @@ from typing import Generic, NamedTuple, TypeVar
 from ptmcad.errors import ExpressionError
 from ptmcad.formulas.graph import Formula, Graph, length
 from ptmcad.formulas.values import values
-from ptmcad.model.description import ClosedMechanism, Mechanism, Model, System, mechanism_in
+from ptmcad.model.description import ClosedMechanism, Mechanism, Model, System
 from ptmcad.model.elements import second_bar
 from ptmcad.model.evaluate import Element, Ring, evaluate, evaluated
 from ptmcad.model.work import split_moments
@@ -34,12 +34,10 @@ class LinearSpring(NamedTuple):
 
     Attributes
     ----------
-    key : where it stands in the description, for messages.
     difference : from its start to its end.
     """
 
     name: str
-    key: str
     start: str
     end: str
     stiffness: Formula
@@ -65,6 +63,11 @@ class LinearSpring(NamedTuple):
     def force(self) -> Formula:
         """Positive where it pulls."""
         return self.stiffness * (self.length - self.free)
+
+    @property
+    def quantities(self) -> dict[str, Formula]:
+        """What poses say of it."""
+        return {"length": self.length, "force": self.force}
 
     @property
     def relaxed_energy(self) -> Formula:
@@ -96,6 +99,11 @@ class AngularSpring(NamedTuple):
     def moment(self) -> Formula:
         return self.stiffness * self.sine
 
+    @property
+    def quantities(self) -> dict[str, Formula]:
+        """What poses say of it."""
+        return {"deflection.cos": self.cosine, "deflection.sin": self.sine, "moment": self.moment}
+
 
 class Follower(NamedTuple):
     """An angle that follows from an unknown one: that of an X-joint's second bar.
@@ -123,7 +131,7 @@ class CompiledSystem:
     followers : with their relations to the unknowns; points and what is made of them may depend on them.
     points : coordinates by name; empty of a system.
     springs, torsion : in the description's order.
-    loads : the point and the force's components.
+    loads : the forces' components.
     smooth : the energy of springs and loads, or the potential, as if no spring had a free length; None of equations.
     others : its terms that are of no spring between points.
     moments : for each unknown, what its equation lacks of the energy's slope: constant moments; without a potential
@@ -148,7 +156,7 @@ class CompiledSystem:
     points: Mapping[str, Vector] = field(default_factory=dict, repr=False)
     springs: tuple[LinearSpring, ...] = ()
     torsion: tuple[AngularSpring, ...] = ()
-    loads: tuple[tuple[str, Vector], ...] = ()
+    loads: tuple[Vector, ...] = ()
     smooth: Formula | None = None
     others: tuple[Formula, ...] = ()
     moments: tuple[Formula, ...] = ()
@@ -178,9 +186,9 @@ class CompiledSystem:
         return tuple((spring.cosine, spring.sine, spring.moment) for spring in self.torsion)
 
     @property
-    def dead_forces(self) -> tuple[Vector, ...]:
-        """Of the loads."""
-        return tuple(force for _, force in self.loads)
+    def elastic(self) -> tuple[tuple[LinearSpring, ...], tuple[AngularSpring, ...]]:
+        """The springs between points, and those between directions."""
+        return self.springs, self.torsion
 
     @property
     def acting(self) -> dict[int, Formula]:
@@ -231,11 +239,9 @@ class CompiledSystem:
         found: dict[str, Formula] = {}
         for name, (x, y) in self.points.items():
             found |= {f"{name}.x": x, f"{name}.y": y}
-        for spring in self.springs:
-            found |= {f"{spring.name}.length": spring.length, f"{spring.name}.force": spring.force}
-        for turned in self.torsion:
-            parts = {"deflection.cos": turned.cosine, "deflection.sin": turned.sine, "moment": turned.moment}
-            found |= {f"{turned.name}.{what}": formula for what, formula in parts.items()}
+        springs: tuple[LinearSpring | AngularSpring, ...] = (*self.springs, *self.torsion)
+        for spring in springs:
+            found |= {f"{spring.name}.{what}": formula for what, formula in spring.quantities.items()}
         return found
 
     def values(self, formulas: Sequence[Formula], ring: Ring[E]) -> list[E]:
@@ -271,7 +277,7 @@ def compiled(model: Model) -> CompiledSystem:
     ExpressionError
         When a moment that depends on its unknown is too large to be multiplied out.
     """
-    return _compiled(model, mechanism_in(model))
+    return _compiled(model, model.whole)
 
 
 @lru_cache(maxsize=8)  # by both, as closed mechanisms are equal where their equations are
@@ -287,7 +293,7 @@ def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSys
 
     So parameters may be numbers or functions of others. Names are known of the variables in their places alone.
     """
-    mechanism = mechanism_in(model)
+    mechanism = model.whole
     followers = () if mechanism is None else tuple(mechanism.followers)
     graph = next((formula.graph for formula in variables.values()), Graph())
     ring = _Ring(graph, variables, {*model.angles, *followers})
@@ -328,17 +334,15 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
     """Points, springs, loads, the smooth energy, moments."""
     points = {name: (evaluate(x, ring), evaluate(y, ring)) for name, (x, y) in mechanism.points.items()}
     springs = []
-    for n, spring in enumerate(mechanism.springs, 1):
+    for spring in mechanism.springs:
         (x0, y0), (x1, y1) = points[spring.start], points[spring.end]
         stiffness, free = ring.of((spring.stiffness, spring.free))
-        springs.append(
-            LinearSpring(spring.name, f"springs.{n}", spring.start, spring.end, stiffness, free, (x1 - x0, y1 - y0))
-        )
+        springs.append(LinearSpring(spring.name, spring.start, spring.end, stiffness, free, (x1 - x0, y1 - y0)))
     torsion = [AngularSpring(t.name, *ring.of((t.stiffness, *t.deflection))) for t in mechanism.torsion]
-    loads = [(load.point, (evaluate(load.x, ring), evaluate(load.y, ring))) for load in mechanism.loads]
+    loads = [(evaluate(load.x, ring), evaluate(load.y, ring)) for load in mechanism.loads]
     split = split_moments(mechanism)
     others = [turned.stiffness * (1 - turned.cosine) for turned in torsion]
-    for point, (across, up) in loads:
+    for point, (across, up) in zip(mechanism.loaded, loads, strict=True):
         x, y = points[point]
         others.append(-(across * x + up * y))
     others += ring.of(split.energies)

@@ -380,9 +380,14 @@ class Mechanism(Model):
         if known != _UNITS[Kind.STIFFNESS]:
             return known
         names = {name, *self.shorthands.get(name, ())}
-        turning = [spring.stiffness for spring in self.torsion if names & set(names_of(spring.stiffness))]
-        pulling = any(names & set(names_of(spring.stiffness)) for spring in self.springs)
-        return self.energy_unit if turning and not pulling and all(map(_is_multiple, turning)) else known
+        stiff = {
+            key: part.tree
+            for key, element in self.elements.items()
+            for part in element.written
+            if part.kind is Kind.STIFFNESS and names & set(names_of(part.tree))
+        }
+        turning = stiff and all(key.startswith("torsion") and _is_multiple(tree) for key, tree in stiff.items())
+        return self.energy_unit if turning else known
 
     def _trees(self) -> Iterator[Tree]:
         yield from self.coordinates.values()

@@ -21,7 +21,7 @@ from itertools import permutations
 from typing import NamedTuple
 
 from ptmcad.errors import ExpressionError
-from ptmcad.model.description import Model, System
+from ptmcad.model.description import Model, equations_in
 from ptmcad.model.elements import UnknownKind
 from ptmcad.model.evaluate import evaluate
 from ptmcad.model.proofs import Monomial, Points, Polynomial, Ring, felt
@@ -196,15 +196,15 @@ def _parts(model: Model, ring: SliceRing) -> Iterator[_Part]:
     def values(trees: Iterable[Tree]) -> list[_Terms]:
         return [evaluate(tree, ring).terms for tree in trees]
 
-    whole = model.whole
-    if isinstance(model, System):
+    whole, own = model.whole, equations_in(model)
+    if own is not None:
         roots = () if whole is None else (element.root for element in whole.elements.values() if element.root)
         if any(evaluate(root.free, ring).terms for root in roots):
             raise ExpressionError("free lengths are in none of a closed loop's equations")
-        kept = [values(model.inequalities), values(model.stability)]
-        if model.potential is not None:
-            kept.append(felt_by_unknowns(evaluate(model.potential, ring)))
-        equations = values(model.equations)
+        kept = [values(own.inequalities), values(own.stability)]
+        if own.potential is not None:
+            kept.append(felt_by_unknowns(evaluate(own.potential, ring)))
+        equations = values(own.equations)
         yield from (_Part(f, equations, True) for f in equations)
     else:
         assert whole is not None

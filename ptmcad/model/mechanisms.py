@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import lru_cache
+from typing import Any
 
 from ptmcad.errors import ConfigError
-from ptmcad.model.description import Mechanism
+from ptmcad.model.description import Mechanism, Model
 from ptmcad.model.record import described
 
 RECORD = {
@@ -73,6 +74,11 @@ MEANINGS = {
 def ptm() -> Mechanism:
     """The paper's mechanism."""
     return described(RECORD, proved=True)
+
+
+def title_of(spring: Any, model: Model) -> str:
+    """Of a spring as it is described, or compiled: the paper's are named by their ends, as in all answers."""
+    return f"{spring.start}{spring.end}" if model == ptm() else spring.name
 
 
 def mechanism_of(name: str) -> Mechanism:

@@ -13,7 +13,8 @@ from enum import Enum
 from fractions import Fraction
 from typing import TYPE_CHECKING, Protocol
 
-from ptmcad.model import Mechanism, Model, ptm
+from ptmcad.model import Mechanism, Model
+from ptmcad.model.mechanisms import title_of
 from ptmcad.text.tree import Chain, Number, Power, Step, Tree
 
 if TYPE_CHECKING:
@@ -69,14 +70,9 @@ class Margin:
     squares: tuple[Tree, ...] = ()
 
 
-class _Pulled(Protocol):
-    @property
-    def force(self) -> Enclosure: ...
-
-
 class _Posed(Protocol):
     @property
-    def springs(self) -> Sequence[_Pulled]: ...
+    def forces(self) -> Sequence[Enclosure]: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +85,7 @@ class PoseColumn:
     head, note, tally : above the column, its meaning, and what follows the number of poses at which it holds.
     """
 
-    margins: Callable[[_Posed], list[Enclosure]]
+    margins: Callable[[_Posed], Sequence[Enclosure]]
     head: str
     note: str
     tally: str
@@ -153,9 +149,8 @@ class CountKind:
 def _longer_than_free(mechanism: Mechanism) -> Iterator[Margin]:
     """|d|^2 - l0^2 of each spring, d being the vector between its ends: of the sign of |d| - l0, as no free length is
     negative. Lengths that are constant are in no description."""
-    by_ends = mechanism == ptm()  # the paper's springs are named by their ends, as in all answers
     for spring in mechanism.springs:
-        name = f"{spring.start}{spring.end}" if by_ends else spring.name
+        name = title_of(spring, mechanism)
         ends = zip(mechanism.points[spring.end], mechanism.points[spring.start], strict=True)
         vector = tuple(Chain(end, (Step("-", start),)) for end, start in ends)
         across, up = (_squared(part) for part in vector)
@@ -170,10 +165,6 @@ def _longer_than_free(mechanism: Mechanism) -> Iterator[Margin]:
 
 def _squared(tree: Tree) -> Tree:
     return Power(tree, Number(Fraction(2)))
-
-
-def _forces(pose: _Posed) -> list[Enclosure]:
-    return [spring.force for spring in pose.springs]
 
 
 KINDS = {
@@ -223,7 +214,7 @@ KINDS = {
             without_free_lengths="admissible asks that every spring is longer than its free length, and none has a "
             "free length here: choose stable",
             column=PoseColumn(
-                margins=_forces,
+                margins=lambda pose: pose.forces,
                 head="tense",
                 note="stable, and every spring longer than its free length; a negative force pushes",
                 tally="stable with every spring longer than its free length",

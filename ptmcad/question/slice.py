@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import Any, TypeVar
 
 from ptmcad.errors import ConfigError
-from ptmcad.model import Kind, Model, mechanism_in
+from ptmcad.model import Kind, Model
 from ptmcad.model.evaluate import value_among
 from ptmcad.model.work import foreign, split_moments
 from ptmcad.question.counts import USUAL, Count
@@ -152,7 +152,7 @@ def relaxed_springs(model: Model, parameters: Mapping[str, Expression]) -> tuple
 
 def count_fault(count: Count, model: Model, parameters: Mapping[str, Expression]) -> str:
     """Why a count makes no sense for a model; empty where it does."""
-    kind, mechanism, predicate = count.kind, mechanism_in(model), count.kind.predicate
+    kind, mechanism, predicate = count.kind, model.whole, count.kind.predicate
     if predicate is not None and mechanism is None:
         return predicate.of_systems
     if predicate is not None and predicate.needs_free_lengths and not have_free_lengths(model, parameters):

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from ptmcad.model import Model, mechanism_in
+from ptmcad.model import Model
 from ptmcad.model.work import foreign
 
 
 def no_drawing(model: Model) -> str:
     """Why there is no picture, or no film, of a model's solutions."""
-    closed = mechanism_in(model)
+    closed = model.whole
     if closed is not None:
         what = "X-joints" if closed.xjoints else "closed loops"
         return f"of {model.name}, a mechanism with {what}, solve and plot draw poses, and nothing more is drawn yet"

@@ -64,7 +64,7 @@ def approximate_text(mechanism: Mechanism) -> str:
         name: (round(x * (WIDTH - 6)), round((1 - y) * (HEIGHT - 1)))
         for name, (x, y) in _fitted(approximate_places(mechanism), 2.0 * (HEIGHT - 1) / (WIDTH - 6)).items()
     }
-    for pairs, character in ((_spring_ends(mechanism), "."), (mechanism.bars, "#")):
+    for pairs, character in ((mechanism.spring_ends, "."), (mechanism.bars, "#")):
         for start, end in pairs:
             for column, row in _line(at[start], at[end]):
                 canvas[row][column] = character
@@ -74,10 +74,6 @@ def approximate_text(mechanism: Mechanism) -> str:
             if k == 0 or canvas[row][column + k] in " .":
                 canvas[row][column + k] = character
     return "\n".join("".join(row).rstrip() for row in canvas).strip("\n")
-
-
-def _spring_ends(mechanism: Mechanism) -> list[tuple[str, str]]:
-    return [(spring.start, spring.end) for spring in mechanism.springs]
 
 
 def _fitted(places: Mapping[str, Place], shape: float) -> dict[str, Place]:
@@ -105,7 +101,7 @@ def approximate_svg(mechanism: Mechanism) -> str:
     parts = [f'<title>{escape(mechanism.name)}</title><rect width="{SIDE:g}" height="{SIDE:g}" fill="white"/>']
     for start, end in mechanism.bars:
         parts.append(_path([at[start], at[end]], "#17365d", 5))
-    for start, end in _spring_ends(mechanism):
+    for start, end in mechanism.spring_ends:
         parts.append(_path(list(_zigzag(at[start], at[end])), "#1f1f1f", 1))
     joints = joints_of(mechanism)
     for spiral in filter(None, spirals(joints, at, *SPIRAL)):

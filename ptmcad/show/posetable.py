@@ -12,7 +12,7 @@ from itertools import pairwise
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.answer.words import counted, noun, of_what, untold
-from ptmcad.model import Mechanism, Model, built_in, mechanism_in
+from ptmcad.model import Mechanism, Model, built_in
 from ptmcad.question.counts import POSE_COLUMNS, PoseColumn
 from ptmcad.question.slice import merged
 from ptmcad.show.units import declared_units
@@ -66,7 +66,7 @@ def table(poses: Poses, digits: int | None = None) -> str:
 
 def _units(poses: Poses) -> list[str]:
     """In what numbers are measured; nothing of a system, whose numbers have no units."""
-    mechanism, units = mechanism_in(poses.model), poses.units
+    mechanism, units = poses.model.whole, poses.units
     if mechanism is None:
         return []
     length, force = (
@@ -96,7 +96,7 @@ def _in_products(mechanism: Mechanism, product: str) -> list[str]:
 
 def _energy_note(poses: Poses) -> str:
     """What the column of energies leaves out, or why there is none."""
-    model = mechanism_in(poses.model) or poses.model
+    model = poses.model.whole or poses.model
     if model.has_potential:
         return of_what(model, poses.parameters)
     if model.drawable is None:
@@ -184,7 +184,7 @@ def _groups(poses: Poses) -> list[list[Numbers]]:
     called = {"solution": noun(model, 1)}
     kinds = [kind_of(pose, model) for pose in found]
     states: list[Numbers] = [("state", "", [called.get(kind, kind) for kind in kinds])]
-    if mechanism_in(model) is not None:
+    if model.whole is not None:
         states.append(("flat", "", ["yes" if p.flat else "no" for p in found]))
     said = {True: "yes", False: "no", None: "undecided"}
     for name, column in _columns(poses).items():

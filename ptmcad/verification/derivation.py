@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from flint import fmpq, fmpq_mpoly
 
-from ptmcad.model import Kind, Mechanism, Model, System, mechanism_in
+from ptmcad.model import Kind, Mechanism, Model, System
 from ptmcad.question.counts import Count
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.tree import names_of
@@ -29,7 +29,7 @@ Vector = tuple[fmpq_mpoly, fmpq_mpoly]
 
 def parameters_of(model: Model) -> tuple[str, ...]:
     """The parameters of a model's polynomials: no free lengths of springs, which would bring in roots."""
-    return model.variables if mechanism_in(model) is None else model.without_free_lengths
+    return model.variables if model.whole is None else model.without_free_lengths
 
 
 def shorthands_of(model: Model) -> tuple[str, ...]:
@@ -56,7 +56,7 @@ def _has_moments_apart(mechanism: Mechanism) -> bool:
     Others are slopes of a function; with such a one nothing may be stored of indices and of what is stable.
     """
     unknowns = {*mechanism.angles, *mechanism.reals}
-    return any(unknowns.intersection(names_of(tree)) - {unknown} for unknown, tree in mechanism.moments)
+    return any(unknowns.intersection(names_of(tree)) - {unknown} for unknown, tree in mechanism.work.items())
 
 
 def tells_stability(model: Model) -> bool:
@@ -67,7 +67,7 @@ def tells_stability(model: Model) -> bool:
 def kinds_of_count(model: Model) -> set[Count]:
     """What may be counted: springs are longer than their free lengths at poses of mechanisms alone."""
     told = [Count.STABLE] if tells_stability(model) else []
-    with_springs = [Count.ADMISSIBLE] if told and mechanism_in(model) is not None else []
+    with_springs = [Count.ADMISSIBLE] if told and model.whole is not None else []
     return {Count.TOTAL, *told, *with_springs, *([Count.INDEX] if has_index(model) else [])}
 
 
@@ -190,7 +190,7 @@ def derivation_at(model: Model, values: Mapping[str, Fraction]) -> Derivation:
 
 def derivation_of(model: Model) -> Derivation:
     """In the coordinates of the unknowns, and in all parameters."""
-    return _known(model, mechanism_in(model))
+    return _known(model, model.whole)
 
 
 @lru_cache(maxsize=8)
@@ -208,7 +208,7 @@ def _ring_of(model: Model, numbers: Mapping[str, fmpq]) -> CoordinateRing:
 
 def _derived(model: Model, numbers: Mapping[str, fmpq]) -> Derivation:
     ring, unknowns = _ring_of(model, numbers), model.angles + model.reals
-    if (mechanism := mechanism_in(model)) is not None:
+    if (mechanism := model.whole) is not None:
         return _of_mechanism(model, mechanism, ring, unknowns)
     assert isinstance(model, System)
     energy = None if model.potential is None else ring.value(model.potential)
@@ -226,8 +226,7 @@ def _derived(model: Model, numbers: Mapping[str, fmpq]) -> Derivation:
 def _of_mechanism(model: Model, mechanism: Mechanism, ring: CoordinateRing, unknowns: tuple[str, ...]) -> Derivation:
     parts = _Parts.of(mechanism, ring)
     moments, kept = dict.fromkeys(unknowns, ring.context.constant(0)), parts.closing
-    for unknown, tree in mechanism.moments:
-        moments[unknown] += ring.value(tree)
+    moments |= {unknown: ring.value(tree) for unknown, tree in mechanism.work.items()}
     forces = tuple(moments.values())
     given = Derivation(
         ring,

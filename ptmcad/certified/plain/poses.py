@@ -13,10 +13,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import isqrt
+from typing import Any
 
 from flint import arb, arb_mat, ctx
 
-from ptmcad.answer.poses import Pose, Poses, Spring, TorsionSpring
+from ptmcad.answer.poses import Pose, Poses, springs_of
 from ptmcad.answer.regionmap import Solution, Status
 from ptmcad.certified.arb_isolation import Box
 from ptmcad.certified.peaks import peaks
@@ -30,7 +31,6 @@ from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.formulas.tape import Tape, record
 from ptmcad.model import Mechanism, Model, ptm
 from ptmcad.model.compile import CompiledSystem, compiled_with
-from ptmcad.model.description import mechanism_in
 from ptmcad.model.fourbars import flat_everywhere
 from ptmcad.question.counts import POSE_COLUMNS, Count
 from ptmcad.question.domain import proved
@@ -156,7 +156,7 @@ class Numbers:
 
 def numbers_at(model: Model, parameters: Mapping[str, Fraction]) -> Numbers:
     """Of a mechanism, as formulas in its unknowns."""
-    mechanism = mechanism_in(model)
+    mechanism = model.whole
     assert mechanism is not None
     graph = Graph()
     unknowns = {name: graph.variable(number) for number, name in enumerate(mechanism.unknowns, FIRST)}
@@ -303,27 +303,11 @@ def assembled(at: Numbers, numbers: Mapping[str, Enclosure], index: int | None, 
     index : None where there is no Hessian, or its index is not decided.
     stable : None where that is not decided.
     """
-    mechanism, system = at.mechanism, at.system
-    springs = tuple(
-        Spring(
-            spring.name,
-            spring.start,
-            spring.end,
-            _number(spring.stiffness),
-            numbers[f"{spring.name}.length"],
-            numbers[f"{spring.name}.force"],
-            _number(spring.free),
-        )
-        for spring in system.springs
-    )
-    torsion = tuple(
-        TorsionSpring(
-            spring.name,
-            _number(spring.stiffness),
-            *(numbers[f"{spring.name}.{what}"] for what in ("deflection.radians", "deflection.degrees", "moment")),
-        )
-        for spring in system.torsion
-    )
+    mechanism = at.mechanism
+
+    def said(*whats: str) -> Callable[[Any], Any]:
+        return lambda spring: tuple(numbers[f"{spring.name}.{what}"] for what in whats)
+
     eigenvalues = tuple(
         numbers[f"eigenvalue {n}"] for n in range(len(mechanism.unknowns)) if f"eigenvalue {n}" in numbers
     )
@@ -335,7 +319,6 @@ def assembled(at: Numbers, numbers: Mapping[str, Enclosure], index: int | None, 
         degrees=tuple(numbers[f"{angle}.degrees"] for angle in mechanism.angles),
         cosines_sines=tuple(numbers[f"{angle}.{part}"] for angle in mechanism.angles for part in ("cos", "sin")),
         nodes=nodes,
-        springs=springs,
         energy=numbers.get("energy"),
         eigenvalues=eigenvalues,
         multiplicity=1,
@@ -343,7 +326,12 @@ def assembled(at: Numbers, numbers: Mapping[str, Enclosure], index: int | None, 
         stable=stable,
         flat=all(y.exact == 0 for _, y in nodes.values()),
         reals=tuple(numbers[f"{name}.real"] for name in mechanism.reals),
-        torsion=torsion,
+        **springs_of(
+            at.system.elastic,
+            _number,
+            said("length", "force"),
+            said("deflection.radians", "deflection.degrees", "moment"),
+        ),
     )
 
 

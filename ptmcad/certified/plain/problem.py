@@ -19,11 +19,11 @@ from ptmcad.certified.plain.parallel import shares
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial, Vector
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.formulas.graph import Formula, Graph, length
-from ptmcad.model import Model, ptm
-from ptmcad.model.compile import CompiledSystem, LinearSpring, compiled
-from ptmcad.model.description import equations_in, mechanism_in
+from ptmcad.model.compile import CompiledSystem, compiled
+from ptmcad.model.description import equations_in
 from ptmcad.model.evaluate import evaluate
 from ptmcad.model.fourbars import closed_by, flat_everywhere
+from ptmcad.model.mechanisms import title_of
 from ptmcad.question.counts import Count, Margin
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, constant
@@ -174,7 +174,7 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
     problem, predicate = _equations(slice, ring), slice.count.kind.predicate
     if predicate is None:
         return problem
-    if (mechanism := mechanism_in(model)) is None:
+    if (mechanism := model.whole) is None:
         raise ConfigError(predicate.of_systems, key="count")
     return replace(problem, further=_conditions((("count", margin) for margin in predicate.margins(mechanism)), ring))
 
@@ -200,7 +200,7 @@ def _equations(slice: Slice, ring: Harmonics) -> Problem:
 
 def check_loops(slice: Slice) -> None:
     """Refuse a loop with flat poses all over the window: the Jacobian is singular there, nothing would be decided."""
-    mechanism = mechanism_in(slice.model)
+    mechanism = slice.model.whole
     found = None if mechanism is None else flat_everywhere(mechanism, slice.parameters)
     if mechanism is not None and found is not None:
         loop, fold = found
@@ -266,7 +266,7 @@ def _pulls(slice: Slice, system: CompiledSystem, ring: Harmonics) -> list[tuple[
         across, up = system.values(spring.difference, ring)
         if not (across.terms or up.terms):
             continue
-        name = name_of(spring, slice.model)
+        name = title_of(spring, slice.model)
         for k, (other, its_pull, its_vector) in enumerate(found):
             # each of K |d| and K' |d'| alone has a cone, and where both are short at once neither direction would be
             # balanced by the rest; but K f |e| and K' g |e| are one
@@ -278,11 +278,6 @@ def _pulls(slice: Slice, system: CompiledSystem, ring: Harmonics) -> list[tuple[
         else:
             found.append((name, pull, (across, up)))
     return found
-
-
-def name_of(spring: LinearSpring, model: Model) -> str:
-    """The paper's springs are named by their ends, as in all answers."""
-    return f"{spring.start}{spring.end}" if model == ptm() else spring.name
 
 
 def _listed(key: str, trees: Sequence[Tree]) -> Iterator[tuple[str, Margin]]:

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from ptmcad.errors import ConfigError, ExpressionError, Place
-from ptmcad.model import mechanism_in
 from ptmcad.model.reading import NUMBER, two
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.objects import plain, tree_of
@@ -215,7 +214,7 @@ def _design(record: Record, asked: Node) -> Design:
     over, where = _parameters(record, said["over"], asked, needed), said["where"]
     conditions = asked.gathered(partial(_condition, record, over), where["conditions"])
     with faults:
-        if where["tension"] and mechanism_in(record.model) is None:
+        if where["tension"] and record.model.whole is None:
             raise asked.at("where").at("tension").fault("a system has no springs that would be in tension")
     found = Design(record, maximise, along, over, where["stable"], tuple(conditions), where["tension"], said["pose"])
     if faults.found:

@@ -14,7 +14,6 @@ from typing import Any
 
 from ptmcad.answer.poses import MAX_DIGITS, Pose, Poses, Spring, TorsionSpring
 from ptmcad.answer.regionmap import Status
-from ptmcad.model import mechanism_in
 from ptmcad.question.counts import POSE_COLUMNS
 from ptmcad.question.slice import check_names
 from ptmcad.show.document.numbers import merged
@@ -81,7 +80,7 @@ def _made(**entries: Any) -> Poses:
     angles, reals = len(found.model.angles), len(found.model.reals)
     wanted = {"angles": angles, "degrees": angles, "cosines_sines": 2 * angles, "reals": reals}
     if any(pose.torsion for pose in found.equilibria):  # documents of earlier versions have none
-        mechanism = mechanism_in(found.model)
+        mechanism = found.model.whole
         wanted["torsion"] = 0 if mechanism is None else len(mechanism.torsion)
     for n, pose in enumerate(found.equilibria):
         for key, length in wanted.items():

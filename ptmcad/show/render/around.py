@@ -18,7 +18,6 @@ from matplotlib.text import Text
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
-from ptmcad.model import mechanism_in
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.blocks import GAP, Block, BlockColumn, Slot, arranged, sized
 from ptmcad.show.render.clearance import Box, Position
@@ -60,7 +59,7 @@ def draw_around(
     ConfigError
         For a system without points to draw, too many points, or a size in which poses have no room.
     """
-    if mechanism_in(result.slice.model) is None:
+    if result.slice.model.whole is None:
         raise ConfigError(no_drawing(result.slice.model), key="at")
     if len(points) > MAX_POINTS:
         raise ConfigError(f"poses of at most {MAX_POINTS} points fit around a map", key="at")
@@ -180,7 +179,7 @@ def _draw_block(figure: Figure, block: Block, frame: PanelFrame, slot: Slot, sty
     look = {"fontweight": "bold", "va": "center_baseline", "color": INK}
     write_lines(figure, (left, slot.top - line / 2), block.head, style.base_font, line, **look)
     top = slot.top - line * len(block.head)
-    mechanism = mechanism_in(block.poses.model)
+    mechanism = block.poses.model.whole
     assert mechanism is not None  # others have been refused
     scene = Scene(mechanism, frame, arrow_lengths(block.poses))
     for k, pose in enumerate(block.shown):

@@ -15,7 +15,6 @@ from matplotlib.lines import Line2D
 
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.model import mechanism_in
 from ptmcad.question.slice import Slice
 from ptmcad.show.render import regionmap
 from ptmcad.show.render.axes import heading_of
@@ -61,7 +60,7 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
     x, y = point_of(result.slice, poses)
     shown, told = poses.working, poses.known_stable is not None
     arrows = arrow_lengths(poses)
-    mechanism = mechanism_in(poses.model)
+    mechanism = poses.model.whole
     assert mechanism is not None  # `arrow_lengths` has refused others
     parts = (Entry(("spring; bars are thick",), spring_mark()), *support_legend(mechanism))
     entries = (*parts, *_LOADS) if arrows else parts

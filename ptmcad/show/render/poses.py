@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import assignments, counted, kind_name, noun, of_what, untold
 from ptmcad.errors import ConfigError
-from ptmcad.model import Mechanism, Model, Support, mechanism_in
+from ptmcad.model import Mechanism, Model, Support
 from ptmcad.model.joints import torsion_springs
 from ptmcad.model.work import PointForce, loads_at
 from ptmcad.question.slice import merged
@@ -59,7 +59,7 @@ def draw_poses(poses: Poses) -> Figure:
     ConfigError
         For a system that is no mechanism: it has no points to be drawn.
     """
-    mechanism = mechanism_in(poses.model)
+    mechanism = poses.model.whole
     if mechanism is None:
         raise ConfigError(no_drawing(poses.model))
     shown = poses.in_order
@@ -181,7 +181,7 @@ def values(poses: Poses) -> list[str]:
     rest = {name: value for name, value in shown.items() if name not in loads}
     texts = [assigned(name, value) for name, value in rest.items()]
     texts += [assigned(name, value) for name, value in loads.items() if value]
-    mechanism = mechanism_in(model)
+    mechanism = model.whole
     acting = () if mechanism is None else loads_at(mechanism, poses.parameters)
     return [*texts, "no load"] if acting and not any(components(acting).values()) else texts
 
@@ -242,7 +242,7 @@ def empty(poses: Poses) -> Figure:
 
 def legend(poses: Poses, arrows: Mapping[str, float]) -> Iterator[Entry]:
     """What lines and colours mean."""
-    mechanism = mechanism_in(poses.model)
+    mechanism = poses.model.whole
     assert mechanism is not None
     yield Entry(("Poses",), strong=True)
     if poses.known_stable is not None:

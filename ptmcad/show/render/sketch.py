@@ -15,7 +15,7 @@ from fractions import Fraction
 from math import dist, hypot
 
 from ptmcad.answer.poses import Pose, Poses
-from ptmcad.model import Mechanism, Support, mechanism_in
+from ptmcad.model import Mechanism, Support
 from ptmcad.model.elements import Load
 from ptmcad.model.joints import joints_of
 from ptmcad.model.work import PointForce, loads_at
@@ -113,7 +113,7 @@ def _sides(points: Iterable[Point]) -> tuple[Point, Point]:
 
 def arrow_lengths(poses: Poses) -> dict[str, float]:
     """The loads that are not zero, and the lengths of their arrows: by force, but none shorter than is seen."""
-    mechanism = mechanism_in(poses.model)
+    mechanism = poses.model.whole
     assert mechanism is not None
     forces = components(loads_at(mechanism, poses.parameters))
     return arrows_of(forces, max(map(abs, forces.values()), default=Fraction(0)))

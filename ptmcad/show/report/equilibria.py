@@ -17,7 +17,7 @@ from ptmcad.answer.regionmap import Cell, RegionMap, Solution
 from ptmcad.answer.words import kind_name
 from ptmcad.errors import ConfigError, PoleError
 from ptmcad.formulas.values import evaluated
-from ptmcad.model import Mechanism, Model, mechanism_in
+from ptmcad.model import Mechanism, Model
 from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.question.slice import merged
 from ptmcad.show.report.bounds import (
@@ -75,7 +75,7 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     )
     system = compiled(model)
     known = dict.fromkeys(model.free_lengths, Fraction(0)) | values
-    acting = (system.dead_forces if system.are_slopes else (), system.moments if system.has_index else ())
+    acting = (system.loads if system.are_slopes else (), system.moments if system.has_index else ())
     loads, moments = evaluated(acting if drawn else ((), ()), _Within(system, known))
     others = {n: v for n, v in distinct_parameters(values, model).items() if n not in cell.sample.names}
     return {
@@ -141,7 +141,7 @@ def _solutions(
     turns = 2 * len(model.angles)
     reals = [box[turns:] for box in boxes]
     real_place = _place(x for row in reals for x in row)
-    mechanism = mechanism_in(model) if system.are_slopes else None
+    mechanism = model.whole if system.are_slopes else None
     parts = [{} for _ in boxes] if mechanism is None else _parts(mechanism, poses)
     kinds = [kind_of(solution, model) for solution in cell.solutions]
     order = {"stable": 0, "degenerate": len(model.unknowns) + 1}

@@ -70,7 +70,7 @@ def _formulas(system: CompiledSystem, relaxed: Sequence[int]) -> dict[str, Any]:
         "stability": system.stability,
         "moments": system.acting,
         "points": system.points,
-        "loads": system.dead_forces,
+        "loads": system.loads,
     }
 
 

@@ -81,7 +81,7 @@ def numbers(design: Sequence[str]) -> Mapping[str, int]:
     """How many equilibria there are: all, stable ones, and of these and of the others tense ones and shorter ones."""
     poses = equilibria(design).equilibria
     stable = [p for p in poses if p.stable is True]
-    tense = sum(all(s.length.low > s.free_length for s in p.springs) for p in poses)
+    tense = sum(all(force.low > 0 for force in p.forces) for p in poses)
     # a stable one is admissible if all its springs are longer than l0
     both, short = (sum(p.admissible is good for p in stable) for good in (True, False))
     return {"total": len(poses), "stable": len(stable), "tense": both, "short": short, "loose": tense - both}

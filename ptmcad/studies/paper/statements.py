@@ -71,7 +71,7 @@ def points() -> Mapping[str, tuple[Expr, Expr]]:
 @cache
 def squares() -> tuple[Expr, ...]:
     """The squares of the springs' lengths, the sines' squares being eliminated."""
-    ends = ((points()[spring.start], points()[spring.end]) for spring in _MECHANISM.springs)
+    ends = ((points()[start], points()[end]) for start, end in _MECHANISM.spring_ends)
     found = (sum((b - a) ** 2 for a, b in zip(*pair, strict=True)) for pair in ends)
     return tuple(sp.expand(sp.expand(q).subs({s**2: 1 - c**2 for c, s in CIRCLES})) for q in found)
 
@@ -80,9 +80,9 @@ def squares() -> tuple[Expr, ...]:
 def potential() -> Expr:
     """Of springs and loads, with the free length; squares of the lengths are put in."""
     total = sum(k / 2 * (square - 2 * l0 * x + l0**2) for x, square in zip(LENGTHS, squares(), strict=True))
-    for load in _MECHANISM.loads:
-        x, y = points()[load.point]
-        total -= evaluate(load.x, _RING) * x + evaluate(load.y, _RING) * y
+    for element in _MECHANISM.elements_with(_MECHANISM.points).values():
+        if element.root is None:  # those that have one are the springs
+            total += sum(evaluate(tree, _RING) for tree in element.energies)
     return sp.expand(total)
 
 

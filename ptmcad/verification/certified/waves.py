@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from ptmcad.model import Mechanism, Model, mechanism_in
+from ptmcad.model import Mechanism, Model
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.expressions import Expression
@@ -204,7 +204,7 @@ def _by(f: Waves, k: int) -> Waves:
 
 def form_of(slice: Slice) -> Form:
     """The form of a slice's model, with springs as one that are parallel all over the slice."""
-    return _form(slice.model, mechanism_in(slice.model), tuple(slice.parameters.items()), slice.axes)
+    return _form(slice.model, slice.model.whole, tuple(slice.parameters.items()), slice.axes)
 
 
 @lru_cache(maxsize=8)
@@ -246,7 +246,7 @@ def _form(
 
 def margins_of(model: Model, count: Count) -> tuple[Margin, ...]:
     """What a kind of count asks of stable solutions: of all springs, of which none has a negative free length."""
-    return _margins(model, mechanism_in(model)) if count is Count.ADMISSIBLE else ()
+    return _margins(model, model.whole) if count is Count.ADMISSIBLE else ()
 
 
 @lru_cache(maxsize=8)
