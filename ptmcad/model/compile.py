@@ -181,11 +181,6 @@ class CompiledSystem:
         return tuple((spring.length, spring.free, spring.force) for spring in self.springs)
 
     @property
-    def deflections(self) -> tuple[tuple[Formula, Formula, Formula], ...]:
-        """Of the torsion springs, by cosine and sine, each with the spring's moment."""
-        return tuple((spring.cosine, spring.sine, spring.moment) for spring in self.torsion)
-
-    @property
     def elastic(self) -> tuple[tuple[LinearSpring, ...], tuple[AngularSpring, ...]]:
         """The springs between points, and those between directions."""
         return self.springs, self.torsion
