@@ -146,8 +146,7 @@ class Pose:
     def quantities(self, model: Model) -> tuple[tuple[NamedNumber, ...], ...]:
         """Unknowns, coordinates of points that move, springs' lengths and forces, torsion springs' deflections and
         moments; the same ones for all poses of a model."""
-        mechanism = model.whole
-        moving = () if mechanism is None else mechanism.moving
+        moving = () if model.whole is None else model.whole.moving
         unknowns = [
             NamedNumber(name, unit, number)
             for unit, names, numbers in (

@@ -11,10 +11,10 @@ from ptmcad.answer.plan import half_step
 from ptmcad.answer.regionmap import PlanStep, System
 from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.plan import beforehand
-from ptmcad.model import Model
+from ptmcad.model import Mechanism, Model
 from ptmcad.model.description import equations_in
+from ptmcad.model.elements import factor
 from ptmcad.model.involutions import Involution
-from ptmcad.model.statement import energy_text
 from ptmcad.model.work import Split, split_moments
 from ptmcad.question.slice import Slice
 from ptmcad.text.tree import to_text
@@ -47,6 +47,15 @@ def system_text(model: Model, has_free_lengths: bool = False) -> System:
         (),
         moments=tuple(beside.get(unknown, "0") for unknown in unknowns),
     )
+
+
+def energy_text(mechanism: Mechanism, moments: Split) -> str:
+    """The energy of springs less the work of loads and of moments; of springs with square roots."""
+    stored = [spring.text(mechanism.points) for spring in mechanism.elastic]
+    stored += map(factor, moments.energies)
+    work = [load.text(mechanism.points) for load in mechanism.loads]
+    work += [f" - {factor(moment.value)}*{moment.unknown}" for moment in moments.steady]
+    return (" + ".join(stored) or "0") + "".join(work)
 
 
 def plan_of(

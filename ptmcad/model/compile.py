@@ -181,11 +181,6 @@ class CompiledSystem:
         return tuple((spring.length, spring.free, spring.force) for spring in self.springs)
 
     @property
-    def deflections(self) -> tuple[tuple[Formula, Formula, Formula], ...]:
-        """Of the torsion springs, by cosine and sine, each with the spring's moment."""
-        return tuple((spring.cosine, spring.sine, spring.moment) for spring in self.torsion)
-
-    @property
     def elastic(self) -> tuple[tuple[LinearSpring, ...], tuple[AngularSpring, ...]]:
         """The springs between points, and those between directions."""
         return self.springs, self.torsion
@@ -339,11 +334,12 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
         stiffness, free = ring.of((spring.stiffness, spring.free))
         springs.append(LinearSpring(spring.name, spring.start, spring.end, stiffness, free, (x1 - x0, y1 - y0)))
     torsion = [AngularSpring(t.name, *ring.of((t.stiffness, *t.deflection))) for t in mechanism.torsion]
-    loads = [(evaluate(load.x, ring), evaluate(load.y, ring)) for load in mechanism.loads]
     split = split_moments(mechanism)
     others = [turned.stiffness * (1 - turned.cosine) for turned in torsion]
-    for point, (across, up) in zip(mechanism.loaded, loads, strict=True):
-        x, y = points[point]
+    loads = []
+    for load in mechanism.loads:
+        (across, up), (x, y) = ring.of((load.x, load.y)), points[load.point]
+        loads.append((across, up))
         others.append(-(across * x + up * y))
     others += ring.of(split.energies)
     steady = dict.fromkeys(mechanism.unknowns, ring.constant(Fraction(0)))

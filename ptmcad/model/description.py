@@ -358,6 +358,11 @@ class Mechanism(Model):
             if start not in self.moving and any(angle in names_of(tree) for tree in self.points[end])
         }
 
+    @property
+    def elastic(self) -> tuple[Spring | TorsionSpring, ...]:
+        """The springs, between points and then between directions."""
+        return self.springs + self.torsion
+
     @cached_property
     def spring_ends(self) -> tuple[tuple[str, str], ...]:
         """The points between which each spring is, in their order."""
@@ -380,13 +385,8 @@ class Mechanism(Model):
         if known != _UNITS[Kind.STIFFNESS]:
             return known
         names = {name, *self.shorthands.get(name, ())}
-        stiff = {
-            key: part.tree
-            for key, element in self.elements.items()
-            for part in element.written
-            if part.kind is Kind.STIFFNESS and names & set(names_of(part.tree))
-        }
-        turning = stiff and all(key.startswith("torsion") and _is_multiple(tree) for key, tree in stiff.items())
+        stiff = [spring for spring in self.elastic if names & set(names_of(spring.stiffness))]
+        turning = stiff and all(spring in self.torsion and _is_multiple(spring.stiffness) for spring in stiff)
         return self.energy_unit if turning else known
 
     def _trees(self) -> Iterator[Tree]:

@@ -17,7 +17,7 @@ from ptmcad.errors import shown
 from ptmcad.model.evaluate import multiples
 from ptmcad.model.trees import ZERO, cosine_and_sine, negative, product, total
 from ptmcad.text.numerals import text_of as value_text
-from ptmcad.text.tree import Call, Chain, Name, Number, Power, Step, Tree
+from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree
 from ptmcad.text.tree import to_text as text_of
 
 MAX_SHOWN = 60
@@ -174,6 +174,24 @@ def squared_distance(points: Mapping[str, Place], start: str, end: str) -> Tree:
     return total(*(Power(total(b, negative(a)), _TWO) for a, b in pairs))
 
 
+def factor(tree: Tree) -> str:
+    """As text, in brackets where these are needed in a product."""
+    return f"({text_of(tree)})" if isinstance(tree, Chain | Negative) else text_of(tree)
+
+
+def _number(value: Fraction) -> str:
+    return text_of(Number(value)) if value.denominator == 1 and value > 0 else f"({value})"
+
+
+def _difference(tree: Tree, less: Tree) -> str:
+    match tree, less:
+        case _, Number(value) if value == 0:
+            return text_of(tree)
+        case Chain(first, steps), _ if tree.is_sum:
+            return text_of(Chain(first, (*steps, Step("-", less))))
+    return text_of(Chain(tree, (Step("-", less),)))
+
+
 class Spring(NamedTuple):
     """A spring between two points; its name, which no other has, is that of its stiffness or is made of its points'."""
 
@@ -196,6 +214,12 @@ class Spring(NamedTuple):
             "an end where it moves",
         )
 
+    def text(self, points: Mapping[str, Place]) -> str:
+        """Its energy as problem records write it, with a root."""
+        (x0, y0), (x1, y1) = points[self.start], points[self.end]
+        length = f"sqrt(({_difference(x1, x0)})^2 + ({_difference(y1, y0)})^2)"
+        return f"1/2*{factor(self.stiffness)}*({length} - {factor(self.free)})^2"
+
 
 class Load(NamedTuple):
     """A dead force at a point."""
@@ -216,6 +240,11 @@ class Load(NamedTuple):
             tuple(Part(key, Kind.FORCE, force) for key, force in zip("12", forces, strict=True)),
             tuple(negative(product(f, place)) for f, place in zip(forces, points[self.point], strict=True)),
         )
+
+    def text(self, points: Mapping[str, Place]) -> str:
+        """What its work takes off the energy, as problem records write it."""
+        pairs = zip((self.x, self.y), points[self.point], strict=True)
+        return "".join(f" - {factor(force)}*{factor(coordinate)}" for force, coordinate in pairs)
 
 
 class Moment(NamedTuple):
@@ -287,6 +316,12 @@ class TorsionSpring(NamedTuple):
             idle="" if any(multiples(self.angle).values())
             else "no unknown changes its angle, so that this spring does nothing",
         )  # fmt: skip
+
+    def text(self, points: Mapping[str, Place]) -> str:
+        """Its energy as problem records write it."""
+        pairs = zip(self.rest, ("cos", "sin"), strict=True)
+        turned = "".join(f" - {_number(value)}*{name}({text_of(self.angle)})" for value, name in pairs if value)
+        return f"{factor(self.stiffness)}*(1{turned})"
 
 
 class XJoint(NamedTuple):

@@ -61,7 +61,7 @@ def _has_moments_apart(mechanism: Mechanism) -> bool:
 
 def tells_stability(model: Model) -> bool:
     """Whether it is known what a stable solution is."""
-    return has_index(model) or (isinstance(model, System) and bool(model.stability))
+    return has_index(model) or bool(model.stability)
 
 
 def kinds_of_count(model: Model) -> set[Count]:

@@ -80,8 +80,7 @@ def _made(**entries: Any) -> Poses:
     angles, reals = len(found.model.angles), len(found.model.reals)
     wanted = {"angles": angles, "degrees": angles, "cosines_sines": 2 * angles, "reals": reals}
     if any(pose.torsion for pose in found.equilibria):  # documents of earlier versions have none
-        mechanism = found.model.whole
-        wanted["torsion"] = 0 if mechanism is None else len(mechanism.torsion)
+        wanted["torsion"] = 0 if found.model.whole is None else len(found.model.whole.torsion)
     for n, pose in enumerate(found.equilibria):
         for key, length in wanted.items():
             if (number := len(getattr(pose, key))) != length:

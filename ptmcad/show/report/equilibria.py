@@ -129,10 +129,11 @@ def _solutions(
 ) -> list[dict[str, Any]]:
     """The solutions, the stable ones first, then by energy; all numbers of a kind to the same last place."""
     system = compiled(model)
+    _, turned = system.elastic
     boxes = [_box(s, model, polynomial) for s in cell.solutions]
     formulas = _Pose(
         None if polynomial or not system.has_index else system.energy(),
-        *((system.points, system.stretches, system.deflections) if system.are_slopes else ()),
+        *((system.points, system.stretches, turned) if system.are_slopes else ()),
     )
     poses: list[_Pose] = [evaluated(formulas, _Within(system, values, box)) for box in boxes]
     energies = [pose.energy for pose in poses] if potential is None else [energy(potential, box) for box in boxes]
@@ -172,7 +173,7 @@ class _Pose(NamedTuple):
     energy: Any
     points: Mapping[str, tuple[Any, Any]] = MappingProxyType({})
     stretches: tuple[tuple[Any, Any, Any], ...] = ()
-    deflections: tuple[tuple[Any, Any, Any], ...] = ()
+    turned: tuple[Any, ...] = ()
 
 
 def _parts(mechanism: Mechanism, poses: Sequence[_Pose]) -> list[dict[str, Any]]:
@@ -180,7 +181,7 @@ def _parts(mechanism: Mechanism, poses: Sequence[_Pose]) -> list[dict[str, Any]]
     places = [coordinate for pose in poses for place in pose.points.values() for coordinate in place]
     length_place = _place([*places, *(length for pose in poses for length, _, _ in pose.stretches)])
     force_place = _place(force for pose in poses for _, _, force in pose.stretches)
-    moment_place = _place(moment for pose in poses for _, _, moment in pose.deflections)
+    moment_place = _place(spring.moment for pose in poses for spring in pose.turned)
     found = []
     for pose in poses:
         shown = {
@@ -188,8 +189,8 @@ def _parts(mechanism: Mechanism, poses: Sequence[_Pose]) -> list[dict[str, Any]]
             for name, (x, y) in pose.points.items()
         }
         turned = [
-            (_angle_text(degrees(cosine, sine)), decimal_text(moment, moment_place))
-            for cosine, sine, moment in pose.deflections
+            (_angle_text(degrees(spring.cosine, spring.sine)), decimal_text(spring.moment, moment_place))
+            for spring in pose.turned
         ]
         entry: dict[str, Any] = {
             "nodes": [[_drawn(x) for x in place] for place in pose.points.values()],
