@@ -2,8 +2,8 @@
 
 Guarantee: each says by `element` all that a traversal of a description needs of it: what is written in it, its energy,
 and what an unknown has to change in it. So proofs, loops and X-joints need no list of kinds. A new law of a spring is a
-class here, a field and a row of `elements_with` in `description`, a key in `record`, its formulas in `compile`, and once
-more in `verification/derivation`.
+class here, a field and a row of `elements_with` in `description`, a key in `record`, its formulas in `compile`, and
+once more in `verification/derivation`.
 """
 
 from __future__ import annotations
