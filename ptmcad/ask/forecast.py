@@ -94,7 +94,7 @@ def seconds_after(solutions: int, sizes: CurveSizes, seen: Survey | None) -> flo
 def forecast(solutions: int, sizes: CurveSizes, seen: Survey | None = None) -> Forecast:
     """The forecast for a number of complex solutions, a critical curve, and what is known of the cells.
 
-    >>> found = forecast(6, Sizes((24, 12), 24, (2, 1)))
+    >>> found = forecast(6, CurveSizes((24, 12), 24, (2, 1)))
     >>> found.seconds < 1, found.reachable, found.points
     (True, True, 265)
     """
@@ -106,9 +106,9 @@ def forecast(solutions: int, sizes: CurveSizes, seen: Survey | None = None) -> F
 def curve_text(found: Forecast, names: tuple[str, str]) -> str:
     """The critical curve's size in words.
 
-    >>> curve_text(Forecast(Sizes((5, 3), 5, (1, 1), lines=(True, False)), 1, 40), ("a", "b"))
+    >>> curve_text(Forecast(CurveSizes((5, 3), 5, (1, 1), lines=(True, False)), 1, 40), ("a", "b"))
     'critical of degree 5, 5 in a, 3 in b: up to 18 terms; and the line a = 0'
-    >>> curve_text(Forecast(Sizes((0, 0), 0, (1, 1), lines=(True, True)), 1, 40), ("a", "b"))
+    >>> curve_text(Forecast(CurveSizes((0, 0), 0, (1, 1), lines=(True, True)), 1, 40), ("a", "b"))
     'critical the lines a = 0 and b = 0 alone'
     """
     (dx, dy), total = found.sizes.degrees, found.sizes.total

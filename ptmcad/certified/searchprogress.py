@@ -32,7 +32,7 @@ class SearchProgress:
     def at(self, share: float, level: float) -> int:
         """The part of the way that is behind when a level that began at a share is done to the part ``level``.
 
-        >>> way = Headway(1e-3)
+        >>> way = SearchProgress(1e-3)
         >>> way.at(1.0, 0.0), way.at(0.1, 0.0), way.at(0.2, 0.5), way.at(0.0, 1.0)
         (0, 333, 333, 1000)
         """
