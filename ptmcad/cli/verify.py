@@ -279,7 +279,7 @@ def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> Ver
     from ptmcad.ask.classification import load_certified
     from ptmcad.cli.range_answers import answer, is_enclosed, request_codec
     from ptmcad.options import DEFAULTS
-    from ptmcad.show.document.numbers import maximum
+    from ptmcad.show.document.maxima import maximum
     from ptmcad.show.document.slice import SLICE
     from ptmcad.show.ranges.document import bands_codec, document, enclosed_codec
     from ptmcad.text.node import Node

@@ -29,7 +29,6 @@ from contextlib import ExitStack, contextmanager, suppress
 from fractions import Fraction
 from functools import partial
 from glob import escape
-from hashlib import sha256
 from itertools import count
 from pathlib import Path
 
@@ -217,8 +216,11 @@ def stamp(pictures: Iterable[Path], voucher: Path) -> None:
     OSError
         When a file cannot be read or written.
     """
-    if voucher.suffix != ".json":
+    pictures = tuple(pictures)
+    if voucher.suffix != ".json" or not pictures:
         return
+    from hashlib import sha256  # with OpenSSL, which only runs that draw need
+
     text = f"sha256 of {voucher.name}: {sha256(voucher.read_bytes()).hexdigest()}".encode("ascii", "replace")
     for path in pictures:
         content = path.read_bytes()

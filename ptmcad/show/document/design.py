@@ -12,7 +12,8 @@ from ptmcad.answer.design import BestDesign
 from ptmcad.answer.widths import Maximum
 from ptmcad.model import Model, built_in, known_of
 from ptmcad.question.slice import Axis
-from ptmcad.show.document.numbers import AXIS, INTERVAL, LINE, maximum
+from ptmcad.show.document.maxima import maximum
+from ptmcad.show.document.numbers import AXIS, INTERVAL, LINE
 from ptmcad.show.document.slice import model_from, stored_model
 from ptmcad.text.codec import TEXT, WHOLE, Codec, Key, document_text, listed, named, record_of
 from ptmcad.text.enclosure import Enclosure

@@ -1,4 +1,4 @@
-"""Algebraic numbers, enclosures, axes and largest widths as parts of JSON documents.
+"""Algebraic numbers, enclosures and axes as parts of JSON documents.
 
 Guarantee: numbers are exact; reading what was written gives an equal value, and words and decimals that are not those
 of the numbers are refused.
@@ -11,8 +11,6 @@ from fractions import Fraction
 from operator import attrgetter
 from typing import Any
 
-from ptmcad.answer.intervals import End
-from ptmcad.answer.widths import Attainment, Maximum, Place
 from ptmcad.question.slice import Axis
 from ptmcad.text.codec import (
     INTEGER,
@@ -21,8 +19,6 @@ from ptmcad.text.codec import (
     Codec,
     Key,
     Schema,
-    by_name,
-    choice,
     converted,
     derived,
     either,
@@ -41,7 +37,7 @@ INDEX = optional(listed(NATURAL).narrowed(minItems=2))
 """Numbers of solutions by their number of negative eigenvalues, where they are known."""
 
 
-def _itself(value: Any) -> Any:
+def itself(value: Any) -> Any:
     return value
 
 
@@ -72,7 +68,7 @@ AXIS = record_of(Axis, name=LINE)
 
 def with_decimal(text: Callable[[Any], str | None]) -> Codec[Any]:
     """The window's edge, or an algebraic number, beside its decimal, which a function makes."""
-    edge: Codec[Fraction] = record(lambda window: window, window=Key(RATIONAL, _itself), decimal=derived(text))
+    edge: Codec[Fraction] = record(lambda window: window, window=Key(RATIONAL, itself), decimal=derived(text))
     return either("window", lambda end: isinstance(end, Fraction), edge, algebraic_with_decimal(text))
 
 
@@ -96,37 +92,3 @@ def merged(one: Schema, other: Schema) -> Schema:
     }
     needed = [name for name in one["required"] if name in other["required"]]
     return {**one, "properties": properties, "required": needed}
-
-
-def maximum(over: str, digits: int) -> Codec[Maximum]:
-    """The codec of a largest width; attainment is not decided where it is not told, as in older documents.
-
-    Parameters
-    ----------
-    over : the name of the other axis.
-    """
-
-    def text(value: End) -> str:
-        return AlgebraicNumber.of(value).text(digits)
-
-    def decimal(value: Enclosure) -> str:
-        return next((value.text(n) for n in range(digits, 0, -1) if value.settles(n)), "")
-
-    def made(attainment: Attainment, **entries: Any) -> Maximum:
-        decided = attainment is not Attainment.UNDECIDED
-        return Maximum(attained=attainment is not Attainment.APPROACHED if decided else None, **entries)
-
-    number: Codec[End] = converted(
-        algebraic_with_decimal(text), AlgebraicNumber.of, lambda n: n if n.exact is None else n.exact
-    )
-    enclosed: Codec[Enclosure] = record(
-        lambda enclosure: enclosure, decimal=derived(decimal), enclosure=Key(INTERVAL, _itself)
-    )
-    return record_of(
-        Maximum, {Enclosure: enclosed}, made, place=choice(Place, by_name), attained=None,
-        attainment=Key(choice(Attainment), default=Attainment.UNDECIDED, always=True, checked=True),
-        text=derived(lambda found: found.words(over, digits)), critical=optional(ALGEBRAIC),
-        ends=optional(listed(with_decimal(text), 2)),
-        **{"except": Key(listed(number), default=(), field="exceptions", always=True)},
-        undecided=Key(listed(number), default=(), field="doubtful", always=True),
-    )  # fmt: skip
