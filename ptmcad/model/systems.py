@@ -58,7 +58,7 @@ def read_system(record: Mapping[str, Any], faults: Faults) -> System:
         ),
         (number > MAX_ENTRIES, "equations", f"{number} names of parameters, more than {MAX_ENTRIES}"),
         (
-            system.potential is not None and system.stability,
+            "potential" in record and system.stability,
             "stable", "of a potential the Hessian decides what is stable: leave this out",
         ),
         (

@@ -185,10 +185,10 @@ class Watch:
         """The child's exit code, or minus the signal that ended it."""
         kill_at = math.inf
         while True:
+            self._read_all(ends)  # before the child is asked for: an end after that wakes `select`
             child, status, self.used = os.wait4(self.child, os.WNOHANG)
-            for end in ends:  # after the child's end all that it has said is there
-                self._read(end)
             if child:
+                self._read_all(ends)  # now all that it has said is there
                 return os.waitstatus_to_exitcode(status)
             now = time.monotonic()
             if now < self.asked + GRACE_SECONDS:
@@ -208,6 +208,10 @@ class Watch:
 
     def _deadline(self) -> float:
         return float(self.reports.get(Topic.DEADLINE, ["inf"])[0]) + OVERRUN_SECONDS  # infinite while the clock stands
+
+    def _read_all(self, ends: list[int]) -> None:
+        for end in ends:
+            self._read(end)
 
     def _read(self, end: int) -> None:
         """Take what there is; a pipe has no end, since this process could write to it, too."""

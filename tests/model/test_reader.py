@@ -311,3 +311,10 @@ def test_what_newcomers_write_is_refused_with_what_to_write(name: str) -> None:
     with pytest.raises(ConfigError) as caught:
         described_system({"unknowns": {"x": "real"}, "equations": ["x^2 - 2"], **change})
     assert any(remedy in str(fault) for fault in caught.value.faults)
+
+
+def test_conditions_beside_a_potential_are_a_fault_also_where_this_is_one() -> None:
+    record = {"unknowns": {"t": "angle"}, "potential": "t + a", "stable": ["a"]}
+    with pytest.raises(ConfigError) as caught:
+        described_system(record)
+    assert [fault.key for fault in caught.value.faults] == ["potential", "stable"]
