@@ -69,8 +69,8 @@ CART = {
     "parameters": {"k": {"kind": "stiffness"}, "l": {"kind": "length"}},
     "unknowns": {"t": "angle", "u": "length", "v": "length"},
     "points": {
-        "A": ["u", 0], "B": ["v", 1], "C": ["cos(t)", "sin(t) + 2"], "D": [1, 0], "E": [1, 1],
-        "M": [-1, 0], "N": [-1, 1], "S": [0, 2],
+        "A": ["u", 0], "B": ["v", "1/2"], "C": ["cos(t)", "sin(t) + 2"], "D": [1, 0],
+        "E": [1, "1/2"], "M": [-1, 0], "N": [-1, "1/2"], "S": [0, 2],
     },
     "bars": [["S", "C"]],
     "supports": {"S": "pin", "D": "pin", "E": "pin", "M": "pin", "N": "pin"},
@@ -320,3 +320,23 @@ def test_a_line_without_a_springs_length_parts_no_regions() -> None:
     left, right = (found.locate(rho=rho, F="-20") for rho in ("99/100", "101/100"))
     assert left.region is not None
     assert left.region == right.region
+
+
+@pytest.mark.parametrize(("height", "found"), [("2", 0), ("3", 1)], ids=["at C's reach", "out of it"])
+def test_a_spring_without_length_where_all_unknowns_are_fixed_leaves_no_quotient(height: str, found: int) -> None:
+    """Two bars that stand upright below A: with coordinates about that pose no map of them would end."""
+    mechanism = {
+        "parameters": {"f": {"kind": "free length", "default": "1/2"}, "W": {"kind": "force"}},
+        "unknowns": {"v": "angle", "u": "angle"},
+        "points": {"A": [0, height], "B": ["sin(u)", "cos(u)"], "C": ["sin(u) + sin(v)", "cos(u) + cos(v)"]},
+        "springs": [{"between": ["A", "C"], "k": 1, "free": "f"}],
+        "torsion": [{"angle": "u", "k": "1/2"}],
+        "loads": {"C": [0, "-W"]},
+    }
+    slice = slice_from_mapping(
+        {"name": "upright", "mechanism": mechanism, "axes": {"W": ["1/4", 2], "f": ["1/10", "1/2"]}}
+    )
+    assert len(mirrors(slice, problem_of(slice))) == found
+    if not found:
+        result = ptmcad.classify(slice, engine="certified", tolerance="1/20")
+        assert sorted(region.stable for region in result.regions) == [1, 2]

@@ -6,12 +6,13 @@ Guarantee: that of `ptmcad.model.involutions`; a problem's springs, too, are kep
 from __future__ import annotations
 
 from collections import Counter
+from itertools import product
 
 from ptmcad.certified.plain.problem import Problem, problem_of
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.model.involutions import Involution, involutions
 from ptmcad.question.slice import Slice
-from ptmcad.text.expressions import Expression
+from ptmcad.text.expressions import Expression, constant
 
 
 def mirrors(slice: Slice, problem: Problem) -> list[Involution]:
@@ -25,8 +26,33 @@ def mirrors(slice: Slice, problem: Problem) -> list[Involution]:
         each
         for each in involutions(slice.model, slice.parameters)
         if each.odd and each.has_fixed_unknowns and _squares(problem) == _squares(problem, each)
+        if not _is_short_where_fixed(problem, each)
     ]
     return sorted(found, key=lambda each: -each.odd)
+
+
+def _is_short_where_fixed(problem: Problem, change: Involution) -> bool:
+    """Whether all unknowns are odd, so that fixed configurations are isolated, and a spring has no length in one of
+    them, whatever the axes. Its cone is there at each point of the window: coordinates about it are not regular, but
+    for the single unknown of a crease."""
+    if change.odd < max(len(problem.unknowns), 2):
+        return False
+    kinds = [name in problem.reals for name in problem.unknowns]
+    # in quarter turns; real unknowns are 0
+    choices = [(0,) if is_real else (half, half + 2) for is_real, half in zip(kinds, change.halves, strict=True)]
+    return any(
+        all(_vanishes(f, quarters) for f in cone.difference) for quarters in product(*choices) for cone in problem.cones
+    )
+
+
+def _vanishes(f: TrigonometricPolynomial, quarters: tuple[int, ...]) -> bool:
+    """Whether a polynomial is zero for all axes where angles are so many quarter turns and real unknowns are zero."""
+    total = constant(0)
+    for (multiples, powers), (cosine, sine) in f.terms.items():
+        if not any(powers):
+            turned = sum(m * q for m, q in zip(multiples, quarters, strict=True)) % 4
+            total = total + (cosine, sine, -cosine, -sine)[turned]
+    return not total.numerator
 
 
 def halving(slice: Slice) -> Involution | None:
