@@ -27,8 +27,6 @@ from ptmcad.algebra.polynomials import (
 )
 from ptmcad.algebra.residues import PRIME_BITS, primes
 
-MIN_INTERPOLATED = 12
-"""Rows; of fewer an elimination is as fast."""
 OVERHEAD = 5000
 """Of a value, in steps of an elimination in numbers."""
 SHARE = 0.045
@@ -80,7 +78,7 @@ def _primitive_determinant(matrix: list[list[Coefficient]]) -> Coefficient:
     """The determinant, by values where an elimination turns out to be long, which the entries do not say beforehand."""
     rows = len(matrix)
     most = math.inf
-    if matrix[0][0].context().nvars() == 2 and rows >= MIN_INTERPOLATED:
+    if matrix[0][0].context().nvars() == 2:
         across, up, both, size = _bounds(matrix)
         values = sum(max(0, min(up, both - i)) for i in range(across))
         most = SHARE * values * (size.bit_length() // PRIME_BITS + 1) * (OVERHEAD + rows**3)

@@ -1,26 +1,47 @@
 """Discriminants and resultants in Z[u] of polynomials in Z[u][v], by evaluation at integers and interpolation.
 
 Guarantee: exact. The number of evaluation points comes from a proved bound for the degree, see `orders`: nothing is
-left to chance. Of a long polynomial that a reflection v to 2 m(u) - v maps to itself, the discriminant in (v - m)^2 is
-computed, of half the degree; where m = 0 that is left to the caller.
+left to chance. Long values are taken modulo primes, as many as a proved bound for the coefficients asks for; no prime
+is a bad one, as the formal discriminant commutes with every map of rings. Of a long polynomial that a reflection
+v to 2 m(u) - v maps to itself, the discriminant in (v - m)^2 is computed, of half the degree; where m = 0 that is left
+to the caller.
+
+The bound: a coefficient in Z[u] is at most the largest value on the circle |u| = 1, where |c(u)| is at most the sum
+|c|_1 of c's absolute coefficients. There Hadamard's inequality for Sylvester's matrix, with t v in place of v, says
+
+    |res_v(p, q)| <= t^(-n m) (sum_i |p_i|_1^2 t^(2i))^(m/2) (sum_j |q_j|_1^2 t^(2j))^(n/2)    for every t > 0,
+
+and n^(n-2) disc_v(p) is up to sign the resultant of n p - v p' and p', both of degree n - 1.
+
+References: Collins, The calculation of multivariate polynomial resultants, J. ACM 18 (1971); Goldstein & Graham, SIAM
+Review 16 (1974); von zur Gathen & Gerhard, Modern Computer Algebra, sections 5.5 and 6.8.
 """
 
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Callable, Sequence
 from functools import lru_cache
-from itertools import pairwise
+from itertools import count, islice, pairwise
+from typing import Any
 
-from flint import fmpq_poly, fmpz, fmpz_poly
+from flint import fmpq_poly, fmpz, fmpz_poly, nmod_poly
 
 from ptmcad.algebra.orders import discriminant_degree, resultant_degree
 from ptmcad.algebra.reflections import axis_of, squared
+from ptmcad.algebra.residues import PRIME_BITS, primes
 
 Coefficients = Sequence[fmpz_poly]
 Check = Callable[[], None]
 LONG = 100_000
 """Points times the product of the degrees in v; less takes milliseconds."""
+CALL = 150
+"""What one value modulo a prime costs besides Euclid's algorithm, in its steps (products of residues)."""
+Value = Any
+"""At a point: an `fmpz_poly` or, modulo a prime, an `nmod_poly`."""
+Number = Any
+"""An integer or, modulo a prime, a residue."""
 
 
 def nothing() -> None:
@@ -52,16 +73,20 @@ def _long_discriminant(p: tuple[tuple[int, ...], ...], bound: int, check: Check)
 def _discriminant(p: Coefficients, bound: int, check: Check) -> fmpz_poly:
     n = len(p) - 1
 
-    def at(k: int) -> fmpz:
-        value = fmpz_poly([c(k) for c in p])
+    def bits() -> int:
+        norms = _norms(p)
+        found = _bits([(n - i) * c for i, c in enumerate(norms[:-1])], [i * c for i, c in enumerate(norms)][1:])
+        return found - int(n ** (n - 2)).bit_length() + 1
+
+    def formal(value: Value) -> Number:
         if value.degree() == n:
             return value.discriminant()
         if value.degree() < n - 1:
-            return fmpz(0)
+            return 0
         # formal discriminant when the leading coefficient vanishes once: c_(n-1)^2 disc of the rest
         return value.leading_coefficient() ** 2 * (value.discriminant() if n > 2 else 1)
 
-    return interpolate(at, bound, check)
+    return _interpolated([p], formal, (bound, n * (n - 1)), bits, check)
 
 
 def _by_reflection(p: Coefficients, axis: fmpq_poly, check: Check) -> fmpz_poly:
@@ -81,21 +106,89 @@ def resultant(p: Coefficients, q: Coefficients, check: Check = nothing) -> fmpz_
     n, m = len(p) - 1, len(q) - 1
     if n == 0 or m == 0:
         return (p[0] ** m) if n == 0 else (q[0] ** n)
-    bound = resultant_degree(p, q)
 
-    def at(k: int) -> fmpz:
-        left, right = fmpz_poly([c(k) for c in p]), fmpz_poly([c(k) for c in q])
+    def formal(left: Value, right: Value) -> Number:
         if left.degree() < n and right.degree() < m:
-            return fmpz(0)
+            return 0
         value = left.resultant(right)
-        # the formal resultant of degrees n, m when one leading coefficient vanishes at k
+        # the formal resultant of degrees n, m when one leading coefficient vanishes there
         if left.degree() < n:
             value *= right.leading_coefficient() ** (n - left.degree()) * (-1) ** (m * (n - left.degree()))
         elif right.degree() < m:
             value *= left.leading_coefficient() ** (m - right.degree())
         return value
 
-    return interpolate(at, bound, check)
+    effort = resultant_degree(p, q), n * m
+    return _interpolated([p, q], formal, effort, lambda: _bits(_norms(p), _norms(q)), check)
+
+
+def _norms(p: Coefficients) -> list[int]:
+    return [sum(abs(int(a)) for a in c.coeffs()) for c in p]
+
+
+def _bits(p: Sequence[int], q: Sequence[int]) -> int:
+    """A number b with 2^b larger than Hadamard's bound, from the coefficients' norms.
+
+    Of p and q with their coefficients reversed the resultant is the same up to sign; they stand for t < 1.
+    """
+    return min(_least_bits(p, q), _least_bits(p[::-1], q[::-1]))
+
+
+def _least_bits(p: Sequence[int], q: Sequence[int]) -> int:
+    """For the best t among powers of 2: as long as the next one is better, for the logarithm is convex in log t.
+
+    One is the best, unless p and q have no terms of degree n and m, and the resultant is zero.
+    """
+    n, m = len(p) - 1, len(q) - 1
+
+    def bits(k: int) -> int:
+        left, right = (sum(c * c << 2 * k * i for i, c in enumerate(r)).bit_length() for r in (p, q))
+        return (m * left + n * right + 1) // 2 - k * n * m
+
+    return next(least for k in count() if (least := bits(k)) <= bits(k + 1))
+
+
+def _interpolated(
+    polynomials: Sequence[Coefficients],
+    formal: Callable[..., Number],
+    effort: tuple[int, int],
+    bits: Callable[[], int],
+    check: Check,
+) -> fmpz_poly:
+    """The polynomial in u whose values are ``formal`` of these polynomials' values in Z[v].
+
+    Parameters
+    ----------
+    effort : a bound for its degree, and the steps that a value takes modulo a prime.
+    bits : gives a number b with 2^b larger than its coefficients.
+    """
+
+    def images(u: int) -> list[fmpz_poly]:
+        return [fmpz_poly([c(u) for c in p]) for p in polynomials]
+
+    degree, steps = effort
+    if degree < 0:
+        return fmpz_poly([])
+    needed = _primes_needed(degree, steps, bits()) if (degree + 1) * steps >= LONG else 0
+    if not needed:
+        return interpolate(lambda u: fmpz(formal(*images(u))), degree, check)
+    used = list(islice(primes(), needed))
+    modulus = math.prod(map(fmpz, used), start=fmpz(1))
+    weights = [modulus // prime * pow(int(modulus // prime % prime), -1, prime) for prime in used]
+
+    def at(u: int) -> fmpz:
+        values = images(u)
+        residues = [int(formal(*(nmod_poly(value, prime) for value in values))) for prime in used]
+        return sum(map(operator.mul, weights, residues), fmpz(0)) % modulus
+
+    return interpolate(at, degree, check, modulus)
+
+
+def _primes_needed(degree: int, steps: int, bits: int) -> int:
+    """How many determine coefficients below 2^bits in absolute value; 0 where integers are estimated to be faster."""
+    # a value at u is longer than the coefficients by the length of u^degree, and FLINT takes it modulo primes, too
+    in_integers = (bits + degree * math.log2(degree / 2 + 2)) * steps
+    return (bits + 1) // (PRIME_BITS - 1) + 1 if bits * (steps + CALL) < in_integers else 0
 
 
 def balanced(polynomials: Sequence[Coefficients]) -> tuple[list[tuple[fmpz_poly, ...]], int]:
@@ -128,10 +221,14 @@ def _unit(common: Sequence[int]) -> int:
     return max(unit, 1)  # made smaller for a later one, it is a divisor of what did for the earlier ones
 
 
-def interpolate(at: Callable[[int], fmpz], degree: int, check: Check = nothing) -> fmpz_poly:
+def interpolate(
+    at: Callable[[int], fmpz], degree: int, check: Check = nothing, modulus: fmpz | None = None
+) -> fmpz_poly:
     """The integer polynomial of degree at most ``degree`` with the given values at integers (Newton's form).
 
-    Divided differences of an integer polynomial at integers are integers, so every division is exact.
+    Divided differences of an integer polynomial at integers are integers, so every division is exact. Where values are
+    known up to multiples of a modulus, prime to the factorial of the degree, the coefficients are the ones of least
+    absolute value.
     """
     if degree < 0:
         return fmpz_poly([])
@@ -143,12 +240,15 @@ def interpolate(at: Callable[[int], fmpz], degree: int, check: Check = nothing) 
     newton, factorial = [], fmpz(1)
     for k in range(degree + 1):
         factorial *= max(k, 1)
-        newton.append(differences[0] // factorial)
+        first_one = differences[0]
+        newton.append(first_one * pow(factorial, -1, modulus) % modulus if modulus else first_one // factorial)
         differences = [b - a for a, b in pairwise(differences)]
     result = fmpz_poly([newton[-1]])
     for k in range(degree - 1, -1, -1):
         result = result * fmpz_poly([-(first + k), 1]) + newton[k]
-    return result
+    return (
+        result if modulus is None else fmpz_poly([(c + modulus // 2) % modulus - modulus // 2 for c in result.coeffs()])
+    )
 
 
 def interpolate_rows(

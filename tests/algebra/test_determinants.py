@@ -74,7 +74,7 @@ def test_determinants_are_those_by_permutations(matrix: Matrix) -> None:
 
 def test_long_eliminations_are_given_up_for_values(monkeypatch: pytest.MonkeyPatch) -> None:
     source = random.Random(5)
-    size = determinants.MIN_INTERPOLATED
+    size = 12
     few = [
         [PLANE.constant(source.randint(-9, 9)) * (X + i) + (Y if i == j else 0) for j in range(size)]
         for i in range(size)
