@@ -23,15 +23,10 @@ from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, tree_of
 from ptmcad.question.config.options import Typed, ranges_of, settings_of, with_axes
 from ptmcad.question.config.points import point_from, point_from_mapping, point_from_options, units_of
-from ptmcad.question.config.record import (
-    COUNT,
-    Record,
-    check_axis_name,
-    record_of,
-    with_place,
-)
+from ptmcad.question.config.record import COUNT, Record, record_of, with_place
 from ptmcad.question.config.resolution import checked_slice, slice_of
 from ptmcad.question.config.scalars import file_name, portable_file
+from ptmcad.question.config.windows import check_axis_name
 from ptmcad.question.counts import Count
 from ptmcad.question.domain import MAX_DEGREE
 from ptmcad.question.examples import FIRST, SECOND

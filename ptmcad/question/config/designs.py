@@ -15,9 +15,10 @@ from ptmcad.model.reading import NUMBER, two
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.objects import plain, tree_of
 from ptmcad.question.config.options import ranges_of
-from ptmcad.question.config.record import AXIS_NAME, Record, Window, check_axis_name, window_of, with_ranges
+from ptmcad.question.config.record import Record
 from ptmcad.question.config.resolution import axis_of, described_record, note_values
 from ptmcad.question.config.scalars import number_of, number_text
+from ptmcad.question.config.windows import AXIS_NAME, Window, check_axis_name, window_of, with_ranges
 from ptmcad.question.design import Inequality, condition_of, named
 from ptmcad.question.examples import A_DESIGN, FIRST, SECOND
 from ptmcad.question.shipped import record_tree

@@ -15,9 +15,10 @@ from typing import NamedTuple
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.model import Model
 from ptmcad.question.config.binding import bound, member_name
-from ptmcad.question.config.record import MAX_MEMBERS, Record, Window, check_members
+from ptmcad.question.config.record import Record
 from ptmcad.question.config.resolution import axis_of, described_record, note_values, slice_of, written_in
 from ptmcad.question.config.scalars import number_of
+from ptmcad.question.config.windows import MAX_MEMBERS, Window, check_members
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.entry import Scalar, Sequence, Tree, Written
 from ptmcad.text.expressions import Expression, axis, constant

@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, Place
 from ptmcad.question.config.binding import released_names
-from ptmcad.question.config.record import Record, Window, check_axis_name, unknown_parameter
+from ptmcad.question.config.record import Record, unknown_parameter
+from ptmcad.question.config.windows import Window, check_axis_name
 from ptmcad.question.counts import Count
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.text.entry import Scalar

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 from ptmcad.errors import ConfigError, Faults, HypothesisError, Place, PtmcadError, shown
 from ptmcad.model import Model, ptm
-from ptmcad.model.reading import MAX_NAME as MAX_AXIS_NAME
 from ptmcad.model.reading import MAX_TITLE, NUMBER, VALUE, text_in, title_in, two
 from ptmcad.question.config.model import Described, described_in
 from ptmcad.question.config.scalars import (
@@ -21,31 +20,19 @@ from ptmcad.question.config.scalars import (
     names_in_scalar,
     number_text,
 )
+from ptmcad.question.config.windows import AXIS_NAME, MAX_MEMBERS, MAX_VALUES, Window, axes_in, check_members, free_in
 from ptmcad.question.counts import USUAL, Count, phrases
-from ptmcad.question.examples import A_DESIGN, A_SWEEP, AXES, FORCE, SECOND, THIRD
+from ptmcad.question.examples import A_DESIGN, A_SWEEP, FORCE, SECOND, THIRD
 from ptmcad.question.slice import MAX_UNIT, QUANTITIES
 from ptmcad.text.codec import Codec, Key, choice, named, part, reading, record
 from ptmcad.text.entry import Scalar, Sequence, Tree, Written, plain_data
 from ptmcad.text.node import Node, unstorable
-from ptmcad.text.syntax import NAME, NOT_NUMBERS, did_you_mean
+from ptmcad.text.syntax import did_you_mean
 
-AXIS_NAME = {"pattern": f"^{NAME.pattern}$", "maxLength": MAX_AXIS_NAME}
 COUNT = choice(Count)
-MAX_MEMBERS = 400
-"""Of a family."""
-MAX_VALUES = 10_000
-"""Of a record: more than a file may have."""
 
 _NOTHING: Mapping[str, Any] = {}
 """What is not written; a plain mapping, as records go to other processes."""
-
-
-class Window(NamedTuple):
-    """The range of an axis as written."""
-
-    low: Scalar
-    high: Scalar
-    place: Place
 
 
 class Record(NamedTuple):
@@ -205,12 +192,12 @@ def _question() -> dict[str, Key]:
     windows = {"type": "object", "propertyNames": AXIS_NAME, "additionalProperties": two(NUMBER)}
     return {
         "axes": part(
-            reading(_axes, **windows, minProperties=2, maxProperties=2),
+            reading(axes_in, **windows, minProperties=2, maxProperties=2),
             "The two axes with their ranges, the horizontal one first: parameters, or new names that expressions use.",
             {},
         ),
         "free": part(
-            reading(_free, **windows, minProperties=1, maxProperties=1),
+            reading(free_in, **windows, minProperties=1, maxProperties=1),
             "A third parameter with its range: the record is one of a family, with a map for each of its members.",
             None,
         ),
@@ -293,48 +280,6 @@ def _values(parameters: Node, model: Model | None) -> dict[str, Scalar]:
     return values
 
 
-def _axes(entry: Node) -> dict[str, Window]:
-    axes = with_ranges(entry, "two axes with their ranges", AXES)
-    if len(axes) != 2:
-        entry.note(entry.fault(f"{len(axes)} axes are given: a slice has two, the horizontal one first"))
-    return dict(entry.gathered(lambda axis: (axis.name, _window(axis)), axes.values()))
-
-
-def _free(entry: Node) -> tuple[str, Window]:
-    """The third parameter of a family with its range."""
-    what, like = "one parameter with its range", "{F: [-20, 0]}"
-    free = [*with_ranges(entry, what, like).values()]
-    if len(free) != 1:
-        raise entry.fault(f"expected {what}, such as {like}")
-    return free[0].name, _window(free[0])
-
-
-def with_ranges(entry: Node, what: str, like: str) -> dict[str, Node]:
-    """The entries of a mapping of names to ranges; where there are names alone, a fault says that.
-
-    Parameters
-    ----------
-    what, like : it is, and an example, for messages.
-    """
-    parts = entry.value.items if isinstance(entry.value, Sequence) else (entry.value,)
-    texts = [part.text if isinstance(part, Scalar) and not part.is_null else "" for part in parts]
-    names = [name.strip() for text in texts for name in text.split(",")]
-    if names and all(map(NAME.fullmatch, names)):
-        raise entry.fault(f"expected {what}, such as {like}; no range is given for {' and '.join(names)}")
-    return entry.mapping(MAX_VALUES, expected=f"expected {what}, such as {like}")
-
-
-def _window(entry: Node) -> Window:
-    check_axis_name(entry.name, entry.place)
-    return window_of(entry, "a range", "[0, 2]")
-
-
-def window_of(entry: Node, what: str, like: str) -> Window:
-    """The range that a list of two ends is; what it is, and an example, are for messages."""
-    low, high = entry.pair(what, like)
-    return Window(number_text(low), number_text(high), entry.place)
-
-
 def _sweep(node: Node) -> Written:
     sweep: Written = node.value
     if isinstance(sweep, Scalar):
@@ -354,25 +299,6 @@ def _design(node: Node) -> Written:
     if not isinstance(design, Tree):
         raise node.fault(f"expected what is designed, such as {A_DESIGN}")
     return design
-
-
-def check_members(node: Written) -> Written:
-    """The members of a family as written; refuses what can neither be a list of values nor a number of members."""
-    if isinstance(node, Tree):
-        raise node.place.error("expected a list of values such as [-20, -10, 0], or how many, such as 9")
-    if isinstance(node, Scalar) and (names := names_in_scalar(number_text(node))):
-        raise node.place.error(
-            f"{names[0][:40]} is neither how many members there are, 2 to {MAX_MEMBERS}, nor a list of values such as "
-            "-20,-10,0, nor 'between', which --changes finds"
-        )
-    return node
-
-
-def check_axis_name(name: str, place: Place) -> None:
-    if not NAME.fullmatch(name) or len(name) > MAX_AXIS_NAME or name.lower() in NOT_NUMBERS:
-        raise place.error(
-            f"{name[:40]!r} cannot name an axis: use ASCII letters, digits and '_', starting with a letter"
-        )
 
 
 def unknown_parameter(name: str, model: Model) -> str:

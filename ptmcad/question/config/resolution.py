@@ -15,8 +15,9 @@ from ptmcad.errors import ExpressionError, Faults, Place
 from ptmcad.model import Kind, Model, System
 from ptmcad.model.evaluate import value_at
 from ptmcad.question.config.names import resolved
-from ptmcad.question.config.record import Record, Window, read_record, swept_names
+from ptmcad.question.config.record import Record, read_record, swept_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of
+from ptmcad.question.config.windows import Window
 from ptmcad.question.counts import usual_count
 from ptmcad.question.domain import MAX_DEGREE, sign_of, sign_of_part
 from ptmcad.question.examples import AXES

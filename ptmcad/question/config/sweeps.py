@@ -16,9 +16,10 @@ from ptmcad.model import Model
 from ptmcad.model.reading import NUMBER
 from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.objects import tree_of
-from ptmcad.question.config.record import AXIS_NAME, Record, check_axis_name, swept_names
+from ptmcad.question.config.record import Record, swept_names
 from ptmcad.question.config.resolution import check_number, described_record, note_values, slice_of
 from ptmcad.question.config.scalars import number_of, number_text
+from ptmcad.question.config.windows import AXIS_NAME, check_axis_name
 from ptmcad.question.examples import A_SWEEP, FIRST
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Slice
