@@ -108,5 +108,4 @@ def _of(picture: Picture, key: tuple[int, ...]) -> str:
     slice = picture.problem.slice
     if len(key) > 1:
         return f"({', '.join(map(str, key))}) {index_words(len(key))}"
-    stable = slice.count.is_of_stable and picture.problem.system.tells_stability
-    return f"{key[0]} {'stable ' if stable else ''}{noun(slice.model, key[0])}"
+    return f"{key[0]} {'stable ' if slice.count.is_of_stable else ''}{noun(slice.model, key[0])}"

@@ -101,8 +101,7 @@ def equilibria(system: ParametricSystem, values: Mapping[str, fmpq], most: WorkL
 
 
 def _counts(system: ParametricSystem, found: Sequence[Equilibrium]) -> Counts:
-    size = system.dimension if system.has_index else None
-    return counts_of_signs([e.signs for e in found], system.tells_stability, size)
+    return counts_of_signs([e.signs for e in found], system.criterion)
 
 
 def _enclosed(
@@ -119,7 +118,7 @@ def _enclosed(
         newton = Newton.of(representation.minimal)
         coordinates = CoordinatesInBalls.of(representation)
         conditions = tuple(map(_in_balls, point.conditions))
-        size = len(point.jacobian) if system.has_index else 0
+        size = system.criterion.order
         hessian = [(i, j, _in_balls(point.jacobian[i][j])) for i in range(size) for j in range(i, size)]
         for root in roots:
             at = coordinates.at(newton.ball(root))
@@ -133,7 +132,7 @@ def _enclosed(
             if signs[:inequalities].strip("+"):
                 continue
             signs = signs[inequalities:]
-            if system.has_index:
+            if hessian:
                 negative = _negative_eigenvalues(hessian, size, unknowns)
                 if negative is None:
                     return None

@@ -11,8 +11,9 @@ from itertools import pairwise
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
-from ptmcad.answer.words import counted, noun, of_what, untold
-from ptmcad.model import Mechanism, Model, built_in
+from ptmcad.answer.words import counted, listed, noun, of_what, untold
+from ptmcad.model import Model, built_in
+from ptmcad.model.work import foreign
 from ptmcad.question.counts import POSE_COLUMNS, PoseColumn
 from ptmcad.question.slice import merged
 from ptmcad.show.units import declared_units
@@ -30,15 +31,7 @@ _MAX_BOUNDS = 6
 
 def kind_of(pose: Pose, model: Model) -> str:
     """Stable, saddle, maximum or degenerate; of a system of equations stable, unstable or just a solution."""
-    if pose.multiplicity > 1:
-        return "degenerate"
-    if pose.stable is None:
-        return "undecided" if model.tells_stability else "solution"
-    if pose.stable:
-        return "stable"
-    if pose.index is None:
-        return "unstable"
-    return "maximum" if pose.index == len(pose.eigenvalues) else "saddle"
+    return "degenerate" if pose.multiplicity > 1 else model.criterion.kind(pose.stable, pose.index)
 
 
 def table(poses: Poses, digits: int | None = None) -> str:
@@ -78,30 +71,24 @@ def _units(poses: Poses) -> list[str]:
     return [
         *([f"lengths and coordinates in {length}"] if length else []),
         *([f"forces in {force}"] if force else []),
-        *_in_products(mechanism, product),
+        *_in_products(poses.equilibria[0], product),
         # only of what is built in it is known where an angle is measured from
         *([f"angles between rod and base, {pivots}"] if pivots and mechanism.name in built_in() else []),
     ]
 
 
-def _in_products(mechanism: Mechanism, product: str) -> list[str]:
+def _in_products(pose: Pose, product: str) -> list[str]:
     """What is measured in force times length."""
-    moments = "moments" if mechanism.torsion else ""
-    if not mechanism.has_potential:
-        return [f"{moments} in {product}"] if moments else []
-    if mechanism.closing or mechanism.xjoints:
-        return [f"energies{moments and f' and {moments}'} in {product}"]
-    return [f"energies{moments and f', {moments}'} and the Hessian's eigenvalues in {product}"]
+    parts = (("energies", pose.energy), ("moments", pose.torsion), ("the Hessian's eigenvalues", pose.eigenvalues))
+    return [f"{listed(what)} in {product}"] if (what := [name for name, values in parts if values]) else []
 
 
 def _energy_note(poses: Poses) -> str:
     """What the column of energies leaves out, or why there is none."""
     model = poses.model.whole or poses.model
-    if model.has_potential:
+    if not foreign(model):
         return of_what(model, poses.parameters)
-    if model.drawable is None:
-        return ""
-    return "none" if poses.model.tells_stability else f"none, and {untold(model)}"
+    return "none" if poses.known_stable is not None else f"none, and {untold(model)}"
 
 
 _TORSION = "deflection: angle - rest; moment: k sin(deflection), positive where it turns back an angle beyond rest"

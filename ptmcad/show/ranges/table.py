@@ -13,7 +13,7 @@ from flint import arb, ctx
 from ptmcad.answer.intervals import CountIntervals, End, Span
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
 from ptmcad.answer.widths import Maximum, OperationWidths
-from ptmcad.answer.words import assignments, followed, kind_name, noun, sought
+from ptmcad.answer.words import assignments, followed, listed, noun, sought, with_article
 from ptmcad.model import Model, built_in
 from ptmcad.model.work import acting
 from ptmcad.question.slice import Axis
@@ -169,7 +169,7 @@ def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
     name, model = found.along.name, found.model
     at = f"{name} = {end_text(end.at, 10)}"
     if end.fate is Fate.WINDOW:
-        return f"{'stable' if model.tells_stability else 'goes on'} up to the window's edge {at}"
+        return f"{model.criterion.adjective or 'goes on '}up to the window's edge {at}"
     if end.fate in (Fate.UNSTABLE, Fate.EXCLUDED):
         return f"{at}: {end.fate.value}"
     if end.fate is Fate.UNDECIDED:
@@ -177,7 +177,8 @@ def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
     what = f"{at}: {_event(end, model)}"
     if end.target is None:
         rests = f"under the {acting(model, found.moved)} it may never come to rest: " if found.moved else ""
-        return f"{what}; {rests}where it goes from there is not decided" if model.tells_stability else what
+        unsaid = model.criterion.no_target
+        return f"{what}; {rests}{unsaid}" if unsaid else what
     target = _unknowns(end.target, model, digits)
     if end.fate is Fate.MERGE:
         return f"{what}; the pose goes on, without a snap, as {target}"
@@ -194,30 +195,20 @@ def _event(end: PathEnd, model: Model) -> str:
     """What becomes of the pose that was followed, and of those that it meets."""
     what = f"the {followed(model)}"
     others = [_kind(k, model) for k in end.meeting[1:]]
-    left = _listed([_kind(k, model) for k in end.leaving])
+    left = listed([_kind(k, model) for k in end.leaving]) or "nothing"
     if not others:
         return f"{what} goes on as {left}" if end.leaving else f"{what} vanishes alone"
     if end.among:
-        return f"{what} meets one or more of {_listed(others)} and vanishes"
-    merges = f"{what} merges with {_listed(others)}"
+        return f"{what} meets one or more of {listed(others)} and vanishes"
+    merges = f"{what} merges with {listed(others)}"
     if not end.leaving:
         return f"fold: {merges} and both vanish" if len(others) == 1 else f"{merges} and all vanish"
     return f"{merges}, which leaves {left}"
 
 
-def _listed(names: Sequence[str]) -> str:
-    """Names in a row, such as a saddle, a saddle and a maximum."""
-    return " and ".join(part for part in (", ".join(names[:-1]), names[-1]) if part) if names else "nothing"
-
-
 def _kind(negative: int, model: Model) -> str:
     """A solution by its Morse index; without a potential by whether it is stable."""
-    if not model.has_potential:
-        what = noun(model, 1)
-        if model.tells_stability:
-            return f"a stable {what}" if negative == 0 else f"an unstable {what}"
-        return f"an {what}" if what[0] in "aeiou" else f"a {what}"
-    return f"a {kind_name(negative, len(model.unknowns))}"
+    return with_article(model.criterion.ranked(negative, noun(model, 1)))
 
 
 def _posture(point: Target, heights: Sequence[str]) -> str:

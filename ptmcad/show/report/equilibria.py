@@ -14,7 +14,6 @@ from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution
-from ptmcad.answer.words import kind_name
 from ptmcad.errors import ConfigError, PoleError
 from ptmcad.formulas.values import evaluated
 from ptmcad.model import Mechanism, Model
@@ -75,7 +74,7 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     )
     system = compiled(model)
     known = dict.fromkeys(model.free_lengths, Fraction(0)) | values
-    acting = (system.loads if system.are_slopes else (), system.moments if system.has_index else ())
+    acting = (system.loads if system.are_slopes else (), system.moments[: system.criterion.order])
     loads, moments = evaluated(acting if drawn else ((), ()), _Within(system, known))
     others = {n: v for n, v in distinct_parameters(values, model).items() if n not in cell.sample.names}
     return {
@@ -90,17 +89,6 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
 def coordinates(model: Model) -> tuple[str, ...]:
     """The unknowns of a result's equations: cosine and sine of each angle, then those on the line."""
     return (*(f"{function}_{angle}" for angle in model.angles for function in ("cos", "sin")), *model.reals)
-
-
-def kind_of(solution: Solution, model: Model) -> str:
-    """What the signs of the Hessian's eigenvalues say, or those of the conditions for stability."""
-    if not model.has_potential:
-        told = model.tells_stability and solution.signs
-        return "solution" if not told else "unstable" if solution.signs.strip("+") else "stable"
-    if set(solution.signs) - set("+-") or len(solution.signs) != len(model.unknowns):
-        return "degenerate"
-    negative = solution.signs.count("-")
-    return "stable" if negative == 0 else kind_name(negative, len(model.unknowns))
 
 
 def distinct_parameters(values: Mapping[str, Value], model: Model) -> dict[str, Value]:
@@ -132,7 +120,7 @@ def _solutions(
     _, turned = system.elastic
     boxes = [_box(s, model, polynomial) for s in cell.solutions]
     formulas = _Pose(
-        None if polynomial or not system.has_index else system.energy(),
+        None if polynomial else system.potential(),
         *((system.points, system.stretches, turned) if system.are_slopes else ()),
     )
     poses: list[_Pose] = [evaluated(formulas, _Within(system, values, box)) for box in boxes]
@@ -144,7 +132,7 @@ def _solutions(
     real_place = _place(x for row in reals for x in row)
     mechanism = model.whole if system.are_slopes else None
     parts = [{} for _ in boxes] if mechanism is None else _parts(mechanism, poses)
-    kinds = [kind_of(solution, model) for solution in cell.solutions]
+    kinds = [model.criterion.kind_of_signs(solution.signs) for solution in cell.solutions]
     order = {"stable": 0, "degenerate": len(model.unknowns) + 1}
 
     def rank(k: int) -> tuple[int, Fraction]:

@@ -12,9 +12,9 @@ from math import isfinite
 from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.answer.words import kind_name
 from ptmcad.formulas.script import MAX_CONSTANT, Instruction, script
 from ptmcad.model.compile import CompiledSystem, compiled
+from ptmcad.model.criterion import critical_point
 from ptmcad.question.slice import Slice, relaxed_springs
 
 MAX_OPERATIONS = 2000
@@ -52,7 +52,7 @@ def tape(result: RegionMap) -> dict[str, Any] | None:
         "angles": len(model.angles),
         "unknowns": n,
         "window": [[float(axis.low), float(axis.high)] for axis in slice.axes],
-        "kinds": ["stable", *(kind_name(k, n) for k in range(1, n + 1))],
+        "kinds": ["stable", *(critical_point(k, n) for k in range(1, n + 1))],
         "stableOnly": _only_stable(result),
     }
 
