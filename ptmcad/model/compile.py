@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Generic, NamedTuple, TypeVar
 
 from ptmcad.errors import ExpressionError
@@ -168,6 +168,11 @@ class CompiledSystem:
     heights: tuple[Formula, ...] = ()
     has_energy: bool = False
     criterion: Criterion = field(kw_only=True)
+
+    @cached_property
+    def shown(self) -> CompiledSystem:
+        """What is drawn and followed of a pose: no points, springs and loads yet where loops are closed."""
+        return self if self.are_slopes else replace(self, points={}, springs=(), torsion=(), loads=())
 
     @property
     def unknowns(self) -> tuple[int, ...]:

@@ -6,10 +6,9 @@ number, a word or a matrix asks for that; where nothing is known there is none.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from typing import ClassVar, TypeVar
+from dataclasses import dataclass, replace
+from typing import TypeVar
 
 from ptmcad.text.tree import Tree, to_text
 
@@ -21,85 +20,90 @@ def critical_point(negative: int, unknowns: int) -> str:
     return "minimum" if negative == 0 else "maximum" if negative == unknowns else "saddle"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Criterion:
-    """That of equations alone: nothing is known of a solution but that it is one.
+    """By what it is known whether a solution is stable; without arguments by nothing.
 
     Signs are ``+``, ``-`` and ``0``, one for each eigenvalue of the Hessian, or for each condition for stability.
 
     Attributes
     ----------
-    unknowns : their number.
     counts : what can be counted, by names of `ptmcad.question.counts`; the finest last.
-    choices : kinds of which a solution may be chosen.
-    numbers, differences : what else has values where there is an energy: of one solution, and between two.
+    order : the number of rows of the Hessian; 0 where there is none.
+    is_definite : whether conditions for stability hold together where a symmetric matrix is positive definite, and the
+        last one is its determinant, times what is positive.
+    stable_at_zero : whether a solution at which a condition vanishes may be stable all the same.
+    numbers, differences : what has values where there is an energy: of one solution, and between two.
     adjective : before the noun of the solutions that are followed and make ranges.
     solutions, singular, matrix, determinant : what they are called in messages.
     loose : why there may be infinitely many solutions.
     undecided, degenerate : a solution of which it is not decided whether it is stable, and one without signs.
     may_vary : why the number of stable solutions is not said of a region in which all are counted.
     no_descent : why nothing falls from where a stable solution vanishes.
-    no_target : of a followed solution that vanishes, what is not said.
+    no_target : what is not said of a followed solution that vanishes.
     no_energy : why no energy is drawn.
-    stable_at_zero : whether a solution at which a condition vanishes may be stable all the same.
     """
 
-    unknowns: int
-    counts: ClassVar[tuple[str, ...]] = ("total",)
-    choices: ClassVar[tuple[str, ...]] = ("pose",)
-    numbers: ClassVar[tuple[str, ...]] = ()
-    differences: ClassVar[tuple[str, ...]] = ()
-    adjective: ClassVar[str] = ""
-    solutions: ClassVar[str] = "solutions"
-    singular: ClassVar[str] = "solution has a singular Jacobian"
-    matrix: ClassVar[str] = "Jacobian"
-    determinant: ClassVar[str] = "the Jacobian's determinant"
-    loose: ClassVar[str] = ""
-    undecided: ClassVar[str] = "solution"
-    degenerate: ClassVar[str] = "solution"
-    may_vary: ClassVar[str] = ""
-    no_descent: ClassVar[str] = "the pose vanishes, and without a potential nothing says where it goes"
-    no_target: ClassVar[str] = ""
-    no_energy: ClassVar[str] = "has equations and no potential: there is no energy to be drawn"
-    stable_at_zero: ClassVar[bool] = False
+    counts: tuple[str, ...] = ("total",)
+    order: int = 0
+    is_definite: bool = False
+    stable_at_zero: bool = False
+    numbers: tuple[str, ...] = ()
+    differences: tuple[str, ...] = ()
+    adjective: str = ""
+    solutions: str = "solutions"
+    singular: str = "solution has a singular Jacobian"
+    matrix: str = "Jacobian"
+    determinant: str = "the Jacobian's determinant"
+    loose: str = ""
+    undecided: str = "solution"
+    degenerate: str = "solution"
+    may_vary: str = ""
+    no_descent: str = "the pose vanishes, and without a potential nothing says where it goes"
+    no_target: str = ""
+    no_energy: str = "has equations and no potential: there is no energy to be drawn"
 
     @property
-    def order(self) -> int:
-        """The number of rows of the Hessian; 0 where there is none."""
-        return 0
+    def is_told(self) -> bool:
+        """Whether it is known what a stable solution is."""
+        return "stable" in self.counts
 
     @property
     def on_lines(self) -> Criterion:
         """The same where leading minors of a Hessian are conditions for stability."""
-        return self
+        return DEFINITENESS if self.order else self
 
     def index(self, signs: str) -> int | None:
         """The number of negative eigenvalues of the Hessian; None where it is not known."""
-        return None
+        return signs.count("-") if 0 < self.order == len(signs) and not signs.strip("+-") else None
 
     def is_stable(self, signs: str) -> bool | None:
         """Whether a solution is stable; None where it is not known."""
-        return None
+        known = self.index(signs) is not None if self.order else signs and self.is_told
+        return not signs.strip("+") if known else None
 
     def rank(self, signs: str) -> int:
         """0 of what is stable; else the number of negative eigenvalues, or 1."""
-        return 0 if self.is_stable(signs) else 1
+        return signs.count("-") if self.order else int(not self.is_stable(signs))
 
     def number(self, stable: Iterable[bool | None]) -> int | None:
         """How many of some solutions are stable; None where nothing says which are."""
-        return None
+        return [*stable].count(True) if self.is_told else None
 
     def indices(self, signs: Sequence[str]) -> tuple[int, ...] | None:
         """Numbers of solutions by the number of negative eigenvalues; None where there is no Hessian."""
-        return None
+        negative = [each.count("-") for each in signs]
+        return tuple(negative.count(k) for k in range(self.order + 1)) if self.order else None
 
     def works(self, stable: bool | None) -> bool:
         """Whether a solution is among those that make ranges: stable ones, or all where nothing says which are."""
-        return True
+        return stable is True or not self.is_told
 
     def kind(self, stable: bool | None, index: int | None) -> str:
         """What a solution is called where it stands beside others."""
-        return self.undecided
+        if stable is None:
+            return self.undecided
+        return critical_point(index, self.order) if index else "stable" if stable else "unstable"
 
     def kind_of_signs(self, signs: str) -> str:
         """The same by signs."""
@@ -108,104 +112,55 @@ class Criterion:
 
     def ranked(self, rank: int, noun: str) -> str:
         """What a solution of a rank is called where it meets others."""
-        return noun
+        if self.order:
+            return critical_point(rank, self.order)
+        return f"un{self.adjective}{noun}" if rank and self.is_told else f"{self.adjective}{noun}"
 
     def entry(self, row: int, column: int) -> tuple[int, int]:
         """Which of the equal entries of the matrix stands for one."""
-        return row, column
+        return (max(row, column), min(row, column)) if self.order else (row, column)
 
     def decisive(self, conditions: tuple[T, ...]) -> tuple[T, ...]:
         """Those of the conditions for stability off whose zeros no solution loses it."""
-        return conditions
+        return conditions[-1:] if self.is_definite else conditions
 
     def at_zero(self, what: str, number: int, condition: Tree) -> str:
         """What it means that a condition for stability vanishes at some solutions."""
+        if self.is_definite:
+            return f"{what} {'are' if number > 1 else 'is'} degenerate: poses meet there, or the loop is flat"
         return f"{to_text(condition)} is zero at {what}, which {'count' if number > 1 else 'counts'} as unstable"
 
 
-class ByConditions(Criterion):
-    """A solution is stable where all conditions are positive."""
-
-    counts: ClassVar[tuple[str, ...]] = ("total", "stable")
-    choices: ClassVar[tuple[str, ...]] = ("pose", "stable", "unstable")
-    adjective = "stable "
-    undecided = "undecided"
-    no_target = "where it goes from there is not decided"
-    may_vary = "it may change within a region, see --count stable"
-
-    def is_stable(self, signs: str) -> bool | None:
-        return not signs.strip("+") if signs else None
-
-    def number(self, stable: Iterable[bool | None]) -> int | None:
-        return [*stable].count(True)
-
-    def works(self, stable: bool | None) -> bool:
-        return stable is True
-
-    def kind(self, stable: bool | None, index: int | None) -> str:
-        return self.undecided if stable is None else "stable" if stable else "unstable"
-
-    def ranked(self, rank: int, noun: str) -> str:
-        return f"unstable {noun}" if rank else f"stable {noun}"
+NOTHING = Criterion()
+"""Nothing is known of a solution but that it is one."""
+CONDITIONS = Criterion(
+    counts=("total", "stable"),
+    adjective="stable ",
+    undecided="undecided",
+    may_vary="it may change within a region, see --count stable",
+    no_target="where it goes from there is not decided",
+)
+"""A solution is stable where all conditions are positive."""
+DEFINITENESS = replace(CONDITIONS, is_definite=True, stable_at_zero=True)
+"""The same where they say together that a symmetric matrix is definite."""
 
 
-class ByDefiniteness(ByConditions):
-    """All conditions are positive where a symmetric matrix is definite; the last one is its determinant, times what is
-    positive."""
-
-    stable_at_zero = True
-
-    def decisive(self, conditions: tuple[T, ...]) -> tuple[T, ...]:
-        return conditions[-1:]
-
-    def at_zero(self, what: str, number: int, condition: Tree) -> str:
-        # the condition is a determinant, pages long
-        return f"{what} {'are' if number > 1 else 'is'} degenerate: poses meet there, or the loop is flat"
-
-
-class ByHessian(ByConditions):
+def by_hessian(unknowns: int) -> Criterion:
     """Solutions are critical points, near each of a function: stable where its Hessian is positive definite."""
-
-    counts = ("total", "stable", "index")
-    choices = ("pose", "stable", "unstable", "saddle", "maximum")
-    numbers = ("energy", "stiffness")
-    differences = ("barrier",)
-    solutions = "equilibria"
-    singular = "equilibrium has a singular Hessian"
-    matrix = "Hessian"
-    determinant = "det H"
-    loose = "nothing holds some motion; "
-    degenerate = "degenerate"
-    may_vary = no_descent = no_energy = ""
-    stable_at_zero = True
-
-    @property
-    def order(self) -> int:
-        return self.unknowns
-
-    @property
-    def on_lines(self) -> Criterion:
-        return ByDefiniteness(self.unknowns)
-
-    def index(self, signs: str) -> int | None:
-        return signs.count("-") if len(signs) == self.unknowns and not signs.strip("+-") else None
-
-    def is_stable(self, signs: str) -> bool | None:
-        index = self.index(signs)
-        return None if index is None else index == 0
-
-    def rank(self, signs: str) -> int:
-        return signs.count("-")
-
-    def indices(self, signs: Sequence[str]) -> tuple[int, ...] | None:
-        numbers = Counter(each.count("-") for each in signs)
-        return tuple(numbers[k] for k in range(self.unknowns + 1))
-
-    def kind(self, stable: bool | None, index: int | None) -> str:
-        return critical_point(index, self.unknowns) if index else super().kind(stable, index)
-
-    def ranked(self, rank: int, noun: str) -> str:
-        return critical_point(rank, self.unknowns)
-
-    def entry(self, row: int, column: int) -> tuple[int, int]:
-        return max(row, column), min(row, column)
+    return replace(
+        CONDITIONS,
+        counts=("total", "stable", "index"),
+        order=unknowns,
+        stable_at_zero=True,
+        numbers=("energy", "stiffness"),
+        differences=("barrier",),
+        solutions="equilibria",
+        singular="equilibrium has a singular Hessian",
+        matrix="Hessian",
+        determinant="det H",
+        loose="nothing holds some motion; ",
+        degenerate="degenerate",
+        may_vary="",
+        no_descent="",
+        no_energy="",
+    )

@@ -15,7 +15,7 @@ from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 from ptmcad.errors import ExpressionError
-from ptmcad.model.criterion import ByConditions, ByDefiniteness, ByHessian, Criterion
+from ptmcad.model.criterion import CONDITIONS, DEFINITENESS, NOTHING, Criterion, by_hessian
 from ptmcad.model.elements import (
     NAMES,
     Closing,
@@ -325,7 +325,7 @@ class Mechanism(Model):
     @cached_property
     def criterion(self) -> Criterion:
         """A moment that depends on no unknown but its own has a potential, though of several values on a circle."""
-        return (Criterion if self.coupled else ByHessian)(len(self.unknowns))
+        return NOTHING if self.coupled else by_hessian(len(self.unknowns))
 
     @cached_property
     def followers(self) -> Mapping[str, str]:
@@ -427,7 +427,7 @@ class System(Model):
     inequalities: tuple[Tree, ...] = ()
     stability: tuple[Tree, ...] = ()
     nouns = Nouns("solution", "the state", "", "range", "range with {}", 0)
-    _by_conditions: ClassVar[type[Criterion]] = ByConditions
+    _by_conditions: ClassVar[Criterion] = CONDITIONS
 
     __hash__ = Model.__hash__
     __repr__ = Model.__repr__
@@ -439,8 +439,8 @@ class System(Model):
     @cached_property
     def criterion(self) -> Criterion:
         if self.potential is not None:
-            return ByHessian(len(self.unknowns))
-        return (self._by_conditions if self.stability else Criterion)(len(self.unknowns))
+            return by_hessian(len(self.unknowns))
+        return self._by_conditions if self.stability else NOTHING
 
     @cached_property
     def polynomials(self) -> Mapping[str, tuple[Tree, ...]]:
@@ -468,7 +468,7 @@ class ClosedMechanism(System):
     mechanism: Mechanism = field(kw_only=True, compare=False)
     tangent: tuple[Tree, ...] = field(kw_only=True, compare=False)
     multipliers: tuple[str, ...] = field(default=(), kw_only=True, compare=False)
-    _by_conditions = ByDefiniteness
+    _by_conditions = DEFINITENESS
 
     __hash__ = Model.__hash__
     __repr__ = Model.__repr__

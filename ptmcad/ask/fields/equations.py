@@ -114,10 +114,10 @@ def _formulas(system: CompiledSystem, relaxed: tuple[int, ...]) -> Doubles:
         "energy": system.potential(relaxed),
         "conditions": system.inequalities,
         "stability": system.stability,
+        "points": system.shown.points,
+        "stretches": system.shown.stretches,
+        "work": system.work if system.acting else None,
     }
-    if system.are_slopes:
-        found |= {"points": system.points, "stretches": system.stretches}
-        found["work"] = system.work if system.acting else None
     return Doubles(found, np)
 
 

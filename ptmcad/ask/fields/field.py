@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -53,15 +53,13 @@ class Choice:
 
     def numbers(self, poses: Poses) -> list[int]:
         """Those of the poses that are of the kind."""
-        last = len(poses.model.unknowns)
-        fits: Mapping[str, Callable[[Pose], bool]] = {
-            "pose": lambda pose: True,
-            "stable": lambda pose: pose.stable is True,
-            "unstable": lambda pose: pose.stable is False,
-            "saddle": lambda pose: pose.index is not None and 0 < pose.index < last,
-            "maximum": lambda pose: pose.index == last,
-        }
-        return [k for k, pose in enumerate(poses.equilibria) if fits[self.kind](pose)]
+        own = [(poses.model.criterion.kind(pose.stable, pose.index), pose.stable) for pose in poses.equilibria]
+        names = [("pose", kind, "unstable" if stable is False else kind) for kind, stable in own]
+        return [k for k, each in enumerate(names) if self.kind in each]
+
+
+_NEEDED = {"pose": "total", "stable": "stable", "unstable": "stable", "saddle": "index", "maximum": "index"}
+"""The kinds, to the names of counts that tell them apart."""
 
 
 def choice_of(text: str, model: Model) -> Choice:
@@ -77,9 +75,9 @@ def choice_of(text: str, model: Model) -> Choice:
         raise ConfigError(
             f"{text!r} is not a pose such as stable:1, unstable:1, saddle:2, maximum:1 or pose:3", key="--pose"
         )
-    if match[1] not in model.criterion.choices:
+    if (needed := _NEEDED[match[1]]) not in model.criterion.counts:
         what = f"nothing says which solutions of {model.name} are stable"
-        if match[1] in ("saddle", "maximum"):
+        if needed == "index":
             what = f"solutions of {model.name} have no index: no {match[1]} is known"
         raise ConfigError(what, key="--pose")
     return Choice(match[1], int(match[2] or 1))

@@ -36,7 +36,7 @@ from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.intervals import Indices, program, run
 from ptmcad.formulas.tape import Tape, enclosing_floats, record
 from ptmcad.model import ptm
-from ptmcad.model.criterion import ByHessian
+from ptmcad.model.criterion import by_hessian
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import text_of
@@ -140,7 +140,7 @@ class PlainCounter:
         ArithmeticError
             As `at` does.
         """
-        counts = counts_of_signs([s.signs for s in found.solutions], ByHessian(len(self.problem.unknowns)))
+        counts = counts_of_signs([s.signs for s in found.solutions], by_hessian(len(self.problem.unknowns)))
         index = counts.index or ()
         smooth = not (self.problem.has_springs or self.problem.reals or self.problem.inequalities)
         if smooth and sum((-1) ** k * number for k, number in enumerate(index)):

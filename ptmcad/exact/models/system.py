@@ -25,7 +25,7 @@ from ptmcad.algebra.polynomials import (
     ratio,
 )
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
-from ptmcad.model.criterion import Criterion
+from ptmcad.model.criterion import NOTHING, Criterion
 
 RationalPolynomial = dict[tuple[int, ...], fmpq]
 """A polynomial in the unknowns with rational coefficients: exponent vector -> coefficient."""
@@ -64,7 +64,7 @@ class ParametricSystem(NamedTuple):
     positive: tuple[str, ...] = ()
     nonnegative: tuple[str, ...] = ()
     turns: Any = None
-    criterion: Criterion = Criterion(0)
+    criterion: Criterion = NOTHING
 
     @property
     def dimension(self) -> int:

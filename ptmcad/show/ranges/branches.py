@@ -8,8 +8,8 @@ from __future__ import annotations
 from ptmcad.answer.branches import Branch, Branches, BranchPoint
 from ptmcad.answer.words import noun
 from ptmcad.model import Model
+from ptmcad.show.columns import aligned
 from ptmcad.show.ranges.numbers import fixed, known
-from ptmcad.show.ranges.table import aligned
 from ptmcad.show.units import with_unit
 from ptmcad.text.enclosure import Enclosure
 

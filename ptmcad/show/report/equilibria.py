@@ -10,7 +10,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from operator import gt
-from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution
@@ -74,7 +73,7 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     )
     system = compiled(model)
     known = dict.fromkeys(model.free_lengths, Fraction(0)) | values
-    acting = (system.loads if system.are_slopes else (), system.moments[: system.criterion.order])
+    acting = (system.shown.loads, system.moments[: system.criterion.order])
     loads, moments = evaluated(acting if drawn else ((), ()), _Within(system, known))
     others = {n: v for n, v in distinct_parameters(values, model).items() if n not in cell.sample.names}
     return {
@@ -117,12 +116,9 @@ def _solutions(
 ) -> list[dict[str, Any]]:
     """The solutions, the stable ones first, then by energy; all numbers of a kind to the same last place."""
     system = compiled(model)
-    _, turned = system.elastic
     boxes = [_box(s, model, polynomial) for s in cell.solutions]
-    formulas = _Pose(
-        None if polynomial else system.potential(),
-        *((system.points, system.stretches, turned) if system.are_slopes else ()),
-    )
+    drawn = system.shown
+    formulas = _Pose(None if polynomial else system.potential(), drawn.points, drawn.stretches, drawn.torsion)
     poses: list[_Pose] = [evaluated(formulas, _Within(system, values, box)) for box in boxes]
     energies = [pose.energy for pose in poses] if potential is None else [energy(potential, box) for box in boxes]
     known = [bounds for bounds in energies if bounds is not None]
@@ -130,8 +126,7 @@ def _solutions(
     turns = 2 * len(model.angles)
     reals = [box[turns:] for box in boxes]
     real_place = _place(x for row in reals for x in row)
-    mechanism = model.whole if system.are_slopes else None
-    parts = [{} for _ in boxes] if mechanism is None else _parts(mechanism, poses)
+    parts = [{} for _ in boxes] if model.drawable is None else _parts(model.drawable, poses)
     kinds = [model.criterion.kind_of_signs(solution.signs) for solution in cell.solutions]
     order = {"stable": 0, "degenerate": len(model.unknowns) + 1}
 
@@ -159,9 +154,9 @@ class _Pose(NamedTuple):
     """What is shown of a pose, as formulas, or as their bounds."""
 
     energy: Any
-    points: Mapping[str, tuple[Any, Any]] = MappingProxyType({})
-    stretches: tuple[tuple[Any, Any, Any], ...] = ()
-    turned: tuple[Any, ...] = ()
+    points: Mapping[str, tuple[Any, Any]]
+    stretches: tuple[tuple[Any, Any, Any], ...]
+    turned: tuple[Any, ...]
 
 
 def _parts(mechanism: Mechanism, poses: Sequence[_Pose]) -> list[dict[str, Any]]:

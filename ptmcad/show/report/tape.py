@@ -7,7 +7,6 @@ known by name, and nothing is computed here.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from math import isfinite
 from typing import Any
 
@@ -30,7 +29,7 @@ def tape(result: RegionMap) -> dict[str, Any] | None:
     slice = result.slice
     model, system = slice.model, compiled(slice.model)
     relaxed = relaxed_springs(model, slice.parameters)
-    if relaxed and not system.are_slopes:
+    if relaxed and system.tangent:
         return None
     if not any(cell.solutions for cell in result.cells) or not _fits(slice):
         return None
@@ -59,18 +58,15 @@ def tape(result: RegionMap) -> dict[str, Any] | None:
 
 def _formulas(system: CompiledSystem, relaxed: Sequence[int]) -> dict[str, Any]:
     """What the script draws and follows; what a model does not have is empty."""
-    force = system.stored(relaxed)
-    if not system.are_slopes:
-        force, system = None, replace(system, points={}, loads=())
     return {
-        "force": force,
-        "energy": force if system.has_energy else None,
+        "force": system.stored(relaxed) if system.are_slopes else None,
+        "energy": system.potential(relaxed),
         "equations": () if system.are_slopes else system.equations,
         "conditions": system.inequalities,
         "stability": system.stability,
         "moments": system.acting,
-        "points": system.points,
-        "loads": system.loads,
+        "points": system.shown.points,
+        "loads": system.shown.loads,
     }
 
 
