@@ -85,6 +85,18 @@ def counted_by(counted: Counted, count: Count) -> tuple[int, ...]:
     return (-1,) if value is None else value if isinstance(value, tuple) else (value,)
 
 
+def key_text(key: Sequence[int]) -> str:
+    """What `counted_by` has, as text."""
+    if len(key) > 1:
+        return f"({', '.join(map(str, key))})"
+    return "?" if key[0] < 0 else str(key[0])
+
+
+def euler_sum(index: Sequence[int]) -> int:
+    """The alternating sum of numbers by index."""
+    return sum(index[::2]) - sum(index[1::2])
+
+
 def operation_number(model: Model, found: Iterable[Counts]) -> int:
     """The number of stable solutions that there are in an operation range: the greatest one that occurs.
 

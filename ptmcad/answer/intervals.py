@@ -12,7 +12,7 @@ from fractions import Fraction
 from itertools import groupby
 
 from ptmcad.answer import with_methods
-from ptmcad.answer.counts import Counts, MorseIndex
+from ptmcad.answer.counts import Counts, MorseIndex, euler_sum
 from ptmcad.answer.regionmap import Continuum, Kind
 from ptmcad.model import Model
 from ptmcad.model.criterion import critical_point
@@ -77,8 +77,7 @@ class Change:
         """Whether the alternating sum of the indices stays, as pairs keep it; what comes from infinity need not."""
         if self.before.index is None or self.after.index is None:
             return False
-        gains = [after - before for before, after in zip(self.before.index, self.after.index, strict=True)]
-        return sum(gains[::2]) == sum(gains[1::2])
+        return euler_sum(self.before.index) == euler_sum(self.after.index)
 
     @property
     def text(self) -> str:

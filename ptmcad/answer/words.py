@@ -30,13 +30,13 @@ def with_article(noun: str) -> str:
     return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
 
 
-def listed(names: Sequence[str]) -> str:
+def listed(names: Sequence[str], last: str = " and ") -> str:
     """Names in a row.
 
     >>> listed(["a saddle", "a saddle", "a maximum"]), listed(["a saddle"]), listed([])
     ('a saddle, a saddle and a maximum', 'a saddle', '')
     """
-    return " and ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))
+    return last.join(filter(None, (", ".join(names[:-1]), *names[-1:])))
 
 
 def several(number: int, noun: str) -> str:

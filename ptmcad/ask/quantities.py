@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from ptmcad.answer.poses import Pose
+from ptmcad.answer.words import listed
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism, Model
 from ptmcad.model.elements import UnknownKind
@@ -96,8 +97,7 @@ def named(model: Model, text: str, key: str) -> Quantity | None:
         return None if kind is None else _of_energy(model, kind, key)
     kind = next((kind for kind in OF_PARTS if kind.value == word), None)
     if kind is None:
-        words = [kind.value for kind in OF_PARTS]
-        raise ConfigError(f"{word[:60]!r} is not among {', '.join(words[:-1])} and {words[-1]}", key=key)
+        raise ConfigError(f"{word[:60]!r} is not among {listed([kind.value for kind in OF_PARTS])}", key=key)
     return _of_part(model, kind, name, key)
 
 

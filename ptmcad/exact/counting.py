@@ -23,7 +23,7 @@ from ptmcad.algebra.isolation import root_bound
 from ptmcad.algebra.newton import Newton
 from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate
 from ptmcad.algebra.vanishing import Divisor, vanishing_divisor
-from ptmcad.answer.counts import Counts, counts_of_signs
+from ptmcad.answer.counts import Counts, counts_of_signs, euler_sum
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial
 from ptmcad.exact.point_system import PointSystem, simple_solutions, text_of_point
 
@@ -95,7 +95,7 @@ def equilibria(system: ParametricSystem, values: Mapping[str, fmpq], most: WorkL
     while (found := _enclosed(system, point, representation, roots, zeros, bits)) is None:
         bits *= 2
     counts = _counts(system, found)
-    if counts.index is not None and system.is_on_torus and sum(counts.index[::2]) != sum(counts.index[1::2]):
+    if counts.index is not None and system.is_on_torus and euler_sum(counts.index):
         raise ArithmeticError(f"the Euler sum of {counts} at {text_of_point(values)} is not zero")
     return Equilibria(counts, found, bits)
 

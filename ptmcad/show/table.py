@@ -7,6 +7,7 @@ from collections import Counter
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from ptmcad.answer.counts import counted_by, key_text
 from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.timings import COMPILATION
 from ptmcad.answer.words import count_words, noun, several
@@ -27,10 +28,7 @@ def index_heading(model: Model) -> str:
 
 def count_text(region: Region, count: Count) -> str:
     """The count by which regions are distinguished, as text."""
-    number = region.number(count)
-    if isinstance(number, tuple):
-        return f"({', '.join(map(str, number))})"
-    return "?" if number is None else str(number)
+    return key_text(counted_by(region, count))
 
 
 def in_order(text: str) -> list[int]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from ptmcad.answer.counts import Counts
+from ptmcad.answer.counts import Counts, euler_sum
 from ptmcad.model import Model
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.claims import Claims
@@ -40,7 +40,7 @@ def _euler_sum(fibre: FibreAlgebra, counts: Counts) -> int:
     """The sum of the signs of the Jacobian's determinant, which is zero on a torus (Poincare and Hopf)."""
     if counts.index is None:
         return fibre.balance()
-    return sum(counts.index[::2]) - sum(counts.index[1::2])
+    return euler_sum(counts.index)
 
 
 def _text(counts: Counts) -> str:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from flint import arb, arb_mat, ctx
 
-from ptmcad.answer.counts import counts_of_signs
+from ptmcad.answer.counts import counts_of_signs, euler_sum
 from ptmcad.certified.arb_isolation import Box, Isolated, isolate_arb, refined
 from ptmcad.certified.distinct import FULL_TURN, distinct
 from ptmcad.certified.parameters import values_at
@@ -143,7 +143,7 @@ class PlainCounter:
         counts = counts_of_signs([s.signs for s in found.solutions], by_hessian(len(self.problem.unknowns)))
         index = counts.index or ()
         smooth = not (self.problem.has_springs or self.problem.reals or self.problem.inequalities)
-        if smooth and sum((-1) ** k * number for k, number in enumerate(index)):
+        if smooth and euler_sum(index):
             raise ArithmeticError(f"critical points of a function on the torus by index {[*index]} at ({x}, {y})")
         cones = 0 if smooth else None
         if self.slice.model == ptm() and self.problem.has_springs:
