@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from ptmcad.model import Model
+from ptmcad.model.criterion import Criterion
 from ptmcad.question.counts import Count
 
 MorseIndex = tuple[int, ...]
@@ -73,24 +74,27 @@ class Counts(Counted):
         return self.total if self.stable is None else self.stable
 
 
-def counts_of_signs(signs: Sequence[str], tells_stability: bool, size: int | None) -> Counts:
-    """The counts of solutions by the signs of their Hessians' eigenvalues, or of conditions for stability.
-
-    Parameters
-    ----------
-    size : of a Hessian; None where signs are those of conditions.
-    """
-    index = None
-    if size is not None:
-        negative = [s.count("-") for s in signs]
-        index = tuple(negative.count(k) for k in range(size + 1))
-    return Counts(len(signs), sum(not s.strip("+") for s in signs) if tells_stability else None, index)
+def counts_of_signs(signs: Sequence[str], criterion: Criterion) -> Counts:
+    """The counts of solutions by the signs of their Hessians' eigenvalues, or of conditions for stability."""
+    return Counts(len(signs), criterion.number(map(criterion.is_stable, signs)), criterion.indices(signs))
 
 
 def counted_by(counted: Counted, count: Count) -> tuple[int, ...]:
     """The count that distinguishes regions, as something to compare and sort by; (-1,) where it is not known."""
     value = counted.number(count)
     return (-1,) if value is None else value if isinstance(value, tuple) else (value,)
+
+
+def key_text(key: Sequence[int]) -> str:
+    """What `counted_by` has, as text."""
+    if len(key) > 1:
+        return f"({', '.join(map(str, key))})"
+    return "?" if key[0] < 0 else str(key[0])
+
+
+def euler_sum(index: Sequence[int]) -> int:
+    """The alternating sum of numbers by index."""
+    return sum(index[::2]) - sum(index[1::2])
 
 
 def operation_number(model: Model, found: Iterable[Counts]) -> int:

@@ -12,10 +12,10 @@ from fractions import Fraction
 from itertools import groupby
 
 from ptmcad.answer import with_methods
-from ptmcad.answer.counts import Counts, MorseIndex
+from ptmcad.answer.counts import Counts, MorseIndex, euler_sum
 from ptmcad.answer.regionmap import Continuum, Kind
-from ptmcad.answer.words import kind_name
 from ptmcad.model import Model
+from ptmcad.model.criterion import critical_point
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.expressions import Expression
@@ -77,8 +77,7 @@ class Change:
         """Whether the alternating sum of the indices stays, as pairs keep it; what comes from infinity need not."""
         if self.before.index is None or self.after.index is None:
             return False
-        gains = [after - before for before, after in zip(self.before.index, self.after.index, strict=True)]
-        return sum(gains[::2]) == sum(gains[1::2])
+        return euler_sum(self.before.index) == euler_sum(self.after.index)
 
     @property
     def text(self) -> str:
@@ -97,7 +96,7 @@ class Change:
             return str(event.value) if self.before.index is not None else "solutions change their stability"
         what = "several solutions" if event is Event.SEVERAL and not self._balanced() else event.value
         if first is not None and self.before.index is not None:
-            names = [kind_name(k, len(self.before.index) - 1) for k in (first, first + 1)]
+            names = [critical_point(k, len(self.before.index) - 1) for k in (first, first + 1)]
             what = " and ".join(f"one {'stable equilibrium' if name == 'minimum' else name}" for name in names)
             what = "two saddles" if names == ["saddle", "saddle"] else what
         return f"{'gains' if self.after.total > self.before.total else 'loses'} {what}"

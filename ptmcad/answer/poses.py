@@ -232,7 +232,7 @@ class Poses:
     @property
     def known_stable(self) -> int | None:
         """The same; None where nothing says which are stable."""
-        return self.stable if self.model.tells_stability else None
+        return self.model.criterion.number(pose.stable for pose in self.equilibria)
 
     @property
     def in_order(self) -> tuple[Pose, ...]:
@@ -242,7 +242,7 @@ class Poses:
     @property
     def working(self) -> tuple[Pose, ...]:
         """The stable equilibria, or all of them where nothing says which are stable."""
-        return tuple(pose for pose in self.in_order if pose.stable or self.known_stable is None)
+        return tuple(pose for pose in self.in_order if self.model.criterion.works(pose.stable))
 
     def __str__(self) -> str:
         return self.table()

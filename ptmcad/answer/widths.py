@@ -13,6 +13,7 @@ from fractions import Fraction
 
 from ptmcad.answer import with_methods
 from ptmcad.answer.intervals import End, OperationSpan
+from ptmcad.answer.words import listed
 from ptmcad.model import Model
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import DIGITS, AlgebraicNumber, Enclosure
@@ -106,7 +107,7 @@ def overall(maxima: Sequence[Maximum]) -> Attainment:
 def _listed(over: str, values: tuple[End, ...], digits: int) -> str:
     """Values of an axis, such as b = 0 and b = 1."""
     texts = [f"{over} = {AlgebraicNumber.of(v).text(digits)}" for v in values]
-    return " and ".join(part for part in (", ".join(texts[:-1]), texts[-1]) if part)
+    return listed(texts)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from ptmcad.model import Model
@@ -21,6 +21,24 @@ def noun(model: Model, number: int = 2) -> str:
     return "solution" if number == 1 else "solutions"
 
 
+def with_article(noun: str) -> str:
+    """The noun after a or an.
+
+    >>> with_article("equilibrium"), with_article("solution")
+    ('an equilibrium', 'a solution')
+    """
+    return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
+
+
+def listed(names: Sequence[str], last: str = " and ") -> str:
+    """Names in a row.
+
+    >>> listed(["a saddle", "a saddle", "a maximum"]), listed(["a saddle"]), listed([])
+    ('a saddle, a saddle and a maximum', 'a saddle', '')
+    """
+    return last.join(filter(None, (", ".join(names[:-1]), *names[-1:])))
+
+
 def several(number: int, noun: str) -> str:
     """A number of what has a regular plural.
 
@@ -37,16 +55,12 @@ def counted(model: Model, number: int) -> str:
 
 def sought(model: Model, number: int = 2) -> str:
     """The noun for what an operation range has: of stable ones, where it is known which are."""
-    return f"{_stable(model)}{noun(model, number)}"
+    return f"{model.criterion.adjective}{noun(model, number)}"
 
 
 def followed(model: Model) -> str:
     """What is followed along a path: a stable pose, or solution, where it is known which are."""
-    return f"{_stable(model)}{model.nouns.pose}"
-
-
-def _stable(model: Model) -> str:
-    return "stable " * model.tells_stability
+    return f"{model.criterion.adjective}{model.nouns.pose}"
 
 
 def stable_of(model: Model, stable: int | None, total: int) -> str:
@@ -60,11 +74,6 @@ def assignments(
     """The unknowns with their values, which are given as texts."""
     names = map(named, (*model.angles, *model.reals))
     return [f"{name} = {value}" for name, value in zip(names, (*angles, *reals), strict=True)]
-
-
-def kind_name(negative: int, unknowns: int) -> str:
-    """A critical point by the number of negative eigenvalues of its Hessian."""
-    return "minimum" if negative == 0 else "maximum" if negative == unknowns else "saddle"
 
 
 def index_words(entries: int) -> str:
@@ -85,17 +94,15 @@ def count_words(template: str, model: Model, number: int = 2) -> str:
         noun=many,
         Noun=many.capitalize(),
         index=", ".join(entries),
-        indices=" and ".join(filter(None, (", ".join(entries[:-1]), entries[-1]))),
+        indices=listed(entries),
         in_all=model.nouns.total or many,
     )
 
 
 def untold(model: Model) -> str:
     """Why it is not said which equilibria are stable; empty where it is, and of equations that say nothing of it."""
-    mechanism = model.drawable
-    if mechanism is None or mechanism.tells_stability:
-        return ""
-    return f"nothing says which are stable, as {foreign(mechanism)} depends on another unknown"
+    what = foreign(model)
+    return what and f"nothing says which are stable, as {what} depends on another unknown"
 
 
 def of_what(model: Model, parameters: Mapping[str, Fraction]) -> str:

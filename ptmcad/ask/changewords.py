@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ptmcad.answer.arrangement import SIDES
+from ptmcad.answer.counts import key_text
 from ptmcad.answer.words import index_words, noun
 from ptmcad.exact.arrangement import Picture
 from ptmcad.exact.regions import Link, members, merge
@@ -107,6 +108,5 @@ def _of(picture: Picture, key: tuple[int, ...]) -> str:
     """What is counted, with its number."""
     slice = picture.problem.slice
     if len(key) > 1:
-        return f"({', '.join(map(str, key))}) {index_words(len(key))}"
-    stable = slice.count.is_of_stable and picture.problem.system.tells_stability
-    return f"{key[0]} {'stable ' if stable else ''}{noun(slice.model, key[0])}"
+        return f"{key_text(key)} {index_words(len(key))}"
+    return f"{key[0]} {'stable ' if slice.count.is_of_stable else ''}{noun(slice.model, key[0])}"

@@ -42,7 +42,7 @@ def work_for(model: Model) -> WorkLimit | None:
     """
     from ptmcad.algebra.fibre import WorkLimit
 
-    if len(model.unknowns) <= FEW or model.reals or not model.has_potential or compiled(model).inequalities:
+    if model.criterion.order <= FEW or model.reals or compiled(model).inequalities:
         return None
     return WorkLimit(*_MAX_WORK) if find_spec("numba") is not None else None
 

@@ -233,7 +233,7 @@ class _Walker:
             return stopped
         met = replace(stopped, fate=Fate.VANISH, meeting=meeting, leaving=leaving)
         model = self.mechanism
-        if self.moved or model.reals or not model.has_potential or leaving.count(0) > 1:
+        if self.moved or model.reals or leaving.count(0) > 1:
             return met
         way = descent(lambda point: track.at(share, point), at)
         target = None if way is None else self._found(after, way[-1])

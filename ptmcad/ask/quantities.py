@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from ptmcad.answer.poses import Pose
+from ptmcad.answer.words import listed
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism, Model
 from ptmcad.model.elements import UnknownKind
@@ -96,8 +97,7 @@ def named(model: Model, text: str, key: str) -> Quantity | None:
         return None if kind is None else _of_energy(model, kind, key)
     kind = next((kind for kind in OF_PARTS if kind.value == word), None)
     if kind is None:
-        words = [kind.value for kind in OF_PARTS]
-        raise ConfigError(f"{word[:60]!r} is not among {', '.join(words[:-1])} and {words[-1]}", key=key)
+        raise ConfigError(f"{word[:60]!r} is not among {listed([kind.value for kind in OF_PARTS])}", key=key)
     return _of_part(model, kind, name, key)
 
 
@@ -110,8 +110,7 @@ def quantities(model: Model) -> dict[str, Quantity]:
 'force:k3', 'length:A1A4', 'length:A2A3', 'length:A3A4', 'length:k1', 'length:k2', 'length:k3']
     """
     found = [unknown(model, name) for name in (*model.angles, *model.reals)]
-    if model.has_potential:
-        found += [_of_energy(model, kind, OPTION) for kind in (QuantityKind.ENERGY, QuantityKind.STIFFNESS)]
+    found += [_of_energy(model, QuantityKind(kind), OPTION) for kind in model.criterion.numbers]
     mechanism = open_chain(model)
     if mechanism is not None:
         *of_springs, _, x, y = OF_PARTS
@@ -156,7 +155,7 @@ def unknown(model: Model, name: str) -> Quantity | None:
 
 
 def _of_energy(model: Model, kind: QuantityKind, key: str) -> Quantity:
-    if not model.has_potential:
+    if not model.criterion.numbers:
         raise ConfigError(f"solutions of {model.name} have no energy{_there_are(tuple(quantities(model)))}", key=key)
     return Quantity(kind.value, kind, f"force{_TIMES}length" if model.whole else "")
 

@@ -15,7 +15,6 @@ from itertools import chain
 import numpy as np
 from flint import ctx
 
-from ptmcad.answer.counts import counts_of_signs
 from ptmcad.answer.intervals import CertifiedChange, CertifiedInterval
 from ptmcad.certified.arb_isolation import refined
 from ptmcad.certified.curve import CriticalCurve
@@ -73,10 +72,12 @@ def intervals_and_changes(slice: Slice, bits: int) -> tuple[tuple[CertifiedInter
 
 def _numbers(slice: Slice, counts: PointCount) -> tuple[int | None, int | None]:
     """All equilibria and the stable ones; nothing where it is known what is stable, but not of each of them."""
-    if counts.stable is not None or counts.total is None or not slice.model.tells_stability:
+    criterion = slice.model.criterion
+    found = [criterion.is_stable(solution.signs) for solution in counts.solutions]
+    stable = criterion.number(found)
+    if counts.stable is not None or counts.total is None or stable is None:
         return counts.total, counts.stable
-    signs = [solution.signs for solution in counts.solutions]
-    return (counts.total, counts_of_signs(signs, True, None).stable) if all(signs) else (None, None)
+    return (None, None) if None in found else (counts.total, stable)
 
 
 def _changes(

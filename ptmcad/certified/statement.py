@@ -36,17 +36,9 @@ def system_text(model: Model, has_free_lengths: bool = False) -> System:
     assert mechanism is not None
     relations = () if own is None else tuple(map(to_text, own.equations[:-1]))
     moments = split_moments(mechanism)
-    if mechanism.has_potential:
-        return System(unknowns, relations, energy_text(mechanism, moments), (), ())
-    beside = {moment.unknown: to_text(moment.value) for moment in moments.steady}
-    return System(
-        unknowns,
-        relations,
-        energy_text(mechanism, Split((), ())),
-        (),
-        (),
-        moments=tuple(beside.get(unknown, "0") for unknown in unknowns),
-    )
+    beside = {moment.unknown: to_text(moment.value) for moment in moments.coupled}
+    stated = tuple(beside.get(unknown, "0") for unknown in unknowns if beside)
+    return System(unknowns, relations, energy_text(mechanism, moments), (), (), moments=stated)
 
 
 def energy_text(mechanism: Mechanism, moments: Split) -> str:

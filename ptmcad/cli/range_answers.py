@@ -203,7 +203,7 @@ def _paths_and_branches(slice: Slice, found: Any, line: Callable[[], SolutionsOn
     from ptmcad.show.render.paths import draw_paths
 
     model = found.model
-    if len(model.unknowns) > MAX_UNKNOWNS or not model.tells_stability:
+    if len(model.unknowns) > MAX_UNKNOWNS or "stable" not in model.criterion.counts:
         return draw_paths(slice, found)
     unknowns = (*model.angles, *model.reals)
     known = None if line is None else line()

@@ -129,7 +129,7 @@ def quantity_names(context: click.Context, parameter: click.Parameter, typed: st
         model = _model_of_result(context) or ptm() if config is None else load(config).model
     except (PtmcadError, OSError, ValueError):  # the command itself will say what is wrong with the file
         return []
-    further = ("barrier",) if "--value" in parameter.opts and model.has_potential else ()
+    further = model.criterion.differences if "--value" in parameter.opts else ()
     return _begun((*quantities(model), *further), typed)
 
 

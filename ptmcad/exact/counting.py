@@ -23,7 +23,7 @@ from ptmcad.algebra.isolation import root_bound
 from ptmcad.algebra.newton import Newton
 from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate
 from ptmcad.algebra.vanishing import Divisor, vanishing_divisor
-from ptmcad.answer.counts import Counts, counts_of_signs
+from ptmcad.answer.counts import Counts, counts_of_signs, euler_sum
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial
 from ptmcad.exact.point_system import PointSystem, simple_solutions, text_of_point
 
@@ -95,14 +95,13 @@ def equilibria(system: ParametricSystem, values: Mapping[str, fmpq], most: WorkL
     while (found := _enclosed(system, point, representation, roots, zeros, bits)) is None:
         bits *= 2
     counts = _counts(system, found)
-    if counts.index is not None and system.is_on_torus and sum(counts.index[::2]) != sum(counts.index[1::2]):
+    if counts.index is not None and system.is_on_torus and euler_sum(counts.index):
         raise ArithmeticError(f"the Euler sum of {counts} at {text_of_point(values)} is not zero")
     return Equilibria(counts, found, bits)
 
 
 def _counts(system: ParametricSystem, found: Sequence[Equilibrium]) -> Counts:
-    size = system.dimension if system.has_index else None
-    return counts_of_signs([e.signs for e in found], system.tells_stability, size)
+    return counts_of_signs([e.signs for e in found], system.criterion)
 
 
 def _enclosed(
@@ -119,7 +118,7 @@ def _enclosed(
         newton = Newton.of(representation.minimal)
         coordinates = CoordinatesInBalls.of(representation)
         conditions = tuple(map(_in_balls, point.conditions))
-        size = len(point.jacobian) if system.has_index else 0
+        size = system.criterion.order
         hessian = [(i, j, _in_balls(point.jacobian[i][j])) for i in range(size) for j in range(i, size)]
         for root in roots:
             at = coordinates.at(newton.ball(root))
@@ -133,7 +132,7 @@ def _enclosed(
             if signs[:inequalities].strip("+"):
                 continue
             signs = signs[inequalities:]
-            if system.has_index:
+            if hessian:
                 negative = _negative_eigenvalues(hessian, size, unknowns)
                 if negative is None:
                     return None

@@ -76,16 +76,17 @@ def _has_conditions(model: Model) -> bool:
 
 def _sign_curve(model: Model, without: frozenset[str]) -> Iterator[PlanStep]:
     """What could tell indices apart besides det H: nothing of one unknown, and equations have no index."""
-    if model.has_potential and len(model.unknowns) == 2:
+    order = model.criterion.order
+    if order == 2:
         yield saving_step("sign-curve", without)
-    elif model.has_potential and len(model.unknowns) > 2:
+    elif order > 2:
         why = "no eigenvalue of H changes its sign off the critical curves"
         yield saving_step("sign-curve", without, "projections of the leading minors of H", why)
 
 
 def _of_jacobian(model: Model, name: str) -> str:
-    """The saving's reason for equations, whose Jacobian is no Hessian; empty for its general words."""
-    return "" if model.has_potential else BY_NAME[name].why.replace("det H", "the Jacobian's determinant")
+    """The saving's reason, with the name of the Jacobian's determinant."""
+    return BY_NAME[name].why.replace("det H", model.criterion.determinant)
 
 
 def _saving_of(c: Component) -> str:

@@ -21,6 +21,7 @@ from ptmcad.algebra.fibre import (
     scalar_matrix,
     univariate_representation,
 )
+from ptmcad.answer.words import with_article
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, at_point, polynomial_at
 from ptmcad.exact.models.turns import in_old_angles
@@ -152,8 +153,7 @@ def simple_solutions(
         representation = univariate_representation(point.algebra)
         if representation is not None:
             return point, representation
-    what = "an equilibrium has a singular Hessian" if system.has_index else "a solution has a singular Jacobian"
-    raise DegeneratePoint(f"{what} at {text_of_point(values)}")
+    raise DegeneratePoint(f"{with_article(system.criterion.singular)} at {text_of_point(values)}")
 
 
 def degree_bound(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[int, int]:

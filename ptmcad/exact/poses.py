@@ -29,7 +29,6 @@ from ptmcad.model import Model
 from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.text.tree import to_text as text_of
 
 BY_MSOLVE = "the Groebner basis was computed by msolve and proved to be one of the equations"
 
@@ -54,7 +53,7 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int, m
     try:
         point, found = _solutions(system, values, most)
     except DegeneratePoint:
-        what = "equilibria" if system.has_index or known.points else "solutions"
+        what = noun(given) if known.points else known.criterion.solutions
         remark = f"infinitely many {what}{'' if is_free(system, values) else ', complex ones included'}"
         return Poses(given, parameters, (), Status.UNDECIDED, digits, 0, remark)
     # where equations are simpler in other angles there are more coordinates than those of the unknowns
@@ -64,7 +63,7 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int, m
     results = [pose_of(solution, digits) for solution in solutions]
     poses = [pose for pose, _ in results]
     degenerate = any(pose.multiplicity > 1 for pose in poses)
-    if not degenerate and system.has_index and system.is_on_torus:
+    if not degenerate and system.is_on_torus:
         _check_euler_sum(poses)
     energies = _energy_ranks(given, poses)
     if energies is None:
@@ -91,12 +90,8 @@ def _vanishing(given: Model, known: CompiledSystem, solutions: Sequence[ExactSol
     """The conditions for stability that are zero at a solution, which counts as unstable, in words."""
     for k, condition in enumerate(given.stability):
         if numbers := [n for n, s in enumerate(solutions, 1) if s.stability[k].is_zero]:
-            several = len(numbers) > 1
             what = f"{noun(given, len(numbers))} {', '.join(map(str, numbers))}"
-            if known.definite:  # the condition is a determinant, pages long
-                yield f"{what} {'are' if several else 'is'} degenerate: poses meet there, or the loop is flat"
-                continue
-            yield f"{text_of(condition)} is zero at {what}, which {'count' if several else 'counts'} as unstable"
+            yield known.criterion.at_zero(what, len(numbers), condition)
 
 
 def _remark(found: FibrePoints) -> str:
@@ -142,7 +137,7 @@ def _exact_solutions(
 
 
 def _check_euler_sum(poses: Sequence[Pose]) -> None:
-    total = sum(-1 if (pose.index or 0) % 2 else 1 for pose in poses)
+    total = sum((-1) ** pose.index for pose in poses if pose.index is not None)
     if total != 0:
         raise ArithmeticError(f"{len(poses)} equilibria with Euler sum {total}")
 

@@ -24,6 +24,7 @@ from ptmcad.exact.point_system import PointSystem
 from ptmcad.exact.stiffness import RealNumber, Stiffness, eigenvalues, square_root, stiffness_of
 from ptmcad.formulas.values import evaluated, values
 from ptmcad.model.compile import CompiledSystem
+from ptmcad.model.criterion import Criterion
 from ptmcad.text.balls import ball_of
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.flint_numbers import from_fraction
@@ -101,6 +102,7 @@ class ExactSolution:
     stiffness: Stiffness
     inequalities: tuple[FieldElement, ...]
     stability: tuple[FieldElement, ...]
+    criterion: Criterion
 
     def all_positive(self, conditions: Iterable[FieldElement]) -> bool:
         """Whether all of these numbers of the field are greater than zero at this solution, decided exactly."""
@@ -125,13 +127,13 @@ def solution_at(
     def at(p: Mapping[tuple[int, ...], fmpq]) -> FieldElement:
         return value_at(point, p)
 
-    stiffness = stiffness_of(tuple(tuple(map(at, row)) for row in system.jacobian), known.has_index)
+    jacobian = tuple(tuple(map(at, row)) for row in system.jacobian)
+    stiffness = stiffness_of(jacobian, jacobian[: known.criterion.order])
     if bool(stiffness.nullity) != (point.multiplicity > 1):
         raise ArithmeticError(f"a point of multiplicity {point.multiplicity} contradicts its Jacobian")
     quantities = evaluated(Quantities.of(known), _AtSolution(known, parameters, point))
-    return ExactSolution(
-        point, quantities, stiffness, tuple(map(at, system.inequalities)), tuple(map(at, system.stability))
-    )
+    inequalities, stability = (tuple(map(at, some)) for some in (system.inequalities, system.stability))
+    return ExactSolution(point, quantities, stiffness, inequalities, stability, known.criterion)
 
 
 def is_positive(element: FieldElement) -> bool:
@@ -220,13 +222,10 @@ def _pose(solution: ExactSolution, settled: _Settled) -> Pose:
         return *angle(spring.cosine, spring.sine), enclosed(spring.moment)
 
     angles = [angle(*turn) for turn in seen.turns]
-    eigen = tuple(map(settled, eigenvalues(stiffness, number))) if stiffness.is_symmetric else ()
-    index = stable = None
-    if solution.point.multiplicity == 1 and stiffness.is_symmetric:
-        index = sum(value.high < 0 for value in eigen)
-        stable = index == 0
-    elif solution.point.multiplicity == 1 and solution.stability:
-        stable = solution.all_positive(solution.stability)
+    eigen, signs = tuple(map(settled, eigenvalues(stiffness, number))), ""
+    if solution.point.multiplicity == 1:
+        signs = "".join("-" if value.high < 0 else "+" for value in eigen)
+        signs = signs or ("+" if solution.all_positive(solution.stability) else "-")
     return Pose(
         angles=tuple(radians for radians, _ in angles),
         degrees=tuple(degrees for _, degrees in angles),
@@ -235,8 +234,8 @@ def _pose(solution: ExactSolution, settled: _Settled) -> Pose:
         energy=None if seen.energy is None else enclosed(seen.energy),
         eigenvalues=eigen,
         multiplicity=solution.point.multiplicity,
-        index=index,
-        stable=stable,
+        index=solution.criterion.index(signs),
+        stable=solution.criterion.is_stable(signs),
         flat=bool(seen.points) and all(y.is_zero for _, y in seen.points.values()),
         reals=tuple(map(enclosed, seen.reals)),
         **springs_of(seen.elastic, constant, stretch, turn),

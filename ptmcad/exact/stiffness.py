@@ -41,22 +41,26 @@ class Stiffness(NamedTuple):
 
     Attributes
     ----------
+    hessian : its rows; none of another Jacobian.
     nullity : the number of eigenvalues that are zero; of a Jacobian that is no Hessian only whether it is singular.
     rationals : of a Hessian the other rational eigenvalues, each with its multiplicity.
-    is_symmetric : whether it is a Hessian.
     """
 
-    matrix: Matrix
+    hessian: Matrix
     nullity: int
     rationals: tuple[tuple[Fraction, int], ...] = ()
-    is_symmetric: bool = True
 
 
-def stiffness_of(matrix: Matrix, symmetric: bool) -> Stiffness:
-    """What algebra knows of a matrix's eigenvalues."""
+def stiffness_of(jacobian: Matrix, matrix: Matrix) -> Stiffness:
+    """What algebra knows of a matrix's eigenvalues.
+
+    Parameters
+    ----------
+    matrix : the Jacobian where it is a Hessian, else none.
+    """
     size = len(matrix)
-    if not symmetric:
-        return Stiffness(matrix, int(laplace(matrix).is_zero), is_symmetric=False)
+    if not matrix:
+        return Stiffness((), int(laplace(jacobian).is_zero))
     # the characteristic polynomial's coefficients from the constant one on are sums of principal minors, but for signs
     sums = []
     for order in range(size, 0, -1):
@@ -78,11 +82,11 @@ def eigenvalues(stiffness: Stiffness, number: Callable[[FieldElement], RealNumbe
     ----------
     number : an element of the field at the context's precision.
     """
-    size = len(stiffness.matrix)
-    if size == 1:
-        return (number(stiffness.matrix[0][0]),)
+    size = len(stiffness.hessian)
+    if size <= 1:
+        return tuple(number(entry) for row in stiffness.hessian for entry in row)
     unknown = (RealNumber(None, arb.nan()),) * size
-    entries = [[number(entry).ball for entry in row] for row in stiffness.matrix]
+    entries = [[number(entry).ball for entry in row] for row in stiffness.hessian]
     try:
         found = acb_mat(size, size, [x for row in entries for x in row]).eig(multiple=True)
     except ValueError:  # the balls are too wide for the eigenvalues to be told from each other's clusters

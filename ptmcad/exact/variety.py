@@ -121,7 +121,7 @@ def discriminant_variety(
     for factors, why in ((hidden, NO_POINT), (proved, HARMLESS), (doubtful, "")):
         seen.adopt([f for f in factors if f in unbounded], Kind.INFINITY, why)
     if "sign-curve" in without:
-        for order in range(1, system.dimension if system.has_index else 1):
+        for order in range(1, system.criterion.order):
             minor = element_on_slice(simplest, leading_minor(simplest, order), parameters)
             seen.adopt(irreducible_factors(norm(algebra, lifted(minor, equations.unknowns))[0]), Kind.AUXILIARY)
     if "hermite-matrix" in without:
@@ -227,10 +227,9 @@ def _with_jacobian(equations: SliceSystem) -> Nondegenerate:
     rows = multiples(algebra, equations.jacobian)
     jacobian_norm = determinant(matrix_of(rows))
     if jacobian_norm[0].is_zero():
-        what = "equilibrium has a singular Hessian" if equations.has_index else "solution has a singular Jacobian"
         raise DegenerateSliceError(
-            f"the slice lies inside the discriminant variety: at every point of it some {what}, so no count is stable "
-            "under a small change; fix or free another parameter"
+            "the slice lies inside the discriminant variety: at every point of it some "
+            f"{equations.criterion.singular}, so no count is stable under a small change; fix or free another parameter"
         )
     return Nondegenerate(equations, algebra, rows, jacobian_norm)
 
@@ -300,10 +299,9 @@ def algebra_of(equations: SliceSystem) -> QuotientAlgebra:
     InfiniteSolutionsError
         When there are infinitely many solutions everywhere.
     """
-    why = "nothing holds some motion; " if equations.has_index else ""
     infinitely_many = InfiniteSolutionsError(
         "at every point of the slice the equations have infinitely many solutions (complex ones included): "
-        f"{why}fix or free another parameter"
+        f"{equations.criterion.loose}fix or free another parameter"
     )
     if any(not equation for equation in equations.equations):
         raise infinitely_many

@@ -13,12 +13,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Generic, NamedTuple, TypeVar
 
 from ptmcad.errors import ExpressionError
 from ptmcad.formulas.graph import Formula, Graph, length
 from ptmcad.formulas.values import values
+from ptmcad.model.criterion import Criterion
 from ptmcad.model.description import ClosedMechanism, Mechanism, Model, System
 from ptmcad.model.elements import second_bar
 from ptmcad.model.evaluate import Element, Ring, evaluate, evaluated
@@ -142,10 +143,9 @@ class CompiledSystem:
     inequalities, stability : a solution counts, and is stable, where all are positive.
     tangent : along closed loops with one degree of freedom, the direction in which unknowns move.
     heights : of the points that the unknowns raise, where no loop holds these together.
-    definite : whether the conditions for stability hold together where a symmetric matrix is positive definite, and the
-        last one is its determinant, times what is positive.
     has_energy : whether that is an energy, and not only a part of what acts, as beside moments without a potential.
-    has_index : whether solutions are critical points of the energy, less the work of constant moments.
+    criterion : what is known of solutions; where they have an index they are critical points of the energy, less the
+        work of constant moments.
     """
 
     graph: Graph = field(repr=False)
@@ -166,9 +166,13 @@ class CompiledSystem:
     stability: tuple[Formula, ...] = ()
     tangent: tuple[Formula, ...] = ()
     heights: tuple[Formula, ...] = ()
-    definite: bool = False
     has_energy: bool = False
-    has_index: bool = False
+    criterion: Criterion = field(kw_only=True)
+
+    @cached_property
+    def shown(self) -> CompiledSystem:
+        """What is drawn and followed of a pose: no points, springs and loads yet where loops are closed."""
+        return self if self.are_slopes else replace(self, points={}, springs=(), torsion=(), loads=())
 
     @property
     def unknowns(self) -> tuple[int, ...]:
@@ -204,6 +208,10 @@ class CompiledSystem:
         relaxed : numbers of the springs whose free length counts, others being zero; all where nothing is said.
         """
         return self.stored(relaxed) if self.has_energy else None
+
+    def potential(self, relaxed: Iterable[int] | None = None) -> Formula | None:
+        """The same where solutions are its critical points, less the work of moments; else None."""
+        return self.energy(relaxed) if self.criterion.order else None
 
     def stored(self, relaxed: Iterable[int] | None = None) -> Formula | None:
         """The same, whatever acts beside it."""
@@ -293,7 +301,7 @@ def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSys
     graph = next((formula.graph for formula in variables.values()), Graph())
     ring = _Ring(graph, variables, {*model.angles, *followers})
     angles, reals = (tuple(variables[name].variable for name in some) for some in (model.angles, model.reals))
-    known = CompiledSystem(graph, tuple(variables), angles, reals)
+    known = CompiledSystem(graph, tuple(variables), angles, reals, criterion=model.criterion)
     if mechanism is not None:
         known = _with_mechanism(known, mechanism, ring)
     return _with_equations(known, model, ring)
@@ -343,7 +351,7 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
         others.append(-(across * x + up * y))
     others += ring.of(split.energies)
     steady = dict.fromkeys(mechanism.unknowns, ring.constant(Fraction(0)))
-    steady |= {moment.unknown: evaluate(moment.value, ring) for moment in split.steady}
+    steady |= {moment.unknown: evaluate(moment.value, ring) for moment in split.beside}
     followers = []
     for joint in mechanism.xjoints:
         bars, base = ring.of((joint.bars, joint.length))
@@ -360,7 +368,7 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
         others=tuple(others),
         moments=tuple(steady[name] for name in (*mechanism.angles, *mechanism.reals)),
         heights=() if mechanism.closing or followers else tuple(points[name][1] for name in mechanism.rising),
-        has_energy=mechanism.has_potential,
+        has_energy=not mechanism.coupled,
     )
 
 
@@ -374,12 +382,11 @@ def _with_equations(known: CompiledSystem, model: Model, ring: _Ring) -> Compile
             stability=ring.of(model.stability),
         )
         if isinstance(model, ClosedMechanism):
-            known = replace(known, tangent=ring.of(model.tangent), definite=True)
+            known = replace(known, tangent=ring.of(model.tangent))
         if model.potential is not None:
             moments = (ring.constant(Fraction(0)),) * len(known.unknowns)
             energy = evaluate(model.potential, ring)
             known = replace(known, smooth=energy, others=(energy,), moments=moments, has_energy=True)
-    known = replace(known, has_index=model.has_potential)
     if known.equations:
         return known
     assert known.smooth is not None

@@ -77,7 +77,7 @@ def _equations(mechanism: Mechanism) -> tuple[list[Polynomial], list[Polynomial]
         energy = _substituted(energy, joint.other, second, powers[joint.angle])
         far[joint.angle] = second[2]
         below = _times(below, second[2], powers[joint.angle])
-    steady = {m.unknown: points.value(m.value) for m in moments.steady}
+    steady = {m.unknown: points.value(m.value) for m in moments.beside}
     equations = []
     for unknown in (*mechanism.angles, *mechanism.reals):
         slope = energy.derivative(unknown)

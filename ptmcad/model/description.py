@@ -15,6 +15,7 @@ from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 from ptmcad.errors import ExpressionError
+from ptmcad.model.criterion import CONDITIONS, DEFINITENESS, NOTHING, Criterion, by_hessian
 from ptmcad.model.elements import (
     NAMES,
     Closing,
@@ -100,15 +101,15 @@ class Model:
         """The mechanism that it is, or of whose poses it has the equations; None of another system."""
         return None
 
-    @property
-    def has_potential(self) -> bool:
-        """Whether solutions are critical points, whose Hessian has an index and tells what is stable."""
-        return True
+    @cached_property
+    def criterion(self) -> Criterion:
+        """What is known of its solutions."""
+        raise NotImplementedError
 
     @property
-    def tells_stability(self) -> bool:
-        """Whether it is known what a stable solution is."""
-        return self.has_potential
+    def coupled(self) -> tuple[str, ...]:
+        """The unknowns on which a moment works that depends on another one, so that there is no potential."""
+        return ()
 
     @property
     def stability(self) -> tuple[Tree, ...]:
@@ -319,13 +320,12 @@ class Mechanism(Model):
 
     @cached_property
     def coupled(self) -> tuple[str, ...]:
-        """The unknowns on which a moment works that depends on another one, so that there is no potential."""
         return tuple(u for u, value in self.work.items() if self.unknowns.keys() & set(names_of(value)) - {u})
 
-    @property
-    def has_potential(self) -> bool:
-        """A moment that depends on no unknown but its own has one, though of several values on a circle."""
-        return not self.coupled
+    @cached_property
+    def criterion(self) -> Criterion:
+        """A moment that depends on no unknown but its own has a potential, though of several values on a circle."""
+        return NOTHING if self.coupled else by_hessian(len(self.unknowns))
 
     @cached_property
     def followers(self) -> Mapping[str, str]:
@@ -427,6 +427,7 @@ class System(Model):
     inequalities: tuple[Tree, ...] = ()
     stability: tuple[Tree, ...] = ()
     nouns = Nouns("solution", "the state", "", "range", "range with {}", 0)
+    _by_conditions: ClassVar[Criterion] = CONDITIONS
 
     __hash__ = Model.__hash__
     __repr__ = Model.__repr__
@@ -435,14 +436,11 @@ class System(Model):
     def record_key(self) -> str:
         return "system"
 
-    @property
-    def has_potential(self) -> bool:
-        return self.potential is not None
-
-    @property
-    def tells_stability(self) -> bool:
-        """Whether it is known what a stable solution is."""
-        return self.has_potential or bool(self.stability)
+    @cached_property
+    def criterion(self) -> Criterion:
+        if self.potential is not None:
+            return by_hessian(len(self.unknowns))
+        return self._by_conditions if self.stability else NOTHING
 
     @cached_property
     def polynomials(self) -> Mapping[str, tuple[Tree, ...]]:
@@ -470,6 +468,7 @@ class ClosedMechanism(System):
     mechanism: Mechanism = field(kw_only=True, compare=False)
     tangent: tuple[Tree, ...] = field(kw_only=True, compare=False)
     multipliers: tuple[str, ...] = field(default=(), kw_only=True, compare=False)
+    _by_conditions = DEFINITENESS
 
     __hash__ = Model.__hash__
     __repr__ = Model.__repr__

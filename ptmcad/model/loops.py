@@ -61,7 +61,7 @@ def check_loops(mechanism: Mechanism, faults: Faults) -> None:
         wrong += [
             (free < 1, "closing", "no degree of freedom is left: there have to be more unknowns than closing bars"),
             (
-                free > 1 and not mechanism.has_potential, "moments",
+                free > 1 and mechanism.coupled, "moments",
                 "a moment depends on another unknown than its own: then closed loops are computed where they leave one "
                 f"degree of freedom, not {free}",
             ),
@@ -75,11 +75,10 @@ def check_loops(mechanism: Mechanism, faults: Faults) -> None:
             (mechanism.symmetries, "symmetries", "symmetries are not used in closed loops: leave them out"),
         ]  # fmt: skip
     if mechanism.xjoints:
-        coupled = not mechanism.has_potential
         wrong += [
             (mechanism.closing, "closing", "closing bars beside x-joints are not computed yet"),
             (mechanism.symmetries, "symmetries", "symmetries are not used with x-joints: leave them out"),
-            (coupled, "moments", "a moment beside x-joints depends on no unknown but its own"),
+            (mechanism.coupled, "moments", "a moment beside x-joints depends on no unknown but its own"),
             *((True, key, "free lengths are not computed with x-joints yet") for key in roots),
         ]
     for is_wrong, key, problem in wrong:
@@ -150,7 +149,7 @@ def _forces(mechanism: Mechanism, names: Sequence[str]) -> list[Tree]:
     energies = (tree for element in mechanism.elements_with(mechanism.points).values() for tree in element.energies)
     moments = split_moments(mechanism)
     energy = total(*energies, *moments.energies)
-    steady: Mapping[str, Tree] = {m.unknown: m.value for m in moments.steady}
+    steady: Mapping[str, Tree] = {m.unknown: m.value for m in moments.beside}
     return [total(derivative(energy, name), *([negative(steady[name])] if name in steady else ())) for name in names]
 
 

@@ -32,12 +32,19 @@ class Split(NamedTuple):
 
     Attributes
     ----------
-    steady : without unknowns where the mechanism has a potential; as they are written where it has none.
+    steady : their parts without unknowns.
     energies : less what the other parts of the moments do, to be added to the energy of springs and loads.
+    coupled : all of them as they are written where one depends on another unknown than its own; then alone.
     """
 
     steady: tuple[Moment, ...]
     energies: tuple[Tree, ...]
+    coupled: tuple[Moment, ...] = ()
+
+    @property
+    def beside(self) -> tuple[Moment, ...]:
+        """What acts beside all energies."""
+        return self.steady + self.coupled
 
 
 @lru_cache(maxsize=8)
@@ -49,8 +56,8 @@ def split_moments(mechanism: Model) -> Split:
     ExpressionError
         When a moment that depends on its unknown is too large to be multiplied out.
     """
-    if not mechanism.has_potential:
-        return Split(tuple(Moment(*each) for each in mechanism.work.items()), ())
+    if mechanism.coupled:
+        return Split((), (), tuple(Moment(*each) for each in mechanism.work.items()))
     steady, energies = [], []
     for unknown, moment in mechanism.work.items():
         if unknown not in names_of(moment):
@@ -75,11 +82,11 @@ def acting(model: Model, unknowns: Iterable[str]) -> str:
     return " and the ".join(parts)
 
 
-def foreign(mechanism: Mechanism) -> str:
-    """What depends on another unknown than its own, so that there is no potential."""
-    if any(name in mechanism.angles for name in mechanism.coupled):
+def foreign(model: Model) -> str:
+    """What depends on another unknown than its own, so that there is no potential; empty where nothing does."""
+    if any(name in model.angles for name in model.coupled):
         return "a moment"
-    return f"the force on {next(name for name in mechanism.unknowns if name in mechanism.coupled)}"
+    return "".join([f"the force on {name}" for name in model.unknowns if name in model.coupled][:1])
 
 
 def moments_at(model: Model, parameters: Mapping[str, Fraction]) -> dict[str, Fraction]:
@@ -96,7 +103,7 @@ def moments_at(model: Model, parameters: Mapping[str, Fraction]) -> dict[str, Fr
         When a moment depends on another unknown.
     """
     known = dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters)
-    found = {unknown: value_at(tree, known) for unknown, tree in split_moments(model).steady}
+    found = {unknown: value_at(tree, known) for unknown, tree in split_moments(model).beside}
     return {unknown: value for unknown, value in found.items() if value}
 
 

@@ -130,7 +130,7 @@ class CountKind:
     rank : 0 is the finest; of several counts of the same the first one says most.
     implied : the kinds of which two places have the same number where they have the same of this kind.
     is_of_stable : whether no other solutions than stable ones matter.
-    needs_index : whether it is that of a potential's critical points.
+    needs : what a model's criterion counts for it.
     predicate : None where each (stable) solution counts.
     """
 
@@ -142,7 +142,7 @@ class CountKind:
     rank: int
     implied: tuple[Count, ...]
     is_of_stable: bool = False
-    needs_index: bool = False
+    needs: str = "stable"
     predicate: Predicate | None = None
 
 
@@ -186,6 +186,7 @@ KINDS = {
         shades=Shades.TOTAL,
         rank=1,
         implied=(Count.TOTAL,),
+        needs="total",
     ),
     Count.INDEX: CountKind(
         phrase="minima/saddles/maxima",
@@ -195,7 +196,7 @@ KINDS = {
         shades=Shades.INDEX,
         rank=0,
         implied=(Count.STABLE, Count.TOTAL, Count.INDEX),
-        needs_index=True,
+        needs="index",
     ),
     Count.ADMISSIBLE: CountKind(
         phrase="stable equilibria with every spring longer than its free length",
@@ -245,4 +246,4 @@ def phrases() -> str:
 
 def usual_count(model: Model) -> Count:
     """Where none is asked for, that of stable solutions, where it is known what these are."""
-    return USUAL if model.tells_stability else Count.TOTAL
+    return Count(model.criterion.counts[:2][-1])

@@ -157,26 +157,24 @@ def count_fault(count: Count, model: Model, parameters: Mapping[str, Expression]
         return predicate.of_systems
     if predicate is not None and predicate.needs_free_lengths and not have_free_lengths(model, parameters):
         return predicate.without_free_lengths
-    if kind.is_of_stable and not model.tells_stability:
-        if mechanism is None:
-            return "nothing says what a stable solution is: add conditions as 'stable:' to the system, or count total"
-        return (
-            f"{foreign(mechanism)} that depends on another unknown has no potential, which says what is stable: count "
-            "total"
-        )
-    if kind.needs_index and not model.has_potential:
+    if kind.needs in model.criterion.counts:
+        return ""
+    if not kind.is_of_stable:
         return "solutions of equations have no index, which is that of a potential's Hessian: count total"
-    return ""
+    if mechanism is None:
+        return "nothing says what a stable solution is: add conditions as 'stable:' to the system, or count total"
+    return (
+        f"{foreign(mechanism)} that depends on another unknown has no potential, which says what is stable: count total"
+    )
 
 
 def moved(model: Model, parameters: Mapping[str, Expression]) -> tuple[str, ...]:
     """The unknowns on which a moment, or a force on a length, does work that is in no stored energy."""
     known = dict.fromkeys(model.parameters, constant(0)) | dict(parameters)
+    split = split_moments(model)
+    acting = [m for m in split.steady if value_among(m.value, known, constant).numerator]
     # a moment that depends on another unknown is none of the axes alone
-    steady = split_moments(model).steady
-    return tuple(
-        m.unknown for m in steady if not model.has_potential or value_among(m.value, known, constant).numerator
-    )
+    return tuple(m.unknown for m in (*acting, *split.coupled))
 
 
 def without_free_lengths(

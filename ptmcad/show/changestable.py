@@ -6,7 +6,7 @@ Guarantee: the digits of an exact value are right; the ends of an enclosure are 
 from __future__ import annotations
 
 from ptmcad.answer.changes import Change, Changes
-from ptmcad.show.ranges.table import aligned
+from ptmcad.show.columns import aligned
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.numerals import decimal, shortest_text
 

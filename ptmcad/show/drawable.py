@@ -17,12 +17,10 @@ def no_drawing(model: Model) -> str:
 
 def no_landscape(model: Model) -> str:
     """Why there is no picture of the energy; empty where there is one."""
-    if not model.has_potential:
-        mechanism = model.drawable
-        if mechanism is None:
-            return f"the {_named(model)} has equations and no potential: there is no energy to be drawn"
-        what = foreign(mechanism)
+    if what := foreign(model):
         return f"{what} of the {_named(model)} depends on another unknown: there is no potential, no energy to be drawn"
+    if what := model.criterion.no_energy:
+        return f"the {_named(model)} {what}"
     if len(model.unknowns) > 2:
         return f"an energy can be drawn over one unknown or two, and the {_named(model)} has {len(model.unknowns)}"
     return ""

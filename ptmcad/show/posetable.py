@@ -6,39 +6,28 @@ decided is said, of a pose and of all of them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import pairwise
+from collections.abc import Iterator, Sequence
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
-from ptmcad.answer.words import counted, noun, of_what, untold
-from ptmcad.model import Mechanism, Model, built_in
+from ptmcad.answer.words import counted, listed, noun, of_what, untold
+from ptmcad.model import Model, built_in
+from ptmcad.model.work import foreign
 from ptmcad.question.counts import POSE_COLUMNS, PoseColumn
 from ptmcad.question.slice import merged
+from ptmcad.show.columns import WIDTH, aligned, wrapped
 from ptmcad.show.units import declared_units
 from ptmcad.text.enclosure import Enclosure, exact_text
 
-WIDTH = 100
-
-Column = tuple[str, str, list[str]]
-"""Header, unit and entries."""
 Numbers = tuple[str, str, Sequence[Enclosure] | list[str]]
-"""The same before numbers are written."""
+"""Header, unit and entries of a column."""
 _MAX_BOUNDS = 6
 """Numbers that may be zero that are listed."""
 
 
 def kind_of(pose: Pose, model: Model) -> str:
     """Stable, saddle, maximum or degenerate; of a system of equations stable, unstable or just a solution."""
-    if pose.multiplicity > 1:
-        return "degenerate"
-    if pose.stable is None:
-        return "undecided" if model.tells_stability else "solution"
-    if pose.stable:
-        return "stable"
-    if pose.index is None:
-        return "unstable"
-    return "maximum" if pose.index == len(pose.eigenvalues) else "saddle"
+    return "degenerate" if pose.multiplicity > 1 else model.criterion.kind(pose.stable, pose.index)
 
 
 def table(poses: Poses, digits: int | None = None) -> str:
@@ -49,18 +38,15 @@ def table(poses: Poses, digits: int | None = None) -> str:
     digits : significant digits, at most those that the poses were computed with; all of them unless given.
     """
     shown = poses.digits if digits is None else digits
-    lines = [*_wrapped("point", _point(poses)), *_wrapped("result", _summary(poses))]
+    lines = [*wrapped("point", _point(poses)), *wrapped("result", _summary(poses))]
     for block in _blocks(poses, shown):
-        lines += ["", *_laid_out(block)]
+        lines += ["", *aligned([*zip(*block, strict=True)], str.rjust)]
     if poses.equilibria:
-        lines += [
-            "",
-            *(_wrapped("units", units) if (units := _units(poses)) else []),
-            *(_wrapped("energy", [note]) if (note := _energy_note(poses)) else []),
-            *(_wrapped("torsion", [_TORSION]) if poses.equilibria[0].torsion else []),
-            *(line for each in _columns(poses).values() for line in _wrapped(each.head, [each.note])),
-            *_bounds(poses),
-        ]
+        notes = {"units": _units(poses), "energy": [_energy_note(poses)]}
+        notes["torsion"] = [_TORSION] if poses.equilibria[0].torsion else []
+        notes |= {each.head: [each.note] for each in _columns(poses).values()}
+        lines += ["", *(line for label, parts in notes.items() if any(parts) for line in wrapped(label, parts))]
+        lines += _bounds(poses)
     return "\n".join(lines)
 
 
@@ -73,35 +59,27 @@ def _units(poses: Poses) -> list[str]:
         units.get(what) or (f"that of {name}" if name else "")
         for what, name in zip(("length", "force"), mechanism.units, strict=True)
     )
-    product = declared_units(mechanism, units).get("energy", "their product")
+    pose, product = poses.equilibria[0], declared_units(mechanism, units).get("energy", "their product")
+    parts = {"energies": pose.energy, "moments": pose.torsion, "the Hessian's eigenvalues": pose.eigenvalues}
+    measured = {
+        "lengths and coordinates": length,
+        "forces": force,
+        listed([name for name, values in parts.items() if values]): product,
+    }
     pivots = " and ".join(f"{angle} at {at}" for angle, at in mechanism.pivots.items())
     return [
-        *([f"lengths and coordinates in {length}"] if length else []),
-        *([f"forces in {force}"] if force else []),
-        *_in_products(mechanism, product),
+        *(f"{what} in {unit}" for what, unit in measured.items() if what and unit),
         # only of what is built in it is known where an angle is measured from
         *([f"angles between rod and base, {pivots}"] if pivots and mechanism.name in built_in() else []),
     ]
 
 
-def _in_products(mechanism: Mechanism, product: str) -> list[str]:
-    """What is measured in force times length."""
-    moments = "moments" if mechanism.torsion else ""
-    if not mechanism.has_potential:
-        return [f"{moments} in {product}"] if moments else []
-    if mechanism.closing or mechanism.xjoints:
-        return [f"energies{moments and f' and {moments}'} in {product}"]
-    return [f"energies{moments and f', {moments}'} and the Hessian's eigenvalues in {product}"]
-
-
 def _energy_note(poses: Poses) -> str:
     """What the column of energies leaves out, or why there is none."""
     model = poses.model.whole or poses.model
-    if model.has_potential:
+    if not foreign(model):
         return of_what(model, poses.parameters)
-    if model.drawable is None:
-        return ""
-    return "none" if poses.model.tells_stability else f"none, and {untold(model)}"
+    return "none" if poses.known_stable is not None else f"none, and {untold(model)}"
 
 
 _TORSION = "deflection: angle - rest; moment: k sin(deflection), positive where it turns back an angle beyond rest"
@@ -124,7 +102,7 @@ def _bounds(poses: Poses) -> list[str]:
                 where.setdefault(f"|{header}| < {exact_text(x.high)}{unit and f' {unit}'}", []).append(str(n))
     said = [f"{bound} in {noun(poses.model, len(n))} {', '.join(n)}" for bound, n in where.items()]
     more = [f"{len(said) - _MAX_BOUNDS} more such bounds"] if len(said) > _MAX_BOUNDS else []
-    return _wrapped("bounds", ["of what may be zero: " + said[0], *said[1:_MAX_BOUNDS], *more], "; ") if said else []
+    return wrapped("bounds", ["of what may be zero: " + said[0], *said[1:_MAX_BOUNDS], *more], "; ") if said else []
 
 
 def _summary(poses: Poses) -> list[str]:
@@ -152,28 +130,20 @@ def _columns(poses: Poses) -> dict[str, PoseColumn]:
     return POSE_COLUMNS if any(pose.has_predicates for pose in poses.equilibria) else {}
 
 
-def _wrapped(label: str, parts: Sequence[str], separator: str = ", ") -> list[str]:
-    """The parts after a label, on as many lines as they need."""
-    lines, indent = [], " " * 8
-    line = f"{label:8}"
-    for part, following in pairwise([*parts, ""]):
-        piece = part + (separator if following else "")
-        if len(line) + len(piece.rstrip()) > WIDTH and line.strip() and line != f"{label:8}":
-            lines.append(line.rstrip())
-            line = indent
-        line += piece
-    return [*lines, line.rstrip()]
-
-
-def _blocks(poses: Poses, digits: int) -> list[list[Column]]:
-    width = len(str(len(poses.equilibria)))
-
-    def written(quantity: Numbers) -> Column:
-        header, unit, entries = quantity
-        return header, unit, [x if isinstance(x, str) else x.text(digits) for x in entries]
-
-    groups = [list(map(written, group)) for group in _groups(poses)]
-    return [block for group in groups if group for block in _fitting(group, width)]
+def _blocks(poses: Poses, digits: int) -> Iterator[list[list[str]]]:
+    """The columns in as few blocks as the width allows, in their order; each begins with the equilibria's numbers."""
+    numbers = ["#", *(str(k + 1) for k in range(len(poses.equilibria)))]
+    for group in _groups(poses):
+        block = [numbers]
+        for header, unit, entries in group:
+            column = [f"{header} [{unit}]" if unit else header]
+            column += [x if isinstance(x, str) else x.text(digits) for x in entries]
+            if len(block) > 1 and sum(2 + max(map(len, each)) for each in (*block, column)) > WIDTH + 2:
+                yield block
+                block = [numbers]
+            block.append(column)
+        if len(block) > 1:
+            yield block
 
 
 def _groups(poses: Poses) -> list[list[Numbers]]:
@@ -201,35 +171,3 @@ def _groups(poses: Poses) -> list[list[Numbers]]:
         for group in groups
     ]
     return [states, *numbers]
-
-
-def _fitting(columns: Sequence[Column], used: int) -> list[list[Column]]:
-    """The columns in as few blocks as the width allows, in their order."""
-    blocks: list[list[Column]] = [[]]
-    width = used
-    for column in columns:
-        wide = 2 + _width(column)
-        if blocks[-1] and width + wide > WIDTH:
-            blocks.append([])
-            width = used
-        blocks[-1].append(column)
-        width += wide
-    return blocks
-
-
-def _header(column: Column) -> str:
-    return f"{column[0]} [{column[1]}]" if column[1] else column[0]
-
-
-def _width(column: Column) -> int:
-    return max(len(_header(column)), *(len(entry) for entry in column[2]))
-
-
-def _laid_out(columns: Sequence[Column]) -> list[str]:
-    """A block of columns as lines: headers, then one row for each equilibrium, each with its number."""
-    count = len(columns[0][2])
-    first = len(str(count))
-    rows = [["#", *map(_header, columns)]]
-    rows += [[str(k + 1), *(column[2][k] for column in columns)] for k in range(count)]
-    widths = [first, *map(_width, columns)]
-    return ["  ".join(entry.rjust(width) for entry, width in zip(row, widths, strict=True)) for row in rows]

@@ -7,6 +7,7 @@ from collections import Counter
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from ptmcad.answer.counts import counted_by, key_text
 from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.timings import COMPILATION
 from ptmcad.answer.words import count_words, noun, several
@@ -27,10 +28,7 @@ def index_heading(model: Model) -> str:
 
 def count_text(region: Region, count: Count) -> str:
     """The count by which regions are distinguished, as text."""
-    number = region.number(count)
-    if isinstance(number, tuple):
-        return f"({', '.join(map(str, number))})"
-    return "?" if number is None else str(number)
+    return key_text(counted_by(region, count))
 
 
 def in_order(text: str) -> list[int]:
@@ -164,24 +162,20 @@ def stability_in_words(result: RegionMap) -> str:
 
     Where all solutions are counted, no curve is enclosed across which one of them loses its stability.
     """
-    model = result.slice.model
-    if result.slice.count.is_of_stable or not model.tells_stability or model.has_potential or not result.cells:
+    criterion = result.slice.model.criterion
+    if result.slice.count.is_of_stable or result.cover is None or not result.cells:
         return ""
-    if result.cover is None:
-        return ""
-    found = []
+    found = set()
     for cell in result.cells:
-        if cell.solutions and all(solution.signs for solution in cell.solutions):
-            stable = sum(not solution.signs.strip("+") for solution in cell.solutions)
-            found.append(f"{stable} of {len(cell.solutions)}")
-    at = f"at the samples {', '.join(sorted(set(found)))}; " if found else ""
-    return f"{at}it may change within a region, see --count stable"
+        stable = [criterion.is_stable(solution.signs) for solution in cell.solutions]
+        if stable and None not in stable:
+            found.add(f"{criterion.number(stable)} of {len(stable)}")
+    at = f"at the samples {', '.join(sorted(found))}; " if found else ""
+    return criterion.may_vary and at + criterion.may_vary
 
 
 def _vanishing(result: RegionMap) -> list[str]:
     """Where a condition for stability is zero all over a cell, as a solution is not stable there."""
-    if result.slice.model.has_potential:
-        return []
     cells = sum(any("0" in e.signs for e in cell.solutions) for cell in result.cells)
     if not cells:
         return []

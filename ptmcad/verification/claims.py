@@ -19,8 +19,9 @@ from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.algebra import NotFinite
-from ptmcad.verification.derivation import has_index
+from ptmcad.verification.derivation import meaning_of
 from ptmcad.verification.fibre import FibreAlgebra, fibre
+from ptmcad.verification.meaning import SignMeaning
 from ptmcad.verification.report import Violation
 from ptmcad.verification.roots import numbered_root
 from ptmcad.verification.sturm import ends_of, roots_between, roots_within
@@ -96,10 +97,10 @@ class Claims:
         """The mechanism or system that the slice is of."""
         return self.result.slice.model
 
-    @property
-    def describes_equilibria(self) -> bool:
-        """Whether solutions are critical points, which have an index."""
-        return has_index(self.model)
+    @cached_property
+    def meaning(self) -> SignMeaning:
+        """Of the signs at solutions."""
+        return meaning_of(self.model)
 
     @cached_property
     def base(self) -> tuple[fmpq, fmpq]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from ptmcad.answer.counts import Counts
+from ptmcad.answer.counts import Counts, euler_sum
 from ptmcad.model import Model
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.claims import Claims
@@ -20,7 +20,6 @@ from ptmcad.verification.report import Violation
 def check_counts(claims: Claims) -> str:
     """Total, stable and index of every cell; on a torus the sum of the signs; lengths and stiffnesses positive."""
     model = claims.model
-    solution = "an equilibrium" if claims.describes_equilibria else "a solution"
     for n, cell in enumerate(claims.result.cells):
         where = ", ".join(f"{name}={text_of(cell.sample[name])}" for name in cell.sample.names)
         if (name := not_positive(model, claims.parameters_at(*cell.sample))) is not None:
@@ -28,7 +27,7 @@ def check_counts(claims: Claims) -> str:
         fibre = claims.fibre_at(*cell.sample)
         counts = fibre.counts()
         if counts is None:
-            raise Violation(f"{solution} is degenerate at {where} in cell {n}")
+            raise Violation(f"{claims.meaning.solution} is degenerate at {where} in cell {n}")
         if not model.reals and not fibre.point.inequalities and _euler_sum(fibre, counts) != 0:
             raise Violation(f"the Euler sum of {_text(counts)} at {where} in cell {n} is not zero")
         stored = Counts(cell.total or 0, cell.stable, cell.index)
@@ -41,7 +40,7 @@ def _euler_sum(fibre: FibreAlgebra, counts: Counts) -> int:
     """The sum of the signs of the Jacobian's determinant, which is zero on a torus (Poincare and Hopf)."""
     if counts.index is None:
         return fibre.balance()
-    return sum(counts.index[::2]) - sum(counts.index[1::2])
+    return euler_sum(counts.index)
 
 
 def _text(counts: Counts) -> str:

@@ -22,6 +22,7 @@ from ptmcad.text.tree import names_of
 from ptmcad.verification import xjoints
 from ptmcad.verification.coordinates import CoordinateRing, circle_names
 from ptmcad.verification.loops import Loops
+from ptmcad.verification.meaning import SignMeaning, of_eigenvalues
 from ptmcad.verification.xjoints import CrossedBars
 
 Vector = tuple[fmpq_mpoly, fmpq_mpoly]
@@ -42,12 +43,16 @@ def coordinates_of(model: Model) -> tuple[str, ...]:
     return tuple(f"{function}_{angle}" for angle in model.angles for function in ("cos", "sin")) + model.reals
 
 
-def has_index(model: Model) -> bool:
-    """Whether solutions are critical points, near each of a function: then the matrix of derivatives is a Hessian."""
+def meaning_of(model: Model) -> SignMeaning:
+    """What is known of a model's solutions: by an index where they are critical points, near each of a function."""
     if isinstance(model, System):
-        return model.potential is not None
-    assert isinstance(model, Mechanism)
-    return not _has_moments_apart(model)
+        has_index = model.potential is not None
+    else:
+        assert isinstance(model, Mechanism)
+        has_index = not _has_moments_apart(model)
+    if has_index:
+        return of_eigenvalues(len(model.unknowns))
+    return SignMeaning((Count.TOTAL, Count.STABLE) if model.stability else (Count.TOTAL,))
 
 
 def _has_moments_apart(mechanism: Mechanism) -> bool:
@@ -59,16 +64,10 @@ def _has_moments_apart(mechanism: Mechanism) -> bool:
     return any(unknowns.intersection(names_of(tree)) - {unknown} for unknown, tree in mechanism.work.items())
 
 
-def tells_stability(model: Model) -> bool:
-    """Whether it is known what a stable solution is."""
-    return has_index(model) or bool(model.stability)
-
-
 def kinds_of_count(model: Model) -> set[Count]:
     """What may be counted: springs are longer than their free lengths at poses of mechanisms alone."""
-    told = [Count.STABLE] if tells_stability(model) else []
-    with_springs = [Count.ADMISSIBLE] if told and model.whole is not None else []
-    return {Count.TOTAL, *told, *with_springs, *([Count.INDEX] if has_index(model) else [])}
+    kinds = {*meaning_of(model).kinds}
+    return kinds | {Count.ADMISSIBLE} if Count.STABLE in kinds and model.whole is not None else kinds
 
 
 class SpringVector(NamedTuple):
@@ -105,6 +104,7 @@ class Derivation:
     Attributes
     ----------
     unknowns : the angles first; by them all that follows is in order.
+    meaning : of the signs at a solution.
     energy : of a mechanism's springs, without free lengths, and its loads, or a potential; None where there is none.
     moments : generalised forces by the unknown on which they work; they may depend on others (`apart`).
     moved : whether there is any.
@@ -120,7 +120,7 @@ class Derivation:
 
     ring: CoordinateRing
     unknowns: tuple[str, ...]
-    has_index: bool
+    meaning: SignMeaning
     energy: fmpq_mpoly | None
     moments: Mapping[str, fmpq_mpoly]
     equations: tuple[fmpq_mpoly, ...]
@@ -137,6 +137,16 @@ class Derivation:
     def jacobian(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
         """The equations' derivatives by the unknowns; where solutions are critical points a Hessian."""
         return tuple(self.ring.gradient(e, self.unknowns) for e in self.equations)
+
+    @property
+    def hessian(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
+        """The same where it is one; else no rows."""
+        return self.jacobian[: self.meaning.order]
+
+    @property
+    def potential(self) -> fmpq_mpoly | None:
+        """The energy where solutions are its critical points, less the work of moments; else None."""
+        return self.energy if self.meaning.order else None
 
     @property
     def coordinates(self) -> int:
@@ -219,7 +229,7 @@ def _derived(model: Model, numbers: Mapping[str, fmpq]) -> Derivation:
     if energy is not None:
         equations = ring.gradient(energy, unknowns)
     return Derivation(
-        ring, unknowns, has_index(model), energy, moments, equations, inequalities, stability, energy is not None
+        ring, unknowns, meaning_of(model), energy, moments, equations, inequalities, stability, energy is not None
     )
 
 
@@ -231,7 +241,7 @@ def _of_mechanism(model: Model, mechanism: Mechanism, ring: CoordinateRing, unkn
     given = Derivation(
         ring,
         unknowns,
-        has_index(model),
+        meaning_of(model),
         parts.energy,
         moments,
         (),

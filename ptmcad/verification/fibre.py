@@ -17,7 +17,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from itertools import pairwise, product
+from itertools import chain, pairwise, product
 from math import prod
 
 from flint import fmpq, fmpq_mat, fmpq_mpoly
@@ -78,10 +78,9 @@ class FibreAlgebra:
     def jacobian_entries(self) -> list[list[fmpq_mat]]:
         """The Jacobian, whose entries act on the algebra; a Hessian is symmetric."""
         n = range(len(self.point.jacobian))
-        if not self.point.has_index:
-            return [[self.matrix(self.point.jacobian[i][j]) for j in n] for i in n]
-        upper = {(i, j): self.matrix(self.point.jacobian[i][j]) for i in n for j in n if i <= j}
-        return [[upper[min(i, j), max(i, j)] for j in n] for i in n]
+        places = [[self.point.meaning.place(i, j) for j in n] for i in n]
+        entries = {(i, j): self.matrix(self.point.jacobian[i][j]) for i, j in {*chain(*places)}}
+        return [[entries[place] for place in row] for row in places]
 
     @cached_property
     def jacobian(self) -> fmpq_mat:
@@ -132,8 +131,7 @@ class FibreAlgebra:
         if self.norm() == 0:
             return None
         required = [self.matrix(p) for p in self.point.inequalities]
-        if self.point.has_index:
-            index = self._index(required)
+        if index := self._index(required):
             return Counts(sum(index), index[0], index)
         total = self._number(required)
         if not self.point.stability:
@@ -163,8 +161,7 @@ class FibreAlgebra:
         """Of the only real solution at which functions are positive: those of the Hessian's eigenvalues, positive ones
         first, or of the conditions for stability.
         """
-        if self.point.has_index:
-            index = self._index(positive)
+        if index := self._index(positive):
             negative = index.index(1)
             return "+" * (len(index) - 1 - negative) + "-" * negative
         return "".join("0+-"[self._sum_of_signs(positive, self.matrix(p))] for p in self.point.stability)
@@ -204,7 +201,10 @@ class FibreAlgebra:
         return total >> len(positive)
 
     def _index(self, required: Sequence[fmpq_mat]) -> tuple[int, ...]:
-        """Numbers of the critical points that count by the number of negative eigenvalues, where none is zero."""
+        """Numbers of the critical points that count by the number of negative eigenvalues, where none is zero; nothing
+        of other solutions."""
+        if not self.point.hessian:
+            return ()
         minors = self._minors()
         n = len(minors)
         sums: dict[tuple[int, ...], int] = {}

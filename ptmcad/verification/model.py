@@ -71,8 +71,8 @@ def check_system(claims: Claims) -> str:
         if parsed(text, f"relation {k}") != relation:
             raise Violation(f"relation {k} is {ring.text(relation)}, not {text[:60]}")
     number = 0
-    if true.energy is not None and true.has_index:
-        work = ring.normal(true.energy - parsed(system.potential, "potential"))
+    if true.potential is not None:
+        work = ring.normal(true.potential - parsed(system.potential, "potential"))
         if fault := fault_in_work(ring, work, true.moments, varying=True):
             where = f"in its slope by {fault}" if fault != START else f"by {ring.text(work)}"
             raise Violation(f"the stored potential differs from the mechanism's {where}")
@@ -97,19 +97,16 @@ def _check_sizes(system: System, true: Derivation) -> None:
     ):
         if len(stored) != len(expected):
             raise Violation(f"there are {len(expected)} {what}, not {len(stored)}")
-    if not true.has_index and system.potential:
+    if true.potential is None and system.potential:
         raise Violation("equations are given, or a moment depends on another unknown, so there is no potential")
 
 
 def _pairs(system: System, true: Derivation) -> Iterator[tuple[str, str, fmpq_mpoly]]:
     """Each stored polynomial: what it is, its text, and what is true."""
-    first, second = "equation {}", "Jacobian's entry {},{}"
-    if true.has_index:
-        first, second = "gradient's entry {}", "Hessian's entry {},{}"
     for i, (text, row, equation) in enumerate(zip(system.gradient, system.hessian, true.equations, strict=True)):
-        yield first.format(i), text, equation
+        yield true.meaning.equation.format(i), text, equation
         for j, entry in enumerate(row):
-            yield second.format(i, j), entry, true.jacobian[i][j]
+            yield true.meaning.entry.format(i, j), entry, true.jacobian[i][j]
     for k, (text, p) in enumerate(zip(system.inequalities, true.inequalities, strict=True)):
         yield f"inequality {k}", text, p
     for k, (text, p) in enumerate(zip(system.stability, true.stability, strict=True)):

@@ -18,7 +18,7 @@ from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.text.syntax import names_in
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import derivation_of, has_index
+from ptmcad.verification.derivation import derivation_of
 from ptmcad.verification.model import equation_factors
 from ptmcad.verification.plane import factors, polynomial
 from ptmcad.verification.report import Violation
@@ -125,7 +125,7 @@ def _check_continuum(claims: Claims, number: int, curve: PlanePolynomial) -> Non
         or model.reals
         or (true.from_energy and true.moved)
         or true.inequalities
-        or not (alone or has_index(model))
+        or (true.potential is None and not alone)
     ):
         raise Violation(f"component {number} is said to have infinitely many solutions, which is not proved")
 

@@ -18,7 +18,7 @@ from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, Kind, PlanSte
 from ptmcad.errors import ConfigError
 from ptmcad.model import Model
 from ptmcad.verification.claims import Claims, PlaneCurve
-from ptmcad.verification.derivation import derivation_of, has_index
+from ptmcad.verification.derivation import derivation_of
 from ptmcad.verification.report import Violation
 from ptmcad.verification.window import plainly_outside
 
@@ -115,18 +115,17 @@ def _expected(result: RegionMap) -> Iterator[PlanStep]:
 
 def _general(model: Model) -> Iterator[tuple[str, str, str]]:
     """What a plan says of every slice of a model: names, subjects and reasons."""
-    equations = not has_index(model)
     true = derivation_of(model)
     kept = bool(model.reals or true.inequalities or true.stability)
     for saving, what, why in _GENERAL:
-        if saving == "sign-curve" and (equations or len(model.unknowns) < 2):
+        if saving == "sign-curve" and true.meaning.order < 2:
             continue
         if saving == "infinity" and kept:
             continue
         if saving == "sign-curve" and len(model.unknowns) > 2:
             yield saving, "projections of the leading minors of H", _NO_SIGN_CHANGE
         else:
-            yield saving, what, why.replace("det H", "the Jacobian's determinant") if equations else why
+            yield saving, what, why.replace("det H", true.meaning.determinant)
 
 
 def _of_component(c: Component, names: tuple[str, str]) -> PlanStep:

@@ -21,7 +21,7 @@ from ptmcad.text.expressions import constant
 from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.points import check_cell, check_listed, counting_of
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.derivation import has_index, parameters_of, tells_stability
+from ptmcad.verification.derivation import meaning_of, parameters_of
 from ptmcad.verification.report import CheckProgress, Unchecked, VerifyReport, Violation, checked
 from ptmcad.verification.solutions import check_disjoint, signs_of
 
@@ -69,8 +69,7 @@ def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
             signs = signs_of(claims, cell, box)
         except Violation as violation:
             raise Violation(f"the box of pose {k + 1}: {violation}") from None
-        index = signs.count("-") if has_index(model) else None
-        stable = not {*signs} & {"-", "0"} if tells_stability(model) else None
+        index, stable = claims.meaning.index(signs), claims.meaning.is_stable(signs)
         if (index, stable) != (pose.index, pose.stable):
             raise Violation(f"pose {k + 1} has index {index}, and that it is stable is {stable}")
     if len(regular) < number:
@@ -97,11 +96,9 @@ def _map_of(found: Poses) -> RegionMap:
     axes = (Axis("x", Fraction(0), Fraction(1)), Axis("y", Fraction(0), Fraction(1)))
     slice = Slice("", found.model, axes, expressions, Count.TOTAL)
     boxes = tuple(_box(pose, slice.has_free_lengths) for pose in found.equilibria)
-    index = None
-    if has_index(found.model):
-        numbers = [pose.index for pose in found.equilibria]
-        index = tuple(numbers.count(k) for k in range(len(found.model.unknowns) + 1))
-    stable = found.stable if tells_stability(found.model) else None
+    meaning = meaning_of(found.model)
+    index = meaning.indices([pose.index for pose in found.equilibria])
+    stable = meaning.told(found.stable)
     sample = Point(slice.axis_names, Fraction(1, 2), Fraction(1, 2))
     return map_of(slice, (Cell(None, 0, sample, 0, len(boxes), stable, index, boxes),), found.status)
 

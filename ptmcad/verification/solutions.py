@@ -50,8 +50,7 @@ def check_solutions(claims: Claims) -> str:
                 raise Violation(f"box {k} of cell {n} around ({center}), radius {radius}: {violation}") from None
             number += 1
         _check_zeros(claims, n, cell)
-        if claims.describes_equilibria:
-            _check_index(claims, n, cell)
+        _check_index(claims, n, cell)
     if undecided:
         return Unchecked(
             f"{undecided} of {number} boxes may hold solutions at which an inequality's polynomial is zero"
@@ -68,9 +67,7 @@ def _check_signs(claims: Claims, cell: Cell, solution: Solution) -> bool:
     """
     true, alone = _signs_in(claims, cell, solution)
     if true != solution.signs:
-        what = "Hessian" if claims.describes_equilibria else "list of conditions for stability"
-        are = "eigenvalues of signs" if claims.describes_equilibria else "the signs"
-        raise Violation(f"the {what} at the solution in it has {are} {true!r}, not {solution.signs[:10]!r}")
+        raise Violation(claims.meaning.in_box.format(true, solution.signs[:10]))
     return alone
 
 
@@ -105,9 +102,7 @@ def _signs_in(claims: Claims, cell: Cell, solution: Solution) -> tuple[str, bool
 
 
 def _check_index(claims: Claims, n: int, cell: Cell) -> None:
-    size = len(claims.model.unknowns)
-    negative = [solution.signs.count("-") for solution in cell.solutions]
-    index = tuple(negative.count(k) for k in range(size + 1))
+    index = claims.meaning.indices([claims.meaning.index(solution.signs) for solution in cell.solutions])
     if index != cell.index:
         raise Violation(f"cell {n}: the solutions have index {index}, the cell {cell.index}")
 
@@ -171,11 +166,9 @@ def _tested(point: Derivation, solution: Solution) -> str | None:
         if found is None or not found.holds:
             return None
         if all(p > 0 for p in _values(point.inequalities, found.within)):
-            signs = (
-                _of_hessian([_values(row, found.within) for row in point.jacobian])
-                if point.has_index
-                else _of_conditions(_values(point.stability, found.within), solution.signs)
-            )
+            hessian = [_values(row, found.within) for row in point.hessian]
+            conditions = _values(point.stability, found.within)
+            signs = _of_hessian(hessian) if hessian else _of_conditions(conditions, solution.signs)
             if signs is not None:
                 return signs
         found = narrowed(function, found)

@@ -117,7 +117,7 @@ def test_maps_agree_with_the_exact_engine(name: str, count: str) -> None:
     for cell in certified.cells:
         at = exact.locate(**dict(zip(slice.axis_names, cell.sample, strict=True)))
         assert getattr(at, count) == getattr(cell, count)
-        others = {"total", "stable", "index"} - {count} if not slice.model.has_potential else {"admissible"}
+        others = {"admissible"} if slice.model.criterion.order else {"total", "stable", "index"} - {count}
         assert not any(getattr(cell, other) is not None for other in others)
 
 

@@ -125,7 +125,7 @@ KNOWN = {"M*cos(s)": False, "M + sin(s) - sin(s)": False, "M*sin(th)": True, "M/
 def test_description_and_equations_agree_on_what_has_a_potential(moment: str, known: bool) -> None:
     """By the names in the description, whether or not the other unknown cancels out."""
     model = arm(moment, {"s": "angle"}).model
-    assert (model.has_potential, system_from(model).has_index) == (known, known)
+    assert (not model.coupled, system_from(model).potential is not None) == (known, known)
 
 
 @pytest.mark.slow
@@ -166,7 +166,7 @@ def test_a_moment_of_its_own_angle_has_a_constant_part_and_an_energy(moment: str
     (found, system), (expected, other) = (
         (polynomial_at(system, system.potential, values), system) for system in map(system_from, (model, by_hand))
     )
-    assert found == expected and system.has_index and other.has_index
+    assert found == expected and system.criterion == other.criterion
 
 
 def test_under_a_moment_of_mean_zero_a_pose_snaps() -> None:

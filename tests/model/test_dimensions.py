@@ -23,6 +23,7 @@ from ptmcad.exact.point_system import solutions_at
 from ptmcad.exact.poses import exact_poses
 from ptmcad.exact.variety import discriminant_variety
 from ptmcad.model import described
+from ptmcad.model.criterion import by_hessian
 
 VALUES = {"k": fmpq(1, 100), "F": fmpq(1)}
 
@@ -42,7 +43,7 @@ def chain(angles: int) -> ParametricSystem:
         energy -= ring.parameter("k") * (ring.cos(one) * ring.cos(two) + ring.sin(one) * ring.sin(two))
     potential = ring.reduce(energy)
     slopes = [ring.reduce(ring.derivative(potential, name)) for name in names]
-    return from_equations(ring, slopes, potential=potential, positive=("k",))
+    return from_equations(ring, slopes, potential=potential, positive=("k",), criterion=by_hessian(angles))
 
 
 @pytest.mark.parametrize("angles", [1, 2, 3, pytest.param(4, marks=pytest.mark.slow)])

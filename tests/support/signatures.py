@@ -14,7 +14,7 @@ from flint import fmpq, fmpq_mat
 
 from ptmcad.algebra.fibre import FibreAlgebra, evaluate
 from ptmcad.algebra.real_roots import sign
-from ptmcad.answer.counts import Counts
+from ptmcad.answer.counts import Counts, counts_of_signs
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial
 from ptmcad.exact.point_system import DegeneratePoint, simple_solutions, text_of_point
 
@@ -53,12 +53,11 @@ def count_by_signature(system: ParametricSystem, values: Mapping[str, fmpq]) -> 
         return total >> len(conditions)
 
     if not point.algebra.dimension:
-        stable, index = (0 if system.tells_stability else None), (0,) * (system.dimension + 1)
-        return Counts(0, stable, index if system.has_index else None)
+        return counts_of_signs((), system.criterion)
     one = matrix({(0,) * width: fmpq(1)})
     inequalities, stability = (tuple(map(matrix, conditions)) for conditions in (point.inequalities, point.stability))
     total = query(inequalities, [[one]])
-    if not system.has_index:
+    if not system.criterion.order:
         return Counts(total, query((*inequalities, *stability), [[one]]) if stability else None, None)
     hessian = [[matrix(h) for h in row] for row in point.jacobian]
     n = len(hessian)

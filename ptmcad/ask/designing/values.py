@@ -148,9 +148,8 @@ def _poses(design: Design, values: Mapping[str, Fraction]) -> Poses | None:
     poses = poses_at(design.model, design.point(values), DIGITS)
     if poses.status in (Status.ON_VARIETY, Status.UNDECIDED):
         return None
-    fits = [pose for pose in poses.equilibria if not design.model.tells_stability or pose.stable is True]
     # where it is not decided whether a pose is tense, it is not taken for one
-    number = sum(not (design.tension and pose.may_be_slack) for pose in fits)
+    number = sum(not (design.tension and pose.may_be_slack) for pose in poses.working)
     return poses if number == design.working else None
 
 

@@ -154,7 +154,7 @@ class PixelSolver:
         good: Flags = np.ones(at.shape[1], dtype=np.bool_)
         for condition in state.conditions:
             good &= ((condition > 0) | empty).all(axis=1)
-        if not self.model.has_potential:
+        if state.hessian is None:
             return np.asarray(good & ((determinant(state.jacobian) != 0) | empty).all(axis=1))
         negative = state.negatives
         if self.wanted.only_stable:

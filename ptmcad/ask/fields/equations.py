@@ -56,6 +56,20 @@ class ModelState(NamedTuple):
         return self.energy if self.energy is None or self.work is None else self.energy - self.work
 
     @property
+    def hessian(self) -> Floats | None:
+        """The Jacobian where solutions are critical points; else None."""
+        return None if self.energy is None else self.jacobian
+
+    @property
+    def stable(self) -> NDArray[np.bool_]:
+        """Where solutions are stable, shape S; nowhere where nothing says which are."""
+        hessian = self.hessian
+        margins = self.stability if hessian is None else (eigenvalues(hessian)[0],)
+        if not margins:
+            return np.zeros_like(self.residuals[0], dtype=np.bool_)
+        return np.asarray(np.logical_and.reduce([margin > 0 for margin in margins]))
+
+    @property
     def negatives(self) -> NDArray[np.int64]:
         """The numbers of negative eigenvalues of the Hessian, shape S."""
         return np.asarray((eigenvalues(self.jacobian) < 0).sum(axis=0))
@@ -92,18 +106,18 @@ def _formulas(system: CompiledSystem, relaxed: tuple[int, ...]) -> Doubles:
     """What a state consists of, with the free lengths of some springs."""
     equations = system.balance(relaxed)
     rows = [tuple(system.graph.derivative(equation, k) for k in system.unknowns) for equation in equations]
-    if system.has_index:  # a Hessian is symmetric, of which the half is evaluated
-        rows = [tuple(rows[max(i, j)][min(i, j)] for j in range(len(rows))) for i in range(len(rows))]
+    places = [[system.criterion.entry(i, j) for j in range(len(rows))] for i in range(len(rows))]
     found: dict[str, Any] = {
         "residuals": equations,
-        "jacobian": tuple(rows),
-        "energy": system.energy(relaxed) if system.has_index else None,
+        # a Hessian is symmetric, of which the half is evaluated
+        "jacobian": tuple(tuple(rows[i][j] for i, j in row) for row in places),
+        "energy": system.potential(relaxed),
         "conditions": system.inequalities,
         "stability": system.stability,
+        "points": system.shown.points,
+        "stretches": system.shown.stretches,
+        "work": system.work if system.acting else None,
     }
-    if system.are_slopes:
-        found |= {"points": system.points, "stretches": system.stretches}
-        found["work"] = system.work if system.acting else None
     return Doubles(found, np)
 
 

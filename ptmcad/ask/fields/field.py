@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -17,7 +17,7 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.fields.barrier import barriers
 from ptmcad.ask.fields.branches import Filling, GridPoints, PixelSolver, filled, places_of
-from ptmcad.ask.fields.equations import Floats, ModelState, eigenvalues
+from ptmcad.ask.fields.equations import Floats, ModelState
 from ptmcad.ask.fields.jumps import jumps
 from ptmcad.ask.fields.quantities import OPTION, Valued, quantity_of
 from ptmcad.ask.pixels import grid as grid_of
@@ -53,15 +53,13 @@ class Choice:
 
     def numbers(self, poses: Poses) -> list[int]:
         """Those of the poses that are of the kind."""
-        last = len(poses.model.unknowns)
-        fits: Mapping[str, Callable[[Pose], bool]] = {
-            "pose": lambda pose: True,
-            "stable": lambda pose: pose.stable is True,
-            "unstable": lambda pose: pose.stable is False,
-            "saddle": lambda pose: pose.index is not None and 0 < pose.index < last,
-            "maximum": lambda pose: pose.index == last,
-        }
-        return [k for k, pose in enumerate(poses.equilibria) if fits[self.kind](pose)]
+        own = [(poses.model.criterion.kind(pose.stable, pose.index), pose.stable) for pose in poses.equilibria]
+        names = [("pose", kind, "unstable" if stable is False else kind) for kind, stable in own]
+        return [k for k, each in enumerate(names) if self.kind in each]
+
+
+_NEEDED = {"pose": "total", "stable": "stable", "unstable": "stable", "saddle": "index", "maximum": "index"}
+"""The kinds, to the names of counts that tell them apart."""
 
 
 def choice_of(text: str, model: Model) -> Choice:
@@ -77,10 +75,11 @@ def choice_of(text: str, model: Model) -> Choice:
         raise ConfigError(
             f"{text!r} is not a pose such as stable:1, unstable:1, saddle:2, maximum:1 or pose:3", key="--pose"
         )
-    if match[1] in ("saddle", "maximum") and not model.has_potential:
-        raise ConfigError(f"solutions of {model.name} have no index: no {match[1]} is known", key="--pose")
-    if match[1] in ("stable", "unstable") and not model.tells_stability:
-        raise ConfigError(f"nothing says which solutions of {model.name} are stable", key="--pose")
+    if (needed := _NEEDED[match[1]]) not in model.criterion.counts:
+        what = f"nothing says which solutions of {model.name} are stable"
+        if needed == "index":
+            what = f"solutions of {model.name} have no index: no {match[1]} is known"
+        raise ConfigError(what, key="--pose")
     return Choice(match[1], int(match[2] or 1))
 
 
@@ -228,7 +227,7 @@ def _at_pixels(
     turns[turns < EQUAL - np.pi] += 2 * np.pi
     state = follower.state(rows, columns, here)
     there = ~np.isnan(at[0])
-    order, fits = _in_order(model, state, here, there, choice)
+    order, fits = _in_order(state, here, there, choice)
     own = np.arange(len(rows))
     number = np.cumsum(np.take_along_axis(fits, order, axis=1), axis=1)
     hit = (number == choice.rank) & np.take_along_axis(fits, order, axis=1)
@@ -249,21 +248,11 @@ def _at_pixels(
     return np.where(found, values, np.nan), np.where(found, k, NONE)
 
 
-def _is_stable(model: Model, state: ModelState) -> NDArray[np.bool_]:
-    if model.has_potential:
-        return np.asarray(eigenvalues(state.jacobian)[0] > 0)
-    return (
-        np.logical_and.reduce([c > 0 for c in state.stability])
-        if state.stability
-        else np.zeros_like(state.residuals[0], dtype=np.bool_)
-    )
-
-
 def _in_order(
-    model: Model, state: ModelState, at: Floats, there: NDArray[np.bool_], choice: Choice
+    state: ModelState, at: Floats, there: NDArray[np.bool_], choice: Choice
 ) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
     """The solutions in the order of `Poses`, shape (pixels, most), and which are of the chosen kind."""
-    stable = _is_stable(model, state) & there if model.tells_stability else np.zeros_like(there)
+    stable = state.stable & there
     energy = np.zeros(there.shape) if state.energy is None else np.where(there, state.energy, np.inf)
     size = np.max(np.abs(np.where(there, energy, 0.0)), axis=1, keepdims=True)
     # equal up to rounding: the same multiple of a tolerance, or of the next

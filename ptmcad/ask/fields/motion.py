@@ -141,8 +141,7 @@ def _open(walk: _Walk, share: Fraction, step: Step) -> _Stop:
     if poses.status not in (Status.EXACT, Status.CERTIFIED):
         return share, step, None
     found = np.array([unknowns_of(p) for p in poses.equilibria]).reshape(-1, len(walk.model.unknowns)).T
-    stable = poses.stable if walk.model.tells_stability else None
-    told = replace(step, total=len(poses.equilibria), stable=stable)
+    told = replace(step, total=len(poses.equilibria), stable=poses.known_stable)
     return share, _with_others(walk, told, found), found
 
 
@@ -201,12 +200,10 @@ def _walked(
 
 def _no_fall(walk: _Walk, own: int, done: float) -> str:
     """Why nothing is said about where a pose goes that vanishes; empty where it falls."""
-    where = _where(walk, done)
-    if walk.model.has_potential and own == 0:
-        return ""
-    if walk.model.has_potential:
-        return f"at {where} the pose, which was not stable, vanishes or becomes one of another kind"
-    return f"at {where} the pose vanishes, and without a potential nothing says where it goes"
+    why = walk.model.criterion.no_descent
+    if own and not why:
+        why = "the pose, which was not stable, vanishes or becomes one of another kind"
+    return why and f"at {_where(walk, done)} {why}"
 
 
 def _where(walk: _Walk, share: float) -> str:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from flint import arb, arb_mat, ctx
 
-from ptmcad.answer.counts import counts_of_signs
+from ptmcad.answer.counts import counts_of_signs, euler_sum
 from ptmcad.certified.arb_isolation import Box, Isolated, isolate_arb, refined
 from ptmcad.certified.distinct import FULL_TURN, distinct
 from ptmcad.certified.parameters import values_at
@@ -36,6 +36,7 @@ from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.intervals import Indices, program, run
 from ptmcad.formulas.tape import Tape, enclosing_floats, record
 from ptmcad.model import ptm
+from ptmcad.model.criterion import by_hessian
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import text_of
@@ -139,10 +140,10 @@ class PlainCounter:
         ArithmeticError
             As `at` does.
         """
-        counts = counts_of_signs([s.signs for s in found.solutions], True, len(self.problem.unknowns))
+        counts = counts_of_signs([s.signs for s in found.solutions], by_hessian(len(self.problem.unknowns)))
         index = counts.index or ()
         smooth = not (self.problem.has_springs or self.problem.reals or self.problem.inequalities)
-        if smooth and sum((-1) ** k * number for k, number in enumerate(index)):
+        if smooth and euler_sum(index):
             raise ArithmeticError(f"critical points of a function on the torus by index {[*index]} at ({x}, {y})")
         cones = 0 if smooth else None
         if self.slice.model == ptm() and self.problem.has_springs:

@@ -167,9 +167,9 @@ def numbers_at(model: Model, parameters: Mapping[str, Fraction]) -> Numbers:
     hessian, slopes = list[Formula](), list[Formula]()
     if (energy := system.energy()) is not None:
         found["energy"] = energy
-        if system.has_index:
-            slopes = [graph.derivative(energy, v.variable) for v in unknowns.values()]
-            hessian = [graph.derivative(slope, v.variable) for slope in slopes for v in unknowns.values()]
+    if (potential := system.potential()) is not None:
+        slopes = [graph.derivative(potential, v.variable) for v in unknowns.values()]
+        hessian = [graph.derivative(slope, v.variable) for slope in slopes for v in unknowns.values()]
     tape = record([list(found.values()), hessian, slopes])
     return Numbers(mechanism, parameters, system, tuple(found), tape)
 
@@ -177,13 +177,8 @@ def numbers_at(model: Model, parameters: Mapping[str, Fraction]) -> Numbers:
 def pose_at(at: Numbers, counter: PlainCounter, solution: Solution, digits: int) -> tuple[Pose, int]:
     """The pose with all numbers settled or, where they may be zero, enclosed; and the bits that this took."""
     numbers, bits = measured(at, lambda bits: boxes_of(counter, solution, bits), digits)
-    index = stable = None
-    if solution.signs and at.is_closed:
-        stable = solution.signs == "+"
-    elif solution.signs and at.system.has_index:
-        index = solution.signs.count("-")
-        stable = index == 0
-    return with_further(assembled(at, numbers, index, stable)), bits
+    criterion, signs = at.system.criterion, solution.signs
+    return with_further(assembled(at, numbers, criterion.index(signs), criterion.is_stable(signs))), bits
 
 
 def measured(at: Numbers, boxes: Callable[[int], tuple[Box, Box]], digits: int) -> tuple[dict[str, Enclosure], int]:

@@ -45,7 +45,7 @@ def rational_point(
         value, place = _direction(ball) if name in mechanism.angles else _real(ball)
         if ball.overlaps(place) and boxes[name].contains(2 * place - ball):
             at[number] = value
-    if len(at) == len(held) and not mechanism.moments and mechanism.has_potential:
+    if len(at) == len(held) and not mechanism.moments:
         values = exact_values(tape, at)
         if all(values[int(place)] == 0 for place in tape.outputs[-1]):
             return at

@@ -56,15 +56,15 @@ def system_from(model: Model) -> ParametricSystem:
     """The equations and Jacobian of a mechanism or system, with all parameters symbolic."""
     known, ring = compiled(model), ring_of(model)
     elements = partial(elements_of, model)
-    energies = elements([known.smooth]) if known.smooth is not None and known.has_index else ()
+    potential = known.potential(relaxed=())
     system = from_equations(
         ring,
         elements(known.equations),
-        potential=next(iter(energies), None),
+        potential=None if potential is None else next(iter(elements([potential]))),
         inequalities=elements(known.inequalities),
         stability=elements(known.stability),
         positive=tuple(name for name in model.positive if name in ring.parameters),
         nonnegative=tuple(name for name in model.nonnegative if name in ring.parameters),
-        definite=known.definite,
+        criterion=known.criterion,
     )
     return with_turns(system)

@@ -25,6 +25,7 @@ from ptmcad.algebra.polynomials import (
     ratio,
 )
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
+from ptmcad.model.criterion import NOTHING, Criterion
 
 RationalPolynomial = dict[tuple[int, ...], fmpq]
 """A polynomial in the unknowns with rational coefficients: exponent vector -> coefficient."""
@@ -48,8 +49,7 @@ class ParametricSystem(NamedTuple):
     stability : where there is no potential a solution is stable where all of these are positive.
     positive : parameters that must be positive (rod lengths and stiffnesses).
     nonnegative : parameters that must not be negative (the base length).
-    definite : whether the conditions for stability hold together where a symmetric matrix is positive definite, and
-        the last one is its determinant, times what is positive: then no other one's zeros matter.
+    criterion : what is known of solutions.
     turns : the equations in other angles, `ptmcad.exact.models.turns.Turns`, where these are simpler.
     """
 
@@ -64,7 +64,7 @@ class ParametricSystem(NamedTuple):
     positive: tuple[str, ...] = ()
     nonnegative: tuple[str, ...] = ()
     turns: Any = None
-    definite: bool = False
+    criterion: Criterion = NOTHING
 
     @property
     def dimension(self) -> int:
@@ -76,16 +76,6 @@ class ParametricSystem(NamedTuple):
         """In the angles in which it is simplest; the determinant of the Jacobian is the same but for its sign."""
         simplest: ParametricSystem = self if self.turns is None else self.turns.system
         return simplest
-
-    @property
-    def has_index(self) -> bool:
-        """Whether solutions are critical points, which have an index."""
-        return self.potential is not None
-
-    @property
-    def tells_stability(self) -> bool:
-        """Whether it is known what a stable solution is."""
-        return self.has_index or bool(self.stability)
 
     @property
     def is_on_torus(self) -> bool:
@@ -130,15 +120,14 @@ class SliceSystem(NamedTuple):
     equations : the system's, each divided by its content and cleared of denominators, then the circles
         cos^2 + sin^2 - 1; exponent vector -> element of Z[x, y].
     jacobian : the Jacobian's determinant, cleared of denominators (these vanish only on ``boundary``).
-    inequalities, stability : the system's, cleared of denominators in the same way; of conditions that say that a
-        matrix is definite the last one, its determinant.
+    inequalities, stability : the system's, as far as they are decisive, cleared of denominators in the same way.
     boundary : polynomials where the slice's equations lose their meaning: denominators of the parameters, and
         factors common to all coefficients of an equation (there that equation vanishes identically).
     vanishing : the second kind of these, one for an equation that has such factors.
     unknowns : the number of coordinates.
     unbounded : those whose poles are all there are.
     is_compact : whether the real solutions stay bounded.
-    has_index : whether solutions are critical points, for messages.
+    criterion : for messages.
     """
 
     equations: tuple[UnknownPolynomial, ...]
@@ -150,7 +139,7 @@ class SliceSystem(NamedTuple):
     unknowns: int
     unbounded: tuple[int, ...]
     is_compact: bool
-    has_index: bool
+    criterion: Criterion
 
 
 def on_slice(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> SliceSystem:
@@ -185,7 +174,7 @@ def on_slice(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Slice
             vanishing.append(common)
     equations += [{m: one * c for m, c in circle.items()} for circle in ring.circles]
     inequalities = tuple(map(on, system.inequalities))
-    stability = tuple(map(on, system.stability[-1:] if system.definite else system.stability))
+    stability = tuple(map(on, system.criterion.decisive(system.stability)))
     return SliceSystem(
         tuple(equations),
         element_on_slice(system, leading_minor(system, system.dimension), parameters),
@@ -196,7 +185,7 @@ def on_slice(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Slice
         ring.width,
         ring.unbounded,
         not ring.reals,
-        system.has_index,
+        system.criterion,
     )
 
 
@@ -259,16 +248,14 @@ def with_root(
                 found[(int(powers[along]), *monomial, int(powers[1 - along]))] = fmpq(c)
         return ring.context.from_dict(found)
 
-    stability = system.stability
-    if system.has_index:
-        stability = tuple(leading_minor(system, order + 1) for order in range(system.dimension))
+    minors = tuple(leading_minor(system, order + 1) for order in range(system.criterion.order))
     root = {(*(0,) * ring.width, k): fmpq(c) for k, c in enumerate(minimal.coeffs())}
     return from_equations(
         ring,
         [*map(moved, system.equations), ring.context.from_dict(root)],
         inequalities=tuple(moved(p, True) for p in system.inequalities),
-        stability=tuple(moved(p, True) for p in stability),
-        definite=system.has_index or system.definite,
+        stability=tuple(moved(p, True) for p in minors + system.stability),
+        criterion=system.criterion.on_lines,
     )
 
 

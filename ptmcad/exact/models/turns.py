@@ -56,7 +56,7 @@ def with_turns(system: ParametricSystem) -> ParametricSystem:
                 step = [[int(k == m) + sign * int((k, m) == (i, j)) for m in range(count)] for k in range(count)]
                 images = _images(system.ring, step)
                 found = tuple(system.ring.reduce(e.compose(*images)) for e in equations)
-                if system.has_index:  # derivatives by the new angles
+                if system.potential is not None:  # derivatives by the new angles
                     found = tuple(e + sign * found[i] if k == j else e for k, e in enumerate(found))
                 if (other := _cost(found)) < cost:
                     # the angle i is the new angle i and sign times the angle j
@@ -88,7 +88,7 @@ def _moved(
         potential=None if system.potential is None else moved(system.potential),
         inequalities=tuple(map(moved, system.inequalities)),
         stability=tuple(map(moved, system.stability)),
-        definite=system.definite,
+        criterion=system.criterion,
         positive=system.positive,
         nonnegative=system.nonnegative,
     )

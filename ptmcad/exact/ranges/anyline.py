@@ -42,7 +42,6 @@ from ptmcad.exact.point_system import DegeneratePoint, point_system
 from ptmcad.exact.ranges.line import END_WIDTH, intervals, runs
 from ptmcad.exact.statics import is_positive
 from ptmcad.exact.variety import algebra_of
-from ptmcad.model.compile import compiled
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
@@ -95,8 +94,7 @@ def ranges_on(slice: Slice, along: str, value: End, working: int) -> LineRanges:
     if algebra.dimension > MAX_DIMENSION:
         return (), whole
     numbers = _critical(equations, algebra, axis)
-    flat = known.has_index or bool(compiled(slice.model).points)
-    counting = _Counting(system, algebra.dimension, equations is not given, minimal, working, flat)
+    counting = _Counting(system, algebra.dimension, equations is not given, minimal, working)
     ends: list[End] = [axis.low, *numbers, axis.high]
     here = [counting.between(*map(from_fraction, gap)) for gap in gaps(numbers, (axis.low, axis.high))]
     return _spans(ends, [h is True for h in here]), _spans(ends, [h is not False for h in here])
@@ -159,8 +157,6 @@ class _Counting(NamedTuple):
     dimension : the number of solutions in general, with multiplicity.
     saturated : whether those at which an inequality's polynomial vanishes are left out.
     value : of the other axis; solutions at its conjugates do not count.
-    may_be_stable : whether a solution of which a condition is zero may be stable, as a flat minimum is, or a flat loop;
-        of a system the conditions are what is called stable.
     """
 
     system: ParametricSystem
@@ -168,7 +164,6 @@ class _Counting(NamedTuple):
     saturated: bool
     value: AlgebraicNumber
     working: int
-    may_be_stable: bool
 
     def between(self, low: fmpq, high: fmpq) -> bool | None:
         """Whether there is the wanted count between two neighbouring critical values; None where that is open."""
@@ -194,14 +189,14 @@ class _Counting(NamedTuple):
             unit, one = (*(0,) * (self.system.ring.width - 1), 1), (0,) * self.system.ring.width
             low, high = as_interval(self.value)
             required += [{unit: fmpq(1), one: -low}, {unit: fmpq(-1), one: high}]
-        total = stable = open_ones = 0
+        stable = open_ones = 0
         for solution in points(point.algebra, None).real:
             if all(_sign(solution, p) > 0 for p in required):
                 signs = [_sign(solution, p) for p in point.stability]
-                total += 1
                 stable += all(s > 0 for s in signs)
-                open_ones += self.may_be_stable and min(signs) == 0
-        return (stable, stable + open_ones) if self.system.tells_stability else (total, total)
+                # a flat minimum, or a flat loop; of a system the conditions are what is called stable
+                open_ones += self.system.criterion.stable_at_zero and min(signs) == 0
+        return stable, stable + open_ones
 
 
 def _sign(solution: RealPoint, p: RationalPolynomial) -> int:

@@ -114,7 +114,7 @@ def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Component], ...]
             raise told from error
         raise DegenerateSliceError(
             f"the line {where} lies inside the discriminant variety: at every {line.along.name} some "
-            f"{noun(line.model, 1)} has a singular {'Hessian' if system.has_index else 'Jacobian'}; fix another value"
+            f"{noun(line.model, 1)} has a singular {system.criterion.matrix}; fix another value"
         ) from error
     except InfiniteSolutionsError as error:
         raise InfiniteSolutionsError(

@@ -143,9 +143,7 @@ def _solutions(family: LineSystem, line: Line, value: Fraction) -> list[PlacedSo
         place = at_value(family, value, guess)
         if place is None:
             return None
-        stable = family.system.tells_stability and not solution.signs.strip("+")
-        negative = solution.signs.count("-") if family.system.has_index else int(not stable)
-        found.append(PlacedSolution(Reached(value, place, place), negative))
+        found.append(PlacedSolution(Reached(value, place, place), family.system.criterion.rank(solution.signs)))
     return found
 
 

@@ -22,6 +22,7 @@ from flint import arb, ctx
 
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
 from ptmcad.answer.poses import Pose
+from ptmcad.answer.words import followed
 from ptmcad.errors import ConfigError
 from ptmcad.exact.models import system_from
 from ptmcad.exact.poses import exact_poses
@@ -73,13 +74,11 @@ def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, n
     system = system_from(slice.model)
     family = LineSystem(slice.model, system, line.parameters)
     poses = exact_poses(slice.model, parameters_at(family, line, value), DIGITS)
-    stable = [k for k, pose in enumerate(poses.equilibria) if pose.stable or not slice.model.tells_stability]
+    stable = range(len(poses.working))
     if number is not None and number - 1 not in stable:
-        what = "stable poses" if slice.model.tells_stability else "solutions"
-        raise ConfigError(
-            f"{number} is none of the {len(stable)} {what} at {along} = {value}, counted from 1", key="--pose"
-        )
-    chosen = stable if number is None else [number - 1]
+        what = f"{len(stable)} {followed(slice.model)}s"
+        raise ConfigError(f"{number} is none of the {what} at {along} = {value}, counted from 1", key="--pose")
+    chosen = stable if number is None else (number - 1,)
     return PosePaths(
         slice.name,
         slice.model,
@@ -178,10 +177,8 @@ def _distances(window: Fraction, gap: Fraction) -> tuple[Fraction, Fraction]:
 def _condition(family: LineSystem, line: Line, reached: Reached) -> Fate | None:
     """What a solution loses at a critical value that it passes: an inequality, or stability that is given by signs."""
     system = family.system
-    conditions = [(Fate.EXCLUDED, p) for p in system.inequalities]
-    if not system.has_index:
-        conditions += [(Fate.UNSTABLE, p) for p in system.stability]
-    for fate, p in conditions:
+    conditions = ((Fate.EXCLUDED, system.inequalities), (Fate.UNSTABLE, system.stability))
+    for fate, p in ((fate, p) for fate, some in conditions for p in some):
         value = value_at(family, line, reached, p)
         if not value > 0:
             return fate if value < 0 else Fate.UNDECIDED
@@ -215,7 +212,7 @@ def _meeting(family: LineSystem, line: Line, number: AlgebraicNumber, current: R
 def _descends(family: LineSystem, line: Line) -> bool:
     """Whether every descent ends at an equilibrium: solutions are all critical points of one function on a torus."""
     system = family.system
-    return system.has_index and system.is_on_torus and not moved(family.model, line.parameters)
+    return system.is_on_torus and not (system.criterion.no_descent or moved(family.model, line.parameters))
 
 
 def _ball(enclosure: Enclosure) -> arb:

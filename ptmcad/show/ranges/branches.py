@@ -6,10 +6,10 @@ Guarantee: every digit that is shown is right.
 from __future__ import annotations
 
 from ptmcad.answer.branches import Branch, Branches, BranchPoint
-from ptmcad.answer.words import kind_name, noun
+from ptmcad.answer.words import noun
 from ptmcad.model import Model
+from ptmcad.show.columns import aligned
 from ptmcad.show.ranges.numbers import fixed, known
-from ptmcad.show.ranges.table import aligned
 from ptmcad.show.units import with_unit
 from ptmcad.text.enclosure import Enclosure
 
@@ -18,11 +18,7 @@ DIGITS = 6
 
 def kind(branch: Branch, model: Model) -> str:
     """What the solutions of a branch are called: stable, saddle, maximum, unstable, or by the model's noun."""
-    if branch.stable:
-        return "stable"
-    if branch.index is not None:
-        return kind_name(branch.index, len(model.unknowns))
-    return noun(model, 1) if branch.stable is None else "unstable"
+    return model.criterion.kind(branch.stable, branch.index).replace("solution", noun(model, 1))
 
 
 def table(found: Branches) -> str:

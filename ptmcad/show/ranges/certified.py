@@ -5,12 +5,14 @@ Guarantee: every digit is right; what was not decided is called undecided and ha
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
 
 from ptmcad.answer.intervals import CertifiedChange, CertifiedIntervals
-from ptmcad.answer.widths import Attainment, CertifiedWidths
+from ptmcad.answer.widths import Attainment, CertifiedRange, CertifiedRow, CertifiedWidths
+from ptmcad.show.columns import aligned
 from ptmcad.show.ranges.numbers import known, line_head
-from ptmcad.show.ranges.table import aligned, nowhere, with_edges, working_text
+from ptmcad.show.ranges.table import nowhere, width_rows, working_text
 from ptmcad.text.bounds import rounded
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text
@@ -53,19 +55,17 @@ def met(change: CertifiedChange) -> str:
 
 def width_table(found: CertifiedWidths, digits: int) -> str:
     """The operation ranges at the tabulated values, and the widest of them."""
-    rows = [[found.over.name, "operation range from", "to", "width"]]
-    for row in found.rows:
-        value = shortest_text(row.value)
-        note = "degenerate" if row.remark else "undecided" if row.undecided else "none"
-        if not row.operation:
-            rows.append([value, note, "", ""])
-        for one in row.operation:
-            marks = [" *" if end.low == end.high else "" for end in (one.low, one.high)]
-            ends = [_text(one.low, digits, up=True) + marks[0], _text(one.high, digits) + marks[1]]
-            open_part = ", a part of the window undecided" if row.undecided else ""
-            rows.append([value, *ends, f"{known(one.width, min(digits, 6))}{open_part}"])
+
+    def note(row: CertifiedRow) -> str:
+        return "degenerate" if row.remark else "undecided" if row.undecided else "none"
+
+    def cells(row: CertifiedRow, one: CertifiedRange) -> Iterator[str]:
+        for end, up in ((one.low, True), (one.high, False)):
+            yield _text(end, digits, up) + " *" * (end.low == end.high)
+        yield known(one.width, min(digits, 6)) + ", a part of the window undecided" * row.undecided
+
     ranges = f"operation range: where there are at least {working_text(found.model, found.working)}"
-    return "\n".join([ranges, "", *with_edges(rows, found.along), "", widest_text(found)])
+    return "\n".join([ranges, "", *width_rows(found, "operation range", note, cells), "", widest_text(found)])
 
 
 def widest_text(found: CertifiedWidths) -> str:

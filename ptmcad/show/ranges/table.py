@@ -5,18 +5,19 @@ Guarantee: every digit that is shown is right.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
+from typing import Any
 
 from flint import arb, ctx
 
-from ptmcad.answer.intervals import CountIntervals, End, Span
+from ptmcad.answer.intervals import CountIntervals, End, OperationSpan, Span
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
-from ptmcad.answer.widths import Maximum, OperationWidths
-from ptmcad.answer.words import assignments, followed, kind_name, noun, sought
+from ptmcad.answer.widths import CertifiedWidths, Maximum, OperationWidths, WidthRow
+from ptmcad.answer.words import assignments, followed, listed, noun, sought, with_article
 from ptmcad.model import Model, built_in
 from ptmcad.model.work import acting
-from ptmcad.question.slice import Axis
+from ptmcad.show.columns import aligned
 from ptmcad.show.ranges.numbers import end_text, line_head, narrowly_known, settled, width_text
 from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import Enclosure
@@ -92,31 +93,37 @@ def formula(end: End, name: str) -> str:
     return text if len(text) <= MAX_POLYNOMIAL else f"a polynomial of degree {end.degree}, in the JSON"
 
 
-def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Rows as lines with columns of equal width."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in rows]
+def width_rows(
+    found: OperationWidths | CertifiedWidths,
+    range_name: str,
+    note: Callable[[Any], str],
+    cells: Callable[[Any, Any], Iterable[str]],
+) -> list[str]:
+    """A line for each range of each row, and what a mark at an end means, where there is one.
 
-
-def with_edges(rows: Sequence[Sequence[str]], along: Axis) -> list[str]:
-    """Rows as lines, and what a mark at an end means, where there is one."""
-    marked = any("*" in cell for row in rows for cell in row)
-    return [*aligned(rows), *[f"* the edge of the window of {along.name}"] * marked]
+    Parameters
+    ----------
+    note : what is said of a row without a range.
+    cells : of a row and one of its ranges the ends and the width.
+    """
+    rows = [[found.over.name, f"{range_name} from", "to", "width"]]
+    for row in found.rows:
+        value = shortest_text(row.value)
+        rows += [[value, *cells(row, one)] for one in row.operation] or [[value, note(row), "", ""]]
+    marked = any("*" in cell for cells in rows for cell in cells)
+    return [*aligned(rows), *[f"* the edge of the window of {found.along.name}"] * marked]
 
 
 def width_table(found: OperationWidths, digits: int = 10) -> str:
     """The operation ranges at the tabulated values, and where they are widest."""
     range_name = operation_name(found.model, found.working)
-    rows = [[found.over.name, f"{range_name} from", "to", "width"]]
-    for row in found.rows:
-        value = shortest_text(row.value)
-        if row.remark or not row.operation:
-            rows.append([value, "degenerate" if row.remark else "none", "", ""])
-        for i in row.operation:
-            window = [" *" if isinstance(e, Fraction) else "" for e in (i.low, i.high)]
-            ends = [end_text(e, digits) + mark for e, mark in zip((i.low, i.high), window, strict=True)]
-            rows.append([value, *ends, width_text(i, digits)])
-    lines = [*with_edges(rows, found.along), ""]
+
+    def cells(_: WidthRow, span: OperationSpan) -> Iterator[str]:
+        for end in (span.low, span.high):
+            yield end_text(end, digits) + " *" * isinstance(end, Fraction)
+        yield width_text(span, digits)
+
+    lines = [*width_rows(found, range_name, lambda row: "degenerate" if row.remark else "none", cells), ""]
     if not found.maxima:
         lines.append(f"widest {range_name}: none, {nowhere(found.model, found.working)}")
     for m in found.maxima:
@@ -169,7 +176,7 @@ def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
     name, model = found.along.name, found.model
     at = f"{name} = {end_text(end.at, 10)}"
     if end.fate is Fate.WINDOW:
-        return f"{'stable' if model.tells_stability else 'goes on'} up to the window's edge {at}"
+        return f"{model.criterion.adjective or 'goes on '}up to the window's edge {at}"
     if end.fate in (Fate.UNSTABLE, Fate.EXCLUDED):
         return f"{at}: {end.fate.value}"
     if end.fate is Fate.UNDECIDED:
@@ -177,7 +184,8 @@ def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
     what = f"{at}: {_event(end, model)}"
     if end.target is None:
         rests = f"under the {acting(model, found.moved)} it may never come to rest: " if found.moved else ""
-        return f"{what}; {rests}where it goes from there is not decided" if model.tells_stability else what
+        unsaid = model.criterion.no_target
+        return f"{what}; {rests}{unsaid}" if unsaid else what
     target = _unknowns(end.target, model, digits)
     if end.fate is Fate.MERGE:
         return f"{what}; the pose goes on, without a snap, as {target}"
@@ -194,30 +202,20 @@ def _event(end: PathEnd, model: Model) -> str:
     """What becomes of the pose that was followed, and of those that it meets."""
     what = f"the {followed(model)}"
     others = [_kind(k, model) for k in end.meeting[1:]]
-    left = _listed([_kind(k, model) for k in end.leaving])
+    left = listed([_kind(k, model) for k in end.leaving]) or "nothing"
     if not others:
         return f"{what} goes on as {left}" if end.leaving else f"{what} vanishes alone"
     if end.among:
-        return f"{what} meets one or more of {_listed(others)} and vanishes"
-    merges = f"{what} merges with {_listed(others)}"
+        return f"{what} meets one or more of {listed(others)} and vanishes"
+    merges = f"{what} merges with {listed(others)}"
     if not end.leaving:
         return f"fold: {merges} and both vanish" if len(others) == 1 else f"{merges} and all vanish"
     return f"{merges}, which leaves {left}"
 
 
-def _listed(names: Sequence[str]) -> str:
-    """Names in a row, such as a saddle, a saddle and a maximum."""
-    return " and ".join(part for part in (", ".join(names[:-1]), names[-1]) if part) if names else "nothing"
-
-
 def _kind(negative: int, model: Model) -> str:
     """A solution by its Morse index; without a potential by whether it is stable."""
-    if not model.has_potential:
-        what = noun(model, 1)
-        if model.tells_stability:
-            return f"a stable {what}" if negative == 0 else f"an unstable {what}"
-        return f"an {what}" if what[0] in "aeiou" else f"a {what}"
-    return f"a {kind_name(negative, len(model.unknowns))}"
+    return with_article(model.criterion.ranked(negative, noun(model, 1)))
 
 
 def _posture(point: Target, heights: Sequence[str]) -> str:

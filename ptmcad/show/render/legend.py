@@ -12,7 +12,7 @@ from typing import Any
 
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Region, RegionMap
-from ptmcad.answer.words import count_words, counted, noun
+from ptmcad.answer.words import count_words, counted, listed, noun
 from ptmcad.question.counts import Shades
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.clearance import Position
@@ -192,7 +192,7 @@ def _with_total(text: str, regions: list[Region], result: RegionMap) -> str:
     shades = slice.count.kind.shades
     if shades is Shades.TOTAL or not known or len(known) < len(totals) or len(known) > _MAX_TOTALS:
         return text
-    numbers = " or ".join(filter(None, (", ".join(map(str, known[:-1])), counted(slice.model, known[-1]))))
+    numbers = listed([*map(str, known[:-1]), counted(slice.model, known[-1])], " or ")
     return f"{text}   {'' if shades is Shades.INDEX else 'of '}{numbers}"
 
 

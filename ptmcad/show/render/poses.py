@@ -16,9 +16,10 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from ptmcad.answer.poses import Pose, Poses
-from ptmcad.answer.words import assignments, counted, kind_name, noun, of_what, untold
+from ptmcad.answer.words import assignments, counted, noun, of_what, untold
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism, Model, Support
+from ptmcad.model.criterion import critical_point
 from ptmcad.model.joints import torsion_springs
 from ptmcad.model.work import PointForce, loads_at
 from ptmcad.question.slice import merged
@@ -95,7 +96,7 @@ def kind(pose: Pose) -> str:
         return f"degenerate, multiplicity {pose.multiplicity}"
     if pose.index is None:
         return {True: "stable", False: "unstable", None: "equilibrium"}[pose.stable]
-    return "stable (minimum)" if pose.index == 0 else kind_name(pose.index, len(pose.eigenvalues))
+    return "stable (minimum)" if pose.index == 0 else critical_point(pose.index, len(pose.eigenvalues))
 
 
 def unknown_texts(model: Model, pose: Pose) -> list[str]:
@@ -120,7 +121,7 @@ def below_panel(pose: Pose, model: Model) -> float:
 def panel(figure: Figure, scene: Scene, pose: Pose, number: int, corner: Position) -> Any:
     """One pose in axes at a place in inches, with its kind above and energy and angles below."""
     mechanism, frame = scene.mechanism, scene.frame
-    strong = pose.stable is True or not mechanism.tells_stability
+    strong = mechanism.criterion.works(pose.stable)
     style = STRONG if strong else PALE
     axes = pose_axes(figure, corner, frame, f"pose-{number}", strong)
     draw_sketch(axes, scene.of(pose), style, f"pose-{number}-")
@@ -250,7 +251,7 @@ def legend(poses: Poses, arrows: Mapping[str, float]) -> Iterator[Entry]:
         yield Entry(("unstable or degenerate: pale",), bar_mark(0, PALE))
     else:
         yield Entry(tuple(textwrap.wrap(untold(mechanism), _KEY_COLUMNS)))
-    if mechanism.has_potential:
+    if any(pose.energy is not None for pose in poses.equilibria):
         left_out = of_what(mechanism, poses.parameters)
         yield Entry((f"U: energy, in {energy_unit(mechanism, poses.units)}", *textwrap.wrap(left_out, _KEY_COLUMNS)))
     yield Entry(())

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ptmcad.answer.boundarysurface import BoundarySurface
+from ptmcad.answer.counts import key_text
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import Region
 from ptmcad.question.counts import Count, Shades
@@ -112,16 +113,12 @@ def sheet_entries(surface: BoundarySurface, colours: Mapping[Pair, str], told: S
     told : the entries above: what is counted, and the fills of a map on the floor.
     """
     found = list(told)
-    found += [Entry((f"between {' and '.join(map(_key_text, pair))}",), Fill(face)) for pair, face in colours.items()]
+    found += [Entry((f"between {' and '.join(map(key_text, pair))}",), Fill(face)) for pair, face in colours.items()]
     found.append(Entry(("boundary of a member",), THIN))
     found.append(Entry((f"sheets: linear between {len(surface.members)} exact boundaries",), heads=0))
     if not surface.complete:
         found.append(Entry(("(not proved that nothing changes between them)",), heads=0))
     return found
-
-
-def _key_text(key: tuple[int, ...]) -> str:
-    return str(key[0]) if len(key) == 1 else f"({', '.join(map(str, key))})"
 
 
 def add_sheets(

@@ -204,7 +204,7 @@ class Stage:
         elif step.total is None:
             what, colour = f"equilibrium; exactly {step.stable} stable here", INK
         else:
-            stable = f", {step.stable} stable" if step.stable is not None and model.tells_stability else ""
+            stable = f", {step.stable} stable" if step.stable is not None else ""
             what, colour = f"one of exactly {counted(model, step.total)}{stable}", INK
         wide = self.world.sides[0] / 72
         size = min(SIZES[1], SIZES[1] * wide / text_width(what, SIZES[1]))

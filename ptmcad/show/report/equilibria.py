@@ -10,11 +10,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from operator import gt
-from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution
-from ptmcad.answer.words import kind_name
 from ptmcad.errors import ConfigError, PoleError
 from ptmcad.formulas.values import evaluated
 from ptmcad.model import Mechanism, Model
@@ -27,10 +25,7 @@ from ptmcad.show.report.bounds import (
     degrees,
     exactly,
     last_place,
-    plus,
-    power,
     square_root,
-    times,
 )
 from ptmcad.show.report.potential import Potential, energy, potential_at
 from ptmcad.text.numerals import shortest_text, text_of
@@ -75,7 +70,7 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     )
     system = compiled(model)
     known = dict.fromkeys(model.free_lengths, Fraction(0)) | values
-    acting = (system.loads if system.are_slopes else (), system.moments if system.has_index else ())
+    acting = (system.shown.loads, system.moments[: system.criterion.order])
     loads, moments = evaluated(acting if drawn else ((), ()), _Within(system, known))
     others = {n: v for n, v in distinct_parameters(values, model).items() if n not in cell.sample.names}
     return {
@@ -90,17 +85,6 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
 def coordinates(model: Model) -> tuple[str, ...]:
     """The unknowns of a result's equations: cosine and sine of each angle, then those on the line."""
     return (*(f"{function}_{angle}" for angle in model.angles for function in ("cos", "sin")), *model.reals)
-
-
-def kind_of(solution: Solution, model: Model) -> str:
-    """What the signs of the Hessian's eigenvalues say, or those of the conditions for stability."""
-    if not model.has_potential:
-        told = model.tells_stability and solution.signs
-        return "solution" if not told else "unstable" if solution.signs.strip("+") else "stable"
-    if set(solution.signs) - set("+-") or len(solution.signs) != len(model.unknowns):
-        return "degenerate"
-    negative = solution.signs.count("-")
-    return "stable" if negative == 0 else kind_name(negative, len(model.unknowns))
 
 
 def distinct_parameters(values: Mapping[str, Value], model: Model) -> dict[str, Value]:
@@ -129,12 +113,9 @@ def _solutions(
 ) -> list[dict[str, Any]]:
     """The solutions, the stable ones first, then by energy; all numbers of a kind to the same last place."""
     system = compiled(model)
-    _, turned = system.elastic
     boxes = [_box(s, model, polynomial) for s in cell.solutions]
-    formulas = _Pose(
-        None if polynomial or not system.has_index else system.energy(),
-        *((system.points, system.stretches, turned) if system.are_slopes else ()),
-    )
+    drawn = system.shown
+    formulas = _Pose(None if polynomial else system.potential(), drawn.points, drawn.stretches, drawn.torsion)
     poses: list[_Pose] = [evaluated(formulas, _Within(system, values, box)) for box in boxes]
     energies = [pose.energy for pose in poses] if potential is None else [energy(potential, box) for box in boxes]
     known = [bounds for bounds in energies if bounds is not None]
@@ -142,9 +123,8 @@ def _solutions(
     turns = 2 * len(model.angles)
     reals = [box[turns:] for box in boxes]
     real_place = _place(x for row in reals for x in row)
-    mechanism = model.whole if system.are_slopes else None
-    parts = [{} for _ in boxes] if mechanism is None else _parts(mechanism, poses)
-    kinds = [kind_of(solution, model) for solution in cell.solutions]
+    parts = [{} for _ in boxes] if model.drawable is None else _parts(model.drawable, poses)
+    kinds = [model.criterion.kind_of_signs(solution.signs) for solution in cell.solutions]
     order = {"stable": 0, "degenerate": len(model.unknowns) + 1}
 
     def rank(k: int) -> tuple[int, Fraction]:
@@ -171,9 +151,9 @@ class _Pose(NamedTuple):
     """What is shown of a pose, as formulas, or as their bounds."""
 
     energy: Any
-    points: Mapping[str, tuple[Any, Any]] = MappingProxyType({})
-    stretches: tuple[tuple[Any, Any, Any], ...] = ()
-    turned: tuple[Any, ...] = ()
+    points: Mapping[str, tuple[Any, Any]]
+    stretches: tuple[tuple[Any, Any, Any], ...]
+    turned: tuple[Any, ...]
 
 
 def _parts(mechanism: Mechanism, poses: Sequence[_Pose]) -> list[dict[str, Any]]:
@@ -228,26 +208,10 @@ def _box(solution: Solution, model: Model, polynomial: bool) -> tuple[Bounds, ..
     center, radius = solution.center, solution.radius
     if len(center) != len(most) or not 0 <= radius < widest or any(map(gt, map(abs, center), most)):
         raise ConfigError(f"a stored solution is no box around {kind}; check it with ptmcad verify")
-    ends = [(c - radius, c + radius) for c in center]
+    ends = [Bounds(c - radius, c + radius) for c in center]
     if polynomial:
         return tuple(ends)
     return (*(bounds for end in ends[:angles] for bounds in cosine_sine(end)), *ends[angles:])
-
-
-class _Bounded(tuple[Fraction, Fraction]):
-    """Bounds as a number."""
-
-    def __neg__(self) -> _Bounded:
-        return _Bounded(times(exactly(-1), self))
-
-    def __add__(self, other: Any) -> _Bounded:
-        return _Bounded(plus(self, other))
-
-    def __sub__(self, other: Any) -> _Bounded:
-        return self.__add__(-other)
-
-    def __mul__(self, other: Any) -> _Bounded:
-        return _Bounded(power(self, 2) if self is other else times(self, other))
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,19 +222,19 @@ class _Within:
     values: Mapping[str, Fraction]
     box: tuple[Bounds, ...] = ()
 
-    def constant(self, value: Fraction) -> _Bounded:
-        return _Bounded(exactly(value))
+    def constant(self, value: Fraction) -> Bounds:
+        return exactly(value)
 
-    def variable(self, number: int) -> _Bounded:
+    def variable(self, number: int) -> Bounds:
         if number in self.system.reals:
-            return _Bounded(self.box[2 * len(self.system.angles) + self.system.reals.index(number)])
+            return self.box[2 * len(self.system.angles) + self.system.reals.index(number)]
         return self.constant(self.values[self.system.names[number]])
 
-    def cos(self, number: int) -> _Bounded:
-        return _Bounded(self.box[2 * self.system.angles.index(number)])
+    def cos(self, number: int) -> Bounds:
+        return self.box[2 * self.system.angles.index(number)]
 
-    def sin(self, number: int) -> _Bounded:
-        return _Bounded(self.box[2 * self.system.angles.index(number) + 1])
+    def sin(self, number: int) -> Bounds:
+        return self.box[2 * self.system.angles.index(number) + 1]
 
-    def length(self, x: _Bounded, y: _Bounded) -> _Bounded:
-        return _Bounded(square_root(x * x + y * y))
+    def length(self, x: Bounds, y: Bounds) -> Bounds:
+        return square_root(x * x + y * y)

@@ -105,7 +105,7 @@ def _shown(model: Model) -> str:
     """What a cell's button shows."""
     if model.drawable is None:
         return "its solutions"
-    return "its poses and its energy" if model.has_potential else "its poses"
+    return " and its ".join(("its poses", *model.criterion.numbers[:1]))
 
 
 def _details(drawn: MapPictures) -> str:
@@ -182,7 +182,7 @@ def drawing_of(model: Model) -> dict[str, Any]:
 def _work(model: Model) -> str:
     """What the energies of poses leave out, where moments work; empty where there are none, or no energies."""
     mechanism = model.drawable
-    if mechanism is None or not mechanism.has_potential:
+    if mechanism is None:
         return ""
     acted = [moment.unknown for moment in split_moments(mechanism).steady]
     return moments_work(model, acted) if acted else ""
@@ -213,10 +213,10 @@ def _data(result: RegionMap, drawn: MapPictures) -> dict[str, Any]:
         "axes": [symbol(name) for name in names],
         "drawable": model.drawable is not None,
         "units": _declared(result.slice),
-        "told": model.tells_stability,
+        "told": "stable" in model.criterion.counts,
         "untold": untold(model),
         "work": _work(model),
-        "landscape": len(model.angles) == len(model.unknowns) == 2 and model.has_potential,
+        "landscape": len(model.angles) == model.criterion.order == 2,
         "index": index_words(len(model.unknowns) + 1),
         "mechanism": drawing_of(model),
         "follow": tape(result),

@@ -7,14 +7,13 @@ known by name, and nothing is computed here.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from math import isfinite
 from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.answer.words import kind_name
 from ptmcad.formulas.script import MAX_CONSTANT, Instruction, script
 from ptmcad.model.compile import CompiledSystem, compiled
+from ptmcad.model.criterion import critical_point
 from ptmcad.question.slice import Slice, relaxed_springs
 
 MAX_OPERATIONS = 2000
@@ -30,7 +29,7 @@ def tape(result: RegionMap) -> dict[str, Any] | None:
     slice = result.slice
     model, system = slice.model, compiled(slice.model)
     relaxed = relaxed_springs(model, slice.parameters)
-    if relaxed and not system.are_slopes:
+    if relaxed and system.tangent:
         return None
     if not any(cell.solutions for cell in result.cells) or not _fits(slice):
         return None
@@ -52,25 +51,22 @@ def tape(result: RegionMap) -> dict[str, Any] | None:
         "angles": len(model.angles),
         "unknowns": n,
         "window": [[float(axis.low), float(axis.high)] for axis in slice.axes],
-        "kinds": ["stable", *(kind_name(k, n) for k in range(1, n + 1))],
+        "kinds": ["stable", *(critical_point(k, n) for k in range(1, n + 1))],
         "stableOnly": _only_stable(result),
     }
 
 
 def _formulas(system: CompiledSystem, relaxed: Sequence[int]) -> dict[str, Any]:
     """What the script draws and follows; what a model does not have is empty."""
-    force = system.stored(relaxed)
-    if not system.are_slopes:
-        force, system = None, replace(system, points={}, loads=())
     return {
-        "force": force,
-        "energy": force if system.has_energy else None,
+        "force": system.stored(relaxed) if system.are_slopes else None,
+        "energy": system.potential(relaxed),
         "equations": () if system.are_slopes else system.equations,
         "conditions": system.inequalities,
         "stability": system.stability,
         "moments": system.acting,
-        "points": system.points,
-        "loads": system.loads,
+        "points": system.shown.points,
+        "loads": system.shown.loads,
     }
 
 

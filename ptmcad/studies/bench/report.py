@@ -14,7 +14,7 @@ from typing import Any
 import pandas as pd
 
 from ptmcad.process.output import Writer, text_writer, write_files
-from ptmcad.show.ranges.table import aligned
+from ptmcad.show.columns import aligned
 from ptmcad.show.render.printing import save as save_figure
 from ptmcad.studies import tables
 from ptmcad.studies.bench.harness import Row

@@ -19,7 +19,7 @@ import pandas as pd
 
 from ptmcad.errors import ConfigError
 from ptmcad.question.counts import Count
-from ptmcad.show.ranges.table import aligned
+from ptmcad.show.columns import aligned
 from ptmcad.studies.bench.error import FIGURES
 from ptmcad.studies.bench.harness import FORMAT, Row, measurement
 from ptmcad.studies.bench.study import RIVALS

@@ -106,7 +106,7 @@ def finest_count(slice: Slice) -> str:
     """The count that shows most; with free lengths the slice's own."""
     if slice.has_free_lengths:
         return slice.count.value
-    return "index" if slice.model.has_potential else "stable" if slice.model.tells_stability else "total"
+    return slice.model.criterion.counts[-1]
 
 
 def _read_map(case: Case, job: Job) -> Row:

@@ -27,7 +27,7 @@ from ptmcad.answer.poses import DIGITS
 from ptmcad.extras import Extra, require
 from ptmcad.model import ptm
 from ptmcad.model.evaluate import value_at
-from ptmcad.show.ranges.table import aligned
+from ptmcad.show.columns import aligned
 from ptmcad.studies.stress.case import FEW, Case, Degenerate, Question, degenerate, free_lengths
 from ptmcad.studies.stress.judgement import Row, judge
 from ptmcad.studies.stress.methods import sextic_poses

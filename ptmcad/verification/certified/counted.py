@@ -5,7 +5,7 @@ Guarantee: data only.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence, Set
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -14,20 +14,19 @@ from ptmcad.answer.counts import MorseIndex
 from ptmcad.answer.regionmap import Cell, RegionMap
 from ptmcad.question.counts import Count
 from ptmcad.verification.certified.boxes import Box, Floats
+from ptmcad.verification.meaning import SignMeaning
 from ptmcad.verification.report import Violation
 
 NAMES = ("total", "stable", "index", "admissible")
 _NEEDED = {
     Count.STABLE: {"stable"},
     Count.ADMISSIBLE: {"stable", "admissible"},
-    Count.TOTAL: {"total", "stable", "index"},
-    Count.INDEX: {"total", "stable", "index"},
 }
 
 
-def needed_for(count: Count, with_index: bool) -> set[str]:
+def needed_for(count: Count, meaning: SignMeaning) -> Set[str]:
     """The names of the counts that a certified map has; without an index all solutions, or stable ones alone."""
-    return _NEEDED[count] if with_index or count.is_of_stable else {"total"}
+    return _NEEDED.get(count, meaning.with_all)
 
 
 def names_in(item: object) -> set[str]:

@@ -14,6 +14,7 @@ from typing import Any
 
 from flint import arb, ctx
 
+from ptmcad.answer.counts import euler_sum
 from ptmcad.answer.regionmap import Solution
 from ptmcad.model import Model
 from ptmcad.question.counts import Count
@@ -311,7 +312,7 @@ def counts_of(form: Form, found: Sequence[Zero], count: Count) -> CellCounts:
     index = tuple(negative[k] for k in range(form.size + 1))
     if count.is_of_stable:
         return CellCounts(None, index[0], None, None)
-    if form.is_smooth_on_a_torus and sum((-1) ** k * number for k, number in enumerate(index)):
+    if form.is_smooth_on_a_torus and euler_sum(index):
         raise Violation(f"critical points of a function on the torus by index {index} contradict Euler's sum")
     return CellCounts(len(found), index[0], index, None)
 

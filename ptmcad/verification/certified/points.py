@@ -12,9 +12,8 @@ from dataclasses import replace
 from fractions import Fraction
 
 from ptmcad.answer.regionmap import Cell
-from ptmcad.question.counts import Count
 from ptmcad.verification.certified.boxes import Unproved, Zero
-from ptmcad.verification.certified.counted import CountedPoint, Places, differs, stored
+from ptmcad.verification.certified.counted import CountedPoint, Places, differs, needed_for, stored
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.waves import form_of, margins_of
@@ -169,15 +168,13 @@ def _check_signs(claims: CertifiedClaims, true: str, said: str, k: int) -> None:
     ------
     Violation, Unproved
     """
-    if claims.result.slice.count is Count.TOTAL and not claims.describes_equilibria:
+    if needed_for(claims.result.slice.count, claims.meaning) == {"total"}:
         if not said:
             return  # of solutions that are all counted nothing need be said
         if not true and len(said) == form_of(claims.result.slice).conditions_for_stability:
             raise Unproved(f"a condition for stability may be zero at the solution {k}")
     if true != said:
-        if not claims.describes_equilibria:
-            raise Violation(f"the conditions for stability at the solution {k} have the signs {true!r}, not {said!r}")
-        raise Violation(f"the Hessian at the solution {k} has eigenvalues of signs {true}, not {said!r}")
+        raise Violation(claims.meaning.at_solution.format(k, true, said))
 
 
 def _check_beside(

@@ -134,7 +134,7 @@ def check_form(claims: CertifiedClaims) -> str:
             raise Violation(f"{patch.frame} is not a frame of the lattice")
         if any(len(tube.controls) < 2 for tube in patch.tubes):
             raise Violation(f"a slanted piece in {patch.frame} has no polynomial")
-    needed = needed_for(r.slice.count, claims.describes_equilibria)
+    needed = needed_for(r.slice.count, claims.meaning)
     for what, items in (("cell", r.cells), ("region", r.regions)):
         for n, item in enumerate(items):
             if (present := names_in(item)) != needed:

@@ -233,7 +233,7 @@ def _form(
     return Form(
         unknowns,
         tuple(name in model.angles for name in unknowns),
-        true.has_index,
+        true.potential is not None,
         tuple(equations),
         tuple(jacobian),
         cones,
