@@ -16,7 +16,6 @@ from typing import NamedTuple
 from flint import fmpq, fmpq_mpoly
 
 from ptmcad.model import Kind, Mechanism, Model, System
-from ptmcad.question.counts import Count
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.tree import names_of
 from ptmcad.verification import xjoints
@@ -62,13 +61,6 @@ def _has_moments_apart(mechanism: Mechanism) -> bool:
 def tells_stability(model: Model) -> bool:
     """Whether it is known what a stable solution is."""
     return has_index(model) or bool(model.stability)
-
-
-def kinds_of_count(model: Model) -> set[Count]:
-    """What may be counted: springs are longer than their free lengths at poses of mechanisms alone."""
-    told = [Count.STABLE] if tells_stability(model) else []
-    with_springs = [Count.ADMISSIBLE] if told and model.whole is not None else []
-    return {Count.TOTAL, *told, *with_springs, *([Count.INDEX] if has_index(model) else [])}
 
 
 class SpringVector(NamedTuple):

@@ -1,0 +1,101 @@
+"""The kinds of count as the checker knows them: of which models, and what is asked of stable solutions besides.
+
+Guarantee: margins are derived here from descriptions, as polynomials; a kind without a row in this table is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from flint import fmpq_mpoly
+
+from ptmcad.model import Model
+from ptmcad.question.counts import Count
+from ptmcad.verification.derivation import Derivation, SpringVector, has_index, tells_stability
+from ptmcad.verification.report import Violation
+
+
+class CheckedMargin(NamedTuple):
+    """What is positive at a stable solution that is counted.
+
+    Attributes
+    ----------
+    value : a polynomial in coordinates and parameters.
+    spring : the value is its squared length less the square of its free length; None of another one.
+    """
+
+    value: fmpq_mpoly
+    spring: SpringVector | None = None
+
+
+def _without_margins(_point: Derivation) -> Iterator[CheckedMargin]:
+    yield from ()
+
+
+class CheckedKind(NamedTuple):
+    """A row of the table.
+
+    Attributes
+    ----------
+    is_of : whether a model has solutions that may be counted so.
+    margins : of a model with or without numbers in the place of parameters; no free length is negative.
+    boundary : the name of the curves on which they vanish.
+    undecided : said where one of them may be zero.
+    has_exact_maps : whether margins say something where no spring has a free length.
+    """
+
+    is_of: Callable[[Model], bool]
+    margins: Callable[[Derivation], Iterator[CheckedMargin]] = _without_margins
+    boundary: str = ""
+    undecided: str = ""
+    has_exact_maps: bool = True
+
+    @property
+    def is_predicate(self) -> bool:
+        """Whether some stable solutions are not counted."""
+        return bool(self.boundary)
+
+
+def _is_of_springs(model: Model) -> bool:
+    return tells_stability(model) and model.whole is not None
+
+
+def _longer_than_free(point: Derivation) -> Iterator[CheckedMargin]:
+    for spring in point.springs:
+        yield CheckedMargin(spring.squared - spring.free**2, spring)
+
+
+_KINDS = {
+    Count.STABLE: CheckedKind(tells_stability),
+    Count.TOTAL: CheckedKind(lambda _model: True),
+    Count.INDEX: CheckedKind(has_index),
+    Count.ADMISSIBLE: CheckedKind(
+        _is_of_springs,
+        _longer_than_free,
+        boundary="free length",
+        undecided="a spring may be as long as its free length",
+        has_exact_maps=False,
+    ),
+}
+"""The table."""
+
+
+def kind_of(count: Count) -> CheckedKind:
+    """Its row of the table.
+
+    Raises
+    ------
+    Violation
+        When there is none.
+    """
+    if count not in _KINDS:
+        raise Violation(f"the checker does not know what {count.value} counts are")
+    return _KINDS[count]
+
+
+def numbers_for(count: Count, with_index: bool) -> set[str]:
+    """The names of the counts that a certified map has; without an index all solutions, or stable ones alone."""
+    if count.is_of_stable:
+        return {"stable", count.value}
+    return {"total", "stable", "index"} if with_index else {"total"}
