@@ -19,8 +19,9 @@ from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.algebra import NotFinite
-from ptmcad.verification.derivation import has_index
-from ptmcad.verification.fibre import FibreAlgebra, fibre
+from ptmcad.verification.derivation import Derivation, derivation_at, derivation_of, has_index
+from ptmcad.verification.fibre import FibreAlgebra, fibre_over
+from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.report import Violation
 from ptmcad.verification.roots import numbered_root
 from ptmcad.verification.sturm import ends_of, roots_between, roots_within
@@ -101,6 +102,11 @@ class Claims:
         """Whether solutions are critical points, which have an index."""
         return has_index(self.model)
 
+    @property
+    def derivation(self) -> Derivation:
+        """What solutions satisfy, in all parameters, with what the count asks of stable ones besides."""
+        return kind_of(self.result.slice.count).with_margins(derivation_of(self.model))
+
     @cached_property
     def base(self) -> tuple[fmpq, fmpq]:
         axis = self.result.slice.axes[self.result.base]
@@ -157,7 +163,8 @@ class Claims:
         if (x, y) in self._fibres:
             return self._fibres[x, y]
         try:
-            self._fibres[x, y] = fibre(self.model, self.parameters_at(x, y))
+            point = derivation_at(self.model, self.parameters_at(x, y))
+            self._fibres[x, y] = fibre_over(kind_of(self.result.slice.count).with_margins(point))
             return self._fibres[x, y]
         except NotFinite:
             raise Violation(f"there are infinitely many solutions at {self.place(x, y)}") from None

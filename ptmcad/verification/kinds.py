@@ -6,6 +6,7 @@ Guarantee: margins are derived here from descriptions, as polynomials; a kind wi
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 from flint import fmpq_mpoly
@@ -55,6 +56,13 @@ class CheckedKind(NamedTuple):
     def is_predicate(self) -> bool:
         """Whether some stable solutions are not counted."""
         return bool(self.boundary)
+
+    def with_margins(self, point: Derivation) -> Derivation:
+        """With the margins as conditions for stability, of a model without free lengths."""
+        if not self.has_exact_maps:
+            return point
+        margins = tuple(margin.value for margin in self.margins(point))
+        return replace(point, stability=(*point.stability, *margins)) if margins else point
 
 
 def _is_of_springs(model: Model) -> bool:

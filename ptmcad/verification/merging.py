@@ -33,7 +33,7 @@ def check_shape(claims: Claims) -> str:
     if not model.unknowns or named != set(parameters_of(model)):
         raise Violation(f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others")
     kind = kind_of(r.slice.count)
-    if not kind.has_exact_maps:
+    if not kind.has_exact_maps or (kind.is_predicate and not claims.describes_equilibria):
         raise Violation(f"an exact map has no {r.slice.count.value} counts by which its regions could be distinguished")
     if not kind.is_of(model):
         raise Violation(f"{model.name} has no {r.slice.count.value} counts by which regions could be distinguished")
