@@ -7,6 +7,7 @@ true gradient.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
@@ -70,6 +71,9 @@ class TrigonometricRing(NamedTuple):
     @property
     def context(self) -> fmpq_mpoly_ctx:
         return fmpq_mpoly_ctx.get(self.parameters + self.coordinates, Ordering.degrevlex)
+
+    def constant(self, value: Fraction) -> TrigonometricPolynomial:
+        return self.context.constant(fmpq(value.numerator, value.denominator))
 
     def parameter(self, name: str) -> TrigonometricPolynomial:
         """A parameter or a real unknown."""

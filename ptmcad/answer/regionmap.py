@@ -175,7 +175,8 @@ class Cell(Counted):
     """An open cell with its rational sample point and the counts there, which hold in the whole cell.
 
     In a certified map ``stack`` is None and the cell is the connected component of the cover's complement that holds
-    its sample; ``level`` is its number. ``further`` is empty in an exact map.
+    its sample; ``level`` is its number. ``further`` is empty in an exact map that is
+    by no predicate.
 
     ``solutions`` proves the counts: disjoint boxes, one around each of the real solutions at the sample. Empty when the
     counts were proved in another way.

@@ -149,8 +149,6 @@ def region_map(slice: Slice, options: Options, known: Known | None = None) -> Re
         without_free_lengths(slice.model, slice.parameters, "an exact map is")
     except ConfigError as error:
         raise ConfigError(f"{error.message}: choose certified or auto", key="engine") from error
-    if slice.count.kind.predicate is not None:
-        raise ConfigError(f"only the certified engine counts by {slice.count.value}", key="engine")
     if options.resume is not None:
         raise ConfigError("only the certified engine can go on from an earlier map", key="resume")
     if "imports" in options.without:

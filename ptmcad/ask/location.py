@@ -59,7 +59,7 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
     cell = result.cells[number]
     # in a map that was stopped before its areas were known, the counts are exact all the same
     status = Status.EXACT if result.status is Status.PARTIAL else result.status
-    return Location(status, cell.region, number, cell.total, cell.stable, cell.index)
+    return Location(status, cell.region, number, cell.total, cell.stable, cell.index, cell.further)
 
 
 def _cell_at(result: RegionMap, u: fmpq, v: fmpq) -> int:
@@ -90,7 +90,9 @@ def _on_curves(result: RegionMap, met: Sequence[Component], at: tuple[fmpq, fmpq
     """A point on curves of the variety: with the counts there, where solutions are regular and no count changes."""
     many = next((c.continuum for c in met if c.continuum is not None), None)
     remark = "" if many is None else f"{many.value} {noun(result.slice.model)}"
-    if remark or any(c.separates for c in met) or any(c.kind is Kind.BOUNDARY for c in met):
+    # a margin of a predicate may be zero on a critical curve, too
+    is_predicate = result.slice.count.kind.predicate is not None
+    if remark or is_predicate or any(c.separates or c.kind is Kind.BOUNDARY for c in met):
         return Location(Status.ON_VARIETY, remark=remark)
     slice = result.slice
     system = system_from(slice.model)

@@ -30,8 +30,9 @@ FIELDS = ("status", "region", "cell", "total", "stable", "index")
 
 
 def fields_of(result: RegionMap) -> tuple[str, ...]:
-    """What is reported of a point: in a certified map also at how many stable equilibria predicates hold."""
-    return FIELDS if result.cover is None else (*FIELDS, *further_names(result.slice.count))
+    """What is reported of a point: also at how many stable equilibria predicates hold, where the map's cells say so."""
+    exact = result.cells[0].further if result.cells else {}
+    return (*FIELDS, *(exact if result.cover is None else further_names(result.slice.count)))
 
 
 def answer(location: Location, fields: Sequence[str] = FIELDS) -> list[str]:

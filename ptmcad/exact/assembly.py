@@ -76,10 +76,10 @@ def assemble(
         else tuple(replace(c, separates=n in separating) for n, c in enumerate(variety.components)),
         critical_values=() if cells is None else critical_values_of(cells.projection),
         stacks=() if cells is None else stacks_of_cells(cells.stacks.stacks),
-        cells=() if cells is None else tuple(_cells(cells, samples)),
+        cells=() if cells is None else tuple(_cells(problem, cells, samples)),
         adjacencies=adjacencies,
         non_adjacencies=() if cells is None else _non_adjacencies(cells.stacks.stacks, cells.neighbours.crossings),
-        regions=() if cells is None else _regions(cells, samples, areas, problem.area),
+        regions=() if cells is None else _regions(problem, cells, samples, areas),
         plan=(
             *plan_of(problem.slice, variety.components, variety.base, variety.costs, options.without, options.areas),
             *half_step("areas on", None if areas is None else areas.change, problem.slice),
@@ -118,13 +118,20 @@ def critical_values_of(projection: Projection) -> tuple[CriticalValue, ...]:
     )
 
 
-def _cells(cells: Cells, samples: Sequence[Point]) -> Iterator[Cell]:
+def _further(problem: SliceProblem, key: tuple[int, ...]) -> dict[str, int]:
+    """Where a count is by a predicate, how many solutions this holds at, from what tells regions apart."""
+    count = problem.slice.count
+    return {} if count.kind.predicate is None else {count.value: key[0]}
+
+
+def _cells(problem: SliceProblem, cells: Cells, samples: Sequence[Point]) -> Iterator[Cell]:
     places = ((s, level) for s, stack in enumerate(cells.stacks.stacks) for level in range(len(stack.heights)))
-    for (s, level), sample, region, found in zip(
-        places, samples, cells.neighbours.region_of, cells.counts.found, strict=True
+    for (s, level), sample, region, found, key in zip(
+        places, samples, cells.neighbours.region_of, cells.counts.found, cells.counts.keys, strict=True
     ):
         counts = found.counts
-        yield Cell(s, level, sample, region, counts.total, counts.stable, counts.index, _solutions(found))
+        further = _further(problem, key)
+        yield Cell(s, level, sample, region, counts.total, counts.stable, counts.index, _solutions(found), further)
 
 
 def _non_adjacencies(stacks: Sequence[StackData], crossings: Sequence[Crossing]) -> tuple[NonAdjacency, ...]:
@@ -161,17 +168,15 @@ def stacks_of_cells(stacks: Sequence[StackData]) -> tuple[Stack, ...]:
     return tuple(result)
 
 
-def _regions(cells: Cells, samples: Sequence[Point], areas: Areas | None, whole: Fraction) -> tuple[Region, ...]:
-    """The cells merged, in the order of the regions' numbers.
-
-    Parameters
-    ----------
-    whole : the window's area.
-    """
+def _regions(problem: SliceProblem, cells: Cells, samples: Sequence[Point], areas: Areas | None) -> tuple[Region, ...]:
+    """The cells merged, in the order of the regions' numbers."""
     merged = members(cells.neighbours.region_of)
-    bounds = ((Fraction(0), whole),) * len(merged) if areas is None else areas.bounds
+    bounds = ((Fraction(0), problem.area),) * len(merged) if areas is None else areas.bounds
     return tuple(
-        _region(numbers, [cells.counts.found[n].counts for n in numbers], samples, area)
+        replace(
+            _region(numbers, [cells.counts.found[n].counts for n in numbers], samples, area),
+            further=_further(problem, cells.counts.keys[numbers[0]]),
+        )
         for numbers, area in zip(merged, bounds, strict=True)
     )
 

@@ -41,11 +41,13 @@ class Equilibrium(NamedTuple):
     center, radius : decimals.
     signs : of the Hessian's eigenvalues, positive ones first; without a potential, of the stability conditions in their
         order, 0 where one is zero.
+    is_held : whether all conditions for stability are positive; of a potential those that a count asks for besides.
     """
 
     center: tuple[fmpq, ...]
     radius: fmpq
     signs: str
+    is_held: bool = True
 
 
 class Equilibria(NamedTuple):
@@ -54,11 +56,13 @@ class Equilibria(NamedTuple):
     Attributes
     ----------
     bits : the precision at which every sign was certain and the boxes were disjoint.
+    held : the number of stable ones at which all conditions for stability are positive.
     """
 
     counts: Counts
     solutions: tuple[Equilibrium, ...]
     bits: int
+    held: int = 0
 
 
 def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None = None) -> Counts:
@@ -97,7 +101,7 @@ def equilibria(system: ParametricSystem, values: Mapping[str, fmpq], most: WorkL
     counts = _counts(system, found)
     if counts.index is not None and system.is_on_torus and euler_sum(counts.index):
         raise ArithmeticError(f"the Euler sum of {counts} at {text_of_point(values)} is not zero")
-    return Equilibria(counts, found, bits)
+    return Equilibria(counts, found, bits, sum(e.is_held and not e.signs.strip("+") for e in found))
 
 
 def _counts(system: ParametricSystem, found: Sequence[Equilibrium]) -> Counts:
@@ -132,6 +136,7 @@ def _enclosed(
             if signs[:inequalities].strip("+"):
                 continue
             signs = signs[inequalities:]
+            is_held = not signs.strip("+")
             if hessian:
                 negative = _negative_eigenvalues(hessian, size, unknowns)
                 if negative is None:
@@ -145,7 +150,7 @@ def _enclosed(
             # where all inequalities hold there is no solution that does not count
             if not all(_value(p, around) > 0 for p in conditions[:inequalities]):
                 return None
-            found.append(Equilibrium(center, radius, signs))
+            found.append(Equilibrium(center, radius, signs, is_held))
     disjoint = all(
         any(abs(x - y) > _ROOM * (a.radius + b.radius) for x, y in zip(a.center, b.center, strict=True))
         for a, b in combinations(found, 2)

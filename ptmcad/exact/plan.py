@@ -55,7 +55,7 @@ def plan_of(
     """
     steps = list(beforehand(slice, without, areas))
     # on the line real solutions may leave every bounded set, and conditions change signs: all such curves are used
-    if not slice.model.reals and not _has_conditions(slice.model):
+    if not slice.model.reals and not _has_conditions(slice):
         steps.append(saving_step("infinity", without, why=_of_jacobian(slice.model, "infinity")))
     if "no-real-points" in without:
         steps.append(saving_step("no-real-points", without))
@@ -69,9 +69,9 @@ def plan_of(
     return tuple(steps)
 
 
-def _has_conditions(model: Model) -> bool:
-    known = compiled(model)
-    return bool(known.inequalities or known.stability)
+def _has_conditions(slice: Slice) -> bool:
+    known = compiled(slice.model)
+    return bool(known.inequalities or known.stability or slice.count.kind.predicate)
 
 
 def _sign_curve(model: Model, without: frozenset[str]) -> Iterator[PlanStep]:

@@ -50,7 +50,7 @@ def counts_by_component(
         first = min(cells, key=lambda n: _height(stacks.points[n]))
         there = problem.solved_at(stacks.points[first])
         for n in cells:
-            found[n] = there if n == first else Equilibria(there.counts, (), there.bits)
+            found[n] = there if n == first else there._replace(solutions=())
     return with_keys(problem, [e for e in found if e is not None])
 
 

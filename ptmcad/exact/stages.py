@@ -23,7 +23,7 @@ from ptmcad.exact.cad.curves import FibredCurve, curves_of, lines_of
 from ptmcad.exact.cad.projection import Projection, predicted_cost, project
 from ptmcad.exact.cad.stacks import Avoided, StackData, level_at, lift
 from ptmcad.exact.counting import Equilibria, equilibria
-from ptmcad.exact.models import ParametricSystem, system_from
+from ptmcad.exact.models import ParametricSystem, system_counted
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.exact.regions import Link, merge
 from ptmcad.exact.variety import Known, check_hypotheses, discriminant_variety
@@ -161,7 +161,7 @@ class Cells(NamedTuple):
 
 def problem_of(slice: Slice) -> SliceProblem:
     """The slice in the ring of the engine."""
-    system = system_from(slice.model)
+    system = system_counted(slice.model, slice.count)
     parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
     first, second = ((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)
     return SliceProblem(slice, system, parameters, (first, second))
@@ -269,7 +269,10 @@ def counts_of(problem: SliceProblem, stacks: Stacks, report: Report = unreported
 
 def with_keys(problem: SliceProblem, found: Sequence[Equilibria]) -> SampleCounts:
     """The equilibria with what tells regions apart."""
-    return SampleCounts(tuple(found), tuple(count_key(e.counts, problem.slice.count) for e in found))
+    count = problem.slice.count
+    is_predicate = count.kind.predicate is not None
+    keys = ((e.held,) if is_predicate else count_key(e.counts, count) for e in found)
+    return SampleCounts(tuple(found), tuple(keys))
 
 
 def count_key(counts: Counts, count: Count) -> tuple[int, ...]:

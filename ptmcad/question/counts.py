@@ -2,7 +2,7 @@
 
 Guarantee: data and plain functions that look at no solution. The question, both engines, answers with their documents,
 tables, pictures and pages read this table for words, colours and margins; a new kind with a predicate is a new row,
-and rows in the checker, which derives predicates by itself.
+and one in the checker, which derives predicates by itself (`ptmcad.verification.kinds`).
 """
 
 from __future__ import annotations

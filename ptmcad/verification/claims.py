@@ -19,8 +19,9 @@ from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.algebra import NotFinite
-from ptmcad.verification.derivation import meaning_of
-from ptmcad.verification.fibre import FibreAlgebra, fibre
+from ptmcad.verification.derivation import Derivation, derivation_at, derivation_of, meaning_of
+from ptmcad.verification.fibre import FibreAlgebra, fibre_over
+from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.meaning import SignMeaning
 from ptmcad.verification.report import Violation
 from ptmcad.verification.roots import numbered_root
@@ -102,6 +103,11 @@ class Claims:
         """Of the signs at solutions."""
         return meaning_of(self.model)
 
+    @property
+    def derivation(self) -> Derivation:
+        """What solutions satisfy, in all parameters, with what the count asks of stable ones besides."""
+        return kind_of(self.result.slice.count).with_margins(derivation_of(self.model))
+
     @cached_property
     def base(self) -> tuple[fmpq, fmpq]:
         axis = self.result.slice.axes[self.result.base]
@@ -158,7 +164,8 @@ class Claims:
         if (x, y) in self._fibres:
             return self._fibres[x, y]
         try:
-            self._fibres[x, y] = fibre(self.model, self.parameters_at(x, y))
+            point = derivation_at(self.model, self.parameters_at(x, y))
+            self._fibres[x, y] = fibre_over(kind_of(self.result.slice.count).with_margins(point))
             return self._fibres[x, y]
         except NotFinite:
             raise Violation(f"there are infinitely many solutions at {self.place(x, y)}") from None

@@ -14,16 +14,18 @@ from ptmcad.model import Model
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.fibre import FibreAlgebra
+from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.report import Violation
 
 
 def check_counts(claims: Claims) -> str:
     """Total, stable and index of every cell; on a torus the sum of the signs; lengths and stiffnesses positive."""
-    model = claims.model
+    model, name = claims.model, claims.result.slice.count.value
+    kind = kind_of(claims.result.slice.count)
     for n, cell in enumerate(claims.result.cells):
-        where = ", ".join(f"{name}={text_of(cell.sample[name])}" for name in cell.sample.names)
-        if (name := not_positive(model, claims.parameters_at(*cell.sample))) is not None:
-            raise Violation(f"{name} is not positive at {where} in cell {n}")
+        where = ", ".join(f"{axis}={text_of(cell.sample[axis])}" for axis in cell.sample.names)
+        if (wrong := not_positive(model, claims.parameters_at(*cell.sample))) is not None:
+            raise Violation(f"{wrong} is not positive at {where} in cell {n}")
         fibre = claims.fibre_at(*cell.sample)
         counts = fibre.counts()
         if counts is None:
@@ -33,6 +35,8 @@ def check_counts(claims: Claims) -> str:
         stored = Counts(cell.total or 0, cell.stable, cell.index)
         if cell.total is None or stored != counts:
             raise Violation(f"cell {n} is said to have {_text(stored)}; at {where} there are {_text(counts)}")
+        if kind.is_predicate and cell.further != (true := {name: fibre.number_held()}):
+            raise Violation(f"cell {n} is said to have {_further(cell.further)}; at {where} there are {_further(true)}")
     return f"{len(claims.result.cells)} samples"
 
 
@@ -41,6 +45,10 @@ def _euler_sum(fibre: FibreAlgebra, counts: Counts) -> int:
     if counts.index is None:
         return fibre.balance()
     return euler_sum(counts.index)
+
+
+def _further(numbers: Mapping[str, int]) -> str:
+    return ", ".join(f"{number} {name}" for name, number in numbers.items()) or "no further count"
 
 
 def _text(counts: Counts) -> str:

@@ -64,12 +64,6 @@ def _has_moments_apart(mechanism: Mechanism) -> bool:
     return any(unknowns.intersection(names_of(tree)) - {unknown} for unknown, tree in mechanism.work.items())
 
 
-def kinds_of_count(model: Model) -> set[Count]:
-    """What may be counted: springs are longer than their free lengths at poses of mechanisms alone."""
-    kinds = {*meaning_of(model).kinds}
-    return kinds | {Count.ADMISSIBLE} if Count.STABLE in kinds and model.whole is not None else kinds
-
-
 class SpringVector(NamedTuple):
     """A spring of the description; with a free length, stiffness times free length times |vector| is off the energy."""
 

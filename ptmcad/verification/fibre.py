@@ -139,6 +139,10 @@ class FibreAlgebra:
         wanted = [*required, *(self.matrix(p) for p in self.point.stability)]
         return Counts(total, self._number(wanted), None)
 
+    def number_held(self) -> int:
+        """The number of the minima that count at which all conditions for stability are positive: a count's margins."""
+        return self._index([self.matrix(p) for p in self.conditions])[0]
+
     def within(self, center: Sequence[Fraction], radius: Fraction, *, counted: bool) -> tuple[int, list[fmpq_mat]]:
         """The number of the real solutions in an open box, and functions that are all positive at these and no others.
 
@@ -247,7 +251,12 @@ class FibreAlgebra:
 
 
 def fibre(model: Model, values: Mapping[str, Fraction]) -> FibreAlgebra:
-    """The fibre over rational values of the parameters.
+    """The fibre over rational values of the parameters, as `fibre_over` has it."""
+    return fibre_over(derivation_at(model, values))
+
+
+def fibre_over(point: Derivation) -> FibreAlgebra:
+    """The algebra of the solutions at rational values of the parameters.
 
     Where some solution is degenerate, or an inequality's polynomial vanishes at one, it is that of the solutions at
     which no inequality's polynomial does.
@@ -257,7 +266,6 @@ def fibre(model: Model, values: Mapping[str, Fraction]) -> FibreAlgebra:
     NotFinite
         When there are infinitely many complex solutions.
     """
-    point = derivation_at(model, values)
     if not point.inequalities:
         return FibreAlgebra(*algebra(point.generators(), point.coordinates), point)
     try:

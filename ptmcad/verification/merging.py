@@ -10,11 +10,11 @@ from collections import defaultdict, deque
 from itertools import pairwise
 
 from ptmcad.answer.regionmap import Cell, Merge, Status
-from ptmcad.question.counts import Count
 from ptmcad.text.numerals import approximate_text
-from ptmcad.verification.certified.counted import check_region, names_in
+from ptmcad.verification.certified.counted import check_region
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import kinds_of_count, parameters_of, shorthands_of
+from ptmcad.verification.derivation import parameters_of, shorthands_of
+from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.report import Violation
 
 
@@ -32,13 +32,15 @@ def check_shape(claims: Claims) -> str:
     named = set(r.slice.parameters) - set(shorthands_of(model))
     if not model.unknowns or named != set(parameters_of(model)):
         raise Violation(f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others")
-    if r.slice.count not in _KEYS:
+    kind = kind_of(r.slice.count)
+    if not kind.has_exact_maps or (kind.is_predicate and not claims.meaning.order):
         raise Violation(f"an exact map has no {r.slice.count.value} counts by which its regions could be distinguished")
-    if r.slice.count not in kinds_of_count(model):
+    if not kind.is_of(model):
         raise Violation(f"{model.name} has no {r.slice.count.value} counts by which regions could be distinguished")
     if any(a.low >= a.high for a in r.slice.axes) or r.base not in (0, 1):
         raise Violation("the window is empty")
-    if further := {name for item in (*r.cells, *r.regions) for name in names_in(item)} - {*_KEYS.values()}:
+    known = {r.slice.count.value} if kind.is_predicate else set()
+    if further := {name for item in (*r.cells, *r.regions) for name in item.further} - known:
         raise Violation(f"an exact map has counts of {further.pop()} equilibria")
     if not r.stacks:
         if r.status is Status.EXACT or r.critical_values or r.cells or r.adjacencies or r.non_adjacencies or r.regions:
@@ -83,17 +85,9 @@ def _is_index(value: object, length: int) -> bool:
     return isinstance(value, int) and 0 <= value < length
 
 
-_KEYS = {Count.STABLE: "stable", Count.TOTAL: "total", Count.INDEX: "index"}
-"""The counts by which regions of an exact map are distinguished."""
-
-
 def _counts(cell: Cell) -> object:
     """All that is counted, in few words."""
-    return (cell.total, cell.stable) if cell.index is None else cell.index
-
-
-def _key(cell: Cell, count: Count) -> object:
-    return getattr(cell, _KEYS[count])
+    return ((cell.total, cell.stable) if cell.index is None else cell.index) + (*cell.further.values(),)
 
 
 def check_merges(claims: Claims) -> str:
@@ -102,7 +96,7 @@ def check_merges(claims: Claims) -> str:
     separating = set()
     for k, a in enumerate(r.adjacencies):
         first, second = r.cells[a.first], r.cells[a.second]
-        equal = _key(first, r.slice.count) == _key(second, r.slice.count)
+        equal = first.number(r.slice.count) == second.number(r.slice.count)
         if a.component is None:
             kind = Merge.PROVEN
             if (one := _counts(first)) != (other := _counts(second)):

@@ -62,7 +62,7 @@ def check_system(claims: Claims) -> str:
         raise Violation(f"the unknowns are {system.unknowns}, not {unknowns}")
     if len(set(unknowns) | set(parameters_of(model))) != len(unknowns) + len(parameters_of(model)):
         raise Violation("a parameter has the name of a coordinate, so that no text can be understood")
-    true = derivation_of(model)
+    true = claims.derivation
     ring = true.ring
     names = dict(zip((*unknowns, *ring.names[len(unknowns) :]), ring.context.gens(), strict=True))
     parsed = partial(_parsed, ring, names)

@@ -16,9 +16,10 @@ from math import gcd
 
 from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, Kind, PlanStep, RegionMap
 from ptmcad.errors import ConfigError
-from ptmcad.model import Model
+from ptmcad.question.slice import Slice
 from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.derivation import derivation_of
+from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.report import Violation
 from ptmcad.verification.window import plainly_outside
 
@@ -97,7 +98,7 @@ def _expected(result: RegionMap) -> Iterator[PlanStep]:
     """The plan; the reason is empty where predicted costs decided."""
     names = result.slice.axis_names
     zero = ", ".join(n for n, e in result.slice.parameters.items() if not e.numerator)
-    for saving, what, why in _general(result.slice.model):
+    for saving, what, why in _general(result.slice):
         if saving == "equal-counts" and _NO_AREAS in result.plan:
             yield _NO_AREAS
         elif zero or saving:
@@ -113,9 +114,10 @@ def _expected(result: RegionMap) -> Iterator[PlanStep]:
         yield PlanStep("discriminants and resultants of full degree", False, why, "even-powers")
 
 
-def _general(model: Model) -> Iterator[tuple[str, str, str]]:
-    """What a plan says of every slice of a model: names, subjects and reasons."""
-    true = derivation_of(model)
+def _general(slice: Slice) -> Iterator[tuple[str, str, str]]:
+    """What a plan says of every slice of a model by a kind of count: names, subjects and reasons."""
+    model = slice.model
+    true = kind_of(slice.count).with_margins(derivation_of(model))
     kept = bool(model.reals or true.inequalities or true.stability)
     for saving, what, why in _GENERAL:
         if saving == "sign-curve" and true.meaning.order < 2:

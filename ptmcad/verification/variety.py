@@ -37,7 +37,7 @@ from ptmcad.answer.regionmap import HARMLESS, Kind
 from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import coordinates_of, derivation_of
+from ptmcad.verification.derivation import coordinates_of
 from ptmcad.verification.fibre import FibreAlgebra
 from ptmcad.verification.plane import factors, polynomial
 from ptmcad.verification.report import Violation
@@ -186,7 +186,7 @@ def _conditions(claims: Claims) -> dict[int, str]:
     With closed loops or X-joints the conditions for stability are those for a matrix to be definite, the last of them
     its determinant: where that is not zero the matrix does not stop or begin to be definite.
     """
-    true = derivation_of(claims.model)
+    true = claims.derivation
     inequalities, stability = len(true.inequalities), len(true.stability)
     first = max(stability - 1, 0) if true.is_definite else 0
     return {k: f"inequality {k}" for k in range(inequalities)} | {

@@ -16,6 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.counting import MIDDLE, claims_of, counted_at
 from support.examples import examples
+from support.maps import shipped
 from support.paper_energy import NAMES, PaperEnergy
 
 import ptmcad
@@ -27,6 +28,7 @@ from ptmcad.options import Options
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Point
 from ptmcad.text.balls import ball_of
+from ptmcad.verification import kinds
 from ptmcad.verification.certified.boxes import Unproved, halves
 from ptmcad.verification.certified.field import BallEquations
 from ptmcad.verification.certified.points import counting_of
@@ -675,3 +677,13 @@ def test_solutions_of_a_cell_are_where_the_check_finds_them(total: RegionMap) ->
                 )
                 for e in found
             )
+
+
+def test_a_count_that_the_checker_does_not_know_is_refused(stable: RegionMap, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A kind that records, engines and documents have, and that has no row in the checker's table."""
+    monkeypatch.delitem(kinds._KINDS, Count.ADMISSIBLE)
+    slice = replace(stable.slice, count=Count.ADMISSIBLE)
+    report = ptmcad.verify(replace(stable, slice=slice), boxes=0)
+    assert report.violation == "form: the checker does not know what admissible counts are"
+    exact = ptmcad.verify(replace(shipped("fig4"), slice=replace(shipped("fig4").slice, count=Count.ADMISSIBLE)))
+    assert exact.violation == "shape: the checker does not know what admissible counts are"

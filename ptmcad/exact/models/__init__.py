@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from ptmcad.exact.models.potential import system_from
+from ptmcad.exact.models.potential import system_counted, system_from
 from ptmcad.exact.models.system import ParametricSystem
 from ptmcad.model import mechanism_of
 
-__all__ = ["ParametricSystem", "system_from", "system_of"]
+__all__ = ["ParametricSystem", "system_counted", "system_from", "system_of"]
 
 
 def system_of(mechanism: str) -> ParametricSystem:

@@ -12,13 +12,15 @@ from functools import lru_cache, partial
 from typing import NamedTuple
 
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
+from ptmcad.errors import ConfigError
 from ptmcad.exact.models.system import ParametricSystem, from_equations
 from ptmcad.exact.models.turns import with_turns
 from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.values import values
 from ptmcad.model import Model
 from ptmcad.model.compile import compiled
-from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.model.evaluate import evaluate
+from ptmcad.question.counts import Count
 
 
 class Expansion(NamedTuple):
@@ -28,7 +30,7 @@ class Expansion(NamedTuple):
     names: tuple[str, ...]
 
     def constant(self, value: Fraction) -> TrigonometricPolynomial:
-        return self.ring.context.constant(from_fraction(value))
+        return self.ring.constant(value)
 
     def variable(self, number: int) -> TrigonometricPolynomial:
         return self.ring.parameter(self.names[number])
@@ -68,3 +70,21 @@ def system_from(model: Model) -> ParametricSystem:
         criterion=known.criterion,
     )
     return with_turns(system)
+
+
+def system_counted(model: Model, count: Count) -> ParametricSystem:
+    """The same, with the margins of a count's predicate as conditions for stability.
+
+    Raises
+    ------
+    ConfigError
+        Where nothing but conditions says what is stable, but a predicate asks for more.
+    """
+    system, predicate, mechanism = system_from(model), count.kind.predicate, model.whole
+    if predicate is None or mechanism is None:
+        return system
+    if not system.criterion.order:
+        raise ConfigError(f"without a potential only the certified engine counts by {count.value}", key="engine")
+    ring = system.ring
+    margins = tuple(ring.reduce(evaluate(margin.value, ring)) for margin in predicate.margins(mechanism))
+    return with_turns(system._replace(stability=margins, turns=None))

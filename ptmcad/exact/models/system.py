@@ -46,7 +46,8 @@ class ParametricSystem(NamedTuple):
     potential : U, in units of force times length, without the work of constant moments, which are in the equations
         alone; None where equations are given, or a moment depends on another unknown than its own.
     inequalities : a solution counts where all of them are positive.
-    stability : where there is no potential a solution is stable where all of these are positive.
+    stability : where there is no potential a solution is stable where all of these are positive; of a potential what
+        is asked of a stable solution besides, where a count is by a predicate.
     positive : parameters that must be positive (rod lengths and stiffnesses).
     nonnegative : parameters that must not be negative (the base length).
     criterion : what is known of solutions.

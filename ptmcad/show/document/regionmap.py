@@ -27,7 +27,7 @@ from ptmcad.answer.regionmap import (
     System,
     Wall,
 )
-from ptmcad.question.counts import PREDICATES
+from ptmcad.question.counts import PREDICATES, Count
 from ptmcad.question.slice import Point, Slice
 from ptmcad.show.document.cover import COVER, cover_line
 from ptmcad.show.document.numbers import INDEX, merged
@@ -83,7 +83,7 @@ def read(text: str) -> RegionMap:
     slice = SLICE.read(document.entry("slice"))
     certified = "cover" in document.value
     status = _STATUS.read(document.entry("status"))
-    if not certified and (status is Status.CERTIFIED or slice.count.kind.predicate is not None):
+    if not certified and (status is Status.CERTIFIED or _needs_cover(slice.count)):
         raise document.fault("lacks the key 'cover', which a certified map has")
     if certified and status not in (Status.CERTIFIED, Status.PARTIAL):
         raise document.entry("status").fault("is not that of a map with a cover")
@@ -91,6 +91,11 @@ def read(text: str) -> RegionMap:
         if (place := document.entry(key)).value != []:
             raise place.fault("is not empty, as it is in a map with a cover")
     return _codec(slice.axis_names, certified, slice).read(document)
+
+
+def _needs_cover(count: Count) -> bool:
+    predicate = count.kind.predicate
+    return predicate is not None and predicate.needs_free_lengths
 
 
 _ALWAYS = Key(COUNT, entry_of="further")
@@ -132,7 +137,7 @@ def _codec(names: tuple[str, str], certified: bool, slice: Slice | None = None) 
     )
     known[Status] = _STATUS
     known[Component] = record_of(Component, known, **unless_default(Component, "continuum"))
-    predicates = PREDICATES if certified else {}
+    predicates = {name: each for name, each in PREDICATES.items() if certified or not each.needs_free_lengths}
     further = {name: _ALWAYS if each.is_always_stored else _WHERE_COUNTED for name, each in predicates.items()}
     known[Region] = record_of(Region, known, area=area, index=INDEX, further=None, **further)
     stack = _NO_STACK if certified else NATURAL

@@ -5,41 +5,30 @@ Guarantee: data only.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence, Set
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.answer.counts import MorseIndex
+from ptmcad.answer.counts import Counted, MorseIndex
 from ptmcad.answer.regionmap import Cell, RegionMap
-from ptmcad.question.counts import Count
 from ptmcad.verification.certified.boxes import Box, Floats
-from ptmcad.verification.meaning import SignMeaning
 from ptmcad.verification.report import Violation
 
-NAMES = ("total", "stable", "index", "admissible")
-_NEEDED = {
-    Count.STABLE: {"stable"},
-    Count.ADMISSIBLE: {"stable", "admissible"},
-}
 
-
-def needed_for(count: Count, meaning: SignMeaning) -> Set[str]:
-    """The names of the counts that a certified map has; without an index all solutions, or stable ones alone."""
-    return _NEEDED.get(count, meaning.with_all)
-
-
-def names_in(item: object) -> set[str]:
-    """The names of the counts that a cell or a region has."""
-    return {name for name in NAMES if getattr(item, name) is not None}
+def numbers_in(item: Counted) -> dict[str, int | MorseIndex]:
+    """The counts that are known of a cell, a region or a place, by their names."""
+    known = {"total": item.total, "stable": item.stable, "index": item.index, **item.further}
+    return {name: value for name, value in known.items() if value is not None}
 
 
 def contradiction_in(cell: Cell) -> str:
     """What counts of a cell cannot be; empty where they can."""
-    if any(getattr(cell, name) < 0 for name in names_in(cell) - {"index"}):
+    if any(number < 0 for number in numbers_in(cell).values() if isinstance(number, int)):
         return "a negative count"
-    if cell.admissible is not None and cell.stable is not None and cell.admissible > cell.stable:
-        return f"{cell.admissible} admissible equilibria among {cell.stable} stable ones"
+    for name, number in cell.further.items():
+        if cell.stable is not None and number > cell.stable:
+            return f"{number} {name} equilibria among {cell.stable} stable ones"
     return ""
 
 
@@ -51,37 +40,32 @@ def check_region(r: RegionMap, number: int, members: Collection[int]) -> None:
     Violation
     """
     region = r.regions[number]
-    for name in NAMES:
-        values = {getattr(r.cells[n], name) for n in members}
+    said, cells = numbers_in(region), [numbers_in(r.cells[n]) for n in members]
+    for name in dict.fromkeys(name for known in (said, *cells) for name in known):
+        values = {known.get(name) for known in cells}
         expected = values.pop() if len(values) == 1 else None
-        if getattr(region, name) != expected:
-            raise Violation(f"region {number}: {name} is {expected}, not {getattr(region, name)}")
+        if said.get(name) != expected:
+            raise Violation(f"region {number}: {name} is {expected}, not {said.get(name)}")
     if tuple(region.sample) not in {tuple(r.cells[n].sample) for n in members}:
         raise Violation(f"the sample of region {number} is not the sample of one of its cells")
 
 
 @dataclass(frozen=True, slots=True)
-class CellCounts:
+class CellCounts(Counted):
     """What a `Count` asks for; None what it does not need."""
 
-    total: int | None
-    stable: int | None
-    index: MorseIndex | None
-    admissible: int | None
+    total: int | None = None
+    stable: int | None = None
+    index: MorseIndex | None = None
+    further: Mapping[str, int] = field(default_factory=dict)
 
     def __str__(self) -> str:
-        parts = [("total", self.total), ("stable", self.stable), ("index", self.index), ("admissible", self.admissible)]
-        return ", ".join(f"{name} {value}" for name, value in parts if value is not None)
-
-
-def with_further(counts: CellCounts, count: Count, number: Callable[[], int]) -> CellCounts:
-    """The counts, and the number of those stable solutions of which a kind of count asks more."""
-    return replace(counts, admissible=number()) if count is Count.ADMISSIBLE else counts
+        return ", ".join(f"{name} {value}" for name, value in numbers_in(self).items())
 
 
 def stored(cell: Cell) -> CellCounts:
     """The counts of a cell as they are stored."""
-    return CellCounts(cell.total, cell.stable, cell.index, cell.admissible)
+    return CellCounts(cell.total, cell.stable, cell.index, cell.further)
 
 
 def differs(cell: Cell, true: CellCounts) -> bool:

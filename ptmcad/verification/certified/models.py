@@ -21,7 +21,7 @@ from ptmcad.question.counts import Count
 from ptmcad.question.slice import Point, Slice
 from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import MIN_HALF_WIDTH, Box, Floats, Unproved, Zero, is_same
-from ptmcad.verification.certified.counted import CellCounts, CountedPoint, Where, with_further
+from ptmcad.verification.certified.counted import CellCounts, CountedPoint, Where
 from ptmcad.verification.certified.field import BallEquations, Matrix
 from ptmcad.verification.certified.kinks import Sides, sides
 from ptmcad.verification.certified.narrow import Function, judged, only
@@ -32,6 +32,7 @@ from ptmcad.verification.certified.spectrum import inertia
 from ptmcad.verification.certified.terms import evaluated
 from ptmcad.verification.certified.waves import Form, Margin
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.report import Violation
 
 PRECISIONS = ((53, MIN_HALF_WIDTH), (128, 2.0**-80))
@@ -96,10 +97,13 @@ class ModelCounting:
         Unproved
             When a margin may be zero at a stable solution.
         """
-        field = BallEquations(self.form, values, [margin.squared for margin in self.margins])
+        counts, kind = counts_of(self.form, found, count), kind_of(count)
+        if not kind.is_predicate:
+            return counts
+        field = BallEquations(self.form, values, [margin.value for margin in self.margins])
         stable = (zero for zero in found if "-" not in zero.signs)
-        counts = counts_of(self.form, found, count)
-        return with_further(counts, count, lambda: sum(_has_margins(field, zero) for zero in stable))
+        number = sum(_has_margins(field, zero, kind.undecided) for zero in stable)
+        return replace(counts, further={count.value: number})
 
     def _once(self, found: Sequence[Zero]) -> list[Zero]:
         """Solutions on all sides; at both ends of a box of angles one may be there on two sides."""
@@ -287,14 +291,14 @@ def _start(field: BallEquations) -> Box:
     return (0.0,) * len(widths), widths
 
 
-def _has_margins(field: BallEquations, zero: Zero) -> bool:
+def _has_margins(field: BallEquations, zero: Zero, undecided: str) -> bool:
     """Whether all conditions of a field hold at a solution."""
     found = field(zero.within).conditions
     if any(value < 0 for value in found):
         return False
     if all(value > 0 for value in found):
         return True
-    raise Unproved("a spring may be as long as its free length")
+    raise Unproved(undecided)
 
 
 def counts_of(form: Form, found: Sequence[Zero], count: Count) -> CellCounts:
@@ -307,14 +311,14 @@ def counts_of(form: Form, found: Sequence[Zero], count: Count) -> CellCounts:
     """
     if not form.is_gradient:
         number = len(found)
-        return CellCounts(None, number, None, None) if count.is_of_stable else CellCounts(number, None, None, None)
+        return CellCounts(stable=number) if count.is_of_stable else CellCounts(total=number)
     negative = Counter(zero.signs.count("-") for zero in found)
     index = tuple(negative[k] for k in range(form.size + 1))
     if count.is_of_stable:
-        return CellCounts(None, index[0], None, None)
+        return CellCounts(stable=index[0])
     if form.is_smooth_on_a_torus and euler_sum(index):
         raise Violation(f"critical points of a function on the torus by index {index} contradict Euler's sum")
-    return CellCounts(len(found), index[0], index, None)
+    return CellCounts(len(found), index[0], index)
 
 
 def _narrow(form: Form, values: Mapping[str, Fraction], side: Sides, solution: Solution, k: int) -> Zero | None:

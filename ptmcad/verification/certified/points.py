@@ -13,11 +13,12 @@ from fractions import Fraction
 
 from ptmcad.answer.regionmap import Cell
 from ptmcad.verification.certified.boxes import Unproved, Zero
-from ptmcad.verification.certified.counted import CountedPoint, Places, differs, needed_for, stored
+from ptmcad.verification.certified.counted import CountedPoint, Places, differs, stored
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.waves import form_of, margins_of
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.kinds import numbers_for
 from ptmcad.verification.report import Unchecked, Violation
 
 HOPELESS = 16
@@ -168,7 +169,7 @@ def _check_signs(claims: CertifiedClaims, true: str, said: str, k: int) -> None:
     ------
     Violation, Unproved
     """
-    if needed_for(claims.result.slice.count, claims.meaning) == {"total"}:
+    if numbers_for(claims.result.slice.count, claims.meaning) == {"total"}:
         if not said:
             return  # of solutions that are all counted nothing need be said
         if not true and len(said) == form_of(claims.result.slice).conditions_for_stability:

@@ -14,10 +14,11 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.cover.rectangles import Cover
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import approximate_text, text_of
-from ptmcad.verification.certified.counted import check_region, contradiction_in, names_in, needed_for
+from ptmcad.verification.certified.counted import check_region, contradiction_in, numbers_in
 from ptmcad.verification.certified.sweep import CoverSweep, sweep
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import kinds_of_count, shorthands_of
+from ptmcad.verification.derivation import shorthands_of
+from ptmcad.verification.kinds import kind_of, numbers_for
 from ptmcad.verification.report import Violation
 
 MAX_STEPS = 2**40
@@ -134,10 +135,10 @@ def check_form(claims: CertifiedClaims) -> str:
             raise Violation(f"{patch.frame} is not a frame of the lattice")
         if any(len(tube.controls) < 2 for tube in patch.tubes):
             raise Violation(f"a slanted piece in {patch.frame} has no polynomial")
-    needed = needed_for(r.slice.count, claims.meaning)
+    needed = numbers_for(r.slice.count, claims.meaning)
     for what, items in (("cell", r.cells), ("region", r.regions)):
         for n, item in enumerate(items):
-            if (present := names_in(item)) != needed:
+            if (present := set(numbers_in(item))) != needed:
                 raise Violation(f"{what} {n} has the counts {sorted(present)}, not {sorted(needed)}")
     for n, cell in enumerate(r.cells):
         if cell.stack is not None:
@@ -157,7 +158,7 @@ def _check_model(slice: Slice) -> None:
         raise Violation(f"the mechanism {slice.mechanism!r} is not known, or its parameters are others")
     if not 1 <= len(model.unknowns) <= MAX_UNKNOWNS:
         raise Violation(f"no certified map is of {len(model.unknowns)} unknowns")
-    if slice.count not in kinds_of_count(model):
+    if not kind_of(slice.count).is_of(model):
         raise Violation(f"no certified map of {model.name!r} counts {slice.count.value}")
 
 

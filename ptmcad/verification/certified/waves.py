@@ -20,6 +20,7 @@ from ptmcad.verification.certified.lines import SpringLine, line_of
 from ptmcad.verification.certified.parallel import Parameters
 from ptmcad.verification.coordinates import CoordinateRing, circle_names
 from ptmcad.verification.derivation import Derivation, derivation_of
+from ptmcad.verification.kinds import kind_of
 
 Multi = tuple[int, ...]
 """For each unknown the multiple of an angle, or the power of a real unknown."""
@@ -59,20 +60,18 @@ class SpringCone(NamedTuple):
 
 
 class Margin(NamedTuple):
-    """What is positive where a spring is longer than its free length.
+    """What is positive at a stable solution that is counted.
 
     Attributes
     ----------
-    spring : its name.
-    vector : between its ends.
+    value : it, or of a spring that is to be longer than its free length |vector|^2 - free^2.
+    vector : between this spring's ends; None of what is no length.
     free : its free length, a polynomial in the parameters.
-    squared : |vector|^2 - free^2.
     """
 
-    spring: str
-    vector: Vector
+    value: Waves
+    vector: Vector | None
     free: fmpq_mpoly
-    squared: Waves
 
 
 class Form(NamedTuple):
@@ -245,18 +244,18 @@ def _form(
 
 
 def margins_of(model: Model, count: Count) -> tuple[Margin, ...]:
-    """What a kind of count asks of stable solutions: of all springs, of which none has a negative free length."""
-    return _margins(model, model.whole) if count is Count.ADMISSIBLE else ()
+    """What a kind of count asks of stable solutions."""
+    return _margins(model, model.whole, count)
 
 
 @lru_cache(maxsize=8)
-def _margins(model: Model, _mechanism: Mechanism | None) -> tuple[Margin, ...]:
+def _margins(model: Model, _mechanism: Mechanism | None, count: Count) -> tuple[Margin, ...]:
     true = derivation_of(model)
     ring, found = _Exponentials(model, true.ring), []
-    for spring in true.springs:
-        free = next(iter(ring.waves(spring.free).values()), ring.numbers.constant(0))
-        squared = ring.waves(spring.squared - spring.free**2)
-        found.append(Margin(spring.name, ring.vector(spring.vector), free, squared))
+    for value, spring in kind_of(count).margins(true):
+        nothing = ring.numbers.constant(0)
+        free = nothing if spring is None else next(iter(ring.waves(spring.free).values()), nothing)
+        found.append(Margin(ring.waves(value), None if spring is None else ring.vector(spring.vector), free))
     return tuple(found)
 
 

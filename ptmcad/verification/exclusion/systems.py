@@ -25,6 +25,7 @@ from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.waves import Waves, form_of, margins_of
 from ptmcad.verification.exclusion.equations import Equations, Pair, bases
 from ptmcad.verification.exclusion.formulas import Formulas, IntervalTape
+from ptmcad.verification.kinds import kind_of
 
 SHORT_SHARE = 16
 """A spring is short, for total counts, if its length is less than this part of the sum of its vector's factors."""
@@ -251,7 +252,8 @@ class _Systems:
                 yield self._system(f"boundary {k}", [*equations, c], others, [n for n in signs if n != c])
         for k, (_, as_long) in enumerate(self.margins):
             taut = [value for j, (value, _) in enumerate(self.margins) if j != k]
-            yield self._system(f"free length {k}", [*equations, *as_long], others, [*dict.fromkeys([*signs, *taut])])
+            name = f"{kind_of(self.count).boundary} {k}"
+            yield self._system(name, [*equations, *as_long], others, [*dict.fromkeys([*signs, *taut])])
 
     def _minors(self, rows: Sequence[Sequence[int]]) -> list[int]:
         """The principal minors but the determinant; none is negative where the Hessian is positive semidefinite."""
@@ -303,10 +305,14 @@ class _Systems:
         return self._system(name, s.vector, m.balances(k), self.positive)
 
     def _margins(self) -> list[tuple[int, tuple[int, ...]]]:
-        """By how much each spring is longer than its free length, and what is zero where it is not."""
+        """What is asked of stable solutions besides, and what is zero where one begins or ceases to be counted."""
         m, f = self.model, self.model.list
         found: list[tuple[int, tuple[int, ...]]] = []
         for margin in margins_of(self.claims.model, self.count):
+            if margin.vector is None:
+                value = m.waves(margin.value)
+                found.append((value, (value,)))
+                continue
             free, vector = m.polynomial(margin.free), (m.waves(margin.vector[0]), m.waves(margin.vector[1]))
             value = f.subtract(f.length(*vector), free)
             found.append((value, vector if f.constant(free) == 0 else (value,)))

@@ -380,7 +380,7 @@ def test_no_box_is_proved_outside_of_the_domain(name: str, text: str, words: str
     r = with_parameter(name, text)(springs())
     x, y = (ball_of(a.low).union(ball_of(a.high)) for a in r.slice.axes)
     with pytest.raises(Unproved, match=words):
-        counting_of(CertifiedClaims(r)).over(r.slice, x, y, CountedPoint(CellCounts(None, None, None, None), (), {}))
+        counting_of(CertifiedClaims(r)).over(r.slice, x, y, CountedPoint(CellCounts(), (), {}))
 
 
 DEGENERATE: Box = ((0.0, 0.0), (2.0**-20, 2.0**-20))

@@ -1,0 +1,112 @@
+"""The kinds of count as the checker knows them: of which models, and what is asked of stable solutions besides.
+
+Guarantee: margins are derived here from descriptions, as polynomials; a kind without a row in this table is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Set
+from dataclasses import replace
+from typing import NamedTuple
+
+from flint import fmpq_mpoly
+
+from ptmcad.model import Model
+from ptmcad.question.counts import Count
+from ptmcad.verification.derivation import Derivation, SpringVector, meaning_of
+from ptmcad.verification.meaning import SignMeaning
+from ptmcad.verification.report import Violation
+
+
+class CheckedMargin(NamedTuple):
+    """What is positive at a stable solution that is counted.
+
+    Attributes
+    ----------
+    value : a polynomial in coordinates and parameters.
+    spring : the value is its squared length less the square of its free length; None of another one.
+    """
+
+    value: fmpq_mpoly
+    spring: SpringVector | None = None
+
+
+def _without_margins(_point: Derivation) -> Iterator[CheckedMargin]:
+    yield from ()
+
+
+class CheckedKind(NamedTuple):
+    """A row of the table.
+
+    Attributes
+    ----------
+    is_of : whether a model has solutions that may be counted so.
+    margins : of a model with or without numbers in the place of parameters; no free length is negative.
+    boundary : the name of the curves on which they vanish.
+    undecided : said where one of them may be zero.
+    has_exact_maps : whether margins say something where no spring has a free length.
+    """
+
+    is_of: Callable[[Model], bool]
+    margins: Callable[[Derivation], Iterator[CheckedMargin]] = _without_margins
+    boundary: str = ""
+    undecided: str = ""
+    has_exact_maps: bool = True
+
+    @property
+    def is_predicate(self) -> bool:
+        """Whether some stable solutions are not counted."""
+        return bool(self.boundary)
+
+    def with_margins(self, point: Derivation) -> Derivation:
+        """With the margins as conditions for stability, of a model without free lengths."""
+        if not self.has_exact_maps:
+            return point
+        margins = tuple(margin.value for margin in self.margins(point))
+        return replace(point, stability=(*point.stability, *margins)) if margins else point
+
+
+def _is_told(count: Count) -> Callable[[Model], bool]:
+    return lambda model: count in meaning_of(model).kinds
+
+
+def _is_of_springs(model: Model) -> bool:
+    return model.whole is not None and Count.STABLE in meaning_of(model).kinds
+
+
+def _longer_than_free(point: Derivation) -> Iterator[CheckedMargin]:
+    for spring in point.springs:
+        yield CheckedMargin(spring.squared - spring.free**2, spring)
+
+
+_KINDS = {
+    Count.STABLE: CheckedKind(_is_told(Count.STABLE)),
+    Count.TOTAL: CheckedKind(_is_told(Count.TOTAL)),
+    Count.INDEX: CheckedKind(_is_told(Count.INDEX)),
+    Count.ADMISSIBLE: CheckedKind(
+        _is_of_springs,
+        _longer_than_free,
+        boundary="free length",
+        undecided="a spring may be as long as its free length",
+        has_exact_maps=False,
+    ),
+}
+"""The table."""
+
+
+def kind_of(count: Count) -> CheckedKind:
+    """Its row of the table.
+
+    Raises
+    ------
+    Violation
+        When there is none.
+    """
+    if count not in _KINDS:
+        raise Violation(f"the checker does not know what {count.value} counts are")
+    return _KINDS[count]
+
+
+def numbers_for(count: Count, meaning: SignMeaning) -> Set[str]:
+    """The names of the counts that a certified map has; without an index all solutions, or stable ones alone."""
+    return {"stable", count.value} if count.is_of_stable else meaning.with_all
